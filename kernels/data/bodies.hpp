@@ -1,0 +1,99 @@
+// Bodies: arrays, one per quantity, with one index for all of them.
+//
+// The index of a body is its id: where it stands among the bodies as they were stated. A removed
+// body leaves a gap that the next one fills, with another generation.
+#pragma once
+
+#include "kernels/data/shapes.hpp"
+#include "kernels/math/types.hpp"
+
+#include <array>
+#include <limits>
+#include <vector>
+
+namespace throng {
+
+inline constexpr std::uint32_t kNobody = 0xffffffffu;
+
+/// Where each body's center of mass is and how its axes are turned.
+struct Poses {
+    std::vector<Vec3> position;
+    std::vector<Quat> orientation;
+
+    Pose at(std::size_t body) const { return {position[body], orientation[body]}; }
+};
+
+/// Of the center of mass, m/s; about it in world axes, rad/s.
+struct Velocities {
+    std::vector<Vec3> linear;
+    std::vector<Vec3> angular;
+};
+
+/// What resists motion. Zero inverses do not move, or do not turn.
+struct Masses {
+    std::vector<double> mass;             // kg; 0 for a body that is not dynamic
+    std::vector<double> inverse_mass;     // 1/kg
+    std::vector<Sym3> inertia;            // kg m2 about the center, body axes
+    std::vector<Sym3> inverse_inertia;    // 1/(kg m2), body axes
+    std::vector<std::uint8_t> spins_unevenly;  // principal moments differ: the gyroscopic term acts
+};
+
+/// Velocities that the user sets before every step.
+struct Drives {
+    std::vector<std::uint32_t> body;  // ascending
+    std::vector<std::array<double, 3>> velocity;  // m/s; not a number where it is free
+};
+
+enum class BodyKind : std::uint8_t { gone, still, kinematic, dynamic };
+
+/// How each body takes part.
+struct BodyStates {
+    std::vector<BodyKind> kind;
+    std::vector<std::uint8_t> awake;        // dynamic or kinematic, and not asleep
+    std::vector<std::uint8_t> quarantined;  // turned non-finite once; stands still since
+    std::vector<double> quiet_time;         // s, how long it has been slower than the limit
+    std::vector<std::uint32_t> bed;         // the group it fell asleep with; kNobody while awake
+    std::vector<double> radius;             // m, furthest point of its shapes from its center
+
+    bool moves(std::size_t body) const { return awake[body] != 0; }
+    bool dynamic(std::size_t body) const { return kind[body] == BodyKind::dynamic; }
+};
+
+/// Bodies that fell asleep together and wake together.
+struct Beds {
+    std::vector<std::vector<std::uint32_t>> sleepers;  // ascending; empty: a free bed
+    std::vector<std::uint32_t> free;
+};
+
+/// Shapes placed on bodies. A compound body has several, one after another. The place of a
+/// collider is its id; a removed one leaves a gap (body kNobody) that is filled again.
+struct Colliders {
+    std::vector<std::uint32_t> body;
+    std::vector<ShapeRef> shape;
+    std::vector<Pose> local;              // in the frame of the center of mass, body axes
+    std::vector<std::uint32_t> material;
+    std::vector<double> inner_extent;     // m, smallest half extent
+    std::vector<double> outer_radius;     // m, furthest point from the body's center of mass
+    std::vector<std::uint32_t> begin, count;  // [bodies] the colliders of each
+
+    std::size_t size() const { return body.size(); }
+};
+
+/// What surfaces do when they meet.
+struct Surfaces {
+    struct Meeting {
+        double friction = 0, restitution = 0, rolling_friction = 0;
+    };
+    std::vector<double> friction, restitution, rolling_friction;  // [materials]
+
+    struct Override {
+        std::uint32_t a = 0, b = 0;  // a <= b; sorted
+        Meeting meeting;
+    };
+    std::vector<Override> overrides;
+
+    /// Geometric mean of the frictions, greater restitution, unless overridden.
+    Meeting between(std::uint32_t a, std::uint32_t b) const;
+};
+
+}  // namespace throng

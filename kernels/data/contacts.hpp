@@ -1,0 +1,62 @@
+// Contacts: manifolds as they are kept from step to step, impulses included.
+//
+// Anchors are relative to the centers of mass and in world axes, so they are small numbers however
+// far the scene is from the origin, and float holds them well.
+#pragma once
+
+#include "kernels/data/manifolds.hpp"
+#include "kernels/data/pairs.hpp"
+
+#include <vector>
+
+namespace throng {
+
+template <class Real>
+struct Contact {
+    struct Point {
+        Vec3T<Real> from_a, from_b;  // m, where the surfaces meet, from each center of mass
+        Real separation = 0;         // m
+        Real impulse = 0;            // N s along the normal, total over the last substep
+        std::uint32_t feature = 0;
+    };
+    Vec3T<Real> normal = Vec3T<Real>::UnitZ();          // from a to b
+    Vec3T<Real> friction = Vec3T<Real>::Zero();         // N s on b, at the middle of the points
+    Vec3T<Real> rolling = Vec3T<Real>::Zero();          // N m s on b
+    Real twist = 0;                                     // N m s on b about the normal
+    std::array<Point, 4> points;
+    int count = 0;
+    PairCache cache;
+};
+
+/// One contact a pair of convex colliders, in the order of the pairs.
+template <class Real>
+struct ConvexContacts {
+    std::vector<Contact<Real>> of_pair;
+    std::vector<Contact<Real>> before;  // scratch: those of the last step
+};
+
+/// Contacts of convex colliders with meshes: any number a pair, in order of pair and triangle.
+template <class Real>
+struct MeshContacts {
+    struct Entry {
+        std::uint32_t pair = 0;
+        std::uint32_t triangle = 0;
+        Contact<Real> contact;
+    };
+    std::vector<Entry> entries;
+    std::vector<Entry> before;
+};
+
+/// The contacts that this step solves: at least one point, at least one body that can move.
+struct ActiveContacts {
+    struct Entry {
+        std::uint32_t body_a = 0, body_b = 0;
+        std::uint32_t slot = 0;   // in ConvexContacts, or in MeshContacts
+        bool on_mesh = false;
+        std::uint8_t points = 0;
+        float friction = 0, restitution = 0, rolling_friction = 0;
+    };
+    std::vector<Entry> entries;
+};
+
+}  // namespace throng

@@ -1,0 +1,43 @@
+// Manifolds: where two shapes touch, or soon may.
+//
+// Up to four points that share a normal, each with a feature id that stays the same while the same
+// features touch, so that impulses carry over from step to step.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+#include <array>
+
+namespace throng {
+
+/// What the geometry of one pair says, in the frame of shape a (its center and axes).
+///
+///   normal      unit, from a to b
+///   position    midway between the two surfaces
+///   separation  m along the normal; below 0 when overlapping
+template <class Real>
+struct LocalManifold {
+    struct Point {
+        Vec3T<Real> position;
+        Real separation;
+        std::uint32_t feature;
+    };
+    Vec3T<Real> normal = Vec3T<Real>::UnitZ();
+    std::array<Point, 4> points;
+    int count = 0;
+
+    void add(const Vec3T<Real>& position, Real separation, std::uint32_t feature)
+    {
+        points[static_cast<std::size_t>(count++)] = {position, separation, feature};
+    }
+};
+
+/// What a pair remembers from step to step so that the next answer comes sooner. It never changes
+/// the answer. The meaning is the pair function's own; all zero is a cold start.
+struct PairCache {
+    std::uint32_t feature_a = 0, feature_b = 0;
+    std::uint32_t kind = 0;
+    bool operator==(const PairCache&) const = default;
+};
+
+}  // namespace throng

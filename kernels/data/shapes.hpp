@@ -1,0 +1,103 @@
+// Shapes: what bodies are made of. One closed set of kinds; one array a kind.
+//
+// A ShapeRef names a shape by kind and place in its array, so that a million boxes of different
+// sizes cost 24 bytes each. Hulls and meshes are shared by all bodies that use them.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+#include <array>
+#include <vector>
+
+namespace throng {
+
+enum class ShapeKind : std::uint8_t { sphere, capsule, cylinder, box, hull, plane, mesh, triangle };
+inline constexpr int kShapeKinds = 8;
+
+struct ShapeRef {
+    ShapeKind kind = ShapeKind::sphere;
+    std::uint32_t index = 0;
+    bool operator==(const ShapeRef&) const = default;
+};
+
+struct Sphere {
+    double radius = 0;
+};
+
+/// A segment along z of twice half_length, thickened by radius.
+struct Capsule {
+    double radius = 0, half_length = 0;
+};
+
+/// Axis z, flat ends at -half_length and +half_length.
+struct Cylinder {
+    double radius = 0, half_length = 0;
+};
+
+struct Box {
+    Vec3 half_extents = Vec3::Zero();
+};
+
+/// The points with normal . x <= offset are solid. The normal is of unit length.
+struct Plane {
+    Vec3 normal = Vec3::UnitZ();
+    double offset = 0;
+};
+
+/// A convex polyhedron with polygons for faces. Vertices, faces and edges are in an order that
+/// depends on the input points alone.
+///
+///   face_begin  [faces + 1]  where a face's corners begin in face_vertices
+///   face_vertices            corners of all faces, counter-clockwise seen from outside
+///   edges                    each edge once, as (from, to, left face, right face): seen from
+///                            outside the left face runs from -> to, the right face to -> from
+///   neighbor_begin, neighbors  vertices joined to a vertex by an edge (for hill climbing)
+struct Hull {
+    struct Edge {
+        std::uint16_t from, to, left, right;
+    };
+    std::vector<Vec3> vertices;
+    std::vector<Vec3> normals;     // [faces] unit, outward
+    std::vector<double> offsets;   // [faces] normal . x of the face's plane
+    std::vector<std::uint32_t> face_begin;
+    std::vector<std::uint16_t> face_vertices;
+    std::vector<Edge> edges;
+    std::vector<std::uint32_t> neighbor_begin;
+    std::vector<std::uint16_t> neighbors;
+    Vec3 center = Vec3::Zero();    // a point well inside (the centroid)
+    double inner_radius = 0;       // of a ball about center inside the hull
+    double outer_radius = 0;       // of a ball about center round the hull
+};
+
+/// Static triangles, solid on neither side but one-sided in contact: pushes come out along the
+/// face normals (counter-clockwise seen from outside).
+///
+/// edge_cos/edge_kind say for each edge (0: v0-v1, 1: v1-v2, 2: v2-v0) what lies beyond it, so that
+/// contacts on internal edges take the normal of the surface and not of the triangle's rim.
+struct Mesh {
+    struct Node {                  // binary tree over triangles, boxes in mesh axes
+        Vec3 lower, upper;
+        std::uint32_t first = 0;   // leaf: first in `order`; inner: left child; right is left + 1
+        std::uint32_t count = 0;   // leaf: triangles; inner: 0
+    };
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Vec3> normals;     // [triangles] unit
+    std::vector<std::array<std::int32_t, 3>> beyond;  // triangle over each edge, -1 at a rim
+    std::vector<std::uint8_t> convex_edges;  // bit e set: edge e sticks out, or is a rim
+    std::vector<Node> tree;        // [0] is the root
+    std::vector<std::uint32_t> order;
+};
+
+/// All shapes of a world.
+struct Shapes {
+    std::vector<Sphere> spheres;
+    std::vector<Capsule> capsules;
+    std::vector<Cylinder> cylinders;
+    std::vector<Box> boxes;
+    std::vector<Hull> hulls;
+    std::vector<Plane> planes;
+    std::vector<Mesh> meshes;
+};
+
+}  // namespace throng

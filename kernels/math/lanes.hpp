@@ -1,0 +1,237 @@
+// Lanes: one formula, any width.
+//
+// Wide<T, W> is W numbers that go through the same arithmetic side by side. Every operation is the
+// plain IEEE one, lane by lane, so a formula gives the same bits with 1, 4, 8 or 16 lanes. Built on
+// the compiler's vector types: a source that includes this is compiled once for each instruction
+// set (see CMakeLists.txt), each time in a namespace of its own, and may include neither Eigen nor
+// containers, whose inline functions would be shared between instruction sets.
+#pragma once
+
+#include <cstdint>
+
+#ifndef THRONG_LANES
+#define THRONG_LANES scalar
+#define THRONG_LANE_BYTES 0
+#endif
+
+namespace throng::THRONG_LANES {
+
+// The register that holds W numbers; one number is just itself.
+template <class T, int W>
+struct Register {
+    typedef T Type __attribute__((vector_size(W * sizeof(T))));
+    static Type all(T value) { return value - Type{}; }
+};
+template <class T>
+struct Register<T, 1> {
+    using Type = T;
+};
+
+template <class T, int W>
+struct Wide {
+    using V = typename Register<T, W>::Type;
+    using Number = T;
+    static constexpr int kWidth = W;
+    V v;
+
+    Wide() : v{} { }
+    Wide(V value) : v(value) { }  // NOLINT(google-explicit-constructor): a number
+    /// The same number in every lane.
+    Wide(T value)  // NOLINT(google-explicit-constructor): a number
+        requires(W > 1)
+        : v(Register<T, W>::all(value))
+    {
+    }
+
+    static Wide load(const T* from)
+    {
+        Wide result;
+        __builtin_memcpy(&result.v, from, sizeof(V));
+        return result;
+    }
+    void store(T* to) const { __builtin_memcpy(to, &v, sizeof(V)); }
+
+    friend Wide operator+(Wide a, Wide b) { return a.v + b.v; }
+    friend Wide operator-(Wide a, Wide b) { return a.v - b.v; }
+    friend Wide operator*(Wide a, Wide b) { return a.v * b.v; }
+    friend Wide operator/(Wide a, Wide b) { return a.v / b.v; }
+    friend Wide operator-(Wide a) { return -a.v; }
+    Wide& operator+=(Wide b) { v += b.v; return *this; }
+    Wide& operator-=(Wide b) { v -= b.v; return *this; }
+    friend auto operator<(Wide a, Wide b) { return a.v < b.v; }
+    friend auto operator>(Wide a, Wide b) { return a.v > b.v; }
+
+    void set(int lane, T value)
+    {
+        if constexpr (W == 1)
+            v = value;
+        else
+            v[lane] = value;
+    }
+    T get(int lane) const
+    {
+        if constexpr (W == 1)
+            return v;
+        else
+            return v[lane];
+    }
+};
+
+/// yes where the mask is set, no elsewhere.
+template <class Mask, class T, int W>
+Wide<T, W> select(Mask mask, Wide<T, W> yes, Wide<T, W> no)
+{
+    return mask ? yes.v : no.v;
+}
+/// The second where they are equal, as the machine's own instruction has it.
+template <class T, int W>
+Wide<T, W> max(Wide<T, W> a, Wide<T, W> b)
+{
+    return a.v > b.v ? a.v : b.v;
+}
+template <class T, int W>
+Wide<T, W> min(Wide<T, W> a, Wide<T, W> b)
+{
+    return a.v < b.v ? a.v : b.v;
+}
+inline float root(float x) { return __builtin_sqrtf(x); }
+inline double root(double x) { return __builtin_sqrt(x); }
+template <class T, int W>
+Wide<T, W> sqrt(Wide<T, W> a)
+{
+    if constexpr (W == 1) {
+        return root(a.v);
+    } else {
+        Wide<T, W> result;
+        for (int i = 0; i < W; ++i) result.v[i] = root(a.v[i]);
+        return result;
+    }
+}
+
+// Eight numbers of each of W bodies, turned so that each number has a register of its own. Loads
+// and shuffles: gather instructions cost a third more (measured on the contact sweep).
+namespace detail {
+
+template <class V>
+void turn_8x8(V (&r)[8])
+{
+    V t[8], u[8];
+    for (int i = 0; i < 4; ++i) {
+        t[2 * i] = __builtin_shufflevector(r[2 * i], r[2 * i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+        t[2 * i + 1] = __builtin_shufflevector(r[2 * i], r[2 * i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+    }
+    for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) {
+            V &lower = t[4 * i + k], &upper = t[4 * i + k + 2];
+            u[4 * i + 2 * k] = __builtin_shufflevector(lower, upper, 0, 1, 8, 9, 4, 5, 12, 13);
+            u[4 * i + 2 * k + 1] = __builtin_shufflevector(lower, upper, 2, 3, 10, 11, 6, 7, 14, 15);
+        }
+    for (int i = 0; i < 4; ++i) {
+        r[i] = __builtin_shufflevector(u[i], u[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+        r[i + 4] = __builtin_shufflevector(u[i], u[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+}
+
+// The same for both halves of 16-wide registers at once.
+template <class V>
+void turn_two_8x8(V (&r)[8])
+{
+    V t[8], u[8];
+    for (int i = 0; i < 4; ++i) {
+        const V a = r[2 * i], b = r[2 * i + 1];
+        t[2 * i] = __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28,
+                                           13, 29);
+        t[2 * i + 1] = __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14,
+                                               30, 15, 31);
+    }
+    for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 2; ++k) {
+            const V a = t[4 * i + k], b = t[4 * i + k + 2];
+            u[4 * i + 2 * k] = __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24,
+                                                       25, 12, 13, 28, 29);
+            u[4 * i + 2 * k + 1] = __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11,
+                                                           26, 27, 14, 15, 30, 31);
+        }
+    for (int i = 0; i < 4; ++i) {
+        const V a = u[i], b = u[i + 4];
+        r[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 8, 9, 10, 11, 24, 25, 26,
+                                       27);
+        r[i + 4] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 20, 21, 22, 23, 12, 13, 14, 15, 28, 29,
+                                           30, 31);
+    }
+}
+
+}  // namespace detail
+
+/// out[k] lane i = k-th number at base + stride * index[i].
+template <class T, int W>
+void gather_8(const T* base, int stride, const std::int32_t* index, Wide<T, W> (&out)[8])
+{
+    if constexpr (W == 8 || W == 16) {
+        typedef T V8 __attribute__((vector_size(8 * sizeof(T))));
+        typedef typename Wide<T, W>::V V;
+        V rows[8];
+        for (int i = 0; i < 8; ++i) {
+            V8 row;
+            __builtin_memcpy(&row, base + std::int64_t{stride} * index[i], sizeof(V8));
+            if constexpr (W == 16) {
+                V8 upper;
+                __builtin_memcpy(&upper, base + std::int64_t{stride} * index[i + 8], sizeof(V8));
+                rows[i] = __builtin_shufflevector(row, upper, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11,
+                                                  12, 13, 14, 15);
+            } else {
+                rows[i] = row;
+            }
+        }
+        if constexpr (W == 16)
+            detail::turn_two_8x8(rows);
+        else
+            detail::turn_8x8(rows);
+        for (int k = 0; k < 8; ++k) out[k].v = rows[k];
+    } else {
+        for (int i = 0; i < W; ++i)
+            for (int k = 0; k < 8; ++k) out[k].set(i, base[std::int64_t{stride} * index[i] + k]);
+    }
+}
+
+/// The reverse of gather_8, for the lanes whose bit in `writes` is set.
+template <class T, int W>
+void scatter_8(const Wide<T, W> (&in)[8],
+               T* base,
+               int stride,
+               const std::int32_t* index,
+               unsigned writes)
+{
+    if constexpr (W == 8 || W == 16) {
+        typedef T V8 __attribute__((vector_size(8 * sizeof(T))));
+        typedef typename Wide<T, W>::V V;
+        V rows[8];
+        for (int k = 0; k < 8; ++k) rows[k] = in[k].v;
+        if constexpr (W == 16)
+            detail::turn_two_8x8(rows);
+        else
+            detail::turn_8x8(rows);
+        for (int i = 0; i < W; ++i) {
+            if ((writes >> i & 1u) == 0) continue;
+            V8 row;
+            if constexpr (W == 16) {
+                const V both = rows[i & 7];
+                row = i < 8 ? __builtin_shufflevector(both, both, 0, 1, 2, 3, 4, 5, 6, 7)
+                            : __builtin_shufflevector(both, both, 8, 9, 10, 11, 12, 13, 14, 15);
+            } else {
+                row = rows[i];
+            }
+            __builtin_memcpy(base + std::int64_t{stride} * index[i], &row, sizeof(V8));
+        }
+    } else {
+        for (int i = 0; i < W; ++i)
+            if ((writes >> i & 1u) != 0)
+                for (int k = 0; k < 8; ++k) base[std::int64_t{stride} * index[i] + k] = in[k].get(i);
+    }
+}
+
+/// As many as fit this instruction set's registers.
+template <class T>
+using Lanes = Wide<T, THRONG_LANE_BYTES == 0 ? 1 : THRONG_LANE_BYTES / int(sizeof(T))>;
+
+}  // namespace throng::THRONG_LANES

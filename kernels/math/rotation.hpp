@@ -1,0 +1,46 @@
+// Rotation: turning a pose by an angular velocity; inertia in world axes.
+//
+// Sine and cosine are our own, so that a turn is the same bits with every C library.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+namespace throng {
+
+struct SinCos {
+    double sin = 0, cos = 1;
+};
+
+/// Sine and cosine of an angle in radians, to about one unit in the last place for |angle| < 1e5.
+/// The same bits on every machine.
+///
+/// Source: quarter-turn reduction in three parts after Cody and Waite (1980); polynomials as in
+///         Sun's fdlibm (1993).
+SinCos sin_cos(double angle);
+
+/// The rotation by a vector: its direction is the axis, its length the angle in radians.
+Quat exponential(const Vec3& turn);
+
+/// The orientation after turning at a constant angular velocity (world axes, rad/s) for a time.
+/// Exact for a constant velocity, however fast; the result is of unit length.
+Quat turned(const Quat& orientation, const Vec3& angular_velocity, double time);
+
+/// An inertia tensor (or its inverse) given in body axes, in world axes.
+Mat3 in_world_axes(const Sym3& local, const Quat& orientation);
+
+/// Angular velocity after the gyroscopic torque has acted for a time: one Newton step of implicit
+/// Euler in body axes. It never gains energy; it loses some, by first order in time.
+///
+/// Source: Catto, Numerical Methods (GDC 2015).
+Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,
+                             const Sym3& inertia_local,
+                             const Quat& orientation,
+                             double time);
+
+/// The same by explicit Euler: cheaper, and unstable when spinning fast.
+Vec3 after_explicit_gyroscopic_torque(const Vec3& angular_velocity,
+                                      const Sym3& inertia_local,
+                                      const Quat& orientation,
+                                      double time);
+
+}  // namespace throng

@@ -1,0 +1,175 @@
+#include "kernels/solve/coloring.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace throng {
+
+namespace {
+
+// Colors are bits of a word. A body that has used them all (a plate under a hundred things) puts
+// its further contacts into a last color whose blocks go one after another.
+constexpr int kColors = 63;
+
+constexpr std::uint32_t kStill = 0xffffffffu;
+
+struct Range {
+    std::size_t begin = 0, end = 0;  // islands
+};
+
+// Islands of one batch: as many in a row as fit.
+std::vector<Range> batches_of(const Islands& islands)
+{
+    std::vector<Range> ranges;
+    std::size_t held = 0;
+    for (std::size_t island = 0; island < islands.size(); ++island) {
+        const std::size_t size = islands.contact_begin[island + 1] - islands.contact_begin[island];
+        if (ranges.empty() || held + size > kBatchContacts) {
+            ranges.push_back({island, island});
+            held = 0;
+        }
+        ranges.back().end = island + 1;
+        held += size;
+    }
+    return ranges;
+}
+
+class Painter {
+public:
+    Painter(const Islands& islands,
+            const ActiveContacts& contacts,
+            const BodyStates& states,
+            Layout& layout)
+        : islands_(islands), contacts_(contacts), states_(states), layout_(layout),
+          slot_(states.kind.size(), kStill), used_(states.kind.size(), 0)
+    {
+    }
+
+    void paint(const Range& range)
+    {
+        Batch batch;
+        batch.first_body = static_cast<std::uint32_t>(layout_.body_of_slot.size());
+        batch.first_color = static_cast<std::uint32_t>(layout_.colors.size());
+        batch.first_block = static_cast<std::uint32_t>(layout_.lanes.size() / kBlock);
+        first_ = islands_.contact_begin[range.begin];
+        count_ = islands_.contact_begin[range.end] - first_;
+        seat_bodies(range, batch);
+        choose_colors();
+        place(batch);
+        batch.wide = count_ > kBatchContacts;
+        layout_.batches.push_back(batch);
+        for (const std::uint32_t body : kinematic_) slot_[body] = kStill;
+    }
+
+private:
+    const auto& contact(std::size_t i) const
+    {
+        return contacts_.entries[islands_.contacts[first_ + i]];
+    }
+    bool movable(std::uint32_t body) const { return states_.dynamic(body) && states_.moves(body); }
+
+    // The still one first, then the movable ones of the islands, then kinematic ones they touch.
+    void seat_bodies(const Range& range, Batch& batch)
+    {
+        auto& seats = layout_.body_of_slot;
+        seats.push_back(kNobody);
+        for (std::size_t i = islands_.body_begin[range.begin]; i < islands_.body_begin[range.end];
+             ++i) {
+            slot_[islands_.bodies[i]] = static_cast<std::uint32_t>(seats.size());
+            seats.push_back(islands_.bodies[i]);
+            ++batch.dynamic;
+        }
+        kinematic_.clear();
+        for (std::size_t i = 0; i < count_; ++i)
+            for (const std::uint32_t body : {contact(i).body_a, contact(i).body_b})
+                if (states_.kind[body] == BodyKind::kinematic && slot_[body] == kStill) {
+                    slot_[body] = static_cast<std::uint32_t>(seats.size());
+                    seats.push_back(body);
+                    kinematic_.push_back(body);
+                    ++batch.kinematic;
+                }
+    }
+
+    void choose_colors()
+    {
+        color_.resize(count_);
+        for (std::size_t i = 0; i < count_; ++i) {
+            const auto& [a, b] = std::pair(contact(i).body_a, contact(i).body_b);
+            const std::uint64_t taken = (movable(a) ? used_[a] : 0) | (movable(b) ? used_[b] : 0);
+            const int color = std::min(std::countr_one(taken), kColors);
+            color_[i] = static_cast<std::uint8_t>(color);
+            if (color == kColors) continue;
+            if (movable(a)) used_[a] |= std::uint64_t{1} << color;
+            if (movable(b)) used_[b] |= std::uint64_t{1} << color;
+        }
+    }
+
+    // Counting sort by color and by number of points; each kind of a color begins a block.
+    void place(Batch& batch)
+    {
+        std::array<std::uint32_t, 2 * (kColors + 1)> size{};
+        for (std::size_t i = 0; i < count_; ++i) ++size[bin(i)];
+        std::array<std::uint32_t, 2 * (kColors + 1)> next{};
+        std::uint32_t block = batch.first_block;
+        for (std::uint32_t color = 0; color <= kColors; ++color) {
+            const std::uint32_t first = block;
+            const std::uint32_t per_block = color == kColors ? 1 : kBlock;
+            for (std::uint32_t kind = 0; kind < 2; ++kind) {
+                next[2 * color + kind] = block * kBlock;
+                block += (size[2 * color + kind] + per_block - 1) / per_block;
+            }
+            if (block > first) layout_.colors.push_back({first, block - first, color == kColors});
+        }
+        batch.colors = static_cast<std::uint32_t>(layout_.colors.size()) - batch.first_color;
+        batch.blocks = block - batch.first_block;
+        layout_.lanes.resize(std::size_t{block} * kBlock);
+        layout_.slot_a.resize(layout_.lanes.size(), static_cast<std::int32_t>(batch.first_body));
+        layout_.slot_b.resize(layout_.lanes.size(), static_cast<std::int32_t>(batch.first_body));
+        for (std::size_t i = 0; i < count_; ++i) {
+            const std::uint32_t lane = next[bin(i)];
+            next[bin(i)] += color_[i] == kColors ? kBlock : 1;
+            layout_.lanes[lane].entry = islands_.contacts[first_ + i];
+            layout_.slot_a[lane] = seat(contact(i).body_a, batch);
+            layout_.slot_b[lane] = seat(contact(i).body_b, batch);
+        }
+    }
+
+    std::size_t bin(std::size_t i) const
+    {
+        return 2 * std::size_t{color_[i]} + (contact(i).points == 1 ? 1 : 0);
+    }
+    std::int32_t seat(std::uint32_t body, const Batch& batch) const
+    {
+        const std::uint32_t slot = slot_[body];
+        return static_cast<std::int32_t>(slot == kStill ? batch.first_body : slot);
+    }
+
+    const Islands& islands_;
+    const ActiveContacts& contacts_;
+    const BodyStates& states_;
+    Layout& layout_;
+    std::vector<std::uint32_t> slot_;
+    std::vector<std::uint64_t> used_;
+    std::vector<std::uint32_t> kinematic_;
+    std::vector<std::uint8_t> color_;
+    std::size_t first_ = 0, count_ = 0;
+};
+
+}  // namespace
+
+void lay_out(const Islands& islands,
+             const ActiveContacts& contacts,
+             const BodyStates& states,
+             Layout& layout)
+{
+    layout.batches.clear();
+    layout.colors.clear();
+    layout.lanes.clear();
+    layout.slot_a.clear();
+    layout.slot_b.clear();
+    layout.body_of_slot.clear();
+    Painter painter(islands, contacts, states, layout);
+    for (const Range& range : batches_of(islands)) painter.paint(range);
+}
+
+}  // namespace throng

@@ -1,0 +1,418 @@
+// One visit of the solver, written once over the width of the machine's registers.
+#include "kernels/math/lanes.hpp"
+#include "kernels/solve/sweep.hpp"
+
+namespace throng::THRONG_LANES {
+
+namespace {
+
+template <class L>
+struct V3 {
+    L x, y, z;
+};
+template <class L>
+V3<L> operator+(const V3<L>& a, const V3<L>& b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class L>
+V3<L> operator-(const V3<L>& a, const V3<L>& b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class L>
+V3<L> operator*(const V3<L>& a, L s)
+{
+    return {a.x * s, a.y * s, a.z * s};
+}
+template <class L>
+L dot(const V3<L>& a, const V3<L>& b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class L>
+V3<L> cross(const V3<L>& a, const V3<L>& b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+template <class L>
+L lane(const Lane16<typename L::Number>& of, int at)
+{
+    return L::load(of.at + at);
+}
+template <class L>
+V3<L> lane3(const Lane16<typename L::Number> (&of)[3], int at)
+{
+    return {lane<L>(of[0], at), lane<L>(of[1], at), lane<L>(of[2], at)};
+}
+
+// One side of W contacts: velocities in registers, with what resists them.
+template <class L, bool turns>
+struct Side {
+    using Real = typename L::Number;
+    V3<L> velocity, spin;
+    L inverse_mass;
+    L xx, yy, zz, xy, xz, yz;
+
+    Side(const SolverBody<Real>* bodies, const std::int32_t* index)
+    {
+        constexpr int kStride = sizeof(SolverBody<Real>) / sizeof(Real);
+        L m[8];
+        gather_8(bodies->motion, kStride, index, m);
+        velocity = {m[0], m[1], m[2]};
+        spin = {m[4], m[5], m[6]};
+        L i[8];
+        gather_8(bodies->inertia, kStride, index, i);
+        inverse_mass = i[0];
+        xx = i[1], yy = i[2], zz = i[3], xy = i[4], xz = i[5], yz = i[6];
+    }
+    void write(SolverBody<Real>* bodies, const std::int32_t* index, unsigned writes) const
+    {
+        constexpr int kStride = sizeof(SolverBody<Real>) / sizeof(Real);
+        const L m[8]
+            = {velocity.x, velocity.y, velocity.z, L(Real(0)), spin.x, spin.y, spin.z, L(Real(0))};
+        scatter_8(m, bodies->motion, kStride, index, writes);
+    }
+    V3<L> at(const V3<L>& arm) const
+    {
+        if constexpr (turns) return velocity + cross(spin, arm);
+        return velocity;
+    }
+    V3<L> turned_by(const V3<L>& torque) const
+    {
+        return {xx * torque.x + xy * torque.y + xz * torque.z,
+                xy * torque.x + yy * torque.y + yz * torque.z,
+                xz * torque.x + yz * torque.y + zz * torque.z};
+    }
+    void push(const V3<L>& impulse, const V3<L>& arm)
+    {
+        velocity = velocity + impulse * inverse_mass;
+        if constexpr (turns) spin = spin + turned_by(cross(arm, impulse));
+    }
+    void twist(const V3<L>& impulse)
+    {
+        if constexpr (turns) spin = spin + turned_by(impulse);
+    }
+};
+
+// How far W bodies have moved and turned since the step began.
+template <class L, bool turns>
+struct Drift {
+    using Real = typename L::Number;
+    V3<L> moved, axis;
+    L w;
+
+    Drift(const SolverBody<Real>* bodies, const std::int32_t* index)
+    {
+        constexpr int kStride = sizeof(SolverBody<Real>) / sizeof(Real);
+        L d[8];
+        gather_8(bodies->drift, kStride, index, d);
+        moved = {d[0], d[1], d[2]};
+        axis = {d[4], d[5], d[6]};
+        w = d[7];
+    }
+    V3<L> of(const V3<L>& arm) const
+    {
+        if constexpr (!turns) return moved + arm;
+        const V3<L> t = cross(axis, arm);
+        const V3<L> twice = t + t;
+        return moved + arm + twice * w + cross(axis, twice);
+    }
+};
+
+template <class L, bool turns>
+struct Contacts {
+    using Real = typename L::Number;
+    ContactBlock<Real>& block;
+    int at;  // first lane
+    unsigned writes_a, writes_b;
+    Side<L, turns> a, b;
+    V3<L> normal;
+
+    Contacts(ContactBlock<Real>& in, int first, const SolverBody<Real>* bodies)
+        : block(in), at(first), writes_a(unsigned{in.writes_a} >> first),
+          writes_b(unsigned{in.writes_b} >> first), a(bodies, in.a + first), b(bodies, in.b + first),
+          normal(lane3<L>(in.normal, first))
+    {
+    }
+    void write(SolverBody<Real>* bodies) const
+    {
+        a.write(bodies, block.a + at, writes_a);
+        b.write(bodies, block.b + at, writes_b);
+    }
+    void push(const V3<L>& impulse, const V3<L>& arm_a, const V3<L>& arm_b)
+    {
+        a.push(impulse * L(Real(-1)), arm_a);
+        b.push(impulse, arm_b);
+    }
+    void twist(const V3<L>& impulse)
+    {
+        a.twist(impulse * L(Real(-1)));
+        b.twist(impulse);
+    }
+};
+
+// One point: towards the wanted normal speed, then refuse to pull. Returns the total impulse.
+template <class L, bool turns>
+L push_point(Contacts<L, turns>& c,
+             PointRows<typename L::Number>& point,
+             L bias,
+             L mass_scale,
+             L impulse_scale)
+{
+    using Real = typename L::Number;
+    const V3<L> arm_a = lane3<L>(point.from_a, c.at);
+    const V3<L> arm_b = lane3<L>(point.from_b, c.at);
+    const L speed = dot(c.normal, c.b.at(arm_b) - c.a.at(arm_a));
+    const L old = lane<L>(point.impulse, c.at);
+    const L change
+        = -(lane<L>(point.mass, c.at) * mass_scale * (speed + bias)) - impulse_scale * old;
+    const L total = max(old + change, L(Real(0)));
+    total.store(point.impulse.at + c.at);
+    c.push(c.normal * (total - old), arm_a, arm_b);
+    return total;
+}
+
+template <class L, bool turns>
+void push_points(Contacts<L, turns>& c,
+                 const SolverBody<typename L::Number>* bodies,
+                 const Visit<typename L::Number>& visit)
+{
+    using Real = typename L::Number;
+    const Drift<L, turns> drift_a(bodies, c.block.a + c.at);
+    const Drift<L, turns> drift_b(bodies, c.block.b + c.at);
+    const L zero = Real(0), one = Real(1);
+    const L limit = -visit.push_limit;
+    L bias[4], mass_scale[4], impulse_scale[4];
+    for (int k = 0; k < c.block.points; ++k) {
+        const PointRows<Real>& point = c.block.point[k];
+        const V3<L> apart
+            = drift_b.of(lane3<L>(point.from_b, c.at)) - drift_a.of(lane3<L>(point.from_a, c.at));
+        const L separation = dot(c.normal, apart) + lane<L>(point.gap, c.at);
+        // Apart: let it close, but no further. Overlapping: a soft spring, within the push limit.
+        const auto open = separation > zero;
+        const L closing = separation * L(visit.inverse_substep);
+        if (visit.push) {
+            const L soft = max(lane<L>(c.block.bias_rate, c.at) * separation, limit);
+            bias[k] = select(open, closing, soft);
+            mass_scale[k] = select(open, one, lane<L>(c.block.mass_scale, c.at));
+            impulse_scale[k] = select(open, zero, lane<L>(c.block.impulse_scale, c.at));
+        } else {
+            bias[k] = select(open, closing, zero);
+            mass_scale[k] = one;
+            impulse_scale[k] = zero;
+        }
+    }
+    for (int sweep = 0; sweep < visit.normal_sweeps; ++sweep)
+        for (int k = 0; k < c.block.points; ++k) {
+            PointRows<Real>& point = c.block.point[k];
+            const L total = push_point(c, point, bias[k], mass_scale[k], impulse_scale[k]);
+            if (sweep + 1 == visit.normal_sweeps)
+                max(total, lane<L>(point.greatest, c.at)).store(point.greatest.at + c.at);
+        }
+}
+
+// Friction at the middle of the points. Sticking is tried with the full 2x2 mass; what leaves the
+// cone slides, straight against the velocity whatever the shape of the bodies.
+template <class L, bool turns>
+void grip(Contacts<L, turns>& c, L reach)
+{
+    using Real = typename L::Number;
+    ContactBlock<Real>& block = c.block;
+    const V3<L> arm_a = lane3<L>(block.center_a, c.at);
+    const V3<L> arm_b = lane3<L>(block.center_b, c.at);
+    const V3<L> tangent = lane3<L>(block.tangent, c.at);
+    const V3<L> other = cross(c.normal, tangent);
+    const V3<L> slip = c.b.at(arm_b) - c.a.at(arm_a);
+    const L slip_1 = dot(tangent, slip), slip_2 = dot(other, slip);
+    const L old_1 = lane<L>(block.friction_impulse[0], c.at);
+    const L old_2 = lane<L>(block.friction_impulse[1], c.at);
+
+    const L m11 = lane<L>(block.friction_mass[0], c.at);
+    const L m22 = lane<L>(block.friction_mass[1], c.at);
+    const L m12 = lane<L>(block.friction_mass[2], c.at);
+    const L stick_1 = old_1 - (m11 * slip_1 + m12 * slip_2);
+    const L stick_2 = old_2 - (m12 * slip_1 + m22 * slip_2);
+    const auto slides = stick_1 * stick_1 + stick_2 * stick_2 > reach * reach;
+
+    const L slide = lane<L>(block.sliding_mass, c.at);
+    const L slide_1 = old_1 - slide * slip_1;
+    const L slide_2 = old_2 - slide * slip_2;
+    const L squared = slide_1 * slide_1 + slide_2 * slide_2;
+    const L length = sqrt(squared);
+    const L shrink = select(length > reach, reach / select(length > L(Real(0)), length, L(Real(1))),
+                            L(Real(1)));
+    const L new_1 = select(slides, slide_1 * shrink, stick_1);
+    const L new_2 = select(slides, slide_2 * shrink, stick_2);
+    new_1.store(block.friction_impulse[0].at + c.at);
+    new_2.store(block.friction_impulse[1].at + c.at);
+    c.push(tangent * (new_1 - old_1) + other * (new_2 - old_2), arm_a, arm_b);
+}
+
+// Friction about the normal, for contacts of several points.
+template <class L, bool turns>
+void hold_twist(Contacts<L, turns>& c, L most)
+{
+    const L speed = dot(c.normal, c.b.spin - c.a.spin);
+    const L old = lane<L>(c.block.twist_impulse, c.at);
+    const L wanted = old - lane<L>(c.block.twist_mass, c.at) * speed;
+    const L total = max(min(wanted, most), -most);
+    total.store(c.block.twist_impulse.at + c.at);
+    c.twist(c.normal * (total - old));
+}
+
+template <class L, bool turns>
+void resist_rolling(Contacts<L, turns>& c, L most)
+{
+    using Real = typename L::Number;
+    const V3<L> old = lane3<L>(c.block.rolling_impulse, c.at);
+    const L mass = lane<L>(c.block.rolling_mass, c.at);
+    const V3<L> wanted = old - (c.b.spin - c.a.spin) * mass;
+    const L length = sqrt(dot(wanted, wanted));
+    const L shrink
+        = select(length > most, most / select(length > L(Real(0)), length, L(Real(1))), L(Real(1)));
+    const V3<L> total = wanted * shrink;
+    total.x.store(c.block.rolling_impulse[0].at + c.at);
+    total.y.store(c.block.rolling_impulse[1].at + c.at);
+    total.z.store(c.block.rolling_impulse[2].at + c.at);
+    c.twist(total - old);
+}
+
+template <class L, bool turns>
+void sweep_lanes(ContactBlock<typename L::Number>& block,
+                 int at,
+                 SolverBody<typename L::Number>* bodies,
+                 const Visit<typename L::Number>& visit)
+{
+    using Real = typename L::Number;
+    Contacts<L, turns> c(block, at, bodies);
+    push_points(c, bodies, visit);
+    if (visit.grips) {
+        L total = Real(0), lever = Real(0);
+        for (int k = 0; k < block.points; ++k) {
+            const L impulse = lane<L>(block.point[k].impulse, at);
+            total += impulse;
+            lever += impulse * lane<L>(block.reach[k], at);
+        }
+        const L friction = lane<L>(block.friction, at);
+        if constexpr (turns) {
+            if (visit.rolls) resist_rolling(c, lane<L>(block.rolling, at) * total);
+            if (block.points > 1) hold_twist(c, friction * lever);
+        }
+        grip(c, friction * total);
+    }
+    c.write(bodies);
+}
+
+template <class L, bool turns>
+void warm_start_lanes(ContactBlock<typename L::Number>& block,
+                      int at,
+                      SolverBody<typename L::Number>* bodies,
+                      const Visit<typename L::Number>& visit)
+{
+    Contacts<L, turns> c(block, at, bodies);
+    for (int k = 0; k < block.points; ++k) {
+        const auto& point = block.point[k];
+        c.push(c.normal * lane<L>(point.impulse, at), lane3<L>(point.from_a, at),
+               lane3<L>(point.from_b, at));
+    }
+    if (visit.grips) {
+        const V3<L> tangent = lane3<L>(block.tangent, at);
+        c.push(tangent * lane<L>(block.friction_impulse[0], at)
+                   + cross(c.normal, tangent) * lane<L>(block.friction_impulse[1], at),
+               lane3<L>(block.center_a, at), lane3<L>(block.center_b, at));
+        c.twist(c.normal * lane<L>(block.twist_impulse, at));
+        if (visit.rolls) c.twist(lane3<L>(block.rolling_impulse, at));
+    }
+    c.write(bodies);
+}
+
+template <class L, bool turns>
+void restitute_lanes(ContactBlock<typename L::Number>& block,
+                     int at,
+                     SolverBody<typename L::Number>* bodies,
+                     typename L::Number threshold)
+{
+    using Real = typename L::Number;
+    const L zero = Real(0);
+    Contacts<L, turns> c(block, at, bodies);
+    const L bounce = lane<L>(block.restitution, at);
+    for (int k = 0; k < block.points; ++k) {
+        PointRows<Real>& point = block.point[k];
+        const L approach = lane<L>(point.approach, at);
+        // Only what came in fast and did touch; the others keep what the solver gave them.
+        const L fast = select(approach < L(-threshold), L(Real(1)), zero);
+        const L bounces = select(lane<L>(point.greatest, at) > zero, fast, zero) * bounce;
+        const V3<L> arm_a = lane3<L>(point.from_a, at), arm_b = lane3<L>(point.from_b, at);
+        const L speed = dot(c.normal, c.b.at(arm_b) - c.a.at(arm_a));
+        const L old = lane<L>(point.impulse, at);
+        const L wanted = old - lane<L>(point.mass, at) * (speed + bounce * approach);
+        const L total = select(bounces > zero, max(wanted, zero), old);
+        total.store(point.impulse.at + at);
+        max(total, lane<L>(point.greatest, at)).store(point.greatest.at + at);
+        c.push(c.normal * (total - old), arm_a, arm_b);
+    }
+    c.write(bodies);
+}
+
+template <class Real>
+void warm_start(ContactBlock<Real>* blocks,
+                std::size_t count,
+                SolverBody<Real>* bodies,
+                const Visit<Real>& visit)
+{
+    using L = Lanes<Real>;
+    for (std::size_t i = 0; i < count; ++i)
+        for (int at = 0; at < kBlock; at += L::kWidth)
+            if (visit.turns)
+                warm_start_lanes<L, true>(blocks[i], at, bodies, visit);
+            else
+                warm_start_lanes<L, false>(blocks[i], at, bodies, visit);
+}
+
+template <class Real>
+void sweep(ContactBlock<Real>* blocks,
+           std::size_t count,
+           SolverBody<Real>* bodies,
+           const Visit<Real>& visit)
+{
+    using L = Lanes<Real>;
+    for (std::size_t i = 0; i < count; ++i)
+        for (int at = 0; at < kBlock; at += L::kWidth)
+            if (visit.turns)
+                sweep_lanes<L, true>(blocks[i], at, bodies, visit);
+            else
+                sweep_lanes<L, false>(blocks[i], at, bodies, visit);
+}
+
+template <class Real>
+void restitute(ContactBlock<Real>* blocks,
+               std::size_t count,
+               SolverBody<Real>* bodies,
+               Real threshold,
+               const Visit<Real>& visit)
+{
+    using L = Lanes<Real>;
+    for (std::size_t i = 0; i < count; ++i)
+        for (int at = 0; at < kBlock; at += L::kWidth)
+            if (visit.turns)
+                restitute_lanes<L, true>(blocks[i], at, bodies, threshold);
+            else
+                restitute_lanes<L, false>(blocks[i], at, bodies, threshold);
+}
+
+template <class Real>
+constexpr SolveKernels<Real> table()
+{
+    return {THRONG_LANES_NAME, Lanes<Real>::kWidth, warm_start<Real>, sweep<Real>, restitute<Real>};
+}
+
+}  // namespace
+
+extern const SolveKernels<float> kSolveFloat;
+extern const SolveKernels<double> kSolveDouble;
+const SolveKernels<float> kSolveFloat = table<float>();
+const SolveKernels<double> kSolveDouble = table<double>();
+
+}  // namespace throng::THRONG_LANES

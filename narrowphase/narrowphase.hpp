@@ -1,0 +1,46 @@
+// Narrow phase: pairs of shapes in, manifolds out.
+#pragma once
+
+#include "narrowphase/pair_functions.hpp"
+
+#include <vector>
+
+namespace throng {
+
+/// Where shapes a and b touch, whatever their kinds (no mesh: see collide_mesh). Picks the pair
+/// function from the shape-by-shape table, turning the pair round where the table wants it so;
+/// the answer is in a's frame either way.
+template <class Real>
+void collide(const Shapes& shapes,
+             ShapeRef a,
+             ShapeRef b,
+             const PoseT<Real>& b_in_a,
+             Real reach,
+             PairCache& cache,
+             LocalManifold<Real>& out);
+
+/// One triangle of a mesh that a convex shape touches.
+template <class Real>
+struct TriangleManifold {
+    std::uint32_t triangle = 0;
+    LocalManifold<Real> manifold;  // in the mesh's frame, normal from the mesh to the shape
+};
+
+/// Where a convex shape touches a static triangle mesh: one manifold a triangle, in order of
+/// triangle, contacts on internal edges turned to the surface so that sliding meets no bumps.
+///
+///   b_in_a   pose of the convex shape in the mesh's frame
+///   out      appended to
+template <class Real>
+void collide_mesh(const Shapes& shapes,
+                  ShapeRef mesh,
+                  ShapeRef b,
+                  const PoseT<Real>& b_in_a,
+                  Real reach,
+                  std::vector<TriangleManifold<Real>>& out);
+
+/// How deep two convex shapes overlap: the least distance by which one must be moved for them to
+/// part, m; 0 when they do not overlap. In double, from the geometry alone.
+double overlap_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a);
+
+}  // namespace throng

@@ -1,0 +1,58 @@
+// Settings: every tunable of a step, with its default, unit and purpose.
+//
+// Those that trade accuracy for time are dials: dials.hpp gives each its name for scene files and
+// the command line.
+#pragma once
+
+#include <cstdint>
+
+namespace throng {
+
+enum class Precision : std::uint8_t { float_, double_ };
+enum class Integrator : std::uint8_t { semi_implicit, euler, midpoint, splitting, rk4 };
+enum class Rotation : std::uint8_t {
+    quaternion,
+    rotation_vector,
+    matrix,
+    quaternion_euler,
+    matrix_euler,
+    matrix_euler_repaired
+};
+enum class Gyroscopic : std::uint8_t { implicit, explicit_, off };
+enum class BroadPhase : std::uint8_t { auto_, embree, grid, sweep, all_pairs };
+enum class NarrowPhase : std::uint8_t { auto_, gjk, sat, chung_wang, clip_volume, containment };
+enum class Response : std::uint8_t { impulse, penalty, kinematic };
+enum class Solver : std::uint8_t { soft_step, pgs, direct };
+enum class FrictionAt : std::uint8_t { manifold, points };
+enum class FrictionCone : std::uint8_t { cone, pyramid };
+
+struct Settings {
+    double dt = 1.0 / 60;  // s, the step
+    int substeps = 4;      // they divide dt
+    int iterations = 0;    // solver visits a substep; 0: the solver's own default
+
+    // Stiffness of contacts. 0: auto, 0.177 of the substep's rate for manifolds of 2-4 points and
+    // 0.5 for one point (stiffer does not come to rest). contact_rate > 0: that factor for all.
+    // contact_hertz > 0: a fixed rate in Hz, whatever the substep.
+    double contact_rate = 0;
+    double contact_hertz = 0;
+    double push_limit = 3;  // m/s, fastest that overlap is pushed apart
+
+    Precision precision = Precision::float_;
+    Integrator integrator = Integrator::semi_implicit;
+    Rotation rotation = Rotation::quaternion;
+    Gyroscopic gyroscopic = Gyroscopic::implicit;
+    BroadPhase broadphase = BroadPhase::auto_;
+    NarrowPhase narrowphase = NarrowPhase::auto_;
+    Response response = Response::impulse;
+    Solver solver = Solver::soft_step;
+    FrictionAt friction_at = FrictionAt::manifold;
+    FrictionCone friction_cone = FrictionCone::cone;
+    bool sleep = true;
+
+    // Sleeping: an island rests once all of it stayed slower than this for this long.
+    double sleep_speed = 0.02;  // m/s, of any point of the body
+    double sleep_time = 0.5;    // s
+};
+
+}  // namespace throng
