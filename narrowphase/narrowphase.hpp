@@ -19,6 +19,12 @@ void collide(const Shapes& shapes,
              PairCache& cache,
              LocalManifold<Real>& out);
 
+/// The pose of shape b in a's frame, in double, as pair functions want it.
+///
+/// A plane's origin is slid along the plane to where a is: the same plane, and numbers that stay
+/// small however far a has gone, so that float will do. Put the plane second for that.
+Pose pose_seen_from_a(const Shapes& shapes, ShapeRef b, const Pose& pose_a, const Pose& pose_b);
+
 /// One triangle of a mesh that a convex shape touches.
 template <class Real>
 struct TriangleManifold {

@@ -132,6 +132,7 @@ struct Scene {
     std::string name;
     Vec3 gravity = Vec3(0, 0, -9.81);
     Settings settings;
+    std::vector<std::string> dials_set;    // those the scene asks for by name, in its order
     std::vector<Material> materials;
     std::vector<MaterialPair> pairs;
     std::vector<ShapeDescription> shapes;

@@ -55,6 +55,7 @@ struct ActiveContacts {
         bool on_mesh = false;
         std::uint8_t points = 0;
         float friction = 0, restitution = 0, rolling_friction = 0;
+        float extent = 0;         // m, the lesser of the smallest half extents of the two shapes
     };
     std::vector<Entry> entries;
 };

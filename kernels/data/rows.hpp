@@ -55,7 +55,8 @@ struct ContactBlock {
     Lane16<Real> sliding_mass;          // 1 / its greatest eigenvalue: keeps the cone round
     Lane16<Real> twist_mass, rolling_mass;
     Lane16<Real> friction_impulse[2], twist_impulse, rolling_impulse[3];
-    Lane16<Real> bias_rate, mass_scale, impulse_scale;  // softness, see contact_rows.hpp
+    Lane16<Real> bias_rate, impulse_scale;  // softness, see contact_rows.hpp
+    Lane16<Real> inverse_deep;          // 1/m, of the overlap from which a contact turns rigid
     Lane16<Real> reach[4];              // m, each point's distance from the center, for the twist
     PointRows<Real> point[4];
 };

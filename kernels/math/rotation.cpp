@@ -47,6 +47,13 @@ SinCos sin_cos(double angle)
     constexpr double kFirst = 1.57079632673412561417e+00;
     constexpr double kSecond = 6.07710050630396597660e-11;
     constexpr double kThird = 2.02226624879595063154e-21;
+    // Further out the parts no longer fit. Whole turns are dropped first, which fmod does without
+    // rounding; the answer is then of an angle that is off by its own last bit, and still finite.
+    if (!(std::abs(angle) < 1e9)) {
+        constexpr double kWholeTurn = 6.28318530717958647692;
+        angle = std::fmod(angle, kWholeTurn);
+        if (std::isnan(angle)) return {angle, angle};
+    }
     const double quarters = std::nearbyint(angle * 0.63661977236758134308);
     const double x = ((angle - quarters * kFirst) - quarters * kSecond) - quarters * kThird;
     const double s = sin_near_zero(x);
@@ -96,7 +103,11 @@ Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,
     const Vec3 momentum = inertia * w;
     const Vec3 residual = time * w.cross(momentum);
     const Mat3 jacobian = inertia + time * (skew(w) * inertia - skew(momentum));
-    return orientation * (w - jacobian.inverse() * residual);
+    Vec3 after = w - jacobian.inverse() * residual;
+    // A body that turns by a radian and more in this time may come out of a single step faster.
+    const double energy = w.dot(momentum), energy_after = after.dot(inertia * after);
+    if (energy_after > energy) after *= std::sqrt(energy / energy_after);
+    return orientation * after;
 }
 
 Vec3 after_explicit_gyroscopic_torque(const Vec3& angular_velocity,

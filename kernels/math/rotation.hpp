@@ -11,8 +11,9 @@ struct SinCos {
     double sin = 0, cos = 1;
 };
 
-/// Sine and cosine of an angle in radians, to about one unit in the last place for |angle| < 1e5.
-/// The same bits on every machine.
+/// Sine and cosine of an angle in radians, within 2.5 units in the last place for |angle| < 1e5
+/// (next to a multiple of a quarter turn within 1e-16). Further out they are those of an angle
+/// nearby, on the circle all the same. The same bits on every machine.
 ///
 /// Source: quarter-turn reduction in three parts after Cody and Waite (1980); polynomials as in
 ///         Sun's fdlibm (1993).
@@ -29,7 +30,8 @@ Quat turned(const Quat& orientation, const Vec3& angular_velocity, double time);
 Mat3 in_world_axes(const Sym3& local, const Quat& orientation);
 
 /// Angular velocity after the gyroscopic torque has acted for a time: one Newton step of implicit
-/// Euler in body axes. It never gains energy; it loses some, by first order in time.
+/// Euler in body axes. It never gains energy (what the step would gain is taken away again); it
+/// loses some, by first order in time.
 ///
 /// Source: Catto, Numerical Methods (GDC 2015).
 Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,

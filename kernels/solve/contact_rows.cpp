@@ -99,7 +99,7 @@ Softness<Real> softness(double rate, double damping_ratio, double substep)
     const double a1 = 2 * damping_ratio + substep * omega;
     const double a2 = substep * omega * a1;
     const double a3 = 1 / (1 + a2);
-    return {static_cast<Real>(omega / a1), static_cast<Real>(a2 * a3), static_cast<Real>(a3)};
+    return {static_cast<Real>(omega / a1), static_cast<Real>(a3)};
 }
 
 template <class Real>
@@ -119,8 +119,8 @@ void fill_lane(ContactBlock<Real>& block,
     block.restitution.at[lane] = terms.restitution;
     block.rolling.at[lane] = terms.rolling_friction;
     block.bias_rate.at[lane] = terms.softness.bias_rate;
-    block.mass_scale.at[lane] = terms.softness.mass_scale;
     block.impulse_scale.at[lane] = terms.softness.impulse_scale;
+    block.inverse_deep.at[lane] = inverse_or_zero(terms.deep);
 
     Response<Real> response{a.inertia[0] + b.inertia[0], inverse_inertia(a), inverse_inertia(b),
                             Vec3T<Real>::Zero(), Vec3T<Real>::Zero()};

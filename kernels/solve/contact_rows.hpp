@@ -9,13 +9,13 @@ namespace throng {
 /// How a contact gives way: a damped spring, integrated implicitly, seen as three numbers.
 ///
 ///   bias_rate      1/s, share of the overlap that is pushed apart
-///   mass_scale     share of the velocity error that is taken away
-///   impulse_scale  share of the total impulse that leaks
+///   impulse_scale  share of the total impulse that leaks; the rest of 1 is the share of the
+///                  velocity error that is taken away
 ///
 /// Source: Catto, Soft Constraints (GDC 2011).
 template <class Real>
 struct Softness {
-    Real bias_rate = 0, mass_scale = 1, impulse_scale = 0;
+    Real bias_rate = 0, impulse_scale = 0;
 };
 
 /// The softness of a spring of a rate (Hz) and damping ratio over a substep (s). A load of j equal
@@ -28,6 +28,7 @@ template <class Real>
 struct ContactTerms {
     Real friction = 0, restitution = 0, rolling_friction = 0;
     Softness<Real> softness;
+    Real deep = 0;  // m, overlap from which the contact no longer gives way; 0: it always does
 };
 
 /// Fills one lane from a contact. The lane's two places among `bodies` are already set.

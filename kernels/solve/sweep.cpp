@@ -158,8 +158,7 @@ template <class L, bool turns>
 L push_point(Contacts<L, turns>& c,
              PointRows<typename L::Number>& point,
              L bias,
-             L mass_scale,
-             L impulse_scale)
+             L leak)
 {
     using Real = typename L::Number;
     const V3<L> arm_a = lane3<L>(point.from_a, c.at);
@@ -167,50 +166,71 @@ L push_point(Contacts<L, turns>& c,
     const L speed = dot(c.normal, c.b.at(arm_b) - c.a.at(arm_a));
     const L old = lane<L>(point.impulse, c.at);
     const L change
-        = -(lane<L>(point.mass, c.at) * mass_scale * (speed + bias)) - impulse_scale * old;
+        = -(lane<L>(point.mass, c.at) * (L(Real(1)) - leak) * (speed + bias)) - leak * old;
     const L total = max(old + change, L(Real(0)));
     total.store(point.impulse.at + c.at);
     c.push(c.normal * (total - old), arm_a, arm_b);
     return total;
 }
 
+// How much deeper a contact may be that three or four points carry before it turns rigid.
+constexpr int kShared = 3;
+
+// What each point of a visit aims at.
+template <class L>
+struct Aims {
+    L bias[4], leak[4];
+};
+
 template <class L, bool turns>
-void push_points(Contacts<L, turns>& c,
-                 const SolverBody<typename L::Number>* bodies,
-                 const Visit<typename L::Number>& visit)
+Aims<L> aims_of(const Contacts<L, turns>& c,
+                const SolverBody<typename L::Number>* bodies,
+                const Visit<typename L::Number>& visit)
 {
     using Real = typename L::Number;
+    Aims<L> aims;
     const Drift<L, turns> drift_a(bodies, c.block.a + c.at);
     const Drift<L, turns> drift_b(bodies, c.block.b + c.at);
     const L zero = Real(0), one = Real(1);
     const L limit = -visit.push_limit;
-    L bias[4], mass_scale[4], impulse_scale[4];
+    L separation[4], loaded = zero;
     for (int k = 0; k < c.block.points; ++k) {
         const PointRows<Real>& point = c.block.point[k];
         const V3<L> apart
             = drift_b.of(lane3<L>(point.from_b, c.at)) - drift_a.of(lane3<L>(point.from_a, c.at));
-        const L separation = dot(c.normal, apart) + lane<L>(point.gap, c.at);
+        separation[k] = dot(c.normal, apart) + lane<L>(point.gap, c.at);
+        loaded += select(separation[k] < zero, one, zero);
+    }
+    // Three points or four share a load well; one or two may be a corner that carries everything.
+    const L eased = select(loaded > L(Real(2.5)), L(Real(1) / Real(kShared)), one);
+    for (int k = 0; k < c.block.points; ++k) {
         // Apart: let it close, but no further. Overlapping: a soft spring, within the push limit.
-        const auto open = separation > zero;
-        const L closing = separation * L(visit.inverse_substep);
+        const auto open = separation[k] > zero;
+        const L closing = separation[k] * L(visit.inverse_substep);
         if (visit.push) {
-            const L soft = max(lane<L>(c.block.bias_rate, c.at) * separation, limit);
-            bias[k] = select(open, closing, soft);
-            mass_scale[k] = select(open, one, lane<L>(c.block.mass_scale, c.at));
-            impulse_scale[k] = select(open, zero, lane<L>(c.block.impulse_scale, c.at));
+            const L soft = max(lane<L>(c.block.bias_rate, c.at) * separation[k], limit);
+            aims.bias[k] = select(open, closing, soft);
+            // A corner under a heavy load would sink without end: from `deep` on its spring leaks
+            // less, and at twice that not at all.
+            const L depth = -separation[k] * lane<L>(c.block.inverse_deep, c.at) * eased;
+            const L soft_share = max(min(L(Real(2)) - depth, one), zero);
+            aims.leak[k] = select(open, zero, lane<L>(c.block.impulse_scale, c.at) * soft_share);
         } else {
-            bias[k] = select(open, closing, zero);
-            mass_scale[k] = one;
-            impulse_scale[k] = zero;
+            aims.bias[k] = select(open, closing, zero);
+            aims.leak[k] = zero;
         }
     }
-    for (int sweep = 0; sweep < visit.normal_sweeps; ++sweep)
-        for (int k = 0; k < c.block.points; ++k) {
-            PointRows<Real>& point = c.block.point[k];
-            const L total = push_point(c, point, bias[k], mass_scale[k], impulse_scale[k]);
-            if (sweep + 1 == visit.normal_sweeps)
-                max(total, lane<L>(point.greatest, c.at)).store(point.greatest.at + c.at);
-        }
+    return aims;
+}
+
+template <class L, bool turns>
+void push_points(Contacts<L, turns>& c, const Aims<L>& aims)
+{
+    for (int k = 0; k < c.block.points; ++k) {
+        auto& point = c.block.point[k];
+        const L total = push_point(c, point, aims.bias[k], aims.leak[k]);
+        max(total, lane<L>(point.greatest, c.at)).store(point.greatest.at + c.at);
+    }
 }
 
 // Friction at the middle of the points. Sticking is tried with the full 2x2 mass; what leaves the
@@ -287,7 +307,8 @@ void sweep_lanes(ContactBlock<typename L::Number>& block,
 {
     using Real = typename L::Number;
     Contacts<L, turns> c(block, at, bodies);
-    push_points(c, bodies, visit);
+    const Aims<L> aims = aims_of(c, bodies, visit);
+    for (int sweep = 1; sweep < visit.normal_sweeps; ++sweep) push_points(c, aims);
     if (visit.grips) {
         L total = Real(0), lever = Real(0);
         for (int k = 0; k < block.points; ++k) {
@@ -302,6 +323,8 @@ void sweep_lanes(ContactBlock<typename L::Number>& block,
         }
         grip(c, friction * total);
     }
+    // Last, so that whatever friction did to the normal speeds is put right.
+    push_points(c, aims);
     c.write(bodies);
 }
 

@@ -20,15 +20,15 @@ struct Visit {
     bool turns = true;         // some body can turn: without, the angular half is not computed
     bool grips = true;         // some contact has friction
     bool rolls = false;        // some contact resists rolling
-    int normal_sweeps = 1;     // times the points of a contact are gone through
+    int normal_sweeps = 2;     // times the points are gone through; the last one after friction
 };
 
 /// The solver's kernels for one width. All work in place on `count` blocks and the solver bodies
 /// that the blocks name (places in `bodies`).
 ///
 ///   warm_start  gives the bodies the impulses of the last visit again
-///   sweep       moves every point towards its wanted normal speed, never pulling; then friction,
-///               on a round cone of the contact's total normal impulse; then twist and rolling
+///   sweep       moves every point towards its wanted normal speed, never pulling; then friction, on
+///               a round cone of the contact's normal impulse; then the points again
 ///   restitute   lets points that came in fast leave with `restitution` times that speed
 ///
 /// Source: Catto, Iterative Dynamics with Temporal Coherence (2005) for impulses that accumulate;

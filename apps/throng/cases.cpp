@@ -1,0 +1,135 @@
+// Cases: runs the hard cases that throng claims, and prints each figure beside its bound.
+#include "cost/cases.hpp"
+
+#include "apps/throng/commands.hpp"
+#include "apps/throng/interrupt.hpp"
+#include "apps/throng/output_file.hpp"
+#include "apps/throng/scene_argument.hpp"
+#include "pipeline/dials.hpp"
+#include "pipeline/names.hpp"
+#include "scenes/json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+
+namespace throng {
+namespace {
+
+constexpr Option kOptions[] = {
+    {"--json", "FILE", "writes the lines as JSON too"},
+    kSetOption,
+    kThreadsOption,
+};
+
+std::vector<const HardCase*> cases_asked(const Options& options)
+{
+    std::vector<const HardCase*> cases;
+    std::vector<std::string_view> names;
+    for (const HardCase& one : hard_cases()) names.push_back(one.name);
+    for (const std::string_view word : options.words()) {
+        const HardCase* const found = find_case(word);
+        if (found == nullptr)
+            throw BadInput("there is no case " + in_quotes(word)
+                           + "; there are: " + either_of(names));
+        if (std::find(cases.begin(), cases.end(), found) == cases.end()) cases.push_back(found);
+    }
+    if (cases.empty())
+        for (const HardCase& one : hard_cases()) cases.push_back(&one);
+    return cases;
+}
+
+Settings settings_asked(const Options& options)
+{
+    Settings settings;
+    for (const std::string_view text : options.all("--set")) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string_view::npos)
+            throw BadInput("--set: wanted DIAL=VALUE, not " + in_quotes(text));
+        const std::string wrong =
+            set_dial(settings, text.substr(0, equals), text.substr(equals + 1));
+        if (!wrong.empty()) throw BadInput("--set: " + wrong);
+    }
+    return settings;
+}
+
+std::string_view text_of(Verdict verdict)
+{
+    switch (verdict) {
+    case Verdict::pass:
+        return "pass";
+    case Verdict::fail:
+        return "fail";
+    default:
+        return "skipped";
+    }
+}
+
+void print_line(const CaseResult& result)
+{
+    std::cout << std::left << std::setw(5) << result.name << ' ' << std::setw(7)
+              << text_of(result.verdict) << ' ' << std::right << std::scientific
+              << std::setprecision(2) << result.figure << " <= " << result.bound << ' ' << std::left
+              << std::setw(4) << result.unit << ' ' << result.setting << ": " << result.quantity
+              << (result.why.empty() ? "" : " (" + result.why + ")") << std::endl;
+}
+
+std::string json_line(const CaseResult& result)
+{
+    std::string line = "{\"case\": " + json_string(result.name) + ", \"setting\": "
+        + json_string(result.setting) + ", \"quantity\": " + json_string(result.quantity)
+        + ", \"figure\": " + (std::isfinite(result.figure) ? number_text(result.figure) : "null") + ", \"bound\": "
+        + number_text(result.bound) + ", \"unit\": " + json_string(result.unit) + ", \"status\": "
+        + json_string(text_of(result.verdict)) + ", \"ms\": " + number_text(result.time_ms);
+    if (!result.why.empty()) line += ", \"why\": " + json_string(result.why);
+    return line + "}";
+}
+
+int run_cases(const Options& options)
+{
+    const std::vector<const HardCase*> cases = cases_asked(options);
+    const Settings settings = settings_asked(options);
+    OutputFile json("--json", options.text("--json"));
+    note_interrupts();
+
+    std::size_t passed = 0, failed = 0;
+    std::string lines;
+    for (const HardCase* one : cases) {
+        for (const CaseResult& result :
+             run_case(*one, settings, Fault::none, threads_asked(options))) {
+            print_line(result);
+            lines += (lines.empty() ? "  " : ",\n  ") + json_line(result);
+            passed += result.verdict == Verdict::pass ? 1 : 0;
+            failed += result.verdict == Verdict::fail ? 1 : 0;
+        }
+        if (interrupted()) break;
+    }
+    if (json.asked_for()) {
+        json.stream() << "[\n" << lines << "\n]\n";
+        json.keep();
+    }
+    std::cout << passed << " passed, " << failed << " failed" << std::endl;
+    if (interrupted()) return kInterrupted;
+    return failed == 0 ? kDone : kCaseFailed;
+}
+
+void list_cases(std::ostream& out)
+{
+    out << "\ncases\n";
+    std::vector<std::pair<std::string, std::string>> rows;
+    for (const HardCase& one : hard_cases()) rows.emplace_back(one.name, one.about);
+    print_columns(rows, out);
+}
+
+}  // namespace
+
+const Command kCases = {
+    {"cases", "[NAME...]",
+     "Runs hard cases (all, or those named) and prints each figure beside its bound.", 0, 1000,
+     kOptions},
+    run_cases,
+    list_cases,
+};
+
+}  // namespace throng

@@ -1,0 +1,26 @@
+// Commands: what `throng NAME` can be. One file each; to add one, write it, declare it here and
+// list it in main.cpp.
+#pragma once
+
+#include "apps/throng/options.hpp"
+
+namespace throng {
+
+/// What the process ends with. A body that was quarantined counts as a failed case.
+enum ExitCode : int {
+    kDone = 0,
+    kCaseFailed = 1,
+    kBadInput = 2,
+    kFault = 3,
+    kInterrupted = 130,
+};
+
+struct Command {
+    Usage usage;
+    int (*run)(const Options& options) = nullptr;
+    void (*more_help)(std::ostream& out) = nullptr;  // what follows the options; may be null
+};
+
+extern const Command kRun, kExplain, kScene, kCases;
+
+}  // namespace throng

@@ -1,0 +1,182 @@
+// Explain: which effects a scene calls for, and the step that follows from them.
+#include "apps/throng/commands.hpp"
+#include "apps/throng/interrupt.hpp"
+#include "apps/throng/output_file.hpp"
+#include "apps/throng/progress.hpp"
+#include "apps/throng/scene_argument.hpp"
+#include "apps/throng/step_times.hpp"
+#include "pipeline/stages.hpp"
+#include "pipeline/world.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <map>
+
+namespace throng {
+namespace {
+
+constexpr Option kOptions[] = {
+    {"--steps", "N", "runs so many steps, from 0, and says what each stage took (default 0)"},
+    {"--dot", "FILE", "the step as a graph, for graphviz"},
+    kDtOption,
+    kThreadsOption,
+    kSetOption,
+    kSeedOption,
+};
+
+using Stages = std::vector<World::StageInfo>;
+
+// The one stage that has a table of its own.
+constexpr std::string_view kOuter = "solve_impulses";
+
+/// The rows of the inner table that this scene has.
+std::vector<InnerRow> inner_rows(const Effects& effects)
+{
+    std::vector<InnerRow> rows;
+    for (const InnerRow& row : solve_table())
+        if (row.called_for_by.meets(effects.on)) rows.push_back(row);
+    return rows;
+}
+
+std::string padded(std::string_view text, std::size_t width)
+{
+    std::string all(text);
+    all.resize(std::max(width, all.size()), ' ');
+    return all;
+}
+
+void print_effects(const Effects& effects)
+{
+    std::cout << "\neffects\n";
+    for (int i = 0; i < kEffects; ++i) {
+        const auto effect = static_cast<Effect>(i);
+        const bool on = effects.on.has(effect);
+        const std::string_view state = !on ? "off" : acted_on(effect) ? "on" : "on, no effect yet";
+        std::cout << "  " << padded(name_of(effect), 18);
+        if (on)
+            std::cout << padded(state, 19) << effects.cause_of(effect) << '\n';
+        else
+            std::cout << state << '\n';
+    }
+}
+
+/// What each stage took, by name; empty where no step was run.
+using StageMs = std::map<std::string_view, double>;
+
+std::string time_column(const StageMs& times, std::string_view stage)
+{
+    if (times.empty()) return {};
+    const auto found = times.find(stage);
+    char text[32];
+    std::snprintf(text, sizeof text, "%10.4f  ", found == times.end() ? 0.0 : found->second);
+    return text;
+}
+
+void print_stages(const Stages& stages, const std::vector<InnerRow>& inner, const StageMs& times)
+{
+    std::size_t width = 24;
+    for (const World::StageInfo& stage : stages) width = std::max(width, stage.name.size() + 2);
+    std::cout << "\nstages\n";
+    if (stages.empty()) std::cout << "  none: nothing in this scene can move\n";
+    if (!times.empty()) std::cout << "  " << padded("", width) << "   ms/step  waits for\n";
+    for (const World::StageInfo& stage : stages) {
+        std::string waits = times.empty() ? "waits for " : "";
+        for (const std::size_t earlier : stage.waits_for)
+            waits += (earlier == stage.waits_for.front() ? "" : ", ")
+                + std::string(stages[earlier].name);
+        if (stage.waits_for.empty()) waits += "nothing";
+        std::cout << "  " << padded(stage.name, width) << time_column(times, stage.name) << waits
+                  << '\n';
+        if (stage.name != kOuter) continue;
+        for (const InnerRow& row : inner)
+            std::cout << "  "
+                      << padded((row.within ? "        " : "    ") + std::string(row.name), width)
+                      << (times.empty() ? "" : padded("", 12)) << row.when
+                      << (row.within ? ", in the same pass" : "") << '\n';
+    }
+}
+
+void write_dot(const Stages& stages, const std::vector<InnerRow>& inner, std::ostream& out)
+{
+    out << "digraph step {\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n";
+    for (const World::StageInfo& stage : stages) {
+        out << "  " << stage.name;
+        if (stage.name == kOuter) {
+            out << " [label=\"" << stage.name << "\\n";
+            for (const InnerRow& row : inner)
+                out << (row.within ? "    " : "  ") << row.name << " (" << row.when << ")\\l";
+            out << "\"]";
+        }
+        out << ";\n";
+    }
+    for (const World::StageInfo& stage : stages)
+        for (const std::size_t earlier : stage.waits_for)
+            out << "  " << stages[earlier].name << " -> " << stage.name << ";\n";
+    out << "}\n";
+}
+
+StepTimes run_steps(World& world, std::int64_t steps)
+{
+    using Clock = std::chrono::steady_clock;
+    StepTimes times;
+    Progress progress(steps, true);
+    for (std::int64_t done = 0; done < steps && !interrupted();) {
+        const auto begin = Clock::now();
+        world.step();
+        const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
+        times.add(taken.count(), world.stages());
+        progress.show(++done, world.report().bodies_awake);
+    }
+    return times;
+}
+
+int explain(const Options& options)
+{
+    const std::int64_t steps = options.whole("--steps", 0, 0, kMostSteps);
+    const int threads = threads_asked(options);
+    const SceneArgument argument = read_scene_argument(options);
+    World world = make_world(argument, threads);
+    note_interrupts();
+    OutputFile dot("--dot", options.text("--dot"));
+    refuse_same_file(dot, argument.file, "the scene");
+
+    // What is printed is the step as it begins; bodies that fail on the way may change it.
+    const Effects effects = world.effects();
+    const Stages stages = world.step_stages();
+    const std::vector<InnerRow> inner = inner_rows(effects);
+    if (dot.asked_for()) write_dot(stages, inner, dot.stream());
+    dot.keep();
+
+    const StepTimes times = run_steps(world, steps);
+    StageMs stage_ms;
+    for (const StepTimes::OfStage& stage : times.stages())
+        stage_ms[stage.name] = stage.times.total() / static_cast<double>(times.steps().count());
+
+    if (dot.is_stdout()) return interrupted() ? kInterrupted : kDone;
+    std::cout << "scene: " << argument.label << "\nbodies: " << world.body_count() << '\n';
+    if (steps > 0) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.4g", times.steps().mean());
+        std::cout << "steps: " << times.steps().count() << "\nthreads: " << world.threads_met()
+                  << "\nms_per_step: " << text << '\n';
+    }
+    print_effects(effects);
+    print_stages(stages, inner, stage_ms);
+    for (const std::string& sentence : idle_dials(argument.scene))
+        std::cerr << "warning: " << sentence << '\n';
+    return interrupted() ? kInterrupted : kDone;
+}
+
+}  // namespace
+
+const Command kExplain = {
+    {"explain", "SCENE",
+     "Says which effects a scene calls for and why, and shows the step that follows.", 1, 1,
+     kOptions},
+    explain,
+    nullptr,
+};
+
+}  // namespace throng

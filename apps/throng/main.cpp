@@ -1,0 +1,123 @@
+// Main: finds the command, and turns whatever stops it into a sentence and an exit code.
+#include "apps/throng/commands.hpp"
+#include "pipeline/names.hpp"
+#include "scenes/scene_error.hpp"
+
+#include <csignal>
+#include <cstring>
+#include <iostream>
+#include <new>
+
+namespace throng {
+namespace {
+
+const Command* const kCommands[] = {&kRun, &kExplain, &kScene, &kCases};
+
+void print_help(std::ostream& out)
+{
+    out << "usage: throng COMMAND [options]\n\n"
+           "Simulates large, crowded scenes of rigid bodies, and says what its answers are "
+           "worth.\n\n";
+    std::vector<std::pair<std::string, std::string>> rows;
+    for (const Command* command : kCommands)
+        rows.emplace_back(command->usage.name, command->usage.about);
+    rows.emplace_back("--help", "this text; throng COMMAND --help says more of a command");
+    rows.emplace_back("--version", "the version");
+    print_columns(rows, out);
+    out << "\nA SCENE is a scene file (JSON), or the name of a scene of the catalogue with its "
+           "size:\n"
+           "pile:10000. `throng scene` lists the catalogue.\n\n"
+           "exit codes\n"
+           "  0    done\n"
+           "  1    a case failed, or a body was quarantined (outputs are written all the same)\n"
+           "  2    bad input or usage, or an output that cannot be written\n"
+           "  3    a fault of throng\n"
+           "  130  interrupted (files are closed and readable)\n";
+}
+
+const Command& find_command(std::string_view name)
+{
+    std::vector<std::string_view> names;
+    for (const Command* command : kCommands) {
+        if (command->usage.name == name) return *command;
+        names.push_back(command->usage.name);
+    }
+    const std::string near = nearest_names(name, names);
+    throw BadInput(
+        "there is no command " + in_quotes(name)
+        + (near.empty() ? "; there are: " + either_of(names) : "; did you mean " + near + "?")
+        + " (throng --help says more)");
+}
+
+int run_command(std::span<const std::string_view> arguments)
+{
+    if (arguments.empty()) {
+        print_help(std::cerr);
+        return kBadInput;
+    }
+    const std::string_view first = arguments.front();
+    if (first == "--help" || first == "-h") {
+        print_help(std::cout);
+        return kDone;
+    }
+    if (first == "--version") {
+        std::cout << "throng " THRONG_VERSION "\n";
+        return kDone;
+    }
+    const Command& command = find_command(first);
+    const Options options(command.usage, arguments.subspan(1));
+    if (!options.wants_help()) return command.run(options);
+    print_usage(command.usage, std::cout);
+    if (command.more_help != nullptr) command.more_help(std::cout);
+    return kDone;
+}
+
+int complain(std::string_view what, int code)
+{
+    std::cerr << what << std::endl;
+    return code;
+}
+
+/// What stopped the command, in words. Call it while the exception is being handled.
+int explain_exception()
+{
+    try {
+        throw;
+    } catch (const SceneError& error) {
+        return complain(error.what(), kBadInput);
+    } catch (const BadInput& error) {
+        return complain(std::string("error: ") + error.what(), kBadInput);
+    } catch (const std::bad_alloc&) {
+        return complain("error: not enough memory for this; a smaller scene may fit", kBadInput);
+    } catch (const std::exception& error) {
+        return complain(std::string("error: a fault of throng: ") + error.what()
+                            + "\nPlease report it with the command and its scene.",
+                        kFault);
+    } catch (...) {
+        return complain("error: a fault of throng, of a kind it does not know."
+                        "\nPlease report it with the command and its scene.",
+                        kFault);
+    }
+}
+
+}  // namespace
+}  // namespace throng
+
+int main(int count, char** words)
+{
+    using namespace throng;
+    // A reader that left early is seen when stdout is flushed, and files are still finished.
+    std::signal(SIGPIPE, SIG_IGN);
+    int code = kDone;
+    try {
+        const std::vector<std::string_view> arguments(words + (count > 0 ? 1 : 0), words + count);
+        code = run_command(arguments);
+    } catch (...) {
+        code = explain_exception();
+    }
+    errno = 0;
+    std::cout.flush();
+    if (!std::cout && code == kDone && errno != EPIPE)
+        code = complain("error: standard output: cannot be written", kBadInput);
+    return code;
+}

@@ -1,0 +1,27 @@
+// Progress: how far a run is, on a terminal and nowhere else.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace throng {
+
+class Progress {
+public:
+    /// Silent unless wanted and the standard error is a terminal.
+    Progress(std::int64_t steps, bool wanted);
+    /// Takes its line away.
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void show(std::int64_t done, std::size_t bodies_awake);
+
+private:
+    using Clock = std::chrono::steady_clock;
+    std::int64_t steps_ = 0;
+    bool on_ = false, shown_ = false;
+    Clock::time_point begin_, last_;
+};
+
+}  // namespace throng

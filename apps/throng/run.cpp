@@ -1,0 +1,187 @@
+// Run: simulates a scene and writes what came of it.
+#include "apps/throng/commands.hpp"
+#include "apps/throng/interrupt.hpp"
+#include "apps/throng/output_file.hpp"
+#include "apps/throng/progress.hpp"
+#include "apps/throng/run_stats.hpp"
+#include "apps/throng/scene_argument.hpp"
+#include "pipeline/final_csv.hpp"
+#include "pipeline/run_file.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+namespace throng {
+namespace {
+
+constexpr std::int64_t kStandardSteps = 600;
+
+constexpr Option kOptions[] = {
+    {"--steps", "N", "steps to run, from 0 (default 600)"},
+    kDtOption,
+    kThreadsOption,
+    kSetOption,
+    kSeedOption,
+    {"--stats", "FILE.json", "times, counts, overlaps, energies and the fingerprint of the state"},
+    {"--final", "FILE.csv", "poses and velocities after the last step, with all their digits"},
+    {"--out", "RUN.h5", "the whole run as frames, in HDF5"},
+    {"--every", "K",
+     "steps from one frame of --out to the next (default: what keeps 600 frames or "
+     "256 MB before compression)"},
+    {"--quiet", "", "no progress, warnings or summary"},
+};
+
+/// Steps between frames that keep a run moderate: what a screen can show, on a disk that holds it.
+std::int64_t standard_every(std::int64_t steps, std::size_t bodies)
+{
+    constexpr double kFrames = 600, kBytes = 256e6;
+    const double fit = kBytes / (static_cast<double>(bodies + 1) * RunFile::kBytesPerBody);
+    const double frames = std::max(1.0, std::min(kFrames, fit));
+    return std::max<std::int64_t>(
+        1, static_cast<std::int64_t>(std::ceil(static_cast<double>(steps) / frames)));
+}
+
+void warn(const SceneArgument& argument, World& world)
+{
+    for (const std::string& sentence : idle_dials(argument.scene))
+        std::cerr << "warning: " << sentence << '\n';
+    const Effects& effects = world.effects();
+    for (int i = 0; i < kEffects; ++i) {
+        const auto effect = static_cast<Effect>(i);
+        if (effects.on.has(effect) && !acted_on(effect))
+            std::cerr << "warning: " << name_of(effect) << ": has no effect yet in this build; "
+                      << effects.cause_of(effect) << " calls for it\n";
+    }
+    if (world.threads_met() < world.threads())
+        std::cerr << "warning: --threads: only " << world.threads_met() << " of " << world.threads()
+                  << " threads run\n";
+    std::cerr.flush();
+}
+
+/// The frames of a run, when they are asked for.
+class Frames {
+public:
+    Frames(const OutputFile& file,
+           const SceneArgument& argument,
+           const World& world,
+           std::int64_t every)
+        : world_(world), every_(every)
+    {
+        if (file.asked_for())
+            writer_.emplace(file.growing_path(), argument.scene, world,
+                            RunFacts{argument.label, THRONG_VERSION, argument.seed, every});
+    }
+    /// After a step; the last one is a frame whatever its number.
+    void step_done(std::int64_t step, bool last)
+    {
+        const bool wanted = last ? step != written_ : step % every_ == 0;
+        if (!writer_ || !wanted) return;
+        writer_->write_frame(world_);
+        written_ = step;
+    }
+    void close()
+    {
+        if (writer_) writer_->close();
+    }
+
+private:
+    const World& world_;
+    std::int64_t every_ = 1, written_ = -1;
+    std::optional<RunFile> writer_;
+};
+
+StepTimes run_steps(World& world, std::int64_t steps, Frames& frames, bool quiet)
+{
+    using Clock = std::chrono::steady_clock;
+    StepTimes times;
+    Progress progress(steps, !quiet);
+    std::int64_t done = 0;
+    frames.step_done(0, false);
+    while (done < steps && !interrupted()) {
+        const auto begin = Clock::now();
+        world.step();
+        const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
+        times.add(taken.count(), world.stages());
+        frames.step_done(++done, false);
+        progress.show(done, world.report().bodies_awake);
+    }
+    frames.step_done(done, true);
+    frames.close();
+    return times;
+}
+
+void name_quarantined(const World& world)
+{
+    constexpr std::size_t kMostNamed = 10;
+    std::size_t count = 0;
+    std::string named;
+    for (const BodyId body : world.bodies()) {
+        if (!world.quarantined(body) || count++ >= kMostNamed) continue;
+        const std::string& name = world.name(body);
+        named += (named.empty() ? "" : ", ") + std::to_string(body.index)
+            + (name.empty() ? "" : ' ' + name);
+    }
+    std::cerr << "error: " << count << (count == 1 ? " body was" : " bodies were")
+              << " put to rest after turning non-finite (quarantined): " << named
+              << (count > kMostNamed ? ", ..." : "") << std::endl;
+}
+
+int run(const Options& options)
+{
+    const std::int64_t steps = options.whole("--steps", kStandardSteps, 0, kMostSteps);
+    const int threads = threads_asked(options);
+    const std::int64_t every_asked = options.whole("--every", 0, 1, kMostSteps);
+    if (options.has("--every") && !options.has("--out"))
+        throw BadInput("--every: says how often --out gets a frame; give --out as well");
+    const bool quiet = options.has("--quiet");
+
+    const SceneArgument argument = read_scene_argument(options);
+    World world = make_world(argument, threads);
+
+    note_interrupts();
+    OutputFile stats_file("--stats", options.text("--stats"));
+    OutputFile final_file("--final", options.text("--final"));
+    OutputFile run_file("--out", options.text("--out"));
+    for (const OutputFile* file : {&stats_file, &final_file, &run_file})
+        refuse_same_file(*file, argument.file, "the scene");
+    refuse_same_file(final_file, stats_file.path(), "--stats");
+    refuse_same_file(run_file, stats_file.path(), "--stats");
+    refuse_same_file(run_file, final_file.path(), "--final");
+    if (!quiet) warn(argument, world);
+
+    const std::int64_t every =
+        every_asked > 0 ? every_asked : standard_every(steps, world.body_count());
+    StepTimes times = [&] {
+        try {
+            Frames frames(run_file, argument, world, every);
+            return run_steps(world, steps, frames, quiet);
+        } catch (const RunFileError& error) {
+            throw BadInput("--out: " + run_file.path() + ": " + error.what());
+        }
+    }();
+
+    RunStats stats = collect_stats(world, std::move(times));
+    stats.scene = argument.label;
+    stats.seed = argument.seed;
+    if (stats_file.asked_for()) write_stats_json(stats, stats_file.stream());
+    if (final_file.asked_for()) write_final_csv(world, final_file.stream());
+    for (OutputFile* file : {&stats_file, &final_file, &run_file}) file->keep();
+    // Whoever has a file sent to the standard output reads it from there.
+    if (!quiet && !stats_file.is_stdout() && !final_file.is_stdout())
+        write_summary(stats, std::cout);
+    if (stats.bodies_quarantined > 0) name_quarantined(world);
+    if (interrupted()) return kInterrupted;
+    return stats.bodies_quarantined > 0 ? kCaseFailed : kDone;
+}
+
+}  // namespace
+
+const Command kRun = {
+    {"run", "SCENE", "Simulates a scene and writes what came of it.", 1, 1, kOptions},
+    run,
+    print_dials,
+};
+
+}  // namespace throng

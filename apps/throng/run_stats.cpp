@@ -1,0 +1,182 @@
+// Run stats: what a run has to tell, as JSON for programs and as lines for people.
+#include "apps/throng/run_stats.hpp"
+
+#include "pipeline/dials.hpp"
+#include "pipeline/names.hpp"
+#include "scenes/json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sys/resource.h>
+
+namespace throng {
+namespace {
+
+/// A number as JSON has it; what is not finite has no number there.
+std::string json_number(double number)
+{
+    return std::isfinite(number) ? number_text(number) : "null";
+}
+
+/// Writes the members of an object, one a line.
+class JsonLines {
+public:
+    explicit JsonLines(std::ostream& out) : out_(out) { out_ << '{'; }
+    void add(std::string_view key, const std::string& json)
+    {
+        out_ << (first_ ? "\n  " : ",\n  ") << json_string(key) << ": " << json;
+        first_ = false;
+    }
+    void add(std::string_view key, double number) { add(key, json_number(number)); }
+    void add(std::string_view key, std::uint64_t number) { add(key, std::to_string(number)); }
+    void end() { out_ << "\n}\n"; }
+
+private:
+    std::ostream& out_;
+    bool first_ = true;
+};
+
+template <class List, class Text>
+std::string joined(const List& list, std::string_view between, const Text& text)
+{
+    std::string all;
+    for (const auto& item : list) all += (all.empty() ? "" : std::string(between)) + text(item);
+    return all;
+}
+
+/// Dials as a scene file states them: numbers as numbers, all else as text.
+std::string dials_json(const Settings& settings)
+{
+    return '{'
+        + joined(dials(), ", ",
+                 [&](const Dial& dial) {
+                     const std::string value = dial.get(settings);
+                     const bool number = !std::isnan(parse_number(value));
+                     return json_string(dial.name) + ": " + (number ? value : json_string(value));
+                 })
+        + '}';
+}
+
+std::string stages_json(const StepTimes& times)
+{
+    return '['
+        + joined(times.stages(), ",",
+                 [](const StepTimes::OfStage& stage) {
+                     return "\n    {\"name\": " + json_string(stage.name)
+                         + ", \"ms_mean\": " + json_number(stage.times.mean())
+                         + ", \"ms_p99\": " + json_number(stage.times.percentile(0.99)) + '}';
+                 })
+        + ']';
+}
+
+std::string vector_json(const Vec3& v)
+{
+    return '[' + json_number(v.x()) + ", " + json_number(v.y()) + ", " + json_number(v.z()) + ']';
+}
+
+double peak_memory_mb()
+{
+    struct rusage usage = {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+}  // namespace
+
+double RunStats::realtime_factor() const
+{
+    const double seconds = times.steps().total() / 1e3;
+    return seconds > 0 ? static_cast<double>(last.step) * settings.dt / seconds : 0;
+}
+
+RunStats collect_stats(World& world, StepTimes times)
+{
+    RunStats stats;
+    stats.settings = world.settings();
+    stats.threads = world.threads();
+    stats.threads_met = world.threads_met();
+    for (const BodyId body : world.bodies()) {
+        ++stats.bodies;
+        stats.bodies_dynamic += world.motion(body) == Motion::dynamic ? 1 : 0;
+        stats.bodies_quarantined += world.quarantined(body) ? 1 : 0;
+    }
+    stats.memory_bytes = world.memory_bytes();
+    const Effects& effects = world.effects();
+    for (int i = 0; i < kEffects; ++i)
+        if (effects.on.has(static_cast<Effect>(i)))
+            stats.effects.push_back(name_of(static_cast<Effect>(i)));
+    stats.times = std::move(times);
+    stats.last = world.report();
+    stats.measures = world.measure();
+    stats.state_hash = world.state_hash();
+    stats.peak_rss_mb = peak_memory_mb();
+    return stats;
+}
+
+void write_stats_json(const RunStats& stats, std::ostream& out)
+{
+    const TimeSample& steps = stats.times.steps();
+    const double bodies = static_cast<double>(std::max<std::size_t>(stats.bodies, 1));
+    JsonLines json(out);
+    json.add("throng", json_string(THRONG_VERSION));
+    json.add("scene", json_string(stats.scene));
+    json.add("seed", stats.seed);
+    json.add("bodies", std::uint64_t{stats.bodies});
+    json.add("bodies_dynamic", std::uint64_t{stats.bodies_dynamic});
+    json.add("steps", stats.last.step);
+    json.add("dt", stats.settings.dt);
+    json.add("threads", static_cast<std::uint64_t>(stats.threads));
+    json.add("threads_used", static_cast<std::uint64_t>(stats.threads_met));
+    json.add("dials", dials_json(stats.settings));
+    json.add("effects", '[' + joined(stats.effects, ", ", json_string) + ']');
+    json.add("ms_per_step",
+             "{\"mean\": " + json_number(steps.mean())
+                 + ", \"median\": " + json_number(steps.percentile(0.5))
+                 + ", \"p99\": " + json_number(steps.percentile(0.99)) + '}');
+    json.add("stages", stages_json(stats.times));
+    json.add("realtime_factor", stats.realtime_factor());
+    json.add("pairs", std::uint64_t{stats.last.pairs});
+    json.add("contacts", std::uint64_t{stats.last.contacts});
+    json.add("manifolds", std::uint64_t{stats.last.manifolds});
+    json.add("islands", std::uint64_t{stats.last.islands});
+    json.add("colors", std::uint64_t{stats.last.colors});
+    json.add("max_overlap_m", stats.measures.greatest_overlap);
+    json.add("mean_overlap_m", stats.measures.mean_overlap);
+    json.add("overlapping_pairs", std::uint64_t{stats.measures.overlapping_pairs});
+    json.add("kinetic_energy_j", stats.measures.kinetic_energy);
+    json.add("potential_energy_j", stats.measures.potential_energy);
+    json.add("momentum", vector_json(stats.measures.momentum));
+    json.add("angular_momentum", vector_json(stats.measures.angular_momentum));
+    json.add("bodies_awake", std::uint64_t{stats.last.bodies_awake});
+    json.add("bodies_quarantined", std::uint64_t{stats.bodies_quarantined});
+    json.add("contacts_dropped", stats.last.contacts_dropped);
+    json.add("fallbacks", stats.last.fallbacks);
+    json.add("peak_rss_mb", stats.peak_rss_mb);
+    json.add("memory_bytes_per_body", static_cast<double>(stats.memory_bytes) / bodies);
+    json.add("state_hash", json_string(stats.state_hash));
+    json.end();
+}
+
+void write_summary(const RunStats& stats, std::ostream& out)
+{
+    const auto rounded = [](double number) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.4g", number);
+        return std::string(text);
+    };
+    const TimeSample& steps = stats.times.steps();
+    out << "scene: " << stats.scene << "\nbodies: " << stats.bodies
+        << "\nsteps: " << stats.last.step << "\nthreads: " << stats.threads_met
+        << "\nms_per_step: " << rounded(steps.mean())
+        << "\nms_per_step_p99: " << rounded(steps.percentile(0.99))
+        << "\nrealtime_factor: " << rounded(stats.realtime_factor())
+        << "\ncontacts: " << stats.last.contacts
+        << "\nmax_overlap_m: " << rounded(stats.measures.greatest_overlap)
+        << "\nkinetic_energy_j: " << rounded(stats.measures.kinetic_energy)
+        << "\nbodies_awake: " << stats.last.bodies_awake
+        << "\nbodies_quarantined: " << stats.bodies_quarantined
+        << "\nstate_hash: " << stats.state_hash << '\n';
+}
+
+}  // namespace throng

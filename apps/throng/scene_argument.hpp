@@ -1,0 +1,48 @@
+// Scene argument: the SCENE of a command line, with the dials that the line sets.
+#pragma once
+
+#include "apps/throng/options.hpp"
+#include "pipeline/world.hpp"
+
+#include <cstdint>
+
+namespace throng {
+
+struct SceneArgument {
+    std::string label;  // the file as it was given, or NAME:SIZE
+    std::string file;   // empty for a scene of the catalogue
+    std::uint64_t seed = 0;
+    Scene scene;  // settings and dials_set as the command line leaves them
+};
+
+inline constexpr std::int64_t kMostSteps = 1'000'000'000'000;
+
+/// The options that read_scene_argument() reads, for a command to list among its own.
+inline constexpr Option kSeedOption = {"--seed", "K",
+                                       "seed of a scene of the catalogue, from 0 (default 1)"};
+inline constexpr Option kDtOption = {
+    "--dt", "S", "the step, s, as a number or a fraction (default: the scene's, else 1/60)"};
+inline constexpr Option kSetOption = {
+    "--set", "DIAL=VALUE", "sets a dial; may be given again (default: the scene's values)", true};
+inline constexpr Option kThreadsOption = {
+    "--threads", "N", "threads that run the step, 1 to 1024 (default: all cores)"};
+
+/// Reads the scene that the first word names: a file, or a scene of the catalogue with its size.
+/// Throws SceneError and BadInput.
+SceneArgument read_scene_argument(const Options& options);
+
+/// The world of the scene. Throws BadInput when it is impossible.
+World make_world(const SceneArgument& argument, int threads);
+
+/// Number of threads asked for; 0 for all cores.
+int threads_asked(const Options& options);
+
+std::uint64_t seed_asked(const Options& options);
+
+/// Dials that were set and do nothing, one sentence each.
+std::vector<std::string> idle_dials(const Scene& scene);
+
+/// Writes all dials: values, default, unit and what they trade.
+void print_dials(std::ostream& out);
+
+}  // namespace throng

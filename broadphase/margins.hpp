@@ -1,0 +1,39 @@
+// Margins: how far a box reaches beyond a collider, so that it need not be looked at every step.
+//
+// A collider inside its fat box costs the broad phase nothing, and its pairs live on. Wide margins
+// are left seldom but bring pairs that never touch; these are chosen for bodies that move a few
+// percent of their size in a step.
+#pragma once
+
+#include "kernels/data/bounds.hpp"
+
+namespace throng {
+
+/// What margins are made of; all relative, so that a scene in millimeters is treated like one in
+/// kilometers.
+struct MarginRule {
+    double base = 0.05;    // of the size, on every side: room for jitter, turning and rest
+    double steps = 8;      // ahead along the velocity, on the sides that it points to
+    double longest = 1.0;  // of the size: most that looking further ahead than one step may add
+};
+
+/// The box of a moving collider with its margin.
+///
+/// On every side `base * size`. Ahead, on each axis on its own, the way of `steps` steps, but no
+/// more than `longest * size`, and never less than the way of one step: a fast body is looked at
+/// every step, and even then its box covers the step. An axis along which it does not move gets the
+/// base alone. Where velocity is not finite the margin is the base.
+///
+///   tight     m    where the collider is now
+///   velocity  m/s  of the collider; what turning adds is for the caller to put into `size` or base
+///   size      m    of the collider, such as its smallest side or its bounding radius; at least 0
+///   dt        s    the step
+///
+/// Gives:    a box that contains `tight`, and `tight` moved by velocity * t for t up to dt.
+Box3 fattened(const Box3& tight,
+              const Vec3& velocity,
+              double size,
+              double dt,
+              const MarginRule& rule = MarginRule());
+
+}  // namespace throng

@@ -1,0 +1,89 @@
+// Cases: the hard cases that throng claims, each with a setting, a figure and the bound it keeps.
+//
+// A case is a program that goes through the public door, so that what it shows is what a user gets.
+// The command and the tests run the very same ones. To add one: write it in hard_cases/, list it in
+// cases.cpp.
+#pragma once
+
+#include "pipeline/scene.hpp"
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace throng {
+
+enum class Verdict : std::uint8_t { pass, fail, skipped };
+
+/// One line of a case's answer. A figure passes when it is at most its bound.
+struct CaseResult {
+    std::string name;      // H8
+    std::string setting;   // n=10
+    std::string quantity;  // greatest overlap
+    double figure = 0;
+    double bound = 0;
+    std::string unit;      // 1 where it has none
+    Verdict verdict = Verdict::fail;
+    std::string why;       // of a skipped one
+    double time_ms = 0;    // of the run that the figure comes from
+};
+
+/// A mistake planted on purpose, to show that a case would notice it.
+enum class Fault : std::uint8_t {
+    none,
+    friction,       // coefficients 10 % too small
+    mass,           // bodies 10 % too heavy
+    float_poses,    // poses rounded to float after every step
+};
+
+/// What a case runs on: it makes the worlds, so that settings and faults reach all of them.
+class CaseBench {
+public:
+    explicit CaseBench(Settings settings = {}, Fault fault = Fault::none, int threads = 1);
+
+    const Settings& settings() const { return settings_; }
+
+    /// A scene with the bench's settings, ready to be filled.
+    Scene scene() const;
+    /// Runs a scene for a time; `watch` sees the world after every step and may end the run early by
+    /// answering false.
+    void run(const Scene& scene,
+             double time,
+             const std::function<bool(class World&, double now)>& watch);
+
+    /// Adds a line. Time is counted from the last line, or from the start.
+    void report(std::string setting,
+                std::string quantity,
+                double figure,
+                double bound,
+                std::string unit);
+
+    std::vector<CaseResult> take_results(std::string_view name);
+
+private:
+    Settings settings_;
+    Fault fault_;
+    int threads_;
+    double spent_ms_ = 0;
+    std::vector<CaseResult> results_;
+};
+
+struct HardCase {
+    std::string_view name;
+    std::string_view about;
+    void (*run)(CaseBench& bench);
+    Fault shown_by;  // a fault that makes it fail
+};
+
+/// All cases, in the order of their numbers.
+std::span<const HardCase> hard_cases();
+
+/// The case of that name (any case of letters), or null.
+const HardCase* find_case(std::string_view name);
+
+std::vector<CaseResult>
+run_case(const HardCase& which, Settings settings = {}, Fault fault = Fault::none, int threads = 1);
+
+}  // namespace throng

@@ -1,0 +1,38 @@
+// Hard cases: the list, and the few shapes they are built from.
+#pragma once
+
+#include "cost/cases.hpp"
+
+namespace throng {
+
+void case_stack(CaseBench& bench);          // H8, stack.cpp
+void case_sliding(CaseBench& bench);        // H12, sliding.cpp
+void case_slope_limit(CaseBench& bench);    // H13, slope_limit.cpp
+void case_leaning(CaseBench& bench);        // H22, leaning.cpp
+void case_far_away(CaseBench& bench);       // H33, stack.cpp
+
+/// A scene under construction: shapes, materials and bodies by value, ids in order.
+class SceneParts {
+public:
+    explicit SceneParts(Scene scene) : scene_(std::move(scene)) { }
+
+    std::uint32_t material(double friction, double restitution = 0);
+    void meet(std::uint32_t a, std::uint32_t b, double friction);
+    /// Solid where normal . x < offset.
+    std::uint32_t plane(std::uint32_t material, const Vec3& normal, double offset);
+    /// Dynamic bodies of a mass; inertia from the shape.
+    std::uint32_t box(std::uint32_t material, double mass, const Vec3& half_extents, const Pose& pose);
+    std::uint32_t cylinder(std::uint32_t material,
+                           double mass,
+                           double radius,
+                           double half_length,
+                           const Pose& pose);
+    BodyDescription& body(std::uint32_t id) { return scene_.bodies[id]; }
+    Scene& scene() { return scene_; }
+
+private:
+    std::uint32_t add(decltype(ShapeDescription::shape) shape, BodyDescription body);
+    Scene scene_;
+};
+
+}  // namespace throng

@@ -1,0 +1,61 @@
+#include "cost/hard_cases/hard_cases.hpp"
+
+namespace throng {
+
+std::uint32_t SceneParts::material(double friction, double restitution)
+{
+    Material material;
+    material.name = "m" + std::to_string(scene_.materials.size());
+    material.friction = friction;
+    material.restitution = restitution;
+    scene_.materials.push_back(material);
+    return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+}
+
+void SceneParts::meet(std::uint32_t a, std::uint32_t b, double friction)
+{
+    scene_.pairs.push_back({a, b, friction, std::nullopt});
+}
+
+std::uint32_t SceneParts::add(decltype(ShapeDescription::shape) shape, BodyDescription body)
+{
+    body.shape = static_cast<std::uint32_t>(scene_.shapes.size());
+    scene_.shapes.push_back({"s" + std::to_string(body.shape), std::move(shape)});
+    scene_.bodies.push_back(std::move(body));
+    return static_cast<std::uint32_t>(scene_.bodies.size() - 1);
+}
+
+std::uint32_t SceneParts::plane(std::uint32_t material, const Vec3& normal, double offset)
+{
+    BodyDescription body;
+    body.motion = Motion::static_;
+    body.material = material;
+    return add(PlaneShape{normal, offset}, body);
+}
+
+std::uint32_t
+SceneParts::box(std::uint32_t material, double mass, const Vec3& half_extents, const Pose& pose)
+{
+    BodyDescription body;
+    body.material = material;
+    body.mass = mass;
+    body.position = pose.position;
+    body.orientation = pose.orientation;
+    return add(BoxShape{half_extents}, body);
+}
+
+std::uint32_t SceneParts::cylinder(std::uint32_t material,
+                                   double mass,
+                                   double radius,
+                                   double half_length,
+                                   const Pose& pose)
+{
+    BodyDescription body;
+    body.material = material;
+    body.mass = mass;
+    body.position = pose.position;
+    body.orientation = pose.orientation;
+    return add(CylinderShape{radius, half_length}, body);
+}
+
+}  // namespace throng

@@ -1,0 +1,106 @@
+// Stacks: H8, ten equal cubes; H33, the same far from the origin.
+//
+// Answer: the contact under the k-th cube from the top carries k m g. A soft contact under j cubes
+// gives way by 2 j g / (2 pi rate)^2, which sets the bound on the overlap.
+#include "cost/hard_cases/hard_cases.hpp"
+#include "pipeline/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr int kHigh = 10;
+constexpr double kGravity = 9.81;
+
+Scene stack(const CaseBench& bench, double edge, double gap, const Vec3& at)
+{
+    SceneParts parts(bench.scene());
+    const std::uint32_t material = parts.material(0.5);
+    parts.plane(material, Vec3::UnitZ(), at.z());
+    for (int k = 0; k < kHigh; ++k) {
+        Pose pose;
+        pose.position = at + Vec3(0, 0, edge / 2 + k * (edge + gap) + gap);
+        parts.box(material, 1, Vec3::Constant(edge / 2), pose);
+    }
+    return parts.scene();
+}
+
+double greatest_speed(const World& world)
+{
+    double speed = 0;
+    for (const BodyId body : world.bodies()) speed = std::max(speed, world.velocity(body).norm());
+    return speed;
+}
+
+struct Rest {
+    double overlap = 0, speed = 0, force_error = 0;
+};
+
+// Ten seconds; overlap is looked at every second, since it may not even pass through the bound.
+Rest watch_stack(CaseBench& bench, const Scene& scene)
+{
+    Rest rest;
+    double next_look = 1;
+    bench.run(scene, 10, [&](World& world, double now) {
+        if (now + 1e-9 < next_look) return true;
+        next_look += 1;
+        rest.overlap = std::max(rest.overlap, world.measure().greatest_overlap);
+        rest.speed = greatest_speed(world);
+        const double weight = kHigh * 1.0 * kGravity;
+        const Vec3 force = world.contact_force(world.bodies().front());
+        rest.force_error = (force - Vec3(0, 0, -weight)).norm() / weight;
+        return true;
+    });
+    return rest;
+}
+
+}  // namespace
+
+void case_stack(CaseBench& bench)
+{
+    struct Setting {
+        const char* name;
+        double edge, gap;
+        bool sleep;
+    };
+    for (const Setting& setting : {Setting{"n=10", 1, 0, true},
+                                   Setting{"n=10, sleep=off", 1, 0, false},
+                                   Setting{"n=10, 0.1 m", 0.1, 0, true},
+                                   Setting{"n=10, from 1 mm gaps", 1, 1e-3, true}}) {
+        Scene scene = stack(bench, setting.edge, setting.gap, Vec3::Zero());
+        scene.settings.sleep = scene.settings.sleep && setting.sleep;
+        const Rest rest = watch_stack(bench, scene);
+        bench.report(setting.name, "greatest overlap", rest.overlap, 3e-3, "m");
+        bench.report(setting.name, "speed after 10 s", rest.speed, 1e-3, "m/s");
+        bench.report(setting.name, "error of the base force", rest.force_error, 5e-3, "1");
+    }
+}
+
+void case_far_away(CaseBench& bench)
+{
+    const auto end_of = [&](const Vec3& at) {
+        std::vector<Vec3> places;
+        bench.run(stack(bench, 1, 0, at), 5, [&](World& world, double now) {
+            if (now < 5 - 1e-9) return true;
+            for (const BodyId body : world.bodies())
+                if (world.motion(body) == Motion::dynamic)
+                    places.push_back(world.pose(body).position - at);
+            return true;
+        });
+        return places;
+    };
+    const std::vector<Vec3> home = end_of(Vec3::Zero());
+    for (const auto& [name, at] : {std::pair("at (1e5, 0, -8e4) m", Vec3(1e5, 0, -8e4)),
+                                   std::pair("at (1e7, 0, -8e6) m", Vec3(1e7, 0, -8e6))}) {
+        const std::vector<Vec3> away = end_of(at);
+        double error = 0;
+        for (std::size_t i = 0; i < home.size(); ++i)
+            error = std::max(error, (home[i] - away[i]).norm());
+        bench.report(name, "distance from where it rests at the origin", error, 1e-3, "m");
+    }
+}
+
+}  // namespace throng

@@ -1,0 +1,57 @@
+// Mesh: triangles made ready for contact: welded, joined to their neighbors, sorted into a tree.
+#pragma once
+
+#include "kernels/data/bounds.hpp"
+#include "kernels/data/shapes.hpp"
+
+#include <string>
+
+namespace throng {
+
+struct MeshResult {
+    Mesh mesh;            // every field filled; empty where there is trouble
+    std::string trouble;  // empty, or what is wrong and what is wanted
+};
+
+/// Welds vertices that are identical, leaves out those that no triangle uses and triangles of no
+/// area, and fills in the rest. Vertices and triangles that remain keep their order.
+///
+///   beyond        the other triangle at an edge that exactly two share, run through in opposite
+///                 directions; else -1
+///   convex_edges  an edge that sticks out by more than a thousandth of a radian, or has no
+///                 triangle beyond it
+MeshResult build_mesh(std::vector<Vec3> vertices,
+                      std::vector<std::array<std::uint32_t, 3>> triangles);
+
+/// Whether every edge has a triangle beyond it, so that the mesh encloses a volume.
+bool is_closed(const Mesh& mesh);
+
+Box3 triangle_box(const Mesh& mesh, std::uint32_t triangle);
+
+/// Visits the triangles whose boxes overlap the given one, in mesh axes. The order is that of the
+/// tree: sort where it matters.
+template <class Visit>
+void visit_triangles(const Mesh& mesh, const Box3& box, Visit visit)
+{
+    // A child holds at most three quarters of its parent's triangles: 64 levels are 2^26 triangles.
+    std::array<std::uint32_t, 96> waiting;
+    std::size_t count = 0;
+    if (!mesh.tree.empty()) waiting[count++] = 0;
+    while (count > 0) {
+        const Mesh::Node& node = mesh.tree[waiting[--count]];
+        if (!box.overlaps({node.lower, node.upper})) continue;
+        if (node.count == 0) {
+            waiting[count++] = node.first + 1;
+            waiting[count++] = node.first;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const std::uint32_t triangle = mesh.order[i];
+            if (box.overlaps(triangle_box(mesh, triangle))) visit(triangle);
+        }
+    }
+}
+
+/// Appends the triangles whose boxes overlap the given one, in mesh axes, in ascending order.
+void find_triangles(const Mesh& mesh, const Box3& box, std::vector<std::uint32_t>& found);
+
+}  // namespace throng

@@ -1,0 +1,52 @@
+// Convex pairs: any two convex shapes, by their cores.
+//
+// What has no closed form comes here: cylinders against all but spheres, and capsules against boxes
+// and hulls. In double whatever the number type: the search wants it, and it costs the same.
+#include "narrowphase/contact_axis.hpp"
+#include "narrowphase/pair_functions.hpp"
+#include "narrowphase/support_contacts.hpp"
+
+namespace throng {
+
+template <class Real>
+void convex_convex(const Shapes& shapes,
+                   ShapeRef a,
+                   ShapeRef b,
+                   const PoseT<Real>& b_in_a,
+                   Real reach,
+                   PairCache&,
+                   LocalManifold<Real>& out)
+{
+    out.count = 0;
+    const Pose pose = {b_in_a.position.template cast<double>(),
+                       b_in_a.orientation.template cast<double>().normalized()};
+    const CorePair pair(shapes, a, b, pose);
+    const double limit = static_cast<double>(reach) + pair.a.radius + pair.b.radius;
+    ContactAxis axis;
+    if (!contact_axis(pair, limit, axis) || axis.separation > limit) return;
+    LocalManifold<double> exact;
+    fill_points(pair, axis, static_cast<double>(reach), exact);
+
+    out.normal = exact.normal.cast<Real>();
+    for (int i = 0; i < exact.count; ++i) {
+        const auto& point = exact.points[static_cast<std::size_t>(i)];
+        out.add(point.position.cast<Real>(), static_cast<Real>(point.separation), point.feature);
+    }
+}
+
+template void convex_convex<float>(const Shapes&,
+                                   ShapeRef,
+                                   ShapeRef,
+                                   const PoseT<float>&,
+                                   float,
+                                   PairCache&,
+                                   LocalManifold<float>&);
+template void convex_convex<double>(const Shapes&,
+                                    ShapeRef,
+                                    ShapeRef,
+                                    const PoseT<double>&,
+                                    double,
+                                    PairCache&,
+                                    LocalManifold<double>&);
+
+}  // namespace throng

@@ -1,0 +1,146 @@
+// Hull against hull, and box against hull: separating axes, then clipping, as for two boxes.
+//
+// The arithmetic is double for either number type: it is bound by looking things up, and hulls are
+// stored in double.
+#include "narrowphase/contact_points.hpp"
+#include "narrowphase/pair_functions.hpp"
+#include "narrowphase/polytope_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+namespace {
+
+// What the cache's features are: nothing, or a face of one and the vertex of the other under it.
+enum class Remembered : std::uint32_t { nothing, face_a, face_b };
+
+// A face leads unless another axis is better by this part of the balls inside both, so that the
+// normal of a body at rest does not jump between axes that are as good as one another.
+constexpr double kFaceBias = 1e-3;
+
+// Cosine below which an edge's normal is no stand-in for a face's: a fiftieth of a radian.
+constexpr double kAlike = 0.9998;
+
+void face_manifold(const PolytopePair& pair,
+                   const FaceAxis& axis,
+                   double reach,
+                   double slack,
+                   LocalManifold<double>& out,
+                   double& least)
+{
+    PolytopePoints found;
+    clip_faces(pair, axis, reach, slack, found);
+    least = found.count > 0 ? found.least : std::numeric_limits<double>::max();
+    out.normal = pair.a.normals[axis.face];
+    reduce_to_four<double>({found.points.data(), found.count}, out);
+}
+
+// The remembered face, or a likely one: it parts the two at once or is a good face to begin with.
+FaceAxis first_guess(const PolytopePair& pair, const PairCache& cache)
+{
+    const bool known = cache.kind != static_cast<std::uint32_t>(Remembered::nothing)
+        && cache.feature_a < pair.a.normals.size() && cache.feature_b < pair.b.vertices.size();
+    return known ? face_axis(pair, static_cast<std::uint16_t>(cache.feature_a),
+                             static_cast<std::uint16_t>(cache.feature_b))
+                 : likely_face_axis(pair);
+}
+
+PairCache remember(Remembered kind, const FaceAxis& axis)
+{
+    return {axis.face, axis.vertex, static_cast<std::uint32_t>(kind)};
+}
+
+void collide_polytopes(const PolytopePair& pair,
+                       double reach,
+                       PairCache& cache,
+                       LocalManifold<double>& out)
+{
+    out.count = 0;
+    const PolytopePair turned = pair.mirrored();
+    const bool by_b = cache.kind == static_cast<std::uint32_t>(Remembered::face_b);
+    const FaceAxis guess = first_guess(by_b ? turned : pair, cache);
+    if (guess.separation > reach) return;
+
+    // What a guess has shown saves looking at faces that cannot lead any more.
+    const double bias = kFaceBias * (pair.a.inner_radius + pair.b.inner_radius);
+    const FaceAxis face_a =
+        best_face_axis(pair, by_b ? likely_face_axis(pair) : guess, guess.separation - bias);
+    if (face_a.separation > reach) {
+        cache = remember(Remembered::face_a, face_a);
+        return;
+    }
+    const FaceAxis face_b =
+        best_face_axis(turned, by_b ? guess : likely_face_axis(turned), face_a.separation);
+    if (face_b.separation > reach) {
+        cache = remember(Remembered::face_b, face_b);
+        return;
+    }
+    const bool b_leads = face_b.separation > face_a.separation + bias;
+    const FaceAxis& face = b_leads ? face_b : face_a;
+    cache = remember(b_leads ? Remembered::face_b : Remembered::face_a, face);
+
+    const double top = std::max(face_a.separation, face_b.separation);
+    const EdgeAxis edge = best_edge_axis(pair, top);
+    const bool has_edge = !edge.normal.isZero(0);
+    if (edge.separation > reach) return;
+    const Vec3 normal =
+        b_leads ? Vec3(-(pair.turn * pair.b.normals[face.face])) : pair.a.normals[face.face];
+    const bool edge_better = has_edge && edge.separation > face.separation + bias;
+    const bool alike = has_edge && edge.normal.dot(normal) > kAlike;
+    if (edge_better && !alike) {
+        cross_edges(pair, edge, reach + bias, out);
+        return;
+    }
+    // A face that has lost its deepest corner over the other's side still tells the depth, if what
+    // is left of it agrees with the edges. Otherwise clipping has lost the very place of touch.
+    double least = 0;
+    face_manifold(b_leads ? turned : pair, face, reach, bias, out, least);
+    if (b_leads) turn_round(pair, out);
+    const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
+    const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
+    if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
+}
+
+}  // namespace
+
+template <class Real>
+void hull_hull(const Shapes& shapes,
+               ShapeRef a,
+               ShapeRef b,
+               const PoseT<Real>& b_in_a,
+               Real reach,
+               PairCache& cache,
+               LocalManifold<Real>& out)
+{
+    const PolytopeShape shape_a(shapes, a), shape_b(shapes, b);
+    const Pose pose{b_in_a.position.template cast<double>(),
+                    b_in_a.orientation.template cast<double>()};
+    LocalManifold<double> found;
+    collide_polytopes({shape_a.view(), shape_b.view(), pose}, reach, cache, found);
+
+    out.normal = found.normal.template cast<Real>();
+    out.count = 0;
+    for (int i = 0; i < found.count; ++i) {
+        const auto& point = found.points[static_cast<std::size_t>(i)];
+        out.add(point.position.template cast<Real>(), static_cast<Real>(point.separation),
+                point.feature);
+    }
+}
+
+template void hull_hull<float>(const Shapes&,
+                               ShapeRef,
+                               ShapeRef,
+                               const PoseT<float>&,
+                               float,
+                               PairCache&,
+                               LocalManifold<float>&);
+template void hull_hull<double>(const Shapes&,
+                                ShapeRef,
+                                ShapeRef,
+                                const PoseT<double>&,
+                                double,
+                                PairCache&,
+                                LocalManifold<double>&);
+
+}  // namespace throng

@@ -1,0 +1,211 @@
+#include "narrowphase/methods/gjk.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace throng {
+
+namespace {
+
+constexpr int kRounds = 128;
+constexpr double kTolerance = 1e-14;  // of the size; some fifty times double's spacing
+
+// A candidate for the point of a simplex nearest to 0, as weights of the corners it uses.
+struct Nearest {
+    Vec3 point = Vec3::Zero();
+    double square = std::numeric_limits<double>::infinity();
+    std::array<int, 3> corners = {};
+    std::array<double, 3> weights = {};
+    int count = 0;
+};
+
+void keep_nearer(Nearest& best, const Nearest& other)
+{
+    if (other.square < best.square) best = other;
+}
+
+Nearest nearest_of_point(const Simplex& simplex, int a)
+{
+    const Vec3& point = simplex.corners[static_cast<std::size_t>(a)].point;
+    return {point, point.squaredNorm(), {a}, {1}, 1};
+}
+
+Nearest nearest_of_edge(const Simplex& simplex, int a, int b)
+{
+    const Vec3& from = simplex.corners[static_cast<std::size_t>(a)].point;
+    const Vec3& to = simplex.corners[static_cast<std::size_t>(b)].point;
+    const Vec3 along = to - from;
+    const double square = along.squaredNorm();
+    const double part = -from.dot(along);
+    if (!(part > 0)) return nearest_of_point(simplex, a);
+    if (!(part < square)) return nearest_of_point(simplex, b);
+    const double t = part / square;
+    // Measured from the nearer end, which is where the sum loses least.
+    const Vec3 point = t < 0.5 ? Vec3(from + along * t) : Vec3(to - along * (1 - t));
+    return {point, point.squaredNorm(), {a, b}, {1 - t, t}, 2};
+}
+
+Nearest nearest_of_triangle(const Simplex& simplex, int a, int b, int c)
+{
+    const Vec3& pa = simplex.corners[static_cast<std::size_t>(a)].point;
+    const Vec3& pb = simplex.corners[static_cast<std::size_t>(b)].point;
+    const Vec3& pc = simplex.corners[static_cast<std::size_t>(c)].point;
+    const Vec3 ab = pb - pa;
+    const Vec3 ac = pc - pa;
+    const Vec3 bc = pc - pb;
+    const Vec3 normal = ab.cross(ac);
+    const double square = normal.squaredNorm();
+    // Twice the signed areas of 0's shadow against each side, times the normal's length.
+    const double against_ab = normal.dot(pa.cross(ab));
+    const double against_bc = normal.dot(pb.cross(bc));
+    const double against_ca = -normal.dot(pa.cross(ac));
+    if (square > 0 && against_ab > 0 && against_bc > 0 && against_ca > 0) {
+        const double sum = against_ab + against_bc + against_ca;
+        const Vec3 point = normal * (normal.dot(pa) / square);
+        return {point,
+                point.squaredNorm(),
+                {a, b, c},
+                {against_bc / sum, against_ca / sum, against_ab / sum},
+                3};
+    }
+    Nearest best = nearest_of_edge(simplex, a, b);
+    keep_nearer(best, nearest_of_edge(simplex, a, c));
+    keep_nearer(best, nearest_of_edge(simplex, b, c));
+    return best;
+}
+
+// Whether 0 lies within the tetrahedron; a flat one contains nothing.
+bool tetrahedron_has_zero(const Simplex& simplex)
+{
+    const Vec3& a = simplex.corners[0].point;
+    const Vec3& b = simplex.corners[1].point;
+    const Vec3& c = simplex.corners[2].point;
+    const Vec3& d = simplex.corners[3].point;
+    const double volume = (b - a).cross(c - a).dot(d - a);
+    const double scale = (b - a).norm() * (c - a).norm() * (d - a).norm();
+    if (!(std::abs(volume) > 1e-14 * scale)) return false;
+    const double sign = volume > 0 ? 1 : -1;
+    const double of_d = -sign * a.dot(b.cross(c));
+    const double of_c = sign * a.dot(b.cross(d));
+    const double of_b = -sign * a.dot(c.cross(d));
+    const double of_a = sign * b.dot(c.cross(d));
+    return of_a >= 0 && of_b >= 0 && of_c >= 0 && of_d >= 0;
+}
+
+Nearest nearest_of(const Simplex& simplex)
+{
+    switch (simplex.count) {
+    case 1:
+        return nearest_of_point(simplex, 0);
+    case 2:
+        return nearest_of_edge(simplex, 0, 1);
+    case 3:
+        return nearest_of_triangle(simplex, 0, 1, 2);
+    default:
+        break;
+    }
+    // The newest corner was found beyond the face of the others, so that face is never nearest.
+    Nearest best = nearest_of_triangle(simplex, 0, 1, 3);
+    keep_nearer(best, nearest_of_triangle(simplex, 0, 2, 3));
+    keep_nearer(best, nearest_of_triangle(simplex, 1, 2, 3));
+    return best;
+}
+
+void reduce(Simplex& simplex, const Nearest& nearest)
+{
+    Simplex kept;
+    kept.count = nearest.count;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(nearest.count); ++i) {
+        kept.corners[i] = simplex.corners[static_cast<std::size_t>(nearest.corners[i])];
+        kept.weights[i] = nearest.weights[i];
+    }
+    simplex = kept;
+}
+
+bool has(const Simplex& simplex, const Vec3& point)
+{
+    for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.count); ++i) {
+        if (simplex.corners[i].point == point) return true;
+    }
+    return false;
+}
+
+void finish(Distance& result, const Vec3& nearest)
+{
+    result.apart = true;
+    result.distance = nearest.norm();
+    result.normal = -nearest / result.distance;
+    result.on_a.setZero();
+    result.on_b.setZero();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(result.simplex.count); ++i) {
+        result.on_a += result.simplex.corners[i].on_a * result.simplex.weights[i];
+        result.on_b += result.simplex.corners[i].on_b * result.simplex.weights[i];
+    }
+}
+
+}  // namespace
+
+CorePair::CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a)
+    : a(core_of<double>(shapes, shape_a)), b(core_of<double>(shapes, shape_b)),
+      b_position(b_in_a.position), b_turn(b_in_a.orientation.toRotationMatrix()),
+      size(a.size + b.size)
+{ }
+
+Difference furthest_difference(const CorePair& pair, const Vec3& direction)
+{
+    Difference difference;
+    difference.on_a = support(pair.a, direction).position;
+    const Vec3 against = pair.b_turn.transpose() * -direction;
+    difference.on_b = pair.b_turn * support(pair.b, against).position + pair.b_position;
+    difference.point = difference.on_a - difference.on_b;
+    return difference;
+}
+
+double separation_along(const CorePair& pair, const Vec3& direction)
+{
+    return -direction.dot(furthest_difference(pair, direction).point);
+}
+
+Distance gjk(const CorePair& pair, double limit)
+{
+    Distance result;
+    Simplex& simplex = result.simplex;
+    Vec3 start = pair.a.middle - (pair.b_turn * pair.b.middle + pair.b_position);
+    if (!(start.squaredNorm() > 0)) start = Vec3::UnitX();
+    simplex.corners[0] = furthest_difference(pair, -start);
+    simplex.weights[0] = 1;
+    simplex.count = 1;
+    Vec3 nearest = simplex.corners[0].point;
+
+    const double slack = kTolerance * (pair.size + pair.b_position.norm());
+    while (result.iterations++ < kRounds) {
+        const double length = nearest.norm();
+        if (!(length > slack)) return result;
+        const Difference further = furthest_difference(pair, -nearest);
+        const double bound = nearest.dot(further.point) / length;
+        if (bound > limit) {
+            finish(result, nearest);
+            result.beyond = true;
+            result.distance = bound;
+            return result;
+        }
+        if (length - bound <= slack || has(simplex, further.point)) break;
+
+        Simplex grown = simplex;
+        grown.corners[static_cast<std::size_t>(grown.count++)] = further;
+        if (grown.count == 4 && tetrahedron_has_zero(grown)) {
+            simplex = grown;
+            return result;
+        }
+        const Nearest next = nearest_of(grown);
+        if (!(next.square < length * length)) break;
+        reduce(grown, next);
+        simplex = grown;
+        nearest = next.point;
+    }
+    if (nearest.norm() > slack) finish(result, nearest);
+    return result;
+}
+
+}  // namespace throng

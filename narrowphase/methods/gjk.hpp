@@ -1,0 +1,70 @@
+// GJK: the distance of two convex shapes, by walking the differences of their points.
+//
+// Works on cores (kernels/geometry/support.hpp) and leaves rounding to the caller, so that round
+// shapes are exact. Always in double: one pair at a time that costs what float would, and float
+// stops short of the accuracy that contacts need (below 1e-6 of the size, progress is noise).
+#pragma once
+
+#include "kernels/geometry/support.hpp"
+
+namespace throng {
+
+/// Two cores, b placed in a's frame.
+struct CorePair {
+    Core<double> a, b;
+    Vec3 b_position = Vec3::Zero();
+    Mat3 b_turn = Mat3::Identity();
+    double size = 0;  // what tolerances are relative to
+
+    CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a);
+};
+
+/// A point of a minus a point of b, in a's frame.
+struct Difference {
+    Vec3 point, on_a, on_b;
+};
+
+/// The furthest difference along a direction of any length.
+Difference furthest_difference(const CorePair& pair, const Vec3& direction);
+
+/// How far apart the cores lie along a unit direction from a to b, m; below 0 where they overlap.
+/// No direction gives more than their distance, and minus the result is always enough to part them.
+double separation_along(const CorePair& pair, const Vec3& direction);
+
+/// Up to four differences and the weights that make the one nearest to 0.
+struct Simplex {
+    std::array<Difference, 4> corners;
+    std::array<double, 4> weights = {};
+    int count = 0;
+};
+
+/// What GJK found.
+///
+///   apart      the cores have a positive distance; else only `simplex` is of use
+///   distance   m, of the cores; where `beyond` a lower bound of it
+///   beyond     stopped early: further apart than was asked about
+///   normal     unit, from a to b
+struct Distance {
+    bool apart = false;
+    bool beyond = false;
+    double distance = 0;
+    Vec3 normal = Vec3::UnitZ();
+    Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
+    Simplex simplex;
+    int iterations = 0;
+};
+
+/// Distance of two cores.
+///
+/// Ends on a repeated support point (exact for polytopes), once the bounds from both sides agree to
+/// 1e-14 of the size, when nothing improves any more, or after 128 rounds. The nearest point of a
+/// simplex is sought by region, from its newest corner, and degenerate simplices fall back to their
+/// edges.
+///
+///   limit      m, distances beyond it need not be measured
+///
+/// Source: Gilbert, Johnson, Keerthi (1988); van den Bergen, Collision Detection in Interactive 3D
+///         Environments (2003), section 4.3.
+Distance gjk(const CorePair& pair, double limit);
+
+}  // namespace throng

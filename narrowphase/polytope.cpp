@@ -1,0 +1,135 @@
+#include "narrowphase/polytope.hpp"
+
+#include "kernels/check.hpp"
+
+#include <algorithm>
+
+namespace throng {
+namespace {
+
+// Below this many vertices it is quicker to look at all than to climb.
+constexpr std::size_t kClimbFrom = 40;
+
+// Faces -x +x -y +y -z +z, each counter-clockwise seen from outside.
+constexpr std::array<std::uint32_t, 7> kBoxFaceBegin = {0, 4, 8, 12, 16, 20, 24};
+// clang-format off
+constexpr std::array<std::uint16_t, 24> kBoxFaceVertices = {
+    0, 4, 6, 2,  1, 3, 7, 5,
+    0, 1, 5, 4,  2, 6, 7, 3,
+    0, 2, 3, 1,  4, 5, 7, 6};
+constexpr std::array<Hull::Edge, 12> kBoxEdges = {{
+    {0, 4, 0, 2}, {4, 6, 0, 5}, {6, 2, 0, 3}, {2, 0, 0, 4},
+    {1, 3, 1, 4}, {3, 7, 1, 3}, {7, 5, 1, 5}, {5, 1, 1, 2},
+    {0, 1, 2, 4}, {5, 4, 2, 5}, {6, 7, 3, 5}, {3, 2, 3, 4}}};
+// clang-format on
+
+const std::array<Vec3, 6>& box_normals()
+{
+    static const std::array<Vec3, 6> normals = {-Vec3::UnitX(), Vec3::UnitX(),  -Vec3::UnitY(),
+                                                Vec3::UnitY(),  -Vec3::UnitZ(), Vec3::UnitZ()};
+    return normals;
+}
+
+constexpr std::array<std::uint32_t, 6> kTriangleFaceBegin = {0, 3, 6, 6, 6, 6};
+constexpr std::array<std::uint16_t, 6> kTriangleFaceVertices = {0, 1, 2, 0, 2, 1};
+constexpr std::array<Hull::Edge, 6> kTriangleEdges = {
+    {{0, 1, 0, 2}, {0, 1, 2, 1}, {1, 2, 0, 3}, {1, 2, 3, 1}, {2, 0, 0, 4}, {2, 0, 4, 1}}};
+
+std::uint16_t support_by_looking(const PolytopeView& shape, const Vec3& direction)
+{
+    std::size_t best = 0;
+    double best_reach = direction.dot(shape.vertices[0]);
+    for (std::size_t i = 1; i < shape.vertices.size(); ++i) {
+        const double reach = direction.dot(shape.vertices[i]);
+        if (reach > best_reach) {
+            best_reach = reach;
+            best = i;
+        }
+    }
+    return static_cast<std::uint16_t>(best);
+}
+
+}  // namespace
+
+PolytopeView view_of(const Hull& hull)
+{
+    return {hull.vertices,      hull.normals,      hull.offsets,        hull.face_begin,
+            hull.face_vertices, hull.edges,        hull.neighbor_begin, hull.neighbors,
+            hull.center,        hull.inner_radius, hull.outer_radius};
+}
+
+BoxPolytope::BoxPolytope(const Vec3& half_extents)
+    : inner_radius(half_extents.minCoeff()), outer_radius(half_extents.norm())
+{
+    for (std::size_t i = 0; i < 8; ++i) {
+        vertices[i] = {i & 1 ? half_extents.x() : -half_extents.x(),
+                       i & 2 ? half_extents.y() : -half_extents.y(),
+                       i & 4 ? half_extents.z() : -half_extents.z()};
+    }
+    for (std::size_t i = 0; i < 6; ++i) offsets[i] = half_extents[static_cast<int>(i / 2)];
+}
+
+PolytopeView BoxPolytope::view() const
+{
+    return {vertices, box_normals(), offsets,      kBoxFaceBegin, kBoxFaceVertices, kBoxEdges, {},
+            {},       Vec3::Zero(),  inner_radius, outer_radius};
+}
+
+TrianglePolytope::TrianglePolytope(const Vec3& v0,
+                                   const Vec3& v1,
+                                   const Vec3& v2,
+                                   const Vec3& normal)
+    : vertices{v0, v1, v2}, center((v0 + v1 + v2) / 3)
+{
+    normals[0] = normal;
+    normals[1] = -normal;
+    for (std::size_t e = 0; e < 3; ++e) {
+        normals[2 + e] = (vertices[(e + 1) % 3] - vertices[e]).cross(normal).normalized();
+        offsets[2 + e] = normals[2 + e].dot(vertices[e]);
+        outer_radius = std::max(outer_radius, (vertices[e] - center).norm());
+    }
+    offsets[0] = normal.dot(v0);
+    offsets[1] = -offsets[0];
+}
+
+PolytopeView TrianglePolytope::view() const
+{
+    return {
+        vertices, normals, offsets, kTriangleFaceBegin, kTriangleFaceVertices, kTriangleEdges, {},
+        {},       center,  0,       outer_radius};
+}
+
+std::uint16_t support_vertex(const PolytopeView& shape, const Vec3& direction, std::uint16_t start)
+{
+    if (shape.vertices.size() < kClimbFrom || shape.neighbor_begin.empty()) {
+        return support_by_looking(shape, direction);
+    }
+    THRONG_CHECK(start < shape.vertices.size(), "climbing starts at a vertex");
+    // On a convex polyhedron a vertex with no higher neighbor is a highest one.
+    std::uint16_t best = start;
+    double best_reach = direction.dot(shape.vertices[best]);
+    for (bool climbed = true; climbed;) {
+        climbed = false;
+        const std::uint16_t here = best;
+        for (std::uint32_t i = shape.neighbor_begin[here]; i < shape.neighbor_begin[here + 1u];
+             ++i) {
+            const std::uint16_t next = shape.neighbors[i];
+            const double reach = direction.dot(shape.vertices[next]);
+            if (reach > best_reach) {
+                best_reach = reach;
+                best = next;
+                climbed = true;
+            }
+        }
+    }
+    return best;
+}
+
+PolytopeShape::PolytopeShape(const Shapes& shapes, ShapeRef shape)
+    : hull_(shape.kind == ShapeKind::hull ? &shapes.hulls[shape.index] : nullptr),
+      box_(hull_ ? Vec3(Vec3::Zero()) : shapes.boxes[shape.index].half_extents)
+{
+    THRONG_CHECK(hull_ || shape.kind == ShapeKind::box, "boxes and hulls are polytopes");
+}
+
+}  // namespace throng

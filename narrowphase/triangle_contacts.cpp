@@ -1,0 +1,320 @@
+#include "narrowphase/triangle_contacts.hpp"
+
+#include "kernels/geometry/closest_points.hpp"
+#include "narrowphase/contact_points.hpp"
+#include "narrowphase/polytope_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+namespace {
+
+// Sine by which a neighbor may rise above a direction and still count as level with it: rounding.
+constexpr double kLevel = 1e-9;
+
+// A shape's center this part of its radius past an edge still counts as above the face, so that
+// rounding on a seam never lets both triangles take it for the other's.
+constexpr double kSeam = 1e-4;
+
+bool rises(const Vec3& from, const Vec3& to, const Vec3& direction)
+{
+    const Vec3 step = to - from;
+    const double up = direction.dot(step);
+    return up > 0 && up * up > kLevel * kLevel * step.squaredNorm();
+}
+
+std::size_t corner_of(const Mesh& mesh, std::uint32_t triangle, std::uint32_t vertex)
+{
+    const auto& ids = mesh.triangles[triangle];
+    return ids[0] == vertex ? 0 : ids[1] == vertex ? 1 : 2;
+}
+
+// Visits the triangles round a vertex, over one side or the other; says whether it came all round.
+template <class Visit>
+bool walk_round(const Mesh& mesh,
+                std::uint32_t start,
+                std::uint32_t vertex,
+                std::size_t side,
+                bool& stop,
+                const Visit& visit)
+{
+    std::uint32_t here = start;
+    for (int steps = 0; steps < 256 && !stop; ++steps) {
+        const std::size_t corner = corner_of(mesh, here, vertex);
+        stop = visit(here, corner);
+        const std::int32_t next = mesh.beyond[here][(corner + side) % 3];
+        if (next < 0) return false;
+        here = static_cast<std::uint32_t>(next);
+        if (here == start) return true;
+    }
+    return true;
+}
+
+// Whether the feature that a closest point lies on sticks out to the direction.
+bool region_sticks_out(const MeshTriangle& triangle, TriangleRegion region, const Vec3& direction)
+{
+    if (region == TriangleRegion::face) return true;
+    const auto number = static_cast<std::size_t>(region);
+    if (number <= 3) return edge_sticks_out(triangle, number - 1, direction);
+    return corner_sticks_out(triangle, number - 4, direction);
+}
+
+// The part of a segment above the triangle, widened a little; false where there is none.
+bool clip_to_prism(const MeshTriangle& triangle, double slack, Segment<double>& segment)
+{
+    double first = 0, last = 1;
+    const Vec3 along = segment.to - segment.from;
+    for (std::size_t e = 0; e < 3; ++e) {
+        const Vec3& corner = triangle.corners[e];
+        const Vec3 side =
+            (triangle.corners[(e + 1) % 3] - corner).cross(triangle.normal).normalized();
+        const double at_from = side.dot(segment.from - corner) - slack;
+        const double slope = side.dot(along);
+        if (at_from > 0 && at_from + slope > 0) return false;
+        // One end is inside: the crossing lies between the two.
+        if (at_from > 0) first = std::max(first, -at_from / slope);
+        if (at_from <= 0 && at_from + slope > 0) last = std::min(last, -at_from / slope);
+    }
+    if (first > last) return false;
+    segment = {segment.from + first * along, segment.from + last * along};
+    return true;
+}
+
+struct RodTouch {
+    Vec3 on_triangle, on_rod;
+    TriangleRegion region;
+    double distance2;
+};
+
+RodTouch closest_on_rod(const MeshTriangle& triangle, const Segment<double>& rod)
+{
+    const auto& corners = triangle.corners;
+    RodTouch best{};
+    best.distance2 = std::numeric_limits<double>::max();
+    for (const Vec3& end : {rod.from, rod.to}) {
+        const auto found = closest_on_triangle<double>(end, corners[0], corners[1], corners[2]);
+        const double distance2 = (found.point - end).squaredNorm();
+        if (distance2 < best.distance2) best = {found.point, end, found.region, distance2};
+    }
+    for (std::size_t e = 0; e < 3; ++e) {
+        const auto found = closest_points<double>({corners[e], corners[(e + 1) % 3]}, rod);
+        const double distance2 = (found.on_a - found.on_b).squaredNorm();
+        if (distance2 >= best.distance2) continue;
+        const std::size_t region = found.at_a <= 0 ? 4 + e
+            : found.at_a >= 1                      ? 4 + (e + 1) % 3
+                                                   : 1 + e;
+        best = {found.on_a, found.on_b, static_cast<TriangleRegion>(region), distance2};
+    }
+    return best;
+}
+
+// The rod's part above the triangle, measured along the triangle's normal.
+void lay_rod(const MeshTriangle& triangle,
+             const Segment<double>& rod,
+             double radius,
+             double reach,
+             LocalManifold<double>& out)
+{
+    Segment<double> part = rod;
+    if (!clip_to_prism(triangle, kSeam * radius, part)) return;
+    out.normal = triangle.normal;
+    std::uint32_t feature = 0;
+    for (const Vec3& end : {part.from, part.to}) {
+        const double height = triangle.height(end), separation = height - radius;
+        const bool second = feature++ == 1;
+        if (separation > reach || (second && part.to == part.from)) continue;
+        out.add(end - triangle.normal * ((height + radius) / 2), separation, second ? 2 : 1);
+    }
+}
+
+// The best axis so far of a triangle against a polytope.
+struct TriangleAxis {
+    enum class Kind { front, face, edge, apart } kind = Kind::front;
+    double separation = 0;
+    FaceAxis face;
+    EdgeAxis edge;
+};
+
+// b's faces: any may show that the two are apart; only those the mesh sticks out to may push.
+void try_faces(const MeshTriangle& triangle,
+               const PolytopePair& turned,
+               double reach,
+               double bias,
+               TriangleAxis& best)
+{
+    for (std::size_t i = 0; i < turned.a.normals.size(); ++i) {
+        const FaceAxis axis = face_axis(turned, static_cast<std::uint16_t>(i));
+        if (axis.separation > reach) {
+            best.kind = TriangleAxis::Kind::apart;
+            return;
+        }
+        const double to_beat =
+            best.kind == TriangleAxis::Kind::front ? best.separation + bias : best.separation;
+        if (axis.separation <= to_beat) continue;
+        const Vec3 direction = -(turned.turn.transpose() * turned.a.normals[i]);
+        if (direction.dot(triangle.normal) < 0) continue;
+        if (!corner_sticks_out(triangle, axis.vertex, direction)) continue;
+        best.kind = TriangleAxis::Kind::face;
+        best.separation = axis.separation;
+        best.face = axis;
+    }
+}
+
+// The normal on the far side of an edge that sticks out: a rim pushes sideways too, and a little
+// further, so that directions straight out of it are well inside.
+Vec3 far_normal(const MeshTriangle& triangle, std::size_t edge, const Vec3& rim)
+{
+    const std::int32_t next = triangle.mesh.beyond[triangle.index][edge];
+    if (next >= 0) return triangle.mesh.normals[static_cast<std::size_t>(next)];
+    return (rim - 0.05 * triangle.normal).normalized();
+}
+
+}  // namespace
+
+MeshTriangle::MeshTriangle(const Mesh& of, std::uint32_t triangle)
+    : mesh(of), index(triangle), normal(of.normals[triangle])
+{
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = of.vertices[of.triangles[triangle][i]];
+}
+
+bool corner_sticks_out(const MeshTriangle& triangle, std::size_t corner, const Vec3& direction)
+{
+    const Mesh& mesh = triangle.mesh;
+    const std::uint32_t vertex = mesh.triangles[triangle.index][corner];
+    const Vec3& here = mesh.vertices[vertex];
+    bool risen = false;
+    const auto look = [&](std::uint32_t other, std::size_t at) {
+        const auto& ids = mesh.triangles[other];
+        return rises(here, mesh.vertices[ids[(at + 1) % 3]], direction)
+            || rises(here, mesh.vertices[ids[(at + 2) % 3]], direction);
+    };
+    const bool all_round = walk_round(mesh, triangle.index, vertex, 0, risen, look);
+    if (!risen && !all_round) walk_round(mesh, triangle.index, vertex, 2, risen, look);
+    return !risen;
+}
+
+bool edge_sticks_out(const MeshTriangle& triangle, std::size_t edge, const Vec3& direction)
+{
+    const Mesh& mesh = triangle.mesh;
+    if ((mesh.convex_edges[triangle.index] >> edge & 1) == 0) return false;
+    const std::int32_t next = mesh.beyond[triangle.index][edge];
+    if (next < 0) return direction.dot(triangle.normal) >= 0;
+    const auto& ids = mesh.triangles[static_cast<std::size_t>(next)];
+    const Vec3& here = triangle.corners[edge];
+    return !rises(here, mesh.vertices[ids[0]], direction)
+        && !rises(here, mesh.vertices[ids[1]], direction)
+        && !rises(here, mesh.vertices[ids[2]], direction);
+}
+
+void touch_ball(const MeshTriangle& triangle,
+                const Vec3& center,
+                double radius,
+                double reach,
+                LocalManifold<double>& out)
+{
+    out.count = 0;
+    const double height = triangle.height(center);
+    if (height < 0 || height - radius > reach) return;
+    const auto& corners = triangle.corners;
+    const auto closest = closest_on_triangle<double>(center, corners[0], corners[1], corners[2]);
+    const Vec3 apart = center - closest.point;
+    const Vec3 past = apart - triangle.normal * height;
+    double distance = height;
+    Vec3 direction = triangle.normal;
+    if (past.norm() > kSeam * radius) {
+        distance = apart.norm();
+        direction = apart / distance;
+        if (distance - radius > reach) return;
+        // Where the mesh goes on past this edge, the triangle there is the one to push.
+        if (!region_sticks_out(triangle, closest.region, direction)) return;
+    }
+    out.normal = direction;
+    out.add(center - direction * ((distance + radius) / 2), distance - radius, 1);
+}
+
+void touch_rod(const MeshTriangle& triangle,
+               const Vec3& from,
+               const Vec3& to,
+               double radius,
+               double reach,
+               LocalManifold<double>& out)
+{
+    out.count = 0;
+    const double height_from = triangle.height(from), height_to = triangle.height(to);
+    if (height_from + height_to < 0 || std::min(height_from, height_to) - radius > reach) return;
+    const Segment<double> rod{from, to};
+    const RodTouch touch = closest_on_rod(triangle, rod);
+    const double limit = reach + radius;
+    if (touch.distance2 > limit * limit) return;
+
+    // A rod that runs through the triangle, or lies on it, or leans over a seam, is measured from
+    // the face; only an edge or a corner that sticks out pushes along the line to it.
+    const Vec3 apart = touch.on_rod - touch.on_triangle;
+    const double distance = std::sqrt(touch.distance2);
+    const Vec3 past = apart - triangle.normal * triangle.normal.dot(apart);
+    const bool over_face = touch.region == TriangleRegion::face || distance <= kSeam * radius
+        || past.norm() <= kSeam * radius || triangle.normal.dot(apart) < 0;
+    const Vec3 direction = over_face ? triangle.normal : Vec3(apart / distance);
+    if (over_face || !region_sticks_out(triangle, touch.region, direction)) {
+        lay_rod(triangle, rod, radius, reach, out);
+        return;
+    }
+    out.normal = direction;
+    out.add((touch.on_triangle + touch.on_rod - direction * radius) / 2, distance - radius, 3);
+}
+
+void touch_polytope(const MeshTriangle& triangle,
+                    const PolytopeView& shape,
+                    const Pose& pose,
+                    double reach,
+                    LocalManifold<double>& out)
+{
+    out.count = 0;
+    const auto& corners = triangle.corners;
+    const TrianglePolytope flat(corners[0], corners[1], corners[2], triangle.normal);
+    const PolytopePair pair(flat.view(), shape, pose);
+    if (triangle.normal.dot(pair.offset) < 0) return;
+    const FaceAxis front = face_axis(pair, 0);
+    if (front.separation > reach) return;
+
+    const double bias = 1e-3 * shape.inner_radius;
+    TriangleAxis best;
+    best.separation = front.separation;
+    const PolytopePair turned = pair.mirrored();
+    try_faces(triangle, turned, reach, bias, best);
+    if (best.kind == TriangleAxis::Kind::apart) return;
+
+    // Any edge at all may show that the two are apart.
+    if (best_edge_axis(pair, reach).separation > reach) return;
+
+    // Edges of the triangle that stick out; their arcs end where the next triangle's begin.
+    PolytopePair edged = pair;
+    std::array<Vec3, 5> normals = flat.normals;
+    std::array<double, 5> offsets = flat.offsets;
+    std::array<Hull::Edge, 3> edges{};
+    std::size_t edge_count = 0;
+    for (std::size_t e = 0; e < 3; ++e) {
+        if ((triangle.mesh.convex_edges[triangle.index] >> e & 1) == 0) continue;
+        normals[2 + e] = far_normal(triangle, e, flat.normals[2 + e]);
+        offsets[2 + e] = normals[2 + e].dot(corners[e]);
+        edges[edge_count++] = pair.a.edges[2 * e];
+    }
+    edged.a.normals = normals;
+    edged.a.offsets = offsets;
+    edged.a.edges = {edges.data(), edge_count};
+    const EdgeAxis edge = best_edge_axis(edged, best.separation + bias);
+    if (!edge.normal.isZero(0)) {
+        if (edge.separation <= reach) cross_edges(edged, edge, reach + bias, out);
+        return;
+    }
+
+    const bool by_front = best.kind == TriangleAxis::Kind::front;
+    PolytopePoints found;
+    clip_faces(by_front ? pair : turned, by_front ? front : best.face, reach, bias, found);
+    out.normal = by_front ? triangle.normal : turned.a.normals[best.face.face];
+    reduce_to_four<double>({found.points.data(), found.count}, out);
+    if (!by_front) turn_round(pair, out);
+}
+
+}  // namespace throng

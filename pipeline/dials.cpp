@@ -1,0 +1,422 @@
+// Dials: every choice that trades accuracy for time, by name.
+#include "pipeline/dials.hpp"
+
+#include "pipeline/names.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace throng {
+namespace {
+
+// The values of each dial, default first, in the order of the enumerators of settings.hpp. To offer
+// one: write it, and take its `false` away.
+constexpr bool kNotYet = false;
+constexpr Choice kFrictionAt[] = {{"manifold"}, {"points", kNotYet}};
+constexpr Choice kPrecision[] = {{"float"}, {"double"}};
+constexpr Choice kIntegrator[] = {{"semi_implicit"},
+                                  {"euler", kNotYet},
+                                  {"midpoint", kNotYet},
+                                  {"splitting", kNotYet},
+                                  {"rk4", kNotYet}};
+constexpr Choice kRotation[] = {{"quaternion"},
+                                {"rotation_vector", kNotYet},
+                                {"matrix", kNotYet},
+                                {"quaternion_euler", kNotYet},
+                                {"matrix_euler", kNotYet},
+                                {"matrix_euler_repaired", kNotYet}};
+constexpr Choice kGyroscopic[] = {{"implicit"}, {"explicit"}, {"off"}};
+constexpr Choice kBroadPhase[] = {{"auto"}, {"embree"}, {"grid"}, {"sweep"}, {"all_pairs"}};
+constexpr Choice kNarrowPhase[] = {{"auto"},
+                                   {"gjk", kNotYet},
+                                   {"sat", kNotYet},
+                                   {"chung_wang", kNotYet},
+                                   {"clip_volume", kNotYet},
+                                   {"containment", kNotYet}};
+constexpr Choice kMethodStart[] = {{"cached"}, {"cold", kNotYet}, {"plain", kNotYet}};
+constexpr Choice kBoundsFilter[] = {{"none"},
+                                    {"sphere", kNotYet},
+                                    {"k_dop:14", kNotYet},
+                                    {"k_dop:6", kNotYet},
+                                    {"k_dop:18", kNotYet},
+                                    {"k_dop:26", kNotYet}};
+constexpr Choice kNonconvex[] = {{"voxels"},
+                                 {"parts", kNotYet},
+                                 {"spheres", kNotYet},
+                                 {"depth_image", kNotYet},
+                                 {"hull", kNotYet}};
+constexpr Choice kResponse[] = {{"impulse"}, {"penalty", kNotYet}, {"kinematic", kNotYet}};
+constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct", kNotYet}};
+constexpr Choice kFrictionCone[] = {{"cone"}, {"pyramid", kNotYet}};
+constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous", kNotYet}};
+constexpr Choice kOverlap[] = {{"allow"}, {"back_up", kNotYet}, {"subdivide", kNotYet}};
+constexpr Choice kToiMethod[] = {{"newton"}, {"bisection", kNotYet}, {"conservative", kNotYet}};
+constexpr Choice kSleep[] = {{"on"}, {"off"}};
+constexpr Choice kAuto[] = {{"auto"}};
+constexpr Choice kDirectLimit[] = {{"500"}};
+constexpr Choice kToiTolerance[] = {{"1e-4"}};
+
+// Finer steps than this are lost in the time they add up to; greater ones in no scene's scale.
+constexpr double kShortestStep = 1e-9, kLongestStep = 1e4;
+
+std::string wanted(std::string_view what, std::string_view text)
+{
+    return "wanted " + std::string(what) + ", not " + in_quotes(text);
+}
+
+/// The place of a value among the choices, or what was wanted.
+std::string choose(std::span<const Choice> choices, std::string_view text, std::size_t& place)
+{
+    std::vector<std::string_view> offered;
+    for (const Choice& choice : choices)
+        if (choice.available) offered.push_back(choice.text);
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        if (choices[i].text != text) continue;
+        place = i;
+        if (choices[i].available) return {};
+        return "wanted " + either_of(offered) + "; " + in_quotes(text)
+            + " is not available in this build";
+    }
+    return wanted(either_of(offered), text);
+}
+
+template <auto Member, const auto& choices>
+std::string set_choice(Settings& settings, std::string_view text)
+{
+    std::size_t place = 0;
+    const std::string trouble = choose(choices, text, place);
+    if (!trouble.empty()) return trouble;
+    using Value = std::remove_reference_t<decltype(settings.*Member)>;
+    settings.*Member = static_cast<Value>(place);
+    return {};
+}
+
+template <auto Member, const auto& choices>
+std::string get_choice(const Settings& settings)
+{
+    return std::string(choices[static_cast<std::size_t>(settings.*Member)].text);
+}
+
+/// A dial that nothing in this build reads yet: it stays at its default, however that is spelled.
+template <const auto& choices>
+std::string set_fixed(Settings&, std::string_view text)
+{
+    if (parse_number(text) == parse_number(choices[0].text)) return {};
+    std::size_t place = 0;
+    std::string trouble = choose(choices, text, place);
+    const bool number = !trouble.empty() && !std::isnan(parse_number(text));
+    return number ? trouble + "; nothing else is available in this build" : trouble;
+}
+
+template <const auto& choices>
+std::string get_fixed(const Settings&)
+{
+    return std::string(choices[0].text);
+}
+
+/// A whole number in a range, or 0 where it is none.
+int parse_whole(std::string_view text, int greatest)
+{
+    const double number = parse_number(text);
+    const bool good = number >= 1 && number <= greatest && number == std::floor(number);
+    return good ? static_cast<int>(number) : 0;
+}
+
+std::string set_dt(Settings& settings, std::string_view text)
+{
+    const double time = parse_time(text);
+    if (!(time >= kShortestStep && time <= kLongestStep))
+        return wanted("a time from 1e-9 to 1e4 s, such as 0.01 or 1/60", text);
+    settings.dt = time;
+    return {};
+}
+
+std::string get_dt(const Settings& settings)
+{
+    // As a fraction where that is shorter: 1/60 and not 0.016666666666666666.
+    const std::string decimal = number_text(settings.dt);
+    const double steps = std::round(1 / settings.dt);
+    const std::string fraction = "1/" + number_text(steps);
+    const bool same = steps >= 1 && parse_time(fraction) == settings.dt;
+    return same && fraction.size() < decimal.size() ? fraction : decimal;
+}
+
+std::string set_substeps(Settings& settings, std::string_view text)
+{
+    const int count = parse_whole(text, 1000);
+    if (count == 0) return wanted("a whole number from 1 to 1000", text);
+    settings.substeps = count;
+    return {};
+}
+
+std::string get_substeps(const Settings& settings) { return std::to_string(settings.substeps); }
+
+std::string set_iterations(Settings& settings, std::string_view text)
+{
+    const int count = parse_whole(text, 100000);
+    if (count == 0 && text != "auto")
+        return wanted("auto or a whole number from 1 to 100000", text);
+    settings.iterations = count;
+    return {};
+}
+
+std::string get_iterations(const Settings& settings)
+{
+    return settings.iterations == 0 ? "auto" : std::to_string(settings.iterations);
+}
+
+std::string set_contact_rate(Settings& settings, std::string_view text)
+{
+    constexpr std::string_view kFixed = "fixed:";
+    const bool is_fixed = text.starts_with(kFixed);
+    const double number = parse_number(is_fixed ? text.substr(kFixed.size()) : text);
+    // A rate above 1 a substep overshoots; 1e9 Hz is above that at the shortest step.
+    const bool good = number > 0 && number <= (is_fixed ? 1e9 : 1.0);
+    if (!good && text != "auto")
+        return wanted("auto, a number above 0 and up to 1, or fixed:HERTZ such as fixed:30", text);
+    settings.contact_rate = good && !is_fixed ? number : 0;
+    settings.contact_hertz = good && is_fixed ? number : 0;
+    return {};
+}
+
+std::string get_contact_rate(const Settings& settings)
+{
+    if (settings.contact_hertz > 0) return "fixed:" + number_text(settings.contact_hertz);
+    return settings.contact_rate > 0 ? number_text(settings.contact_rate) : "auto";
+}
+
+std::string set_push_limit(Settings& settings, std::string_view text)
+{
+    const double speed = parse_number(text);
+    if (!(speed >= 0 && speed <= 1e6)) return wanted("a speed from 0 to 1e6 m/s", text);
+    settings.push_limit = speed;
+    return {};
+}
+
+std::string get_push_limit(const Settings& settings) { return number_text(settings.push_limit); }
+
+std::string set_sleep(Settings& settings, std::string_view text)
+{
+    std::size_t place = 0;
+    std::string trouble = choose(kSleep, text, place);
+    if (trouble.empty()) settings.sleep = place == 0;
+    return trouble;
+}
+
+std::string get_sleep(const Settings& settings) { return settings.sleep ? "on" : "off"; }
+
+/// A dial with a number for a value.
+Dial number_dial(std::string_view name,
+                 std::string_view values,
+                 std::string_view unit,
+                 std::string (*set)(Settings&, std::string_view),
+                 std::string (*get)(const Settings&),
+                 std::string_view trades)
+{
+    return {name, std::string(values), get(Settings{}), unit, trades, {}, true, set, get};
+}
+
+Dial named_dial(std::string_view name,
+                std::span<const Choice> choices,
+                std::string (*set)(Settings&, std::string_view),
+                std::string (*get)(const Settings&),
+                std::string_view trades)
+{
+    std::string values;
+    for (const Choice& choice : choices)
+        values += (values.empty() ? "" : ", ") + std::string(choice.text);
+    const auto offered = std::count_if(choices.begin(), choices.end(),
+                                       [](const Choice& choice) { return choice.available; });
+    return {name, values, get(Settings{}), "", trades, choices, offered > 1, set, get};
+}
+
+template <auto Member, const auto& choices>
+Dial choice_dial(std::string_view name, std::string_view trades)
+{
+    const auto set = set_choice<Member, choices>;
+    return named_dial(name, choices, set, get_choice<Member, choices>, trades);
+}
+
+template <const auto& choices>
+Dial fixed_dial(std::string_view name, std::string_view trades)
+{
+    return named_dial(name, choices, set_fixed<choices>, get_fixed<choices>, trades);
+}
+
+/// A number that stays at its default in this build.
+template <const auto& choices>
+Dial fixed_number(std::string_view name,
+                  std::string_view values,
+                  std::string_view unit,
+                  std::string_view trades)
+{
+    Dial dial = fixed_dial<choices>(name, trades);
+    dial.values = values;
+    dial.unit = unit;
+    dial.choices = {};
+    return dial;
+}
+
+std::vector<Dial> make_dials()
+{
+    using S = Settings;
+    // clang-format off
+    return {
+        number_dial("dt", "a number or a fraction, 1/60", "s", set_dt, get_dt,
+            "a shorter step is more exact in everything and costs a whole step each"),
+        number_dial("substeps", "a whole number from 1 to 1000", "", set_substeps, get_substeps,
+            "more substeps make contacts stiffer and motion finer, and cost a solve each"),
+        number_dial("iterations", "auto, or a whole number: visits a substep (soft_step 1, pgs 20, Newton steps of direct 50)",
+            "", set_iterations, get_iterations,
+            "more visits leave less error in the velocities, and cost a sweep of all rows each"),
+        number_dial("contact_rate", "auto (0.177 a substep for manifolds, 0.5 for one point), a number, fixed:HERTZ",
+            "a substep", set_contact_rate, get_contact_rate,
+            "a higher rate leaves less overlap and rests less quietly"),
+        number_dial("push_limit", "a number", "m/s", set_push_limit, get_push_limit,
+            "a higher limit clears deep overlap sooner and throws bodies about more"),
+        choice_dial<&S::friction_at, kFrictionAt>("friction_at",
+            "points hold an uneven load better than one row at the center, and cost more rows"),
+        choice_dial<&S::precision, kPrecision>("precision",
+            "double resolves far finer motion and overlap, and takes about twice the memory and time"),
+        choice_dial<&S::integrator, kIntegrator>("integrator",
+            "higher orders follow smooth forces more closely, and evaluate them more often"),
+        choice_dial<&S::rotation, kRotation>("rotation",
+            "the exponential map keeps turns exact; the textbook updates drift and save a root"),
+        choice_dial<&S::gyroscopic, kGyroscopic>("gyroscopic",
+            "implicit is stable at any spin and loses a little energy; explicit gains; off is wrong for long bodies"),
+        choice_dial<&S::broadphase, kBroadPhase>("broadphase",
+            "time alone: all find the same pairs"),
+        choice_dial<&S::narrowphase, kNarrowPhase>("narrowphase",
+            "how contacts are found: methods differ in time, depth and the points they give"),
+        fixed_dial<kMethodStart>("method_start",
+            "time alone: what a pair remembers from the step before saves work"),
+        fixed_dial<kBoundsFilter>("bounds_filter",
+            "time alone: tighter bounds leave fewer pairs to look at, and cost a test each"),
+        fixed_dial<kNonconvex>("nonconvex",
+            "finer stand-ins for a moving non-convex shape fit better, and cost more points"),
+        fixed_number<kAuto>("voxel_size", "auto (set by the shape's size), or a length", "m",
+            "smaller voxels fit the shape better, and cost memory with the cube"),
+        fixed_number<kAuto>("image_resolution", "auto (set by the shape's size), or a whole number", "pixels",
+            "finer depth images fit the shape better, and cost time with the square"),
+        fixed_number<kAuto>("sphere_levels", "auto (set by the shape's size), or a whole number", "",
+            "deeper sphere trees fit the shape better, and cost more tests"),
+        fixed_number<kAuto>("max_parts", "auto (set by the shape's size), or a whole number", "",
+            "more convex parts fit the shape better, and cost a pair each"),
+        choice_dial<&S::response, kResponse>("response",
+            "impulses hold overlap small; penalty forces are smooth and soft; kinematic is cheap and loses momentum"),
+        choice_dial<&S::solver, kSolver>("solver",
+            "soft_step converges best for its time; pgs is the classic; direct is exact and slow"),
+        fixed_number<kDirectLimit>("direct_limit", "a whole number: greatest island that solver direct takes", "bodies",
+            "greater islands solved exactly, for time that grows with the cube"),
+        fixed_number<kAuto>("penalty_stiffness", "auto (from mass and dt, within the stability limit), or a number", "N/m",
+            "stiffer leaves less overlap and needs a shorter step"),
+        fixed_number<kAuto>("penalty_damping", "auto (from mass and dt, within the stability limit), or a number", "N s/m",
+            "more damping bounces less and needs a shorter step"),
+        choice_dial<&S::friction_cone, kFrictionCone>("friction_cone",
+            "the cone is the same in every direction; the pyramid is cheaper and holds up to 1.41 too much"),
+        fixed_dial<kImpactLaw>("impact_law",
+            "sequential passes an impact along one pair at a time; simultaneous shares it, for a joint solve"),
+        fixed_dial<kOverlap>("overlap",
+            "backing up or subdividing the step avoids overlap, and repeats work at every impact"),
+        fixed_dial<kToiMethod>("toi_method",
+            "newton is quickest, bisection surest, conservative never passes the first touch"),
+        fixed_number<kToiTolerance>("toi_tolerance", "a number", "of the shape's size",
+            "a smaller tolerance finds the moment of touch more exactly, for more evaluations"),
+        named_dial("sleep", kSleep, set_sleep, get_sleep,
+            "bodies at rest cost nothing while asleep; off follows the slowest creep"),
+    };
+    // clang-format on
+}
+
+/// Why a dial does nothing under these settings; empty when it does something.
+std::string why_unused(const Settings& settings, std::string_view name)
+{
+    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    const std::string solver = dial_value(settings, "solver");
+    const std::string response = dial_value(settings, "response");
+    const std::string nonconvex = dial_value(settings, "nonconvex");
+
+    if (settings.response != Response::impulse
+        && is_one_of({"solver", "iterations", "contact_rate", "push_limit", "direct_limit",
+                      "friction_cone", "friction_at", "impact_law"}))
+        return "response " + response + " solves no rows";
+    if (settings.solver != Solver::soft_step && is_one_of({"contact_rate", "push_limit"}))
+        return "solver " + solver + " has no soft contacts";
+    if (settings.solver != Solver::direct && name == "direct_limit")
+        return "solver " + solver + " takes islands of any size";
+    if (settings.response != Response::penalty
+        && is_one_of({"penalty_stiffness", "penalty_damping"}))
+        return "response " + response + " has no penalty forces";
+
+    constexpr std::array<std::array<std::string_view, 2>, 4> kOwners = {
+        {{"voxel_size", "voxels"},
+         {"image_resolution", "depth_image"},
+         {"sphere_levels", "spheres"},
+         {"max_parts", "parts"}}};
+    for (const auto& [dial, owner] : kOwners)
+        if (name == dial && nonconvex != owner)
+            return "nonconvex " + nonconvex + " does not ask for it";
+    return {};
+}
+
+}  // namespace
+
+std::span<const Dial> dials()
+{
+    static const std::vector<Dial> table = make_dials();
+    return table;
+}
+
+const Dial* find_dial(std::string_view name)
+{
+    for (const Dial& dial : dials())
+        if (dial.name == name) return &dial;
+    return nullptr;
+}
+
+std::string set_dial(Settings& settings, std::string_view name, std::string_view value)
+{
+    if (const Dial* dial = find_dial(name)) {
+        const std::string trouble = dial->set(settings, value);
+        return trouble.empty() ? trouble : std::string(name) + ": " + trouble;
+    }
+    std::vector<std::string_view> names;
+    for (const Dial& dial : dials()) names.push_back(dial.name);
+    const std::string near = nearest_names(name, names);
+    const std::string plain = in_quotes(name);
+    return plain.substr(1, plain.size() - 2) + ": wanted the name of a dial"
+        + (near.empty() ? ", one of: " + either_of(names) : ", perhaps " + near);
+}
+
+std::string dial_value(const Settings& settings, std::string_view name)
+{
+    const Dial* dial = find_dial(name);
+    return dial ? dial->get(settings) : std::string();
+}
+
+std::vector<std::string> unused_dials(const Settings& settings,
+                                      std::span<const std::string> explicitly_set)
+{
+    std::vector<std::string> unused;
+    for (const std::string& name : explicitly_set) {
+        const std::string why = why_unused(settings, name);
+        if (!why.empty()) unused.push_back(name + ": unused, " + why);
+    }
+    return unused;
+}
+
+double parse_time(std::string_view text)
+{
+    const std::size_t slash = text.find('/');
+    if (slash == std::string_view::npos) return parse_number(text);
+    const double above = parse_number(text.substr(0, slash));
+    const double below = parse_number(text.substr(slash + 1));
+    const double time = above / below;
+    return std::isfinite(time) ? time : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace throng

@@ -1,0 +1,192 @@
+#include "pipeline/effects.hpp"
+
+#include "broadphase/pair_filter.hpp"
+#include "kernels/geometry/shape_bounds.hpp"
+#include "pipeline/conditions.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace throng {
+
+namespace {
+
+struct Known {
+    std::string_view name;
+    bool acted_on;
+};
+
+// In the order of the enumeration.
+constexpr Known kKnown[] = {
+    {"motion", true},           {"gravity", true},      {"forces", false},
+    {"drive", true},            {"rotation", true},     {"gyroscopic", true},
+    {"contact", true},          {"friction", true},     {"rolling friction", true},
+    {"restitution", true},      {"fast motion", false}, {"mesh contact", true},
+    {"springs", false},         {"attractors", false},  {"wind", false},
+    {"drag", false},            {"pivot", false},       {"sleeping", true},
+};
+static_assert(std::size(kKnown) == kEffects);
+
+class Search {
+public:
+    explicit Search(const EffectFacts& facts) : facts_(facts) { }
+
+    Effects run()
+    {
+        for (int i = 0; i < kEffects; ++i)
+            if (const std::string& who = facts_.requests.first[static_cast<std::size_t>(i)];
+                !who.empty())
+                call(static_cast<Effect>(i), who);
+        find_motion();
+        find_contact();
+        if (found_.on.has(Effect::contact)) find_materials();
+        find_rotation();
+        if (found_.on.has(Effect::contact) && facts_.conditions.settings.sleep)
+            if (const auto body = first_body([&](std::size_t b) { return facts_.states.dynamic(b); });
+                body != kNobody)
+                call(Effect::sleeping, name(body));
+        return std::move(found_);
+    }
+
+private:
+    void call(Effect effect, std::string who)
+    {
+        if (found_.on.has(effect)) return;
+        found_.on.add(effect);
+        found_.cause[static_cast<std::size_t>(effect)] = std::move(who);
+    }
+    std::string name(std::size_t body) const
+    {
+        const bool named = body < facts_.body_names.size() && !facts_.body_names[body].empty();
+        return "body " + std::to_string(body) + (named ? " " + facts_.body_names[body] : "");
+    }
+    template <class Predicate>
+    std::uint32_t first_body(Predicate wanted) const
+    {
+        for (std::uint32_t body = 0; body < facts_.states.kind.size(); ++body)
+            if (wanted(body)) return body;
+        return kNobody;
+    }
+    bool movable(std::size_t body) const
+    {
+        return facts_.states.kind[body] == BodyKind::dynamic
+            || facts_.states.kind[body] == BodyKind::kinematic;
+    }
+    bool has_contact(std::size_t body) const
+    {
+        return found_.on.has(Effect::contact) && facts_.colliders.count[body] > 0;
+    }
+
+    void find_motion()
+    {
+        const auto mover = first_body([&](std::size_t body) { return movable(body); });
+        if (mover == kNobody) return;
+        call(Effect::motion, name(mover));
+        const auto falls = first_body([&](std::size_t b) { return facts_.masses.inverse_mass[b] > 0; });
+        if (!facts_.conditions.gravity.isZero(0) && falls != kNobody)
+            call(Effect::gravity, "gravity of the scene");
+        if (!facts_.drives.body.empty()) call(Effect::drive, name(facts_.drives.body.front()));
+        const double dt = facts_.conditions.settings.dt;
+        const auto fast = first_body([&](std::size_t body) {
+            if (!movable(body) || facts_.colliders.count[body] == 0) return false;
+            const std::uint32_t collider = facts_.colliders.begin[body];
+            return facts_.velocities.linear[body].norm() * dt
+                > facts_.colliders.inner_extent[collider];
+        });
+        if (fast != kNobody) call(Effect::fast_motion, name(fast));
+    }
+
+    // Filters know groups and masks: bodies of one group and mask are alike.
+    void find_contact()
+    {
+        struct Kind {
+            std::uint32_t first = kNobody, second = kNobody;      // bodies
+            std::uint32_t dynamic = kNobody, other_than = kNobody;  // first dynamic one
+        };
+        std::map<std::pair<std::uint32_t, std::uint32_t>, Kind> kinds;
+        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
+            const std::uint32_t body = facts_.colliders.body[i];
+            if (body == kNobody) continue;
+            Kind& kind = kinds[{facts_.filter.group[i], facts_.filter.mask[i]}];
+            if (kind.first == kNobody) kind.first = body;
+            else if (kind.second == kNobody && kind.first != body) kind.second = body;
+            if (kind.dynamic == kNobody && facts_.states.dynamic(body)) kind.dynamic = body;
+        }
+        for (const auto& [x, a] : kinds)
+            for (const auto& [y, b] : kinds) {
+                if ((x.first & y.second) == 0 || (y.first & x.second) == 0) continue;
+                if (a.dynamic == kNobody) continue;
+                const std::uint32_t other = b.first != a.dynamic ? b.first : b.second;
+                if (other == kNobody) continue;
+                call(Effect::contact, name(a.dynamic) + " may touch " + name(other));
+            }
+        if (!found_.on.has(Effect::contact)) return;
+        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i)
+            if (facts_.colliders.body[i] != kNobody
+                && facts_.colliders.shape[i].kind == ShapeKind::mesh)
+                call(Effect::mesh_contact, name(facts_.colliders.body[i]));
+    }
+
+    void find_materials()
+    {
+        std::set<std::uint32_t> on_dynamic, on_any;
+        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
+            const std::uint32_t body = facts_.colliders.body[i];
+            if (body == kNobody) continue;
+            on_any.insert(facts_.colliders.material[i]);
+            if (facts_.states.dynamic(body)) on_dynamic.insert(facts_.colliders.material[i]);
+        }
+        for (const std::uint32_t a : on_dynamic)
+            for (const std::uint32_t b : on_any) {
+                const auto meeting = facts_.surfaces.between(a, b);
+                const std::string who = "materials " + facts_.material_names[a] + " and "
+                    + facts_.material_names[b];
+                if (meeting.friction > 0) call(Effect::friction, who);
+                if (meeting.rolling_friction > 0) call(Effect::rolling_friction, who);
+                if (meeting.restitution > 0) call(Effect::restitution, who);
+            }
+    }
+
+    // A ball about its own center is turned by friction alone; anything else by any touch.
+    bool can_be_turned(std::size_t body) const
+    {
+        if (!movable(body)) return false;
+        if (!facts_.velocities.angular[body].isZero(0)) return true;
+        const Sym3& inverse = facts_.masses.inverse_inertia[body];
+        if (inverse == Sym3{} || !has_contact(body)) return false;
+        if (found_.on.has(Effect::friction)) return true;
+        for (std::uint32_t k = 0; k < facts_.colliders.count[body]; ++k) {
+            const std::uint32_t collider = facts_.colliders.begin[body] + k;
+            if (facts_.colliders.shape[collider].kind != ShapeKind::sphere
+                || !facts_.colliders.local[collider].position.isZero(0))
+                return true;
+        }
+        return false;
+    }
+
+    void find_rotation()
+    {
+        const auto turns = first_body([&](std::size_t body) { return can_be_turned(body); });
+        if (turns == kNobody) return;
+        call(Effect::rotation, name(turns));
+        if (facts_.conditions.settings.gyroscopic == Gyroscopic::off) return;
+        const auto uneven = first_body([&](std::size_t body) {
+            return facts_.masses.spins_unevenly[body] != 0 && can_be_turned(body);
+        });
+        if (uneven != kNobody) call(Effect::gyroscopic, name(uneven));
+    }
+
+    const EffectFacts& facts_;
+    Effects found_;
+};
+
+}  // namespace
+
+std::string_view name_of(Effect effect) { return kKnown[static_cast<std::size_t>(effect)].name; }
+
+bool acted_on(Effect effect) { return kKnown[static_cast<std::size_t>(effect)].acted_on; }
+
+Effects find_effects(const EffectFacts& facts) { return Search(facts).run(); }
+
+}  // namespace throng

@@ -1,0 +1,179 @@
+// Measures: what a state is worth, from geometry and velocities alone.
+//
+// Nothing the solver believes goes in: overlaps are found afresh on the poses as they are.
+#include "kernels/geometry/shape_bounds.hpp"
+#include "kernels/math/hash.hpp"
+#include "kernels/math/rotation.hpp"
+#include "narrowphase/narrowphase.hpp"
+#include "pipeline/world_state.hpp"
+
+#include <algorithm>
+
+namespace throng {
+
+namespace {
+
+double mesh_depth(const Shapes& shapes, ShapeRef mesh, ShapeRef other, const Pose& other_in_mesh)
+{
+    std::vector<TriangleManifold<double>> found;
+    collide_mesh<double>(shapes, mesh, other, other_in_mesh, 0.0, found);
+    double depth = 0;
+    for (const auto& touch : found)
+        for (int k = 0; k < touch.manifold.count; ++k)
+            depth = std::max(depth,
+                             -touch.manifold.points[static_cast<std::size_t>(k)].separation);
+    return depth;
+}
+
+void measure_overlaps(const World::State& state, Measures& measures)
+{
+    const Colliders& colliders = state.get<Colliders>();
+    const Shapes& shapes = state.get<Shapes>();
+    const BodyStates& states = state.get<BodyStates>();
+    const std::size_t count = colliders.size();
+    std::vector<Pose> placed(count);
+    std::vector<Box3> boxes(count);
+    std::vector<std::uint8_t> moving(count, 0);
+    std::vector<std::uint32_t> asked;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t body = colliders.body[i];
+        if (body == kNobody) continue;
+        placed[i] = state.get<Poses>().at(body) * colliders.local[i];
+        boxes[i] = shape_bounds(shapes, colliders.shape[i], placed[i]);
+        moving[i] = states.dynamic(body) ? 1 : 0;
+        asked.push_back(i);
+    }
+    std::vector<PairKey> pairs;
+    AnyPairFinder finder = make_finder(choose_finder(boxes, moving));
+    find_overlaps({boxes, moving, asked, true, &state.get<PairFilter>()}, finder, pairs);
+
+    std::vector<double> depth(pairs.size(), 0);
+    for_each_block(pairs.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::uint32_t a = first_of(pairs[i]), b = second_of(pairs[i]);
+            if (colliders.shape[b].kind == ShapeKind::mesh
+                || colliders.shape[a].kind == ShapeKind::plane)
+                std::swap(a, b);
+            const Pose b_in_a
+                = pose_seen_from_a(shapes, colliders.shape[b], placed[a], placed[b]);
+            depth[i] = colliders.shape[a].kind == ShapeKind::mesh
+                ? mesh_depth(shapes, colliders.shape[a], colliders.shape[b], b_in_a)
+                : overlap_depth(shapes, colliders.shape[a], colliders.shape[b], b_in_a);
+        }
+    });
+    double sum = 0;
+    for (const double d : depth) {
+        if (!(d > 0)) continue;
+        ++measures.overlapping_pairs;
+        sum += d;
+        measures.greatest_overlap = std::max(measures.greatest_overlap, d);
+    }
+    if (measures.overlapping_pairs > 0)
+        measures.mean_overlap = sum / static_cast<double>(measures.overlapping_pairs);
+}
+
+}  // namespace
+
+Measures World::measure() const
+{
+    Measures measures;
+    // Measuring changes nothing that a step would notice, so it may use the world's own threads.
+    auto& pool = const_cast<State&>(*state_).pool;  // NOLINT: threads are no part of the state
+    pool.run([&](std::size_t, std::size_t, std::size_t) { measure_overlaps(*state_, measures); });
+    const Masses& masses = state_->get<Masses>();
+    const BodyStates& states = state_->get<BodyStates>();
+    const Poses& poses = state_->get<Poses>();
+    const Velocities& velocities = state_->get<Velocities>();
+    for (std::size_t body = 0; body < states.kind.size(); ++body) {
+        if (!states.dynamic(body)) continue;
+        const Vec3& v = velocities.linear[body];
+        const Vec3& w = velocities.angular[body];
+        const Vec3 spin = in_world_axes(masses.inertia[body], poses.orientation[body]) * w;
+        measures.kinetic_energy += 0.5 * (masses.mass[body] * v.squaredNorm() + w.dot(spin));
+        measures.potential_energy
+            -= masses.mass[body] * gravity().dot(poses.position[body]);
+        measures.momentum += masses.mass[body] * v;
+        measures.angular_momentum += masses.mass[body] * poses.position[body].cross(v) + spin;
+    }
+    return measures;
+}
+
+std::string World::state_hash() const
+{
+    Hash hash;
+    const Poses& poses = state_->get<Poses>();
+    const Velocities& velocities = state_->get<Velocities>();
+    const BodyStates& states = state_->get<BodyStates>();
+    const auto add3 = [&](const auto& v) {
+        for (int k = 0; k < 3; ++k) hash.add(v[k]);
+    };
+    for (std::size_t body = 0; body < states.kind.size(); ++body) {
+        hash.add(std::uint64_t{static_cast<std::uint8_t>(states.kind[body])});
+        if (states.kind[body] == BodyKind::gone) continue;
+        add3(poses.position[body]);
+        for (int k = 0; k < 4; ++k) hash.add(poses.orientation[body].coeffs()[k]);
+        add3(velocities.linear[body]);
+        add3(velocities.angular[body]);
+        hash.add(std::uint64_t{states.awake[body]});
+        hash.add(states.quiet_time[body]);
+    }
+    const auto add_contact = [&](std::uint64_t key, const auto& contact) {
+        if (contact.count == 0) return;
+        hash.add(key);
+        for (int k = 0; k < contact.count; ++k) {
+            const auto& point = contact.points[static_cast<std::size_t>(k)];
+            hash.add(std::uint64_t{point.feature});
+            hash.add(point.impulse);
+        }
+        add3(contact.friction);
+        hash.add(contact.twist);
+    };
+    std::visit(
+        [&](const auto& chosen) {
+            using Real = std::conditional_t<
+                std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>, float, double>;
+            const Pairs& pairs = std::get<Pairs>(chosen.data);
+            const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
+            for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
+                add_contact(pairs.keys[i], convex.of_pair[i]);
+            for (const auto& entry : std::get<MeshContacts<Real>>(chosen.data).entries) {
+                hash.add(std::uint64_t{entry.triangle});
+                add_contact(pairs.keys[entry.pair], entry.contact);
+            }
+        },
+        state_->step);
+    return hash.text();
+}
+
+std::size_t World::memory_bytes() const
+{
+    const auto bytes = [](const auto&... arrays) {
+        return (std::size_t{0} + ... + (arrays.capacity() * sizeof(arrays[0])));
+    };
+    const Poses& p = state_->get<Poses>();
+    const Velocities& v = state_->get<Velocities>();
+    const Masses& m = state_->get<Masses>();
+    const BodyStates& s = state_->get<BodyStates>();
+    const Colliders& c = state_->get<Colliders>();
+    const Bounds& b = state_->get<Bounds>();
+    const Shapes& shapes = state_->get<Shapes>();
+    std::size_t sum = bytes(p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass,
+                            m.inertia, m.inverse_inertia, s.kind, s.awake, s.quiet_time, s.bed,
+                            c.body, c.shape, c.local, c.material, c.inner_extent, c.outer_radius,
+                            b.boxes, b.reach, b.placed, shapes.boxes, shapes.spheres,
+                            state_->center, state_->names, state_->generation);
+    std::visit(
+        [&](const auto& chosen) {
+            using Real = std::conditional_t<
+                std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>, float, double>;
+            const Pairs& pairs = std::get<Pairs>(chosen.data);
+            const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
+            const auto& rows = std::get<Rows<Real>>(chosen.data);
+            sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.merged, convex.of_pair,
+                         convex.before, rows.blocks, rows.bodies);
+        },
+        state_->step);
+    return sum;
+}
+
+}  // namespace throng

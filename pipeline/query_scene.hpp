@@ -1,0 +1,73 @@
+// Query scene: a world's colliders as they were at one time, laid out for questions.
+//
+// Boxes name candidates, closed forms in double decide. Planes have no box and are asked one by one.
+#pragma once
+
+#include "broadphase/box_queries.hpp"
+#include "pipeline/queries.hpp"
+#include "pipeline/world_state.hpp"
+
+namespace throng {
+
+/// Answers what Queries asks, once the questions are known to be good.
+class QueryScene {
+public:
+    explicit QueryScene(const World::State& state);
+
+    void cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits);
+    void find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_t> blocked);
+    void find_overlaps(std::span<const ShapeQuery> queries, std::span<std::vector<BodyId>> found);
+    void find_nearest(std::span<const PointQuery> points, std::span<NearestHit> nearest);
+
+private:
+    struct Collider {
+        std::uint32_t body = 0, generation = 0, part = 0, group = 0;
+        ShapeRef shape;
+        Pose placed;
+    };
+    /// The best answer so far of a ray or a point: a collider, and where on it in its own frame.
+    struct Best {
+        double distance = std::numeric_limits<double>::infinity();
+        std::uint32_t collider = kNobody;
+        Vec3 local = Vec3::Zero();
+    };
+    struct Search;
+    using Order = std::vector<std::pair<double, std::uint32_t>>;  // m along a ray, collider
+
+    template <class Work>
+    void run(const Work& work);
+    BodyId id(std::uint32_t collider) const;
+    bool beats(double distance, std::uint32_t collider, const Best& best) const;
+
+    void meet(const RayQuery& query, const Ray& ray, std::uint32_t collider, Best& best) const;
+    void meet_candidates(const RayQuery& query,
+                         const Search& search,
+                         std::span<const std::uint32_t> candidates,
+                         Order& order,
+                         Best& best) const;
+    Search search_for(const RayQuery& query) const;
+    void search_met(std::span<const RayQuery> rays, std::span<Best> best, bool any);
+
+    void approach(const PointQuery& query, std::uint32_t collider, Best& best) const;
+    void search_nearest(std::span<const PointQuery> points, std::span<Best> best);
+
+    ThreadPool* pool_;
+    const Shapes* shapes_;
+
+    // By collider, in order of body and part.
+    std::vector<Collider> colliders_;
+    std::vector<Box3> boxes_;  // empty for planes
+
+    std::vector<std::uint32_t> planes_;
+    EmbreeRays tree_;
+    Box3 bounds_;            // of all boxes
+    double usual_size_ = 0;  // m, of a box
+
+    // Of the questions asked last.
+    std::vector<Ray> rays_;
+    std::vector<Box3> regions_;
+    std::vector<Best> best_;
+    Candidates candidates_;
+};
+
+}  // namespace throng

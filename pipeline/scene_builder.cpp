@@ -1,0 +1,346 @@
+// Scene builder: what a user states, made into the arrays that the step works on.
+#include "kernels/geometry/hull.hpp"
+#include "kernels/geometry/mesh.hpp"
+#include "kernels/geometry/shape_bounds.hpp"
+#include "pipeline/world_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace throng {
+
+namespace {
+
+template <class Shape>
+ShapeRef append(std::vector<Shape>& shapes, ShapeKind kind, Shape shape)
+{
+    shapes.push_back(std::move(shape));
+    return {kind, static_cast<std::uint32_t>(shapes.size() - 1)};
+}
+
+// Principal moments that differ by more than rounding.
+bool uneven(const Sym3& inertia)
+{
+    const double size = inertia.xx + inertia.yy + inertia.zz;
+    const double spread = std::max({std::abs(inertia.xx - inertia.yy),
+                                    std::abs(inertia.yy - inertia.zz), std::abs(inertia.xy),
+                                    std::abs(inertia.xz), std::abs(inertia.yz)});
+    return spread > 1e-9 * size;
+}
+
+Sym3 scaled(const Sym3& m, double by)
+{
+    return {m.xx * by, m.yy * by, m.zz * by, m.xy * by, m.xz * by, m.yz * by};
+}
+
+// Moments about a point that lies off the center.
+Sym3 shifted(const Sym3& inertia, double mass, const Vec3& off)
+{
+    const double x = off.x(), y = off.y(), z = off.z();
+    return {inertia.xx + mass * (y * y + z * z), inertia.yy + mass * (x * x + z * z),
+            inertia.zz + mass * (x * x + y * y), inertia.xy - mass * x * y,
+            inertia.xz - mass * x * z,           inertia.yz - mass * y * z};
+}
+
+template <class Array, class Value>
+void put(Array& array, std::size_t at, Value value)
+{
+    if (array.size() <= at) array.resize(at + 1);
+    array[at] = std::move(value);
+}
+
+}  // namespace
+
+void SceneBuilder::add_materials(const Scene& scene)
+{
+    Surfaces& surfaces = state_.get<Surfaces>();
+    const auto add_one = [&](const Material& material, const std::string& name) {
+        surfaces.friction.push_back(material.friction);
+        surfaces.restitution.push_back(material.restitution);
+        surfaces.rolling_friction.push_back(material.rolling_friction);
+        state_.material_names.push_back(name);
+        density_.push_back(material.density);
+    };
+    first_material_ = static_cast<std::uint32_t>(surfaces.friction.size());
+    for (const Material& material : scene.materials) add_one(material, material.name);
+    default_material_ = static_cast<std::uint32_t>(surfaces.friction.size());
+    add_one(Material{}, "(default)");
+    for (const MaterialPair& pair : scene.pairs) {
+        const std::uint32_t a = first_material_ + std::min(pair.a, pair.b);
+        const std::uint32_t b = first_material_ + std::max(pair.a, pair.b);
+        Surfaces::Meeting meeting = surfaces.between(a, b);
+        meeting.friction = pair.friction.value_or(meeting.friction);
+        meeting.restitution = pair.restitution.value_or(meeting.restitution);
+        surfaces.overrides.push_back({a, b, meeting});
+    }
+    std::stable_sort(surfaces.overrides.begin(), surfaces.overrides.end(),
+                     [](const auto& x, const auto& y) {
+                         return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+                     });
+}
+
+PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& description)
+{
+    Shapes& shapes = state_.get<Shapes>();
+    const auto one = [&](ShapeRef shape) {
+        return PlacedShape{{shape}, {Pose{}}, mass_of(shapes, shape)};
+    };
+    struct Maker {
+        SceneBuilder& builder;
+        Shapes& shapes;
+        const Scene& scene;
+        decltype(one)& single;
+
+        PlacedShape operator()(const SphereShape& s) const
+        {
+            return single(append(shapes.spheres, ShapeKind::sphere, Sphere{s.radius}));
+        }
+        PlacedShape operator()(const CapsuleShape& s) const
+        {
+            return single(
+                append(shapes.capsules, ShapeKind::capsule, Capsule{s.radius, s.half_length}));
+        }
+        PlacedShape operator()(const CylinderShape& s) const
+        {
+            return single(
+                append(shapes.cylinders, ShapeKind::cylinder, Cylinder{s.radius, s.half_length}));
+        }
+        PlacedShape operator()(const BoxShape& s) const
+        {
+            return single(append(shapes.boxes, ShapeKind::box, Box{s.half_extents}));
+        }
+        PlacedShape operator()(const PlaneShape& s) const
+        {
+            // Its frame is put on its surface, so that no great offset is left for float to hold.
+            const Vec3 normal = s.normal.normalized();
+            PlacedShape placed
+                = single(append(shapes.planes, ShapeKind::plane, Plane{normal, 0}));
+            placed.poses[0].position = normal * s.offset;
+            return placed;
+        }
+        PlacedShape operator()(const HullShape& s) const
+        {
+            HullResult result = build_hull(s.points);
+            if (!result.trouble.empty()) throw std::invalid_argument("hull: " + result.trouble);
+            return single(append(shapes.hulls, ShapeKind::hull, std::move(result.hull)));
+        }
+        PlacedShape operator()(const MeshShape& s) const
+        {
+            MeshResult result = build_mesh(s.vertices, s.triangles);
+            if (!result.trouble.empty()) throw std::invalid_argument("mesh: " + result.trouble);
+            return single(append(shapes.meshes, ShapeKind::mesh, std::move(result.mesh)));
+        }
+        PlacedShape operator()(const CompoundShape& s) const
+        {
+            PlacedShape whole;
+            std::vector<PlacedMass> masses;
+            for (const CompoundShape::Part& part : s.parts) {
+                const PlacedShape inner = builder.add_shape(scene, scene.shapes[part.shape]);
+                for (std::size_t i = 0; i < inner.parts.size(); ++i) {
+                    whole.parts.push_back(inner.parts[i]);
+                    whole.poses.push_back(part.pose * inner.poses[i]);
+                }
+                masses.push_back({inner.mass, part.pose});
+            }
+            whole.mass = combine(masses);
+            return whole;
+        }
+    };
+    return std::visit(Maker{*this, shapes, scene, one}, description.shape);
+}
+
+std::uint32_t SceneBuilder::take_body()
+{
+    if (!state_.free_bodies.empty()) {
+        const std::uint32_t body = state_.free_bodies.back();
+        state_.free_bodies.pop_back();
+        return body;
+    }
+    state_.generation.push_back(0);
+    return static_cast<std::uint32_t>(state_.generation.size() - 1);
+}
+
+std::uint32_t SceneBuilder::take_colliders(std::uint32_t count)
+{
+    auto& free = state_.free_colliders[count];
+    if (count > 0 && !free.empty()) {
+        const std::uint32_t first = free.back();
+        free.pop_back();
+        return first;
+    }
+    return static_cast<std::uint32_t>(state_.get<Colliders>().size());
+}
+
+void SceneBuilder::place_colliders(std::uint32_t body,
+                                   const BodyDescription& stated,
+                                   const PlacedShape* shape)
+{
+    Colliders& colliders = state_.get<Colliders>();
+    PairFilter& filter = state_.get<PairFilter>();
+    const Shapes& shapes = state_.get<Shapes>();
+    const auto count = static_cast<std::uint32_t>(shape == nullptr ? 0 : shape->parts.size());
+    const std::uint32_t first = take_colliders(count);
+    put(colliders.begin, body, first);
+    put(colliders.count, body, count);
+    double radius = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t at = first + i;
+        const ShapeRef part = shape->parts[i];
+        Pose local = shape->poses[i];
+        local.position -= state_.center[body];
+        const double outer = local.position.norm() + outer_radius(shapes, part);
+        put(colliders.body, at, body);
+        put(colliders.shape, at, part);
+        put(colliders.local, at, local);
+        put(colliders.material, at,
+            stated.material == kNone ? default_material_ : first_material_ + stated.material);
+        put(colliders.inner_extent, at, inner_extent(shapes, part));
+        put(colliders.outer_radius, at, outer);
+        filter.resize(colliders.size());
+        filter.body[at] = body;
+        filter.group[at] = stated.group;
+        filter.mask[at] = stated.mask;
+        if (std::isfinite(outer)) radius = std::max(radius, outer);
+    }
+    put(state_.get<BodyStates>().radius, body, radius);
+}
+
+void SceneBuilder::weigh(std::uint32_t body,
+                         const BodyDescription& stated,
+                         const PlacedShape* shape)
+{
+    Masses& masses = state_.get<Masses>();
+    put(masses.mass, body, 0.0);
+    put(masses.inverse_mass, body, 0.0);
+    put(masses.inertia, body, Sym3{});
+    put(masses.inverse_inertia, body, Sym3{});
+    put(masses.spins_unevenly, body, std::uint8_t{0});
+    const Vec3 natural = shape == nullptr ? Vec3(Vec3::Zero()) : shape->mass.center;
+    put(state_.center, body, stated.center.value_or(natural));
+    if (stated.motion != Motion::dynamic) {
+        // What only moves by itself turns about its own frame.
+        state_.center[body] = stated.center.value_or(Vec3::Zero());
+        return;
+    }
+    const double volume = shape == nullptr ? 0 : shape->mass.volume;
+    const double density
+        = density_[stated.material == kNone ? default_material_ - first_material_ : stated.material];
+    const double mass = stated.mass.value_or(density * volume);
+    masses.mass[body] = mass;
+    if (!stated.lock_position) masses.inverse_mass[body] = 1 / mass;
+    if (stated.inertia) {
+        masses.inertia[body] = *stated.inertia;
+    } else if (volume > 0) {
+        const Sym3 about_natural = scaled(shape->mass.inertia, mass / volume);
+        masses.inertia[body] = shifted(about_natural, mass, state_.center[body] - natural);
+    }
+    if (stated.lock_rotation || masses.inertia[body] == Sym3{}) return;
+    masses.inverse_inertia[body] = Sym3::from(masses.inertia[body].matrix().inverse());
+    masses.spins_unevenly[body] = uneven(masses.inertia[body]) ? 1 : 0;
+}
+
+void SceneBuilder::note_requests(std::uint32_t body, const BodyDescription& stated)
+{
+    const std::string who
+        = "body " + std::to_string(body) + (stated.name.empty() ? "" : " " + stated.name);
+    Requests& requests = state_.requests;
+    if (!stated.force.isZero(0) || !stated.torque.isZero(0)) requests.ask(Effect::forces, who);
+    if (stated.linear_drag != 0 || stated.angular_drag != 0) requests.ask(Effect::drag, who);
+    if (stated.pivot) requests.ask(Effect::pivot, who);
+    if (stated.fast) requests.ask(Effect::fast_motion, who);
+}
+
+BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* shape)
+{
+    const std::uint32_t body = take_body();
+    weigh(body, stated, shape);
+    place_colliders(body, stated, shape);
+    Quat orientation = stated.orientation;
+    orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
+
+    Poses& poses = state_.get<Poses>();
+    put(poses.position, body, Vec3(orientation * state_.center[body] + stated.position));
+    put(poses.orientation, body, orientation);
+    Velocities& velocities = state_.get<Velocities>();
+    put(velocities.linear, body, stated.velocity);
+    put(velocities.angular, body,
+        stated.lock_rotation ? Vec3(Vec3::Zero()) : stated.angular_velocity);
+    BodyStates& states = state_.get<BodyStates>();
+    const bool moves = stated.motion != Motion::static_;
+    put(states.kind, body,
+        !moves                                ? BodyKind::still
+            : stated.motion == Motion::dynamic ? BodyKind::dynamic
+                                               : BodyKind::kinematic);
+    put(states.awake, body, std::uint8_t{moves});
+    put(states.quarantined, body, std::uint8_t{0});
+    put(states.quiet_time, body, 0.0);
+    put(states.bed, body, kNobody);
+    put(state_.motion, body, stated.motion);
+    if (!stated.name.empty()) put(state_.names, body, stated.name);
+
+    Drives& drives = state_.get<Drives>();
+    const auto& drive = stated.drive_velocity;
+    if (drive[0] || drive[1] || drive[2]) {
+        const double free = std::nan("");
+        const auto at = std::lower_bound(drives.body.begin(), drives.body.end(), body);
+        drives.velocity.insert(
+            drives.velocity.begin() + (at - drives.body.begin()),
+            {drive[0].value_or(free), drive[1].value_or(free), drive[2].value_or(free)});
+        drives.body.insert(at, body);
+    }
+    note_requests(body, stated);
+    state_.touch(body);
+    ++state_.alive;
+    return {body, state_.generation[body]};
+}
+
+ShapeRef SceneBuilder::sized(ShapeKind kind, const double* sizes)
+{
+    Shapes& shapes = state_.get<Shapes>();
+    switch (kind) {
+    case ShapeKind::sphere: return append(shapes.spheres, kind, Sphere{sizes[0]});
+    case ShapeKind::capsule: return append(shapes.capsules, kind, Capsule{sizes[0], sizes[1]});
+    case ShapeKind::cylinder: return append(shapes.cylinders, kind, Cylinder{sizes[0], sizes[1]});
+    case ShapeKind::box: return append(shapes.boxes, kind, Box{Vec3(sizes[0], sizes[1], sizes[2])});
+    default: throw std::invalid_argument("instances: this shape has no sizes of its own");
+    }
+}
+
+std::vector<BodyId> SceneBuilder::add(const Scene& scene)
+{
+    add_materials(scene);
+    shapes_.reserve(scene.shapes.size());
+    for (const ShapeDescription& shape : scene.shapes) shapes_.push_back(add_shape(scene, shape));
+    const auto shape_of = [&](const BodyDescription& body) -> const PlacedShape* {
+        return body.shape == kNone ? nullptr : &shapes_[body.shape];
+    };
+    std::vector<BodyId> ids;
+    ids.reserve(scene.body_count());
+    for (const BodyDescription& body : scene.bodies) ids.push_back(add_body(body, shape_of(body)));
+    for (const Instances& group : scene.instances) {
+        BodyDescription body = group.common;
+        const PlacedShape* const shared = shape_of(body);
+        for (std::size_t i = 0; i < group.count(); ++i) {
+            const double* r = group.records.data() + i * group.stride();
+            body.position = Vec3(r[0], r[1], r[2]);
+            body.orientation = Quat(r[3], r[4], r[5], r[6]);
+            body.velocity = Vec3(r[7], r[8], r[9]);
+            body.angular_velocity = Vec3(r[10], r[11], r[12]);
+            if (!group.own_sizes) {
+                ids.push_back(add_body(body, shared));
+                continue;
+            }
+            const ShapeRef own = sized(shared->parts[0].kind, r + 13);
+            const PlacedShape shape{{own}, {Pose{}}, mass_of(state_.get<Shapes>(), own)};
+            ids.push_back(add_body(body, &shape));
+        }
+    }
+    if (!scene.springs.empty()) state_.requests.ask(Effect::springs, "spring 0");
+    if (!scene.attractors.empty()) state_.requests.ask(Effect::attractors, "attractor 0");
+    if (!scene.wind.isZero(0)) state_.requests.ask(Effect::wind, "wind of the scene");
+    state_.effects_stale = true;
+    return ids;
+}
+
+}  // namespace throng

@@ -1,0 +1,135 @@
+// Shape rules: what a shape of a scene must be, and what it then weighs.
+#include "kernels/geometry/hull.hpp"
+#include "pipeline/scene_rules.hpp"
+
+#include <cmath>
+#include <set>
+
+namespace throng {
+namespace {
+
+/// Checks one shape; a compound's parts are checked as shapes of their own.
+struct ShapeChecker {
+    const Scene& scene;
+    const SceneChecker& checker;
+    Shapes scratch{};  // for mass_of()
+
+    void need_size(std::string_view kind, std::string_view key, double size) const
+    {
+        const SceneChecker here = checker.at(kind);
+        here.at(key).need_range(size, kLeastLength, kGreatestLength, "a length above 0 m");
+    }
+
+    template <class Shape>
+    MassProperties weigh(std::vector<Shape>& kind, ShapeKind name, Shape shape)
+    {
+        kind.push_back(std::move(shape));
+        return mass_of(scratch, {name, 0});
+    }
+
+    MassProperties operator()(const SphereShape& sphere)
+    {
+        need_size("sphere", "radius", sphere.radius);
+        return weigh(scratch.spheres, ShapeKind::sphere, {sphere.radius});
+    }
+    MassProperties operator()(const CapsuleShape& capsule)
+    {
+        need_size("capsule", "radius", capsule.radius);
+        need_size("capsule", "half_length", capsule.half_length);
+        return weigh(scratch.capsules, ShapeKind::capsule, {capsule.radius, capsule.half_length});
+    }
+    MassProperties operator()(const CylinderShape& cylinder)
+    {
+        need_size("cylinder", "radius", cylinder.radius);
+        need_size("cylinder", "half_length", cylinder.half_length);
+        return weigh(scratch.cylinders, ShapeKind::cylinder,
+                     {cylinder.radius, cylinder.half_length});
+    }
+    MassProperties operator()(const BoxShape& box)
+    {
+        const SceneChecker here = checker.at("box");
+        here.at("half_extents")
+            .need_range(box.half_extents, kLeastLength, kGreatestLength, "a length above 0 m");
+        return weigh(scratch.boxes, ShapeKind::box, {box.half_extents});
+    }
+    MassProperties operator()(const HullShape& hull)
+    {
+        const SceneChecker here = checker.at("hull"), points = here.at("points");
+        for (std::size_t i = 0; i < hull.points.size(); ++i)
+            points.at(i).need_place(hull.points[i]);
+        const HullResult built = build_hull(hull.points);
+        points.need(built.trouble.empty(), "wanted a hull; " + built.trouble);
+        return mass_of(built.hull);
+    }
+    MassProperties operator()(const PlaneShape& plane)
+    {
+        const SceneChecker here = checker.at("plane");
+        here.at("normal").need(std::abs(plane.normal.norm() - 1) <= kUnitTolerance,
+                               "wanted a direction of unit length");
+        here.at("offset").need_range(plane.offset, -kGreatestLength, kGreatestLength,
+                                     "an offset in m");
+        return {};
+    }
+    MassProperties operator()(const MeshShape& mesh)
+    {
+        const SceneChecker here = checker.at("mesh");
+        here.at("scale").need_range(mesh.scale, kLeastLength, kGreatestLength, "a factor above 0");
+        const SceneChecker file = here.at("file");
+        file.need(!mesh.triangles.empty(), "wanted a mesh with triangles, not an empty one");
+        for (const Vec3& vertex : mesh.vertices)
+            file.need(vertex.cwiseAbs().maxCoeff() <= kGreatestLength,
+                      "wanted vertices of a size that a step can hold, once scaled");
+        for (const auto& triangle : mesh.triangles)
+            for (const std::uint32_t corner : triangle)
+                file.need(corner < mesh.vertices.size(), "wanted triangles between vertices");
+        return {};
+    }
+    MassProperties operator()(const CompoundShape& compound)
+    {
+        const SceneChecker parts = checker.at("compound");
+        parts.need(!compound.parts.empty(), "wanted at least one part");
+        for (std::size_t i = 0; i < compound.parts.size(); ++i) {
+            const CompoundShape::Part& part = compound.parts[i];
+            const SceneChecker here = parts.at(i);
+            here.at("position").need_place(part.pose.position);
+            here.at("orientation").need_unit(part.pose.orientation);
+            here.at("shape").need(part.shape < scene.shapes.size(), "wanted a shape of the scene");
+            const auto& shape = scene.shapes[part.shape].shape;
+            const bool good = !std::holds_alternative<CompoundShape>(shape)
+                && !std::holds_alternative<PlaneShape>(shape)
+                && !std::holds_alternative<MeshShape>(shape);
+            here.at("shape").need(
+                good, "wanted a sphere, capsule, cylinder, box or hull as part of a compound");
+        }
+        return {};
+    }
+};
+
+}  // namespace
+
+std::vector<MassProperties> check_shapes(const Scene& scene)
+{
+    std::vector<MassProperties> masses;
+    const SceneChecker whole, shapes = whole.at("shapes");
+    std::set<std::string_view> names;
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const ShapeDescription& shape = scene.shapes[i];
+        const SceneChecker checker = shapes.at(shape.name, i);
+        checker.need(shape.name.empty() || names.insert(shape.name).second,
+                     "wanted a name of its own for each shape");
+        masses.push_back(std::visit(ShapeChecker{scene, checker}, shape.shape));
+    }
+
+    // Compounds last: their parts may be named before or after them.
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const auto* compound = std::get_if<CompoundShape>(&scene.shapes[i].shape);
+        if (!compound) continue;
+        std::vector<PlacedMass> parts;
+        for (const CompoundShape::Part& part : compound->parts)
+            parts.push_back({masses[part.shape], part.pose});
+        masses[i] = combine(parts);
+    }
+    return masses;
+}
+
+}  // namespace throng

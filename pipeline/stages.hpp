@@ -1,0 +1,127 @@
+// Stages: the step as a list of signatures, in the order in which one thread would run them.
+//
+// This is the wiring. A const parameter is read, the others are written, and a stage can reach
+// nothing else. step_table.cpp says which effects call for each.
+#pragma once
+
+#include "pipeline/step_data.hpp"
+
+namespace throng {
+
+/// Sets the velocities that the user drives, and puts to rest what could not enter the step finite.
+void drive_bodies(const Drives&, const BodyStates&, Velocities&);
+
+/// Boxes round the shapes of what moves: a body within its margin costs no more than a look.
+void update_bounds(const Conditions&,
+                   const Shapes&,
+                   const Colliders&,
+                   const Poses&,
+                   const Velocities&,
+                   const BodyStates&,
+                   Bounds&);
+
+/// Boxes into pairs; those that live on keep what they know.
+void find_pairs(const Bounds&, const Shapes&, const Colliders&, const PairFilter&, Finder&, Pairs&);
+
+/// Pairs of convex shapes into contacts, impulses carried over.
+template <class Real>
+void collide_convex(const Conditions&,
+                    const Pairs&,
+                    const Shapes&,
+                    const Surfaces&,
+                    const Colliders&,
+                    const Bounds&,
+                    const Poses&,
+                    const BodyStates&,
+                    ConvexContacts<Real>&);
+
+/// The same against triangle meshes.
+template <class Real>
+void collide_meshes(const Conditions&,
+                    const Pairs&,
+                    const Shapes&,
+                    const Surfaces&,
+                    const Colliders&,
+                    const Bounds&,
+                    const Poses&,
+                    const BodyStates&,
+                    MeshContacts<Real>&);
+
+/// Wakes whoever is touched by somebody awake, with all that fell asleep with it.
+template <class Real>
+void wake_touched(const Pairs&,
+                  const Colliders&,
+                  const ConvexContacts<Real>&,
+                  Beds&,
+                  BodyStates&,
+                  Rest&);
+
+/// Both kinds of contact into one order: those that this step has to solve.
+template <class Real>
+void gather_contacts(const Pairs&,
+                     const Colliders&,
+                     const Surfaces&,
+                     const BodyStates&,
+                     const ConvexContacts<Real>&,
+                     const MeshContacts<Real>&,
+                     ActiveContacts&);
+
+/// Contacts into islands.
+void split_islands(const ActiveContacts&, const BodyStates&, DisjointSets&, Islands&);
+
+/// Islands into batches, colors and blocks.
+void color_rows(const Islands&, const ActiveContacts&, const BodyStates&, Layout&);
+
+/// Contacts and bodies into the rows that the solver walks.
+template <class Real>
+void prepare_rows(const Conditions&,
+                  const Layout&,
+                  const ActiveContacts&,
+                  const ConvexContacts<Real>&,
+                  const MeshContacts<Real>&,
+                  const Poses&,
+                  const Velocities&,
+                  const Masses&,
+                  const BodyStates&,
+                  Rows<Real>&);
+
+/// Rows into impulses, velocities and poses. Substeps live here: see solve_table().
+template <class Real>
+void solve_impulses(const Conditions&,
+                    const Layout&,
+                    const ActiveContacts&,
+                    const Masses&,
+                    Rows<Real>&,
+                    ConvexContacts<Real>&,
+                    MeshContacts<Real>&,
+                    Poses&,
+                    Velocities&,
+                    Trouble&);
+
+/// Bodies that touch nothing: velocities into poses.
+void integrate_poses(const Conditions&,
+                     const Islands&,
+                     const Masses&,
+                     const BodyStates&,
+                     Poses&,
+                     Velocities&,
+                     Trouble&);
+
+/// Bodies that turned non-finite stand still from now on.
+void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
+
+/// Islands that have been quiet long enough fall asleep.
+void rest_islands(const Conditions&, const Islands&, BodyStates&, Beds&, Velocities&, Rest&);
+
+/// A row of a stage's inner table: what runs within a substep, and who calls for it.
+struct InnerRow {
+    std::string_view name;
+    Set<Effect> called_for_by;
+    std::string_view when;  // each substep, after the last one
+    bool within = false;    // part of the row above, in the same pass over the rows
+};
+
+/// The inner table of solve_impulses, for explain.
+std::span<const InnerRow> solve_table();
+
+}  // namespace throng

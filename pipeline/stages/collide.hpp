@@ -1,0 +1,91 @@
+// Collide: what the convex and the mesh stage share in making a contact of a local manifold.
+#pragma once
+
+#include "kernels/data/contacts.hpp"
+#include "pipeline/stages.hpp"
+
+namespace throng {
+
+/// The colliders of a pair and where they are.
+struct PairPlace {
+    std::uint32_t a = 0, b = 0;            // colliders
+    std::uint32_t body_a = 0, body_b = 0;
+    double reach = 0;                      // m, of both together
+};
+
+inline PairPlace place_of(PairKey key, const Colliders& colliders, const Bounds& bounds)
+{
+    const std::uint32_t a = first_of(key), b = second_of(key);
+    return {a, b, colliders.body[a], colliders.body[b], bounds.reach[a] + bounds.reach[b]};
+}
+
+/// True when somebody in the pair can be pushed and somebody is awake.
+inline bool wants_contact(const PairPlace& pair, const BodyStates& states)
+{
+    return (states.dynamic(pair.body_a) || states.dynamic(pair.body_b))
+        && (states.moves(pair.body_a) || states.moves(pair.body_b));
+}
+
+/// A relative pose, exact in double until here, so that the distance from the origin costs nothing.
+template <class Real>
+PoseT<Real> rounded(const Pose& pose)
+{
+    return {pose.position.template cast<Real>(),
+            QuatT<Real>(pose.orientation.template cast<Real>())};
+}
+
+/// Where a body's anchors are counted from. A still body has no use for its own center, which may
+/// be far away: it takes the other's, so that the numbers stay small.
+inline const Vec3& anchor_origin(std::uint32_t body,
+                                 std::uint32_t other,
+                                 const BodyStates& states,
+                                 const Poses& poses)
+{
+    return poses.position[states.kind[body] == BodyKind::still ? other : body];
+}
+
+/// Turns a manifold in collider a's frame into a contact in world axes, anchors from the centers of
+/// mass, each on its own body's surface.
+template <class Real>
+void make_contact(const LocalManifold<Real>& manifold,
+                  const Pose& placed_a,
+                  const Vec3& center_a,
+                  const Vec3& center_b,
+                  Contact<Real>& contact)
+{
+    const Mat3T<Real> axes = placed_a.orientation.toRotationMatrix().template cast<Real>();
+    const Vec3T<Real> offset_a = (placed_a.position - center_a).template cast<Real>();
+    const Vec3T<Real> offset_b = (placed_a.position - center_b).template cast<Real>();
+    contact.normal = axes * manifold.normal;
+    contact.count = manifold.count;
+    for (int k = 0; k < manifold.count; ++k) {
+        const auto& from = manifold.points[static_cast<std::size_t>(k)];
+        auto& to = contact.points[static_cast<std::size_t>(k)];
+        const Vec3T<Real> middle = axes * from.position;
+        const Vec3T<Real> half = contact.normal * (from.separation / 2);
+        to.from_a = middle + offset_a - half;
+        to.from_b = middle + offset_b + half;
+        to.separation = from.separation;
+        to.feature = from.feature;
+        to.impulse = 0;
+    }
+    contact.friction.setZero();
+    contact.rolling.setZero();
+    contact.twist = 0;
+}
+
+/// The same contact with a and b told the other way round.
+template <class Real>
+void turn_round(Contact<Real>& contact)
+{
+    contact.normal = -contact.normal;
+    for (auto& point : contact.points) std::swap(point.from_a, point.from_b);
+}
+
+/// Impulses of the last step are for its substep; a step of another length scales them.
+inline double impulse_scale(const Conditions& conditions)
+{
+    return conditions.last_substep > 0 ? conditions.substep() / conditions.last_substep : 0.0;
+}
+
+}  // namespace throng

@@ -1,0 +1,20 @@
+// Drive bodies: what the user wants to move at a given speed does, whatever pushed it.
+#include "pipeline/stages.hpp"
+
+#include <cmath>
+
+namespace throng {
+
+void drive_bodies(const Drives& drives, const BodyStates& states, Velocities& velocities)
+{
+    for (std::size_t i = 0; i < drives.body.size(); ++i) {
+        const std::uint32_t body = drives.body[i];
+        if (!states.moves(body)) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double speed = drives.velocity[i][static_cast<std::size_t>(axis)];
+            if (!std::isnan(speed)) velocities.linear[body][axis] = speed;
+        }
+    }
+}
+
+}  // namespace throng

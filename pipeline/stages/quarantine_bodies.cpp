@@ -1,0 +1,22 @@
+// Quarantine bodies: what turned non-finite stays where it last was finite, and stands still.
+#include "pipeline/stages.hpp"
+
+#include <algorithm>
+
+namespace throng {
+
+void quarantine_bodies(Trouble& trouble, BodyStates& states, Masses& masses, Velocities& velocities)
+{
+    std::sort(trouble.quarantined.begin(), trouble.quarantined.end());
+    for (const std::uint32_t body : trouble.quarantined) {
+        states.quarantined[body] = 1;
+        states.kind[body] = BodyKind::still;
+        states.awake[body] = 0;
+        masses.inverse_mass[body] = 0;
+        masses.inverse_inertia[body] = {};
+        velocities.linear[body].setZero();
+        velocities.angular[body].setZero();
+    }
+}
+
+}  // namespace throng

@@ -1,0 +1,61 @@
+// Step data: everything that travels down the step, each kind once.
+#pragma once
+
+#include "broadphase/broadphase.hpp"
+#include "broadphase/pair_filter.hpp"
+#include "kernels/data/bodies.hpp"
+#include "kernels/data/bounds.hpp"
+#include "kernels/data/contacts.hpp"
+#include "kernels/data/islands.hpp"
+#include "kernels/data/pairs.hpp"
+#include "kernels/data/rows.hpp"
+#include "kernels/solve/islands.hpp"
+#include "pipeline/conditions.hpp"
+
+#include <tuple>
+
+namespace throng {
+
+/// What a step has to tell of trouble.
+struct Trouble {
+    std::vector<std::uint32_t> quarantined;  // bodies that turned non-finite in this step, ascending
+    std::uint64_t contacts_dropped = 0;      // of this step
+    std::vector<std::vector<std::uint32_t>> of_block;  // scratch
+};
+
+/// Who awoke and who fell asleep in this step.
+struct Rest {
+    std::vector<std::uint32_t> awoken, rested;
+};
+
+// The finder of pairs, as one thing among the data: it remembers from step to step.
+struct Finder {
+    AnyPairFinder finder;
+};
+
+template <class Real>
+using StepData = std::tuple<Conditions,
+                            Shapes,
+                            Surfaces,
+                            PairFilter,
+                            Drives,
+                            Poses,
+                            Velocities,
+                            Masses,
+                            BodyStates,
+                            Beds,
+                            Colliders,
+                            Bounds,
+                            Finder,
+                            Pairs,
+                            ConvexContacts<Real>,
+                            MeshContacts<Real>,
+                            ActiveContacts,
+                            DisjointSets,
+                            Islands,
+                            Layout,
+                            Rows<Real>,
+                            Trouble,
+                            Rest>;
+
+}  // namespace throng

@@ -1,0 +1,72 @@
+#include "pipeline/step_table.hpp"
+
+#include "pipeline/stages.hpp"
+
+namespace throng {
+
+namespace {
+
+using enum Effect;
+
+// clang-format off
+template <class Real>
+constexpr Stage<Real> kStep[] = {
+    stage<Real, drive_bodies>         ("drive_bodies",      {drive}),
+    stage<Real, update_bounds>        ("update_bounds",     {contact}),
+    stage<Real, find_pairs>           ("find_pairs",        {contact}),
+    stage<Real, collide_convex<Real>> ("collide_convex",    {contact}),
+    stage<Real, wake_touched<Real>>   ("wake_touched",      {sleeping}),
+    stage<Real, collide_meshes<Real>> ("collide_meshes",    {mesh_contact}),
+    stage<Real, gather_contacts<Real>>("gather_contacts",   {contact}),
+    stage<Real, split_islands>        ("split_islands",     {contact}),
+    stage<Real, color_rows>           ("color_rows",        {contact}),
+    stage<Real, prepare_rows<Real>>   ("prepare_rows",      {contact}),
+    stage<Real, solve_impulses<Real>> ("solve_impulses",    {contact}),
+    stage<Real, integrate_poses>      ("integrate_poses",   {motion}),
+    stage<Real, quarantine_bodies>    ("quarantine_bodies", {motion}),
+    stage<Real, rest_islands>         ("rest_islands",      {sleeping}),
+};
+// clang-format on
+
+// Whatever a stage reads is kept from the last step or written by an earlier row.
+template <class Real>
+consteval bool reads_follow_writes()
+{
+    DataSet ready = data_set<Real, Conditions> | data_set<Real, Shapes> | data_set<Real, Surfaces>
+        | data_set<Real, PairFilter> | data_set<Real, Drives> | data_set<Real, Poses>
+        | data_set<Real, Velocities> | data_set<Real, Masses> | data_set<Real, BodyStates>
+        | data_set<Real, Colliders>;
+    for (const Stage<Real>& row : kStep<Real>) {
+        // A row may read what it writes itself: it keeps that from the last step.
+        if (!(ready | row.writes).covers(row.reads)) return false;
+        ready = ready | row.writes;
+        // gather_contacts reads the mesh contacts of a scene that may have no meshes.
+        if (row.name == "collide_convex") ready = ready | data_set<Real, MeshContacts<Real>>;
+    }
+    return true;
+}
+static_assert(reads_follow_writes<float>() && reads_follow_writes<double>());
+
+}  // namespace
+
+template <class Real>
+std::span<const Stage<Real>> step_table()
+{
+    return kStep<Real>;
+}
+
+template <class Real>
+std::vector<Stage<Real>> stages_for(Set<Effect> effects)
+{
+    std::vector<Stage<Real>> rows;
+    for (const Stage<Real>& row : kStep<Real>)
+        if (row.called_for_by.meets(effects)) rows.push_back(row);
+    return rows;
+}
+
+template std::span<const Stage<float>> step_table<float>();
+template std::span<const Stage<double>> step_table<double>();
+template std::vector<Stage<float>> stages_for<float>(Set<Effect>);
+template std::vector<Stage<double>> stages_for<double>(Set<Effect>);
+
+}  // namespace throng

@@ -1,0 +1,419 @@
+#include "pipeline/world.hpp"
+
+#include "kernels/math/hash.hpp"
+#include "pipeline/scene_check.hpp"
+#include "pipeline/step_table.hpp"
+#include "pipeline/world_state.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+namespace throng {
+
+World::State::State(const Settings& settings, int thread_count) : pool(thread_count)
+{
+    if (settings.precision == Precision::double_) step.emplace<Step<double>>();
+    get<Conditions>().settings = settings;
+}
+
+std::uint32_t World::State::place_of(BodyId body, const char* caller) const
+{
+    if (body.index < generation.size() && generation[body.index] == body.generation
+        && get<BodyStates>().kind[body.index] != BodyKind::gone)
+        return body.index;
+    throw std::invalid_argument(std::string(caller) + ": body " + std::to_string(body.index)
+                                + " was removed or never was; give one that is alive");
+}
+
+void World::State::wake(std::uint32_t body)
+{
+    BodyStates& states = get<BodyStates>();
+    const std::uint32_t bed = states.bed[body];
+    if (bed == kNobody) return;
+    Beds& beds = get<Beds>();
+    for (const std::uint32_t sleeper : beds.sleepers[bed]) {
+        states.awake[sleeper] = 1;
+        states.quiet_time[sleeper] = 0;
+        states.bed[sleeper] = kNobody;
+    }
+    beds.sleepers[bed].clear();
+    beds.free.push_back(bed);
+}
+
+void World::State::touch(std::uint32_t body)
+{
+    const Colliders& colliders = get<Colliders>();
+    Bounds& bounds = get<Bounds>();
+    for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
+        bounds.touched.push_back(colliders.begin[body] + i);
+}
+
+void World::State::choose_broad_phase()
+{
+    const BroadPhase asked = get<Conditions>().settings.broadphase;
+    const Colliders& colliders = get<Colliders>();
+    const auto kind = [&] {
+        switch (asked) {
+        case BroadPhase::embree: return FinderKind::embree;
+        case BroadPhase::grid: return FinderKind::grid;
+        case BroadPhase::sweep: return FinderKind::sweep;
+        case BroadPhase::all_pairs: return FinderKind::all_pairs;
+        default: break;
+        }
+        std::vector<Box3> boxes(colliders.size());
+        std::vector<std::uint8_t> moving(colliders.size(), 0);
+        const BodyStates& states = get<BodyStates>();
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const std::uint32_t body = colliders.body[i];
+            if (body == kNobody) continue;
+            const Vec3 middle = (get<Poses>().at(body) * colliders.local[i]).position;
+            boxes[i] = {middle.array() - colliders.outer_radius[i],
+                        middle.array() + colliders.outer_radius[i]};
+            moving[i] = states.kind[body] != BodyKind::still ? 1 : 0;
+        }
+        return choose_finder(boxes, moving);
+    }();
+    AnyPairFinder& finder = get<Finder>().finder;
+    if (finder.index() == make_finder(kind).index() && !get<Pairs>().keys.empty()) return;
+    finder = make_finder(kind);
+    // A new finder has to be asked about everybody.
+    Bounds& bounds = get<Bounds>();
+    bounds.touched.clear();
+    for (std::uint32_t i = 0; i < colliders.size(); ++i) bounds.touched.push_back(i);
+}
+
+void World::State::refresh()
+{
+    if (!effects_stale) return;
+    effects_stale = false;
+    Conditions& conditions = get<Conditions>();
+    const Set<Effect> before = conditions.effects;
+    effects = find_effects({conditions, get<BodyStates>(), get<Poses>(), get<Velocities>(),
+                            get<Masses>(), get<Drives>(), get<Shapes>(), get<Colliders>(),
+                            get<Surfaces>(), get<PairFilter>(), requests, names, material_names});
+    conditions.effects = effects.on;
+    if (effects.on.has(Effect::contact)) choose_broad_phase();
+    std::visit(
+        [&](auto& chosen) {
+            using Graph = typename std::remove_reference_t<decltype(chosen.graph)>::element_type;
+            if (chosen.graph && before == effects.on) return;
+            using Real = std::conditional_t<std::is_same_v<Graph, StepGraph<float>>, float, double>;
+            pool.run([&](std::size_t, std::size_t, std::size_t) {
+                chosen.graph
+                    = std::make_unique<Graph>(stages_for<Real>(effects.on), chosen.data);
+            });
+        },
+        step);
+}
+
+World::World(const Settings& settings, int threads)
+    : state_(std::make_unique<State>(settings, threads))
+{
+}
+
+World::World(const Scene& scene, int threads) : World(scene.settings, threads)
+{
+    set_gravity(scene.gravity);
+    add(scene);
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+std::vector<BodyId> World::add(const Scene& scene)
+{
+    if (const std::string trouble = check_scene(scene); !trouble.empty())
+        throw std::invalid_argument("scene: " + trouble);
+    return SceneBuilder(*state_).add(scene);
+}
+
+void World::remove(std::span<const BodyId> bodies)
+{
+    State& state = *state_;
+    for (const BodyId id : bodies) state.place_of(id, "remove");
+    BodyStates& states = state.get<BodyStates>();
+    Colliders& colliders = state.get<Colliders>();
+    // What rested on them has to notice.
+    std::vector<std::uint8_t> going(state.generation.size(), 0);
+    for (const BodyId id : bodies) going[id.index] = 1;
+    for (const PairKey key : state.get<Pairs>().keys) {
+        const std::uint32_t a = colliders.body[first_of(key)], b = colliders.body[second_of(key)];
+        if (going[a] != 0) state.wake(b);
+        if (going[b] != 0) state.wake(a);
+    }
+    for (const BodyId id : bodies) {
+        const std::uint32_t body = id.index;
+        if (states.kind[body] == BodyKind::gone) continue;
+        state.wake(body);
+        state.touch(body);
+        states.kind[body] = BodyKind::gone;
+        states.awake[body] = 0;
+        const std::uint32_t first = colliders.begin[body], count = colliders.count[body];
+        for (std::uint32_t i = 0; i < count; ++i) {
+            colliders.body[first + i] = kNobody;
+            state.get<PairFilter>().mask[first + i] = 0;
+        }
+        if (count > 0) state.free_colliders[count].push_back(first);
+        Drives& drives = state.get<Drives>();
+        const auto at = std::lower_bound(drives.body.begin(), drives.body.end(), body);
+        if (at != drives.body.end() && *at == body) {
+            drives.velocity.erase(drives.velocity.begin() + (at - drives.body.begin()));
+            drives.body.erase(at);
+        }
+        if (body < state.names.size()) state.names[body].clear();
+        ++state.generation[body];
+        state.free_bodies.push_back(body);
+        --state.alive;
+    }
+    std::sort(state.free_bodies.rbegin(), state.free_bodies.rend());
+    state.effects_stale = true;
+}
+
+void World::step(int steps)
+{
+    State& state = *state_;
+    using Clock = std::chrono::steady_clock;
+    for (int i = 0; i < steps; ++i) {
+        const auto begin = Clock::now();
+        state.refresh();
+        state.pool.run([&](std::size_t, std::size_t, std::size_t) {
+            std::visit(
+                [&](auto& chosen) {
+                    if (state.in_order)
+                        chosen.graph->run_in_order();
+                    else
+                        chosen.graph->run();
+                },
+                state.step);
+        });
+        Conditions& conditions = state.get<Conditions>();
+        conditions.last_substep = conditions.substep();
+        Trouble& trouble = state.get<Trouble>();
+        StepReport& report = state.report;
+        ++report.step;
+        if (!trouble.quarantined.empty()) {
+            report.bodies_quarantined += trouble.quarantined.size();
+            for (const std::uint32_t body : trouble.quarantined) state.touch(body);
+            state.effects_stale = true;
+            trouble.quarantined.clear();
+        }
+        report.contacts_dropped += trouble.contacts_dropped;
+        report.time_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    }
+    StepReport& report = state.report;
+    report.pairs = state.get<Pairs>().keys.size();
+    const auto& active = state.get<ActiveContacts>().entries;
+    report.manifolds = active.size();
+    report.contacts = 0;
+    for (const auto& entry : active) report.contacts += entry.points;
+    report.islands = state.get<Islands>().size();
+    report.colors = 0;
+    for (const Batch& batch : state.get<Layout>().batches)
+        report.colors = std::max<std::size_t>(report.colors, batch.colors);
+    const BodyStates& states = state.get<BodyStates>();
+    report.bodies_awake = 0;
+    for (std::size_t body = 0; body < states.kind.size(); ++body)
+        report.bodies_awake += states.dynamic(body) && states.moves(body) ? 1 : 0;
+}
+
+const Settings& World::settings() const { return state_->get<Conditions>().settings; }
+
+void World::set_settings(const Settings& settings)
+{
+    if (settings.precision != this->settings().precision)
+        throw std::invalid_argument("set_settings: precision cannot change in a world; make another");
+    state_->get<Conditions>().settings = settings;
+    state_->effects_stale = true;
+}
+
+Vec3 World::gravity() const { return state_->get<Conditions>().gravity; }
+
+void World::set_gravity(const Vec3& gravity)
+{
+    if (!gravity.allFinite()) throw std::invalid_argument("set_gravity: give finite numbers, m/s2");
+    state_->get<Conditions>().gravity = gravity;
+    state_->effects_stale = true;
+    for (std::uint32_t body = 0; body < state_->generation.size(); ++body) state_->wake(body);
+}
+
+std::size_t World::body_count() const { return state_->alive; }
+
+std::vector<BodyId> World::bodies() const
+{
+    std::vector<BodyId> ids;
+    ids.reserve(state_->alive);
+    const BodyStates& states = state_->get<BodyStates>();
+    for (std::uint32_t body = 0; body < states.kind.size(); ++body)
+        if (states.kind[body] != BodyKind::gone) ids.push_back({body, state_->generation[body]});
+    return ids;
+}
+
+bool World::alive(BodyId body) const
+{
+    return body.index < state_->generation.size()
+        && state_->generation[body.index] == body.generation
+        && state_->get<BodyStates>().kind[body.index] != BodyKind::gone;
+}
+
+const std::string& World::name(BodyId body) const
+{
+    static const std::string kUnnamed;
+    const std::uint32_t at = state_->place_of(body, "name");
+    return at < state_->names.size() ? state_->names[at] : kUnnamed;
+}
+
+Motion World::motion(BodyId body) const
+{
+    return state_->motion[state_->place_of(body, "motion")];
+}
+
+bool World::awake(BodyId body) const
+{
+    return state_->get<BodyStates>().awake[state_->place_of(body, "awake")] != 0;
+}
+
+bool World::quarantined(BodyId body) const
+{
+    return state_->get<BodyStates>().quarantined[state_->place_of(body, "quarantined")] != 0;
+}
+
+double World::mass(BodyId body) const
+{
+    return state_->get<Masses>().mass[state_->place_of(body, "mass")];
+}
+
+Pose World::pose(BodyId body) const
+{
+    const std::uint32_t at = state_->place_of(body, "pose");
+    const Pose center = state_->get<Poses>().at(at);
+    return {center * Vec3(-state_->center[at]), center.orientation};
+}
+
+Vec3 World::center_of_mass(BodyId body) const
+{
+    return state_->get<Poses>().position[state_->place_of(body, "center_of_mass")];
+}
+
+Vec3 World::velocity(BodyId body) const
+{
+    return state_->get<Velocities>().linear[state_->place_of(body, "velocity")];
+}
+
+Vec3 World::angular_velocity(BodyId body) const
+{
+    return state_->get<Velocities>().angular[state_->place_of(body, "angular_velocity")];
+}
+
+void World::set_pose(BodyId body, const Pose& pose)
+{
+    const std::uint32_t at = state_->place_of(body, "set_pose");
+    const double length = std::sqrt(pose.orientation.squaredNorm());
+    if (!pose.position.allFinite() || !(std::abs(length - 1) < 1e-6))
+        throw std::invalid_argument("set_pose: give a finite position and a unit quaternion");
+    Poses& poses = state_->get<Poses>();
+    poses.orientation[at] = Quat(pose.orientation.coeffs() / length);
+    poses.position[at] = poses.orientation[at] * state_->center[at] + pose.position;
+    const Colliders& colliders = state_->get<Colliders>();
+    for (const PairKey key : state_->get<Pairs>().keys) {
+        const std::uint32_t a = colliders.body[first_of(key)], b = colliders.body[second_of(key)];
+        if (a == at || b == at) state_->wake(a == at ? b : a);
+    }
+    state_->wake(at);
+    state_->touch(at);
+}
+
+void World::set_velocity(BodyId body, const Vec3& linear, const Vec3& angular)
+{
+    const std::uint32_t at = state_->place_of(body, "set_velocity");
+    if (!linear.allFinite() || !angular.allFinite())
+        throw std::invalid_argument("set_velocity: give finite numbers, m/s and rad/s");
+    state_->get<Velocities>().linear[at] = linear;
+    state_->get<Velocities>().angular[at] = angular;
+    state_->wake(at);
+    state_->effects_stale = true;
+}
+
+void World::add_impulse(BodyId body, const Vec3& impulse)
+{
+    const std::uint32_t at = state_->place_of(body, "add_impulse");
+    if (!impulse.allFinite()) throw std::invalid_argument("add_impulse: give finite numbers, N s");
+    state_->get<Velocities>().linear[at] += impulse * state_->get<Masses>().inverse_mass[at];
+    state_->wake(at);
+}
+
+Vec3 World::contact_force(BodyId body) const
+{
+    const std::uint32_t at = state_->place_of(body, "contact_force");
+    const double substep = state_->get<Conditions>().last_substep;
+    if (substep <= 0) return Vec3::Zero();
+    Vec3 impulse = Vec3::Zero();
+    std::visit(
+        [&](const auto& chosen) {
+            const auto& data = chosen.data;
+            const Colliders& colliders = std::get<Colliders>(data);
+            const Pairs& pairs = std::get<Pairs>(data);
+            const auto add = [&](std::size_t pair, const auto& contact) {
+                const bool is_a = colliders.body[first_of(pairs.keys[pair])] == at;
+                const bool is_b = colliders.body[second_of(pairs.keys[pair])] == at;
+                if (!is_a && !is_b) return;
+                Vec3 on_b = contact.friction.template cast<double>();
+                for (int k = 0; k < contact.count; ++k)
+                    on_b += contact.normal.template cast<double>()
+                        * double{contact.points[static_cast<std::size_t>(k)].impulse};
+                impulse += is_b ? on_b : Vec3(-on_b);
+            };
+            using Real = std::conditional_t<
+                std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>, float, double>;
+            const auto& convex = std::get<ConvexContacts<Real>>(data);
+            for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
+                if (convex.of_pair[i].count > 0) add(i, convex.of_pair[i]);
+            for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
+                if (entry.contact.count > 0) add(entry.pair, entry.contact);
+        },
+        state_->step);
+    return impulse / substep;
+}
+
+const StepReport& World::report() const { return state_->report; }
+
+std::vector<StageReport> World::stages() const
+{
+    std::vector<StageReport> reports;
+    std::visit(
+        [&](const auto& chosen) {
+            if (!chosen.graph) return;
+            for (std::size_t i = 0; i < chosen.graph->stages().size(); ++i)
+                reports.push_back({chosen.graph->stages()[i].name, chosen.graph->times()[i]});
+        },
+        state_->step);
+    return reports;
+}
+
+const Effects& World::effects()
+{
+    state_->refresh();
+    return state_->effects;
+}
+
+std::vector<World::StageInfo> World::step_stages()
+{
+    state_->refresh();
+    std::vector<StageInfo> infos;
+    std::visit(
+        [&](const auto& chosen) {
+            for (const auto& stage : chosen.graph->stages()) infos.push_back({stage.name, {}});
+            for (const auto& [earlier, later] : waits(chosen.graph->stages()))
+                infos[later].waits_for.push_back(earlier);
+        },
+        state_->step);
+    for (StageInfo& info : infos) std::sort(info.waits_for.begin(), info.waits_for.end());
+    return infos;
+}
+
+int World::threads() const { return state_->pool.threads(); }
+int World::threads_met() const { return state_->pool.threads_met(); }
+void World::run_in_order(bool in_order) { state_->in_order = in_order; }
+
+}  // namespace throng

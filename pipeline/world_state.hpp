@@ -1,0 +1,96 @@
+// World state: what a world keeps, for the parts of the pipeline that work on it.
+#pragma once
+
+#include "kernels/geometry/mass.hpp"
+#include "kernels/parallel/blocks.hpp"
+#include "pipeline/step_graph.hpp"
+#include "pipeline/world.hpp"
+
+#include <map>
+#include <variant>
+
+namespace throng {
+
+/// A step over one kind of number.
+template <class Real>
+struct Step {
+    StepData<Real> data;
+    std::unique_ptr<StepGraph<Real>> graph;
+};
+
+/// Where the parts of a stated shape went.
+struct PlacedShape {
+    std::vector<ShapeRef> parts;
+    std::vector<Pose> poses;  // in the frame of the shape
+    MassProperties mass;      // of unit density
+};
+
+struct World::State {
+    explicit State(const Settings& settings, int thread_count);
+
+    ThreadPool pool;
+    std::variant<Step<float>, Step<double>> step;
+    Effects effects;
+    Requests requests;
+    bool effects_stale = true;
+    bool in_order = false;
+    StepReport report;
+
+    // By body.
+    std::vector<std::uint32_t> generation;
+    std::vector<std::string> names;       // may be shorter: the rest have none
+    std::vector<Vec3> center;             // of mass, in the body's own frame
+    std::vector<Motion> motion;
+    std::vector<std::uint32_t> free_bodies;                      // descending, so the least goes first
+    std::map<std::uint32_t, std::vector<std::uint32_t>> free_colliders;  // by how many in a row
+    std::size_t alive = 0;
+
+    std::vector<std::string> material_names;
+
+    template <class Data>
+    Data& get()
+    {
+        return std::visit([](auto& s) -> Data& { return std::get<Data>(s.data); }, step);
+    }
+    template <class Data>
+    const Data& get() const
+    {
+        return std::visit([](const auto& s) -> const Data& { return std::get<Data>(s.data); }, step);
+    }
+
+    /// The body's index. Throws std::invalid_argument for one that is gone.
+    std::uint32_t place_of(BodyId body, const char* caller) const;
+    /// Wakes a body with all that sleeps with it.
+    void wake(std::uint32_t body);
+    /// The broad phase has to look at a body's colliders again.
+    void touch(std::uint32_t body);
+    /// Effects and graph, brought up to date.
+    void refresh();
+    void choose_broad_phase();
+};
+
+/// Adds the shapes, materials and bodies of a scene.
+class SceneBuilder {
+public:
+    explicit SceneBuilder(World::State& state) : state_(state) { }
+    std::vector<BodyId> add(const Scene& scene);
+
+private:
+    void add_materials(const Scene& scene);
+    PlacedShape add_shape(const Scene& scene, const ShapeDescription& description);
+    ShapeRef sized(ShapeKind kind, const double* sizes);
+    BodyId add_body(const BodyDescription& body, const PlacedShape* shape);
+    std::uint32_t take_body();
+    std::uint32_t take_colliders(std::uint32_t count);
+    void place_colliders(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
+    void weigh(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
+    void note_requests(std::uint32_t body, const BodyDescription& stated);
+
+    World::State& state_;
+    std::uint32_t first_material_ = 0;
+    std::uint32_t default_material_ = kNone;
+    std::vector<double> density_;
+    std::vector<PlacedShape> shapes_;
+};
+
+}  // namespace throng

@@ -1,0 +1,46 @@
+// JSON writer: values as text that reads back to the same bits.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace throng {
+
+/// Whether two values are the same to the last bit, the sign of a zero included.
+bool same_bits(double a, double b);
+bool same_bits(const Vec3& a, const Vec3& b);
+bool same_bits(const Quat& a, const Quat& b);
+
+std::string json_text(double number);
+std::string json_text(std::initializer_list<double> numbers);
+std::string json_text(const Vec3& vector);
+std::string json_text(const Quat& quaternion);  // [w, x, y, z]
+
+/// The members of an object, one after another.
+class JsonMembers {
+public:
+    /// The value is JSON already.
+    void add(std::string_view key, std::string_view value);
+    /// Only where it differs from its default.
+    template <class Value>
+    void add(std::string_view key, const Value& value, const Value& standard)
+    {
+        if (!same_bits(value, standard)) add(key, json_text(value));
+    }
+    bool empty() const { return text_.empty(); }
+    std::string text() const { return text_.empty() ? "{}" : text_ + '}'; }
+
+private:
+    std::string text_;
+};
+
+/// A member of the outermost object with one item a line, between the two brackets; nothing at all
+/// where there are no items.
+std::string
+json_lines(std::string_view key, const std::vector<std::string>& items, std::string_view brackets);
+
+}  // namespace throng

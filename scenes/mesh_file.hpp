@@ -1,0 +1,28 @@
+// Mesh file: triangles from a Wavefront OBJ text, and back.
+//
+// Vertices and faces are read, polygons as fans; what else a file may say (normals, textures,
+// groups, materials) is passed over.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace throng {
+
+struct MeshFile {
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Throws SceneError, in which the path is the keyword of the line: `cow.obj:7:3: error: f: wanted
+/// ...`. The answer may be empty.
+MeshFile read_mesh_text(std::string_view text, std::string_view file);
+
+/// A text that reads back to the same bits.
+std::string mesh_text(const MeshFile& mesh);
+
+}  // namespace throng

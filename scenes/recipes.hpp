@@ -1,0 +1,38 @@
+// Recipes: one function a catalogue scene. Each makes the scene of about `size` bodies (or levels,
+// or stones: catalog.cpp says of what) from a seed; the same size and seed give the same bits.
+#pragma once
+
+#include "pipeline/scene.hpp"
+
+#include <cstdint>
+
+namespace throng {
+
+// piles.cpp
+Scene make_pile(int size, std::uint64_t seed);
+Scene make_spheres(int size, std::uint64_t seed);
+Scene make_hulls(int size, std::uint64_t seed);
+Scene make_sparse(int size, std::uint64_t seed);
+Scene make_tumbler(int size, std::uint64_t seed);
+
+// terrain.cpp
+Scene make_meshes(int size, std::uint64_t seed);
+
+// stacks.cpp
+Scene make_pyramid(int size, std::uint64_t seed);
+Scene make_wall(int size, std::uint64_t seed);
+Scene make_stacks(int size, std::uint64_t seed);
+
+// balances.cpp
+Scene make_card_house(int size, std::uint64_t seed);
+Scene make_arch(int size, std::uint64_t seed);
+
+// machines.cpp
+Scene make_dominoes(int size, std::uint64_t seed);
+Scene make_cradle(int size, std::uint64_t seed);
+Scene make_bullet_plate(int size, std::uint64_t seed);
+
+// crowds.cpp
+Scene make_crowd(int size, std::uint64_t seed);
+
+}  // namespace throng

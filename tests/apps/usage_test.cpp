@@ -1,0 +1,141 @@
+// Usage: what the command answers to words, right and wrong.
+#include "tests/apps/command.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(Usage, HelpAndVersionGoToStandardOutput)
+{
+    const Outcome help = run_throng({"--help"});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_EQ(help.err, "");
+    for (const char* name : {"run", "explain", "scene"}) {
+        EXPECT_NE(help.out.find(std::string("\n  ") + name + ' '), std::string::npos) << name;
+        const Outcome more = run_throng({name, "--help"});
+        EXPECT_EQ(more.code, 0);
+        EXPECT_EQ(more.out.find(std::string("usage: throng ") + name), 0u);
+    }
+    EXPECT_EQ(run_throng({"--version"}).out.find("throng "), 0u);
+}
+
+TEST(Usage, RunHelpListsTheDials)
+{
+    const Outcome help = run_throng({"run", "--help"});
+    for (const char* name : {"--steps", "--set", "substeps", "contact_rate", "toi_tolerance"})
+        EXPECT_NE(help.out.find(name), std::string::npos) << name;
+}
+
+TEST(Usage, HelpForgivesTheRest)
+{
+    EXPECT_EQ(run_throng({"run", "--steps", "x", "--help"}).code, 0);
+}
+
+TEST(Usage, NoWordsAreBadUsage)
+{
+    const Outcome outcome = run_throng({});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err.find("usage:"), 0u);
+}
+
+/// Words that are refused, and what the answer has to say.
+struct Refusal {
+    Names words;
+    std::string said;
+};
+
+TEST(Usage, WrongWordsAreRefusedWithWhatWasWanted)
+{
+    const TestFolder folder;
+    const std::vector<Refusal> refusals = {
+        {{"rum"}, "did you mean run?"},
+        {{"explian", "pile"}, "did you mean explain?"},
+        {{"zzzzzz"}, "there are: run, explain"},
+        {{"run"}, "wanted SCENE"},
+        {{"run", "pile", "spheres"}, "one word too many"},
+        {{"run", "pile:10", "--stepz", "3"}, "did you mean --steps?"},
+        {{"run", "pile:10", "-s", "3"}, "there is no option \"-s\""},
+        {{"run", "pile:10", "--steps"}, "--steps: wanted a value"},
+        {{"run", "pile:10", "--steps="}, "--steps: wanted a value"},
+        {{"run", "pile:10", "--steps", "--quiet"}, "--steps: wanted a value"},
+        {{"run", "pile:10", "--steps", "-3"}, "wanted a whole number from 0 to"},
+        {{"run", "pile:10", "--steps", "1.5"}, "wanted a whole number"},
+        {{"run", "pile:10", "--steps", "99999999999999999999"}, "wanted a whole number"},
+        {{"run", "pile:10", "--steps", "1", "--steps", "2"}, "--steps: given twice"},
+        {{"run", "pile:10", "--threads", "0"}, "from 1 to 1024"},
+        {{"run", "pile:10", "--quiet=1"}, "--quiet: takes no value"},
+        {{"run", "pile:10", "--dt", "fast"}, "--dt: dt: wanted a time"},
+        {{"run", "pile:10", "--set", "substeps"}, "--set: wanted DIAL=VALUE"},
+        {{"run", "pile:10", "--set", "substep=3"}, "perhaps substeps"},
+        {{"run", "pile:10", "--set", "substeps=0"}, "from 1 to 1000"},
+        {{"run", "pile:10", "--every", "3"}, "give --out as well"},
+        {{"run", "pile:-1"}, "give a whole number from 1"},
+        {{"run", "pilr:10"}, "did you mean \"pile\"?"},
+        {{"run", folder / "none.json"}, "error:"},
+        {{"scene", "pile", "many"}, "give a whole number"},
+        {{"scene", "--seed", "3"}, "wanted the name of a scene"},
+        {{"scene", "pile:3", "4"}, "given twice"},
+    };
+    for (const Refusal& refusal : refusals) {
+        const Outcome outcome = run_throng(refusal.words);
+        EXPECT_EQ(outcome.code, 2) << refusal.said;
+        EXPECT_EQ(outcome.out, "") << refusal.said;
+        EXPECT_NE(outcome.err.find(refusal.said), std::string::npos)
+            << refusal.said << " is not in " << outcome.err;
+    }
+}
+
+TEST(Usage, BothSpellingsOfAnOptionMeanTheSame)
+{
+    const Outcome apart = run_throng({"run", "cradle", "--steps", "2", "--threads", "1"});
+    const Outcome joined = run_throng({"run", "--threads=1", "--steps=2", "--", "cradle"});
+    EXPECT_EQ(apart.code, 0);
+    EXPECT_NE(apart.out.find("steps: 2\n"), std::string::npos);
+    EXPECT_EQ(apart.out.substr(apart.out.find("state_hash")),
+              joined.out.substr(joined.out.find("state_hash")));
+}
+
+TEST(Scenes, AreListed)
+{
+    const Outcome list = run_throng({"scene"});
+    EXPECT_EQ(list.code, 0);
+    EXPECT_EQ(list.err, "");
+    EXPECT_NE(list.out.find("\npile "), std::string::npos);
+    EXPECT_NE(list.out.find("\nbullet_plate "), std::string::npos);
+}
+
+TEST(Scenes, SmallOnesAreWrittenToStandardOutput)
+{
+    const TestFolder folder;
+    const Outcome text = run_throng({"scene", "wall", "12", "--seed", "7"});
+    ASSERT_EQ(text.code, 0) << text.err;
+    const std::string file = folder.write("wall.json", text.out);
+    const auto hash = [](const Names& words) {
+        const std::string out = run_throng(words).out;
+        return out.substr(std::min(out.find("state_hash"), out.size()));
+    };
+    EXPECT_EQ(hash({"run", file, "--steps", "20"}),
+              hash({"run", "wall:12", "--seed", "7", "--steps", "20"}));
+}
+
+TEST(Scenes, BigOnesNeedAFileAndKeepTheirState)
+{
+    const TestFolder folder;
+    const Outcome refused = run_throng({"scene", "pile", "2000"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_EQ(refused.out, "");
+    EXPECT_NE(refused.err.find("--out"), std::string::npos);
+
+    ASSERT_EQ(run_throng({"scene", "pile", "2000", "--out", folder / "p.json"}).code, 0);
+    EXPECT_EQ(folder.files(), (Names{"p.0.bin", "p.json"}));
+    const auto tail = [](const std::string& out) { return out.substr(out.find("state_hash")); };
+    EXPECT_EQ(tail(run_throng({"run", folder / "p.json", "--steps", "3"}).out),
+              tail(run_throng({"run", "pile:2000", "--steps", "3"}).out));
+}
+
+}  // namespace
+}  // namespace throng

@@ -1,0 +1,164 @@
+#include "narrowphase/methods/separating_axes.hpp"
+#include "tests/narrowphase/broken_pairs.hpp"
+#include "tests/narrowphase/polyhedra.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+constexpr ShapeRef kHullA{ShapeKind::hull, 0}, kHullB{ShapeKind::hull, 1};
+
+double bias_of(const Hull& a, const Hull& b) { return 1e-3 * (a.inner_radius + b.inner_radius); }
+
+}  // namespace
+
+TEST(HullHull, AgreesWithDirectionSweep)
+{
+    RandomShapes random(21);
+    for (int i = 0; i < 40; ++i) {
+        SCOPED_TRACE("seed 21, pair " + std::to_string(i));
+        Shapes shapes;
+        shapes.hulls = {random.hull(24, 0.5), random.hull(8 + i, 0.6)};
+        const Pose pose = random.pose(0.5);
+        const double swept =
+            sweep_directions(reach_of(shapes.hulls[0].vertices, Pose{}),
+                             reach_of(shapes.hulls[1].vertices, pose), 16, nullptr);
+        const auto found = run<double>(hull_hull<double>, shapes, kHullA, kHullB, pose, 0);
+        ASSERT_EQ(found.count > 0, swept <= 0);
+        if (swept > 0) continue;
+        const double bias = bias_of(shapes.hulls[0], shapes.hulls[1]);
+        EXPECT_GE(deepest(found), swept - 2 * bias - 1e-9);
+        EXPECT_LE(deepest(found), swept + 2 * bias + 1e-9);
+    }
+}
+
+TEST(HullHull, AgreesWithEveryAxis)
+{
+    RandomShapes random(22);
+    Shapes shapes;
+    shapes.hulls.resize(2);
+    for (int i = 0; i < 600; ++i) {
+        SCOPED_TRACE("seed 22, pair " + std::to_string(i));
+        shapes.hulls[0] = random.hull(6 + i % 60, 0.5);
+        shapes.hulls[1] = random.hull(6 + i % 43, 0.5);
+        const Pose pose = random.pose(0.6);
+        const double exact =
+            polytope_separation(view_of(shapes.hulls[0]), view_of(shapes.hulls[1]), pose, nullptr);
+        const auto found = run<double>(hull_hull<double>, shapes, kHullA, kHullB, pose, 0);
+        const auto rounded = run<float>(hull_hull<float>, shapes, kHullA, kHullB, pose, 0);
+        ASSERT_TRUE(all_finite(found) && features_differ(found));
+        ASSERT_EQ(found.count > 0, exact <= 0);
+        if (exact > 0) continue;
+        const double bias = bias_of(shapes.hulls[0], shapes.hulls[1]);
+        ASSERT_GE(deepest(found), exact - 2 * bias - 1e-9);
+        ASSERT_LE(deepest(found), exact + 2 * bias + 1e-9);
+        if (exact > -1e-5) continue;
+        ASSERT_NEAR(deepest(rounded), exact, 2 * bias + 1e-5);
+    }
+}
+
+TEST(HullHull, ABoxIsAHull)
+{
+    RandomShapes random(23);
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 23, pair " + std::to_string(i));
+        const Vec3 half_a = random.vector(0.2, 1), half_b = random.vector(0.2, 1);
+        const Shapes shapes = two_boxes(half_a, half_b);
+        const Pose pose = random.pose(0.9);
+        const auto one = run<double>(box_box<double>, shapes, kBoxA, kBoxB, pose, 0);
+        const auto two = run<double>(hull_hull<double>, shapes, kBoxA, kBoxB, pose, 0);
+        ASSERT_EQ(one.count, two.count);
+        if (one.count == 0) continue;
+        ASSERT_LT((one.normal - two.normal).norm(), 1e-9);
+        ASSERT_NEAR(deepest(one), deepest(two), 1e-12);
+    }
+}
+
+TEST(HullHull, AnswersPairsThatBrokeOthers)
+{
+    for (const BrokenPair& pair : broken_pairs()) {
+        SCOPED_TRACE(pair.name);
+        Shapes shapes = two_boxes(pair.a.size / 2, pair.b.size / 2);
+        shapes.hulls = {build_hull(corners_of(pair.a.size / 2)).hull,
+                        build_hull(corners_of(pair.b.size / 2)).hull};
+        const Pose pose = inverse(pair.a.pose) * pair.b.pose;
+        const double size = std::max(pair.a.size.maxCoeff(), pair.b.size.maxCoeff());
+        const double bias = bias_of(shapes.hulls[0], shapes.hulls[1]);
+        for (const ShapeRef a : {kBoxA, kHullA}) {
+            const auto found = run<double>(hull_hull<double>, shapes, a, kHullB, pose, 1e-9 * size);
+            ASSERT_TRUE(all_finite(found));
+            ASSERT_EQ(found.count > 0, pair.separation < 2e-9 * size);
+            if (found.count == 0) continue;
+            const double expected = std::min(pair.separation, 1e-9 * size);
+            EXPECT_GE(deepest(found), expected - 2 * bias - 1e-9 * size);
+            EXPECT_LE(deepest(found), expected + 2 * bias + 1e-9 * size);
+        }
+    }
+}
+
+TEST(HullHull, RememberingNeverChangesTheAnswer)
+{
+    RandomShapes random(24);
+    Shapes shapes;
+    shapes.hulls = {random.hull(24, 0.5), random.hull(60, 0.5)};
+    for (int i = 0; i < 100; ++i) {
+        Pose pose = random.pose(0.8);
+        PairCache cache;
+        for (int step = 0; step < 10; ++step) {
+            pose.position += random.vector(-0.05, 0.05);
+            LocalManifold<double> warm;
+            const auto cold = run<double>(hull_hull<double>, shapes, kHullA, kHullB, pose, 0.02);
+            hull_hull<double>(shapes, kHullA, kHullB, pose, 0.02, cache, warm);
+            ASSERT_EQ(warm.count, cold.count) << "seed 24, pair " << i;
+            for (int k = 0; k < warm.count; ++k) {
+                const auto at = static_cast<std::size_t>(k);
+                ASSERT_EQ(warm.points[at].feature, cold.points[at].feature);
+                ASSERT_EQ(warm.points[at].separation, cold.points[at].separation);
+            }
+        }
+    }
+}
+
+TEST(HullHull, ClimbingFindsTheFurthestVertex)
+{
+    RandomShapes random(25);
+    const Hull hull = random.hull(3000, 0.5);
+    const PolytopeView view = view_of(hull);
+    for (int i = 0; i < 500; ++i) {
+        const Vec3 direction = random.vector(-1, 1);
+        double most = -1;
+        for (const Vec3& vertex : hull.vertices) most = std::max(most, direction.dot(vertex));
+        const auto start =
+            static_cast<std::uint16_t>(static_cast<std::size_t>(i) % hull.vertices.size());
+        const std::uint16_t found = support_vertex(view, direction, start);
+        ASSERT_EQ(direction.dot(hull.vertices[found]), most) << "seed 25, direction " << i;
+    }
+}
+
+TEST(HullHull, ManyCorneredFacesKeepFourSpreadPoints)
+{
+    // A drum with 200 corners on each cap, made by stepping round a circle.
+    std::vector<Vec3> points;
+    Eigen::Vector2d at(0.5, 0);
+    const double c = 1 - 2 * 0.0157073173 * 0.0157073173, s = std::sqrt(1 - c * c);
+    for (int i = 0; i < 200; ++i) {
+        points.emplace_back(at.x(), at.y(), -0.1);
+        points.emplace_back(at.x(), at.y(), 0.1);
+        at = {c * at.x() - s * at.y(), s * at.x() + c * at.y()};
+    }
+    Shapes shapes;
+    shapes.hulls = {build_hull(points).hull, build_hull(points).hull};
+    const auto found = run<double>(hull_hull<double>, shapes, kHullA, kHullB,
+                                   {{0.05, 0, 0.199}, Quat::Identity()}, 0);
+    ASSERT_EQ(found.count, 4);
+    EXPECT_NEAR(deepest(found), -0.001, 1e-6);
+    Vec3 low = Vec3::Constant(1), high = Vec3::Constant(-1);
+    for (const auto& point : found.points) {
+        low = low.cwiseMin(point.position);
+        high = high.cwiseMax(point.position);
+    }
+    EXPECT_GT((high - low).head<2>().minCoeff(), 0.6);
+}
+
+}  // namespace throng

@@ -1,0 +1,235 @@
+#include "kernels/geometry/mesh.hpp"
+#include "narrowphase/narrowphase.hpp"
+#include "tests/narrowphase/polyhedra.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+constexpr ShapeRef kMesh{ShapeKind::mesh, 0};
+
+// A flat floor of side `cells`, cell 1 m, about the origin; with a step up of `rise` for x > 0.
+Mesh floor_of(int cells, double rise = 0)
+{
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    const auto id = [&](int i, int j) { return static_cast<std::uint32_t>(i * (cells + 1) + j); };
+    for (int i = 0; i <= cells; ++i) {
+        for (int j = 0; j <= cells; ++j) {
+            vertices.emplace_back(i - cells / 2, j - cells / 2, 2 * i > cells ? rise : 0);
+        }
+    }
+    for (int i = 0; i < cells; ++i) {
+        for (int j = 0; j < cells; ++j) {
+            triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+            triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+        }
+    }
+    return build_mesh(vertices, triangles).mesh;
+}
+
+struct Slider {
+    const char* name;
+    ShapeRef shape;
+    double height;  // of the center when its lowest point is at 0
+    Quat turn;
+};
+
+// One of each kind that slides, lying flat.
+std::vector<Slider> sliders(Shapes& shapes)
+{
+    const double root = std::sqrt(0.5);
+    shapes.spheres = {{0.4}};
+    shapes.capsules = {{0.3, 0.6}};
+    shapes.cylinders = {{0.4, 0.5}};
+    shapes.boxes = {{{0.7, 0.55, 0.3}}};
+    std::vector<Vec3> points = corners_of({0.6, 0.5, 0.4});
+    points.emplace_back(0, 0, 0.8);
+    points.emplace_back(0.9, 0.1, 0);
+    shapes.hulls = {build_hull(points).hull};
+    const Quat flat = Quat::Identity(), lying(root, root, 0, 0);
+    return {{"sphere", {ShapeKind::sphere, 0}, 0.4, flat},
+            {"capsule", {ShapeKind::capsule, 0}, 0.3, lying},
+            {"standing cylinder", {ShapeKind::cylinder, 0}, 0.5, flat},
+            {"lying cylinder", {ShapeKind::cylinder, 0}, 0.4, lying},
+            {"box", {ShapeKind::box, 0}, 0.3, flat},
+            {"hull", {ShapeKind::hull, 0}, 0.4, flat}};
+}
+
+template <class Real>
+std::vector<TriangleManifold<Real>>
+touch_mesh(const Shapes& shapes, ShapeRef shape, const Pose& pose, double reach)
+{
+    std::vector<TriangleManifold<Real>> found;
+    collide_mesh<Real>(shapes, kMesh, shape, cast<Real>(pose), static_cast<Real>(reach), found);
+    return found;
+}
+
+}  // namespace
+
+TEST(MeshPairs, SlidingOverSeamsMeetsNoBumps)
+{
+    Shapes shapes;
+    shapes.meshes = {floor_of(20)};
+    RandomShapes random(31);
+    for (const Slider& slider : sliders(shapes)) {
+        for (const double sunk : {0.0, 0.001, 0.02, 0.1}) {
+            const Quat spin =
+                (Quat(random.number(0.2, 1), 0, 0, random.number(-1, 1))).normalized();
+            for (int i = 0; i < 120; ++i) {
+                SCOPED_TRACE(std::string("seed 31, ") + slider.name + ", step "
+                             + std::to_string(i));
+                const Pose pose{{-8 + 0.13 * i, -6 + 0.1 * i, slider.height - sunk},
+                                spin * slider.turn};
+                const auto found = touch_mesh<double>(shapes, slider.shape, pose, 0.01);
+                ASSERT_FALSE(found.empty());
+                double least = 1;
+                for (const auto& one : found) {
+                    ASSERT_LT((one.manifold.normal - Vec3::UnitZ()).norm(), 1e-6);
+                    ASSERT_TRUE(features_differ(one.manifold));
+                    least = std::min(least, deepest(one.manifold));
+                }
+                ASSERT_NEAR(least, -sunk, 1e-6);
+                const auto rounded = touch_mesh<float>(shapes, slider.shape, pose, 0.01);
+                ASSERT_FALSE(rounded.empty());
+                for (const auto& one : rounded) {
+                    ASSERT_LT((one.manifold.normal - Vec3T<float>::UnitZ()).norm(), 1e-6f);
+                }
+            }
+        }
+    }
+}
+
+TEST(MeshPairs, TiltedShapesStillGetTheFloorsNormal)
+{
+    Shapes shapes;
+    shapes.meshes = {floor_of(20)};
+    RandomShapes random(32);
+    for (const Slider& slider : sliders(shapes)) {
+        for (int i = 0; i < 100; ++i) {
+            SCOPED_TRACE(std::string("seed 32, ") + slider.name + ", pose " + std::to_string(i));
+            Pose pose{random.vector(-5, 5), random.turn()};
+            pose.position.z() = slider.height - 0.05;
+            for (const auto& one : touch_mesh<double>(shapes, slider.shape, pose, 0.01)) {
+                ASSERT_LT((one.manifold.normal - Vec3::UnitZ()).norm(), 1e-6);
+            }
+        }
+    }
+}
+
+TEST(MeshPairs, DeepestPointOnAFloorIsTheLowestPoint)
+{
+    Shapes shapes;
+    shapes.meshes = {floor_of(20)};
+    sliders(shapes);
+    RandomShapes random(33);
+    for (int i = 0; i < 300; ++i) {
+        SCOPED_TRACE("seed 33, pose " + std::to_string(i));
+        const bool is_box = i % 2 == 0;
+        Pose pose{random.vector(-5, 5), random.turn()};
+        pose.position.z() = 0;
+        const std::vector<Vec3> corners =
+            is_box ? corners_of(shapes.boxes[0].half_extents) : shapes.hulls[0].vertices;
+        const double lowest = -reach_of(corners, pose)(-Vec3::UnitZ());
+        pose.position.z() = -lowest - 0.02;
+        const auto found =
+            touch_mesh<double>(shapes, {is_box ? ShapeKind::box : ShapeKind::hull, 0}, pose, 0.01);
+        double least = 1;
+        for (const auto& one : found) least = std::min(least, deepest(one.manifold));
+        ASSERT_NEAR(least, -0.02, 1e-9);
+    }
+}
+
+TEST(MeshPairs, NothingPushesFromBehind)
+{
+    Shapes shapes;
+    shapes.meshes = {floor_of(4)};
+    for (const Slider& slider : sliders(shapes)) {
+        const Pose below{{0.3, 0.2, -0.3}, slider.turn};
+        EXPECT_TRUE(touch_mesh<double>(shapes, slider.shape, below, 0.01).empty()) << slider.name;
+    }
+}
+
+TEST(MeshPairs, ARimStopsWhatComesFromTheSide)
+{
+    Shapes shapes;
+    shapes.meshes = {floor_of(4)};
+    sliders(shapes);
+    // The floor ends at x = 2; the center is above it and out to the side.
+    const auto box = touch_mesh<double>(shapes, {ShapeKind::box, 0}, at(2.69, 0.3, 0.1), 0.01);
+    ASSERT_FALSE(box.empty());
+    for (const auto& one : box) EXPECT_GT(one.manifold.normal.x(), 0.99);
+    const auto ball = touch_mesh<double>(shapes, {ShapeKind::sphere, 0}, at(2.3, 0.3, 0.2), 0.01);
+    ASSERT_FALSE(ball.empty());
+    for (const auto& one : ball) {
+        EXPECT_NEAR(one.manifold.normal.x(), 0.3 / std::sqrt(0.13), 1e-9);
+        EXPECT_NEAR(deepest(one.manifold), std::sqrt(0.13) - 0.4, 1e-9);
+    }
+}
+
+TEST(MeshPairs, AClosedMeshPushesLikeTheHullItIs)
+{
+    // A cube as a mesh against balls and boxes round it: the best triangle knows the depth.
+    Shapes shapes;
+    shapes.spheres = {{0.3}};
+    shapes.boxes = {{{0.5, 0.5, 0.5}}, {{0.25, 0.2, 0.3}}};
+    const BoxPolytope cube(shapes.boxes[0].half_extents);
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::size_t f = 0; f < 6; ++f) {
+        const PolytopeView view = cube.view();
+        const auto face = view.face(f);
+        triangles.push_back({face[0], face[1], face[2]});
+        triangles.push_back({face[0], face[2], face[3]});
+    }
+    shapes.meshes = {build_mesh({cube.vertices.begin(), cube.vertices.end()}, triangles).mesh};
+    RandomShapes random(34);
+    int touched = 0;
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 34, pose " + std::to_string(i));
+        const Pose pose = random.pose(0.9);
+        const Vec3 inside = pose.position.cwiseAbs();
+        if (inside.maxCoeff() < 0.5) continue;
+        const auto balls = touch_mesh<double>(shapes, {ShapeKind::sphere, 0}, pose, 0);
+        const double distance = (inside - inside.cwiseMin(0.5)).norm() - 0.3;
+        if (std::abs(distance) < 1e-4) continue;
+        ASSERT_EQ(!balls.empty(), distance < 0);
+        for (const auto& one : balls) ASSERT_NEAR(deepest(one.manifold), distance, 1e-4);
+        touched += distance < 0;
+
+        // A box that overlaps is always pushed, along a way that is outward.
+        const auto exact = run<double>(box_box<double>, shapes, kBoxA, kBoxB, pose, 0);
+        const auto boxes = touch_mesh<double>(shapes, kBoxB, pose, 0);
+        if (exact.count > 0 && deepest(exact) < -1e-3) {
+            ASSERT_FALSE(boxes.empty());
+            double least = 1;
+            for (const auto& one : boxes) least = std::min(least, deepest(one.manifold));
+            ASSERT_LT(least, 0);
+        }
+        if (exact.count > 0) continue;
+        ASSERT_TRUE(boxes.empty());
+    }
+    EXPECT_GT(touched, 100);
+}
+
+TEST(MeshPairs, ABallCrossingAConvexRidgeIsHeldThroughout)
+{
+    // A roof along y: two slopes that meet at x = 0. The ball rolls over it at constant distance.
+    Shapes shapes;
+    shapes.spheres = {{0.5}};
+    shapes.meshes = {
+        build_mesh({{-4, -4, -2}, {0, -4, 0}, {0, 4, 0}, {-4, 4, -2}, {4, -4, -2}, {4, 4, -2}},
+                   {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}})
+            .mesh};
+    for (int i = -1000; i <= 1000; ++i) {
+        const double x = i * 1e-3;
+        const double slope = std::sqrt(1.25), edge = 0.49 / slope * 0.5;
+        const double z =
+            std::abs(x) <= edge ? std::sqrt(0.49 * 0.49 - x * x) : 0.49 * slope - std::abs(x) / 2;
+        const auto found = touch_mesh<double>(shapes, {ShapeKind::sphere, 0}, at(x, 0.1, z), 0);
+        ASSERT_FALSE(found.empty()) << x;
+        for (const auto& one : found) ASSERT_NEAR(deepest(one.manifold), -0.01, 1e-6) << x;
+    }
+}
+
+}  // namespace throng

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Check: what a change goes through before it is pushed.
+#   tools/check.sh         format, include direction, dev build, fast tests, clang-tidy on what changed
+#   tools/check.sh all     clang-tidy on everything, and the other presets too; fuzzes a little
+set -euo pipefail
+root=$(dirname "$(dirname "$(readlink -f "$0")")")
+cd "$root"
+source tools/build.sh
+need_packages "${build_packages[@]}" "${test_packages[@]}" "${check_packages[@]}"
+
+say "format"
+tools/format.sh --check
+say "include direction"
+tools/include_direction.py
+build_preset dev
+test_preset dev -LE slow
+
+say "clang-tidy"
+# What differs from where this branch left the one it is to go to, or everything.
+base=$(git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEAD)
+[[ ${1:-} != all ]] || base=$(git hash-object -t tree /dev/null)
+cmake --preset tidy >build/tidy.log || { cat build/tidy.log; exit 1; }
+{ git diff --name-only --diff-filter=d "$base"; git ls-files --others --exclude-standard; } \
+    | sed -n '/_threads\.cpp$/d; /^tests\/fuzz\//d; /\.cpp$/p' \
+    | xargs -r -d '\n' -n 1 -P "$(job_count)" clang-tidy-14 --quiet -p build/tidy
+
+if [[ ${1:-} == all ]]; then
+    build_preset asan
+    test_sanitized asan
+    build_preset tsan
+    test_sanitized tsan
+    build_preset release
+    build_preset perf
+    build_preset fuzz
+    for fuzzer in build/fuzz/tests/fuzz/*_fuzz; do
+        name=$(basename "$fuzzer" _fuzz)
+        say "fuzzing $name for 30 s"
+        mkdir -p "build/fuzz/found/$name"
+        "$fuzzer" -max_total_time=30 -artifact_prefix="build/fuzz/found/$name-" \
+            "build/fuzz/found/$name" "tests/fuzz/corpus/$name"
+    done
+fi
+say "all is well"

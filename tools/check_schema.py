@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""Checks scenes/scene.schema.json against the dials of this build and against scene files.
+
+    tools/check_schema.py [SCENE.json]...
+
+Without arguments, the seeds of the scene fuzzer are the scenes. Needs python3-jsonschema; without
+it, says so and leaves with 77, which test runners count as skipped.
+"""
+import json
+import pathlib
+import re
+import sys
+
+try:
+    import jsonschema
+except ImportError:
+    print("python3-jsonschema is not installed")
+    sys.exit(77)
+
+root = pathlib.Path(__file__).resolve().parent.parent
+schema = json.loads((root / "scenes/scene.schema.json").read_text())
+jsonschema.Draft202012Validator.check_schema(schema)
+validator = jsonschema.Draft202012Validator(schema)
+trouble = []
+
+# Every dial of the table is in the schema, and none that is not.
+table = (root / "pipeline/dials.cpp").read_text()
+table = table[table.index("make_dials()"):]
+dials = set(re.findall(r'_(?:dial|number)(?:<[^;]*?>)?\(\s*"(\w+)"', table))
+listed = set(schema["$defs"]["settings"]["properties"])
+if dials != listed:
+    trouble.append(f"settings: dials and schema differ in {sorted(dials ^ listed)}")
+
+seeds = root / "tests/fuzz/corpus/scene_file"
+for path in [pathlib.Path(a) for a in sys.argv[1:]] or sorted(seeds.glob("*.json")):
+    # What follows the mark is the content of the files that a seed names.
+    text = path.read_bytes().split(b"%%%")[0]
+    for error in validator.iter_errors(json.loads(text)):
+        trouble.append(f"{path}: {error.json_path}: {error.message}")
+
+print("\n".join(trouble) or f"schema: {len(dials)} dials, all scenes good")
+sys.exit(1 if trouble else 0)
