@@ -49,17 +49,13 @@ bool touches_mesh(const Shapes& shapes, ShapeRef a, const Mesh& mesh, const Pose
 
 }  // namespace
 
-bool touching(const Shapes& shapes_a,
-              ShapeRef a,
-              const Shapes& shapes_b,
-              ShapeRef b,
-              const Pose& b_in_a)
+bool touching(
+    const Shapes& shapes_a, ShapeRef a, const Shapes& shapes_b, ShapeRef b, const Pose& b_in_a)
 {
     // A ball needs no more than the point nearest to its center, which has a closed form.
     if (a.kind == ShapeKind::sphere) {
         const double radius = shapes_a.spheres[a.index].radius;
-        return nearest_point(shapes_b, b, b_in_a.to_local(Vec3::Zero()), radius).distance
-            <= radius;
+        return nearest_point(shapes_b, b, b_in_a.to_local(Vec3::Zero()), radius).distance <= radius;
     }
     if (b.kind == ShapeKind::plane)
         return reaches_plane(shapes_a, a, shapes_b.planes[b.index], b_in_a);

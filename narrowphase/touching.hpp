@@ -12,10 +12,7 @@ namespace throng {
 ///
 ///   shapes_a, a  sphere, capsule, cylinder, box or hull
 ///   b_in_a       pose of b in a's frame
-bool touching(const Shapes& shapes_a,
-              ShapeRef a,
-              const Shapes& shapes_b,
-              ShapeRef b,
-              const Pose& b_in_a);
+bool touching(
+    const Shapes& shapes_a, ShapeRef a, const Shapes& shapes_b, ShapeRef b, const Pose& b_in_a);
 
 }  // namespace throng

@@ -74,8 +74,7 @@ void check(const char* caller, std::span<const ShapeQuery> queries)
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const Pose& pose = queries[i].pose;
         if (!has_size(queries[i].shape)) refuse(caller, i, "give sizes of at least 0 m, finite");
-        if (!pose.position.allFinite()
-            || !(std::abs(pose.orientation.coeffs().norm() - 1) < 1e-6))
+        if (!pose.position.allFinite() || !(std::abs(pose.orientation.coeffs().norm() - 1) < 1e-6))
             refuse(caller, i, "give a finite position and a unit quaternion");
     }
 }

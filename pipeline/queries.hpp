@@ -14,7 +14,7 @@ namespace throng {
 
 struct RayQuery {
     Vec3 origin = Vec3::Zero();
-    Vec3 direction = Vec3::UnitZ();  // of any length but 0
+    Vec3 direction = Vec3::UnitZ();                                 // of any length but 0
     double max_distance = std::numeric_limits<double>::infinity();  // m
     std::uint32_t mask = ~0u;
 };
@@ -62,8 +62,8 @@ struct NearestHit {
 };
 
 /// Answers for a world as it was when this was made: make another after a step, or after adding,
-/// removing or moving bodies. Making one costs about as much as a broad phase; ask in batches, which
-/// run on the world's threads. Answers are the same bits for any number of them.
+/// removing or moving bodies. Making one costs about as much as a broad phase; ask in batches,
+/// which run on the world's threads. Answers are the same bits for any number of them.
 ///
 /// The world must outlive its queries, and neither step nor change while they are asked. One thread
 /// at a time. Questions that are not numbers, or a direction of length 0, throw

@@ -14,7 +14,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kGrain = 64;    // questions a block
 constexpr std::size_t kBatch = 8192;  // questions whose candidates are held at one time
-// A search begins with this many times the usual size of a box, and goes on to so many times as far.
+// A search begins with this many times the usual size of a box, and goes on to so many times as
+// far.
 constexpr double kFirstReach = 3;
 constexpr double kGrowth = 3;
 // Of the numbers of a question and a box: far more than rounding takes.
@@ -225,7 +226,8 @@ void QueryScene::search_met(std::span<const RayQuery> rays, std::span<Best> best
     std::vector<std::uint32_t> open;
     std::vector<Search> searches(rays.size());
     const auto is_done = [&](std::uint32_t i) {
-        const bool met = best[i].collider != kNobody && (any || best[i].distance <= searches[i].reach);
+        const bool met =
+            best[i].collider != kNobody && (any || best[i].distance <= searches[i].reach);
         return met || searches[i].reach >= searches[i].end;
     };
     for (std::uint32_t i = 0; i < rays.size(); ++i) {
@@ -312,9 +314,8 @@ void QueryScene::find_overlaps(std::span<const ShapeQuery> queries,
                 };
                 for (const std::uint32_t plane : planes_) try_one(plane);
                 for (const std::uint32_t collider : candidates_.of(i)) try_one(collider);
-                std::sort(bodies.begin(), bodies.end(), [](const BodyId& a, const BodyId& b) {
-                    return a.index < b.index;
-                });
+                std::sort(bodies.begin(), bodies.end(),
+                          [](const BodyId& a, const BodyId& b) { return a.index < b.index; });
                 bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
             }
         });
@@ -327,8 +328,8 @@ void QueryScene::approach(const PointQuery& query, std::uint32_t collider, Best&
     const Collider& it = colliders_[collider];
     if ((it.group & query.mask) == 0) return;
     const double limit = std::min(query.max_distance, best.distance);
-    const NearestPoint nearest
-        = nearest_point(*shapes_, it.shape, it.placed.to_local(query.point), limit);
+    const NearestPoint nearest =
+        nearest_point(*shapes_, it.shape, it.placed.to_local(query.point), limit);
     if (nearest.distance <= limit && beats(nearest.distance, collider, best))
         best = {nearest.distance, collider, nearest.point};
 }

@@ -1,6 +1,7 @@
 // Query scene: a world's colliders as they were at one time, laid out for questions.
 //
-// Boxes name candidates, closed forms in double decide. Planes have no box and are asked one by one.
+// Boxes name candidates, closed forms in double decide. Planes have no box and are asked one by
+// one.
 #pragma once
 
 #include "broadphase/box_queries.hpp"

@@ -22,7 +22,8 @@ job_count() {
     local jobs free_mb limit
     [[ -z ${JOBS:-} ]] || { echo "$JOBS"; return; }
     jobs=$(nproc)
-    free_mb=$(sed -n 's/^MemAvailable: *\([0-9]*\)[0-9]\{3\} kB/\1/p' /proc/meminfo)
+    free_mb=$(sed -n 's/^MemAvailable: *\([0-9]*\)[0-9]\{3\} kB/\1/p' /proc/meminfo 2>/dev/null) || true
+    free_mb=${free_mb:-2000}
     limit=$(cat /sys/fs/cgroup/memory.max 2>/dev/null || echo max)
     [[ $limit == max ]] || ((limit / 1000000 >= free_mb)) || free_mb=$((limit / 1000000))
     ((free_mb / 1000 >= jobs)) || jobs=$((free_mb / 1000))

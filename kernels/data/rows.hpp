@@ -53,6 +53,7 @@ struct ContactBlock {
     Lane16<Real> friction, restitution, rolling;  // coefficients
     Lane16<Real> friction_mass[3];      // inverse of the 2x2 matrix at the center: 11, 22, 12
     Lane16<Real> sliding_mass;          // 1 / its greatest eigenvalue: keeps the cone round
+    Lane16<Real> sliding_answer;        // that eigenvalue, 1/kg: the speed that an impulse gives
     Lane16<Real> twist_mass, rolling_mass;
     Lane16<Real> friction_impulse[2], twist_impulse, rolling_impulse[3];
     Lane16<Real> bias_rate, impulse_scale;  // softness, see contact_rows.hpp

@@ -17,7 +17,10 @@ NearestPoint of_ball(const Vec3& point, const Vec3& center, double radius)
     return {distance - radius, center + away * (radius / distance)};
 }
 
-NearestPoint at(const Vec3& nearest, const Vec3& point) { return {(point - nearest).norm(), nearest}; }
+NearestPoint at(const Vec3& nearest, const Vec3& point)
+{
+    return {(point - nearest).norm(), nearest};
+}
 
 NearestPoint of_capsule(const Vec3& point, const Capsule& capsule)
 {
@@ -60,12 +63,12 @@ NearestPoint of_hull(const Vec3& point, const Hull& hull, double limit)
         if (above > nearest.distance) continue;
         const std::uint32_t begin = hull.face_begin[face], end = hull.face_begin[face + 1];
         for (std::uint32_t i = begin + 1; i + 1 < end; ++i) {
-            const NearestPoint now = at(
-                closest_on_triangle<double>(point, hull.vertices[hull.face_vertices[begin]],
-                                            hull.vertices[hull.face_vertices[i]],
-                                            hull.vertices[hull.face_vertices[i + 1]])
-                    .point,
-                point);
+            const NearestPoint now =
+                at(closest_on_triangle<double>(point, hull.vertices[hull.face_vertices[begin]],
+                                               hull.vertices[hull.face_vertices[i]],
+                                               hull.vertices[hull.face_vertices[i + 1]])
+                       .point,
+                   point);
             if (now.distance < nearest.distance) nearest = now;
         }
     }
@@ -95,11 +98,11 @@ NearestPoint of_mesh(const Vec3& point, const Mesh& mesh, double limit)
         const Mesh::Node& node = mesh.tree[visit.node];
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             const auto& [a, b, c] = mesh.triangles[mesh.order[i]];
-            const NearestPoint now = at(closest_on_triangle<double>(point, mesh.vertices[a],
-                                                                    mesh.vertices[b],
-                                                                    mesh.vertices[c])
-                                            .point,
-                                        point);
+            const NearestPoint now =
+                at(closest_on_triangle<double>(point, mesh.vertices[a], mesh.vertices[b],
+                                               mesh.vertices[c])
+                       .point,
+                   point);
             if (now.distance < nearest.distance) nearest = now;
         }
         if (node.count > 0) continue;

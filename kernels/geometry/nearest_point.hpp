@@ -17,7 +17,6 @@ struct NearestPoint {
 /// The nearest point of a shape. A plane is solid below; a mesh is its triangles.
 ///
 ///   limit  m, what lies further away need not be found
-NearestPoint
-nearest_point(const Shapes& shapes, ShapeRef shape, const Vec3& point, double limit);
+NearestPoint nearest_point(const Shapes& shapes, ShapeRef shape, const Vec3& point, double limit);
 
 }  // namespace throng

@@ -61,16 +61,19 @@ void fill_friction(ContactBlock<Real>& block,
                    const Vec3T<Real>& tangent)
 {
     const Vec3T<Real> other = contact.normal.cross(tangent);
-    const Real k11 = response(tangent, tangent);
-    const Real k22 = response(other, other);
-    const Real k12 = response(tangent, other);
-    const Real inverse = inverse_or_zero(k11 * k22 - k12 * k12);
+    // In units of its own size: squares of 1/kg leave float where bodies are huge or tiny.
+    Real k11 = response(tangent, tangent), k22 = response(other, other);
+    const Real size = (k11 + k22) / 2, unit = inverse_or_zero(size);
+    k11 *= unit, k22 *= unit;
+    const Real k12 = response(tangent, other) * unit;
+    const Real inverse = inverse_or_zero(k11 * k22 - k12 * k12) * unit;
     block.friction_mass[0].at[lane] = k22 * inverse;
     block.friction_mass[1].at[lane] = k11 * inverse;
     block.friction_mass[2].at[lane] = -k12 * inverse;
     const Real half = (k11 - k22) / 2;
-    block.sliding_mass.at[lane]
-        = inverse_or_zero((k11 + k22) / 2 + std::sqrt(half * half + k12 * k12));
+    const Real greatest = 1 + std::sqrt(half * half + k12 * k12);
+    block.sliding_mass.at[lane] = unit / greatest;
+    block.sliding_answer.at[lane] = size * greatest;
 
     const Mat3T<Real> turning = response.inertia_a + response.inertia_b;
     block.twist_mass.at[lane] = inverse_or_zero(contact.normal.dot(turning * contact.normal));
@@ -219,7 +222,8 @@ void carry_impulses(const Contact<Real>& before, Real friction, Real scale, Cont
     const Real length = flat.norm();
     const Real most = friction * total;
     contact.friction = length > most ? Vec3T<Real>(flat * (most / length)) : flat;
-    contact.twist = before.twist * scale;
+    // A single point holds no twist, and would never let go of one.
+    if (contact.count > 1) contact.twist = before.twist * scale;
     contact.rolling = before.rolling * scale;
 }
 

@@ -199,7 +199,9 @@ Aims<L> aims_of(const Contacts<L, turns>& c,
         const V3<L> apart
             = drift_b.of(lane3<L>(point.from_b, c.at)) - drift_a.of(lane3<L>(point.from_a, c.at));
         separation[k] = dot(c.normal, apart) + lane<L>(point.gap, c.at);
-        loaded += select(separation[k] < zero, one, zero);
+        // A point that this contact has not got, but another of the block has, bears nothing.
+        const L there = select(lane<L>(point.mass, c.at) > zero, one, zero);
+        loaded += select(separation[k] < zero, there, zero);
     }
     // Three points or four share a load well; one or two may be a corner that carries everything.
     const L eased = select(loaded > L(Real(2.5)), L(Real(1) / Real(kShared)), one);
@@ -254,15 +256,18 @@ void grip(Contacts<L, turns>& c, L reach)
     const L m12 = lane<L>(block.friction_mass[2], c.at);
     const L stick_1 = old_1 - (m11 * slip_1 + m12 * slip_2);
     const L stick_2 = old_2 - (m12 * slip_1 + m22 * slip_2);
-    const auto slides = stick_1 * stick_1 + stick_2 * stick_2 > reach * reach;
+    // Compared as speeds: squares of impulses leave float where bodies are huge or tiny.
+    const L answer = lane<L>(block.sliding_answer, c.at);
+    const L limit = reach * answer;
+    const L try_1 = stick_1 * answer, try_2 = stick_2 * answer;
+    const auto slides = try_1 * try_1 + try_2 * try_2 > limit * limit;
 
-    const L slide = lane<L>(block.sliding_mass, c.at);
-    const L slide_1 = old_1 - slide * slip_1;
-    const L slide_2 = old_2 - slide * slip_2;
-    const L squared = slide_1 * slide_1 + slide_2 * slide_2;
-    const L length = sqrt(squared);
-    const L shrink = select(length > reach, reach / select(length > L(Real(0)), length, L(Real(1))),
-                            L(Real(1)));
+    const L slide_1 = old_1 * answer - slip_1;
+    const L slide_2 = old_2 * answer - slip_2;
+    const L length = sqrt(slide_1 * slide_1 + slide_2 * slide_2);
+    const L shrink = lane<L>(block.sliding_mass, c.at)
+        * select(length > limit, limit / select(length > L(Real(0)), length, L(Real(1))),
+                 L(Real(1)));
     const L new_1 = select(slides, slide_1 * shrink, stick_1);
     const L new_2 = select(slides, slide_2 * shrink, stick_2);
     new_1.store(block.friction_impulse[0].at + c.at);
@@ -289,7 +294,11 @@ void resist_rolling(Contacts<L, turns>& c, L most)
     const V3<L> old = lane3<L>(c.block.rolling_impulse, c.at);
     const L mass = lane<L>(c.block.rolling_mass, c.at);
     const V3<L> wanted = old - (c.b.spin - c.a.spin) * mass;
-    const L length = sqrt(dot(wanted, wanted));
+    // In units of its greatest part: squares leave float where bodies are huge or tiny.
+    const L greatest = max(max(max(wanted.x, -wanted.x), max(wanted.y, -wanted.y)),
+                           max(wanted.z, -wanted.z));
+    const V3<L> parts = wanted * (L(Real(1)) / select(greatest > L(Real(0)), greatest, L(Real(1))));
+    const L length = greatest * sqrt(dot(parts, parts));
     const L shrink
         = select(length > most, most / select(length > L(Real(0)), length, L(Real(1))), L(Real(1)));
     const V3<L> total = wanted * shrink;

@@ -4,9 +4,9 @@
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh.hpp"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -44,7 +44,8 @@ struct Solids {
         shapes.boxes = {{half}};
         shapes.hulls = {build_hull(octahedron(size)).hull};
         shapes.planes = {{Vec3(0.6, 0, 0.8), 0.3 * size}};
-        all.push_back({"sphere", {ShapeKind::sphere, 0}, [=](const Vec3& p) { return p.norm() - r; }});
+        all.push_back(
+            {"sphere", {ShapeKind::sphere, 0}, [=](const Vec3& p) { return p.norm() - r; }});
         all.push_back({"capsule", {ShapeKind::capsule, 0}, [=](const Vec3& p) {
                            const double over = std::max(0.0, std::abs(p.z()) - h);
                            return std::hypot(p.x(), p.y(), over) - r;
@@ -275,7 +276,8 @@ TEST(RayCast, MeshAgreesWithEveryTriangleAskedInTurn)
         for (int i = 0; i < 2000; ++i) {
             LocalRay ray{Vec3(4.5, 4.5, 0) * size + dice.point(8 * size), dice.direction()};
             if (i % 3 != 0)
-                ray.along = (Vec3(4.5, 4.5, 0) * size + dice.point(4 * size) - ray.from).normalized();
+                ray.along =
+                    (Vec3(4.5, 4.5, 0) * size + dice.point(4 * size) - ray.from).normalized();
             if (i % 4 == 0) ray.longest = dice.between(0, 10 * size);
             double wanted = kInfinity;
             for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -333,8 +335,8 @@ TEST(RayCast, AbsurdNumbersGiveNoNonsense)
     for (const Solid& solid : solids.all)
         for (const double far : {1e150, 1e300})
             for (const Vec3& along : {Vec3(Vec3::UnitX()), Vec3(-1, 0, 1e-320)}) {
-                const RayMeeting met
-                    = cast_ray(solids.shapes, solid.shape, {Vec3(far, -far, far), along});
+                const RayMeeting met =
+                    cast_ray(solids.shapes, solid.shape, {Vec3(far, -far, far), along});
                 EXPECT_FALSE(std::isnan(met.distance)) << solid.name;
                 EXPECT_TRUE(met.normal.allFinite()) << solid.name;
             }

@@ -96,7 +96,7 @@ Contact<Real> random_contact(std::mt19937& random,
         Vec3 friction = random_vector(random, 0.2);
         friction -= normal * normal.dot(friction);
         contact.friction = friction.cast<Real>();
-        contact.twist = static_cast<Real>(random_number(random, -0.1, 0.1));
+        if (contact.count > 1) contact.twist = static_cast<Real>(random_number(random, -0.1, 0.1));
         contact.rolling = random_vector(random, 0.05).cast<Real>();
     }
     return contact;

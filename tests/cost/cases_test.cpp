@@ -1,0 +1,55 @@
+// The hard cases that are claimed, run as the command runs them, and shown able to fail.
+#include "cost/cases.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+class HardCases : public testing::TestWithParam<HardCase> { };
+
+std::string told(const CaseResult& result)
+{
+    return result.name + ", " + result.setting + ": " + result.quantity + " is "
+        + std::to_string(result.figure) + ", bound " + std::to_string(result.bound);
+}
+
+TEST_P(HardCases, KeepsItsBounds)
+{
+    const std::vector<CaseResult> results = run_case(GetParam());
+    ASSERT_FALSE(results.empty());
+    for (const CaseResult& result : results)
+        EXPECT_EQ(result.verdict, Verdict::pass) << told(result);
+}
+
+TEST_P(HardCases, NoticesAPlantedFault)
+{
+    const std::vector<CaseResult> results = run_case(GetParam(), {}, GetParam().shown_by);
+    std::size_t failed = 0;
+    for (const CaseResult& result : results) failed += result.verdict == Verdict::fail ? 1 : 0;
+    EXPECT_GT(failed, 0u) << GetParam().name << " passes with a fault in it";
+}
+
+TEST_P(HardCases, GivesTheSameFiguresOnThreeThreads)
+{
+    const std::vector<CaseResult> one = run_case(GetParam());
+    const std::vector<CaseResult> three = run_case(GetParam(), {}, Fault::none, 3);
+    ASSERT_EQ(one.size(), three.size());
+    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].figure, three[i].figure);
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue,
+                         HardCases,
+                         testing::ValuesIn(hard_cases().begin(), hard_cases().end()),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+TEST(HardCaseNames, AreFoundWhateverTheCaseOfLetters)
+{
+    EXPECT_EQ(find_case("h8")->name, "H8");
+    EXPECT_EQ(find_case("H33")->name, "H33");
+    EXPECT_EQ(find_case("H3"), nullptr);
+    EXPECT_EQ(find_case(""), nullptr);
+}
+
+}  // namespace
+}  // namespace throng
