@@ -1,7 +1,6 @@
 #include "pipeline/query_scene.hpp"
 
 #include "kernels/geometry/nearest_point.hpp"
-#include "kernels/geometry/ray_cast.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "narrowphase/touching.hpp"
 
@@ -11,50 +10,16 @@
 namespace throng {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kGrain = 64;    // questions a block
-constexpr std::size_t kBatch = 8192;  // questions whose candidates are held at one time
-// A search begins with this many times the usual size of a box, and goes on to so many times as
-// far.
-constexpr double kFirstReach = 3;
+// A search goes on to so many times as far from round to round.
 constexpr double kGrowth = 3;
 // Of the numbers of a question and a box: far more than rounding takes.
 constexpr double kRounding = 1e-14;
-
-// Scaled first: a direction may be so short or long that its square is 0 or infinite.
-Vec3 unit(const Vec3& direction)
-{
-    const Vec3 scaled = direction / direction.cwiseAbs().maxCoeff();
-    return scaled / scaled.norm();
-}
 
 Box3 widened(const Box3& box)
 {
     const double size = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
     const double margin = kRounding * size;
     return {box.lower.array() - margin, box.upper.array() + margin};
-}
-
-// The part of a ray's line within a box that it meets, in m from the ray's start; good to rounding,
-// and so to put boxes in order.
-std::pair<double, double> part_within(const Ray& ray, const Box3& box)
-{
-    double enter = -kInfinity, leave = kInfinity;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double along = ray.along[axis];
-        if (along == 0) continue;
-        const double low = (box.lower[axis] - ray.from[axis]) / along;
-        const double high = (box.upper[axis] - ray.from[axis]) / along;
-        enter = std::max(enter, std::min(low, high));
-        leave = std::min(leave, std::max(low, high));
-    }
-    return {enter, leave};
-}
-
-// How far off a distance along a ray may be.
-double slack_of(const Ray& ray, double distance)
-{
-    return 1e-12 * (ray.from.cwiseAbs().maxCoeff() + std::abs(distance));
 }
 
 Box3 cube(const Vec3& middle, double half)
@@ -68,17 +33,10 @@ double distance_to(const Box3& box, const Vec3& point)
     return box.empty() ? 0 : (point - point.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
 }
 
-// From a point to the furthest of the box, or a bit more.
+// From a point to the furthest corner of the box.
 double furthest_of(const Box3& box, const Vec3& point)
 {
     return ((box.lower - point).cwiseAbs().cwiseMax((box.upper - point).cwiseAbs())).norm();
-}
-
-template <class Questions, class Work>
-void in_batches(const Questions& questions, const Work& work)
-{
-    for (std::size_t begin = 0; begin < questions.size(); begin += kBatch)
-        work(begin, std::min(kBatch, questions.size() - begin));
 }
 
 // The shape of a question, among shapes that hold nothing else.
@@ -111,12 +69,6 @@ ShapeRef set_shape(const QueryShape& shape, Shapes& shapes)
 }
 
 }  // namespace
-
-struct QueryScene::Search {
-    Ray ray;                    // as far as to look next
-    double reach = -kInfinity;  // m, what has been looked at
-    double end = -kInfinity;    // m, where nothing is left to meet
-};
 
 QueryScene::QueryScene(const World::State& state)
     // Asking changes nothing that a step would notice, so it may use the world's own threads.
@@ -151,13 +103,7 @@ QueryScene::QueryScene(const World::State& state)
         std::nth_element(sizes.begin(), middle, sizes.end());
         usual_size_ = *middle;
     }
-    run([&] { tree_.build(boxes_); });
-}
-
-template <class Work>
-void QueryScene::run(const Work& work)
-{
-    pool_->run([&](std::size_t, std::size_t, std::size_t) { work(); });
+    pool_->run([&](std::size_t, std::size_t, std::size_t) { tree_.build(boxes_); });
 }
 
 BodyId QueryScene::id(std::uint32_t collider) const
@@ -171,120 +117,35 @@ bool QueryScene::beats(double distance, std::uint32_t collider, const Best& best
     return distance < best.distance || (distance == best.distance && collider < best.collider);
 }
 
-void QueryScene::meet(const RayQuery& query,
-                      const Ray& ray,
-                      std::uint32_t collider,
-                      Best& best) const
+NearestHit QueryScene::hit_of(const PointQuery& query, const Best& best) const
 {
-    const Collider& it = colliders_[collider];
-    if ((it.group & query.mask) == 0) return;
-    const Quat back = it.placed.orientation.conjugate();
-    const LocalRay local{back * (ray.from - it.placed.position), back * ray.along,
-                         std::min(query.max_distance, best.distance)};
-    const RayMeeting met = throng::cast_ray(*shapes_, it.shape, local);
-    if (met.found() && beats(met.distance, collider, best))
-        best = {met.distance, collider, met.normal};
+    if (best.collider == kNobody) return {};
+    const Collider& it = colliders_[best.collider];
+    const bool inside = best.distance == 0;
+    return {true, id(best.collider), it.part, best.distance,
+            inside ? query.point : Vec3(it.placed * best.local)};
 }
 
-// Boxes in the order in which the ray enters them, until the next one lies beyond the answer.
-void QueryScene::meet_candidates(const RayQuery& query,
-                                 const Search& search,
-                                 std::span<const std::uint32_t> candidates,
-                                 Order& order,
-                                 Best& best) const
+void QueryScene::overlap(const ShapeQuery& query,
+                         std::span<const std::uint32_t> candidates,
+                         Shapes& asked,
+                         std::vector<BodyId>& found) const
 {
-    order.clear();
-    for (const std::uint32_t collider : candidates) {
-        const double enter = part_within(search.ray, boxes_[collider]).first;
-        // Entered within what has been looked at: it was a candidate before.
-        const bool seen = enter + slack_of(search.ray, enter) < search.reach;
-        if (!seen) order.emplace_back(enter, collider);
-    }
-    std::sort(order.begin(), order.end());
-    for (const auto& [enter, collider] : order) {
-        if (enter > best.distance + slack_of(search.ray, best.distance)) break;
-        meet(query, search.ray, collider, best);
-    }
-}
-
-QueryScene::Search QueryScene::search_for(const RayQuery& query) const
-{
-    Search search;
-    search.ray = {query.origin, unit(query.direction), 0};
-    if (bounds_.empty()) return search;
-    const auto [enter, leave] = part_within(search.ray, bounds_);
-    if (enter - slack_of(search.ray, enter) > leave) return search;
-    const double first = std::max(0.0, enter);
-    search.end = std::min(query.max_distance, leave + slack_of(search.ray, leave));
-    search.ray.longest = std::min(search.end, first + kFirstReach * usual_size_);
-    return search;
-}
-
-// Further along the rays from round to round, until what has been looked at holds the answer.
-void QueryScene::search_met(std::span<const RayQuery> rays, std::span<Best> best, bool any)
-{
-    std::vector<std::uint32_t> open;
-    std::vector<Search> searches(rays.size());
-    const auto is_done = [&](std::uint32_t i) {
-        const bool met =
-            best[i].collider != kNobody && (any || best[i].distance <= searches[i].reach);
-        return met || searches[i].reach >= searches[i].end;
+    const ShapeRef shape = set_shape(query.shape, asked);
+    const Quat turn(query.pose.orientation.normalized());
+    const Pose pose{query.pose.position, turn};
+    const auto try_one = [&](std::uint32_t collider) {
+        const Collider& it = colliders_[collider];
+        if ((it.group & query.mask) == 0) return;
+        const Pose in_query{pose.to_local(it.placed.position),
+                            turn.conjugate() * it.placed.orientation};
+        if (touching(asked, shape, *shapes_, it.shape, in_query)) found.push_back(id(collider));
     };
-    for (std::uint32_t i = 0; i < rays.size(); ++i) {
-        searches[i] = search_for(rays[i]);
-        for (const std::uint32_t plane : planes_) meet(rays[i], searches[i].ray, plane, best[i]);
-        if (searches[i].end >= 0 && !is_done(i)) open.push_back(i);
-    }
-    while (!open.empty()) {
-        rays_.clear();
-        for (const std::uint32_t i : open) rays_.push_back(searches[i].ray);
-        tree_.meet_rays(rays_, candidates_);
-        for_each_block(open.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
-            Order order;
-            for (std::size_t k = begin; k < end; ++k) {
-                const std::uint32_t i = open[k];
-                meet_candidates(rays[i], searches[i], candidates_.of(k), order, best[i]);
-                Search& search = searches[i];
-                search.reach = search.ray.longest;
-                search.ray.longest = std::min(search.end, kGrowth * search.reach);
-            }
-        });
-        std::erase_if(open, is_done);
-    }
-}
-
-void QueryScene::cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits)
-{
-    const auto cast_some = [&](std::size_t first, std::size_t count) {
-        best_.assign(count, {});
-        search_met(rays.subspan(first, count), best_, false);
-        for (std::size_t i = 0; i < count; ++i) {
-            const Best& best = best_[i];
-            const RayQuery& ray = rays[first + i];
-            RayHit& hit = hits[first + i];
-            hit = {};
-            if (best.collider == kNobody) continue;
-            const Collider& it = colliders_[best.collider];
-            hit = {true,
-                   id(best.collider),
-                   it.part,
-                   best.distance,
-                   ray.origin + unit(ray.direction) * best.distance,
-                   it.placed.orientation * best.local};
-        }
-    };
-    run([&] { in_batches(rays, cast_some); });
-}
-
-void QueryScene::find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_t> blocked)
-{
-    const auto cast_some = [&](std::size_t first, std::size_t count) {
-        best_.assign(count, {});
-        search_met(rays.subspan(first, count), best_, true);
-        for (std::size_t i = 0; i < count; ++i)
-            blocked[first + i] = best_[i].collider != kNobody ? 1 : 0;
-    };
-    run([&] { in_batches(rays, cast_some); });
+    for (const std::uint32_t plane : planes_) try_one(plane);
+    for (const std::uint32_t collider : candidates) try_one(collider);
+    std::sort(found.begin(), found.end(),
+              [](const BodyId& a, const BodyId& b) { return a.index < b.index; });
+    found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
 void QueryScene::find_overlaps(std::span<const ShapeQuery> queries,
@@ -292,35 +153,22 @@ void QueryScene::find_overlaps(std::span<const ShapeQuery> queries,
 {
     const auto find_some = [&](std::size_t first, std::size_t count) {
         regions_.resize(count);
-        Shapes own;
-        for (std::size_t i = 0; i < count; ++i) {
-            const ShapeQuery& query = queries[first + i];
-            regions_[i] = widened(shape_bounds(own, set_shape(query.shape, own), query.pose));
-        }
-        tree_.meet_boxes(regions_, candidates_);
         for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
             Shapes asked;
             for (std::size_t i = begin; i < end; ++i) {
                 const ShapeQuery& query = queries[first + i];
-                const ShapeRef shape = set_shape(query.shape, asked);
-                std::vector<BodyId>& bodies = found[first + i];
-                const auto try_one = [&](std::uint32_t collider) {
-                    const Collider& it = colliders_[collider];
-                    if ((it.group & query.mask) == 0) return;
-                    const Pose in_query{query.pose.to_local(it.placed.position),
-                                        query.pose.orientation.conjugate() * it.placed.orientation};
-                    if (touching(asked, shape, *shapes_, it.shape, in_query))
-                        bodies.push_back(id(collider));
-                };
-                for (const std::uint32_t plane : planes_) try_one(plane);
-                for (const std::uint32_t collider : candidates_.of(i)) try_one(collider);
-                std::sort(bodies.begin(), bodies.end(),
-                          [](const BodyId& a, const BodyId& b) { return a.index < b.index; });
-                bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+                const Pose pose{query.pose.position, query.pose.orientation.normalized()};
+                regions_[i] = widened(shape_bounds(asked, set_shape(query.shape, asked), pose));
             }
         });
+        tree_.meet_boxes(regions_, candidates_);
+        for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+            Shapes asked;
+            for (std::size_t i = begin; i < end; ++i)
+                overlap(queries[first + i], candidates_.of(i), asked, found[first + i]);
+        });
     };
-    run([&] { in_batches(queries, find_some); });
+    run_in_batches(queries.size(), find_some);
 }
 
 void QueryScene::approach(const PointQuery& query, std::uint32_t collider, Best& best) const
@@ -370,18 +218,10 @@ void QueryScene::find_nearest(std::span<const PointQuery> points, std::span<Near
     const auto find_some = [&](std::size_t first, std::size_t count) {
         best_.assign(count, {});
         search_nearest(points.subspan(first, count), best_);
-        for (std::size_t i = 0; i < count; ++i) {
-            NearestHit& hit = nearest[first + i];
-            hit = {};
-            const Best& best = best_[i];
-            if (best.collider == kNobody) continue;
-            const Collider& it = colliders_[best.collider];
-            const bool inside = best.distance == 0;
-            hit = {true, id(best.collider), it.part, best.distance,
-                   inside ? points[first + i].point : Vec3(it.placed * best.local)};
-        }
+        for (std::size_t i = 0; i < count; ++i)
+            nearest[first + i] = hit_of(points[first + i], best_[i]);
     };
-    run([&] { in_batches(points, find_some); });
+    run_in_batches(points.size(), find_some);
 }
 
 }  // namespace throng

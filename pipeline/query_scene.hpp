@@ -8,6 +8,8 @@
 #include "pipeline/queries.hpp"
 #include "pipeline/world_state.hpp"
 
+#include <algorithm>
+
 namespace throng {
 
 /// Answers what Queries asks, once the questions are known to be good.
@@ -35,8 +37,18 @@ private:
     struct Search;
     using Order = std::vector<std::pair<double, std::uint32_t>>;  // m along a ray, collider
 
+    static constexpr std::size_t kGrain = 64;    // questions a block
+    static constexpr std::size_t kBatch = 8192;  // questions whose candidates are held at one time
+
+    /// Calls work(first, count) for one batch after another, on the world's threads.
     template <class Work>
-    void run(const Work& work);
+    void run_in_batches(std::size_t questions, const Work& work)
+    {
+        pool_->run([&](std::size_t, std::size_t, std::size_t) {
+            for (std::size_t first = 0; first < questions; first += kBatch)
+                work(first, std::min(kBatch, questions - first));
+        });
+    }
     BodyId id(std::uint32_t collider) const;
     bool beats(double distance, std::uint32_t collider, const Best& best) const;
 
@@ -49,8 +61,16 @@ private:
     Search search_for(const RayQuery& query) const;
     void search_met(std::span<const RayQuery> rays, std::span<Best> best, bool any);
 
+    void overlap(const ShapeQuery& query,
+                 std::span<const std::uint32_t> candidates,
+                 Shapes& asked,
+                 std::vector<BodyId>& found) const;
+
     void approach(const PointQuery& query, std::uint32_t collider, Best& best) const;
     void search_nearest(std::span<const PointQuery> points, std::span<Best> best);
+
+    RayHit hit_of(const RayQuery& ray, const Best& best) const;
+    NearestHit hit_of(const PointQuery& query, const Best& best) const;
 
     ThreadPool* pool_;
     const Shapes* shapes_;

@@ -376,6 +376,8 @@ RunFile::RunFile(const std::string& path,
                  const World& world,
                  const RunFacts& facts)
 {
+    // Files are closed here. At exit HDF5 would only try a full disk again, many times and aloud.
+    H5dont_atexit();
     const Silence silence;
     inside_ = std::make_unique<Inside>(path, scene, world, facts);
 }

@@ -15,6 +15,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -39,13 +40,47 @@ void for_each_block(std::size_t count, std::size_t grain, BlockBody body)
         tbb::simple_partitioner());
 }
 
-struct ThreadPool::Inside {
-    explicit Inside(int threads)
-        : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
-          arena(threads)
+namespace {
+
+// oneTBB obeys the least of all limits that live, so pools share one: that of the largest, until
+// the last of them is gone.
+class SharedLimit {
+public:
+    void enter(int threads)
     {
+        const std::lock_guard lock(guard_);
+        ++pools_;
+        if (limit_ && threads <= most_) return;
+        most_ = threads;
+        limit_.reset();
+        limit_.emplace(tbb::global_control::max_allowed_parallelism,
+                       static_cast<std::size_t>(threads));
     }
-    tbb::global_control limit;
+    void leave()
+    {
+        const std::lock_guard lock(guard_);
+        if (--pools_ == 0) limit_.reset();
+    }
+
+private:
+    std::mutex guard_;
+    std::optional<tbb::global_control> limit_;
+    int pools_ = 0, most_ = 0;
+};
+
+SharedLimit& shared_limit()
+{
+    static SharedLimit limit;
+    return limit;
+}
+
+}  // namespace
+
+struct ThreadPool::Inside {
+    explicit Inside(int threads) : arena(threads) { shared_limit().enter(threads); }
+    ~Inside() { shared_limit().leave(); }
+    Inside(const Inside&) = delete;
+    Inside& operator=(const Inside&) = delete;
     tbb::task_arena arena;
 };
 

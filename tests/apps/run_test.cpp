@@ -202,6 +202,7 @@ TEST(Run, AFullDiskIsSaid)
         EXPECT_EQ(refused.code, 2) << option;
         EXPECT_EQ(refused.err.find(std::string("error: ") + option + ": /dev/full: "), 0u)
             << refused.err;
+        EXPECT_EQ(count_of(refused.err, "\n"), 1u) << refused.err;
     }
 }
 

@@ -320,6 +320,11 @@ TEST(Queries, OverlapsAgreeWithPointsWithinTheShape)
         ASSERT_EQ(std::adjacent_find(bodies.begin(), bodies.end()), bodies.end());
         const std::vector<Vec3> points = points_within(asked[i].shape);
         for (std::size_t body = 0; body < ids.size(); ++body) {
+            // None of the shapes is larger than 1.5 m.
+            if (strewn.distance(body, asked[i].pose.position) > 1.5) {
+                ASSERT_EQ(std::find(bodies.begin(), bodies.end(), ids[body]), bodies.end());
+                continue;
+            }
             double least = kInfinity;
             for (const Vec3& point : points)
                 least =
@@ -339,6 +344,60 @@ TEST(Queries, OverlapsAgreeWithPointsWithinTheShape)
     }
     EXPECT_GT(overlaps, 80);
     EXPECT_LT(disputed, overlaps);
+}
+
+// Balls from 1 mm to 100 m, some far from all others: searches that go on for many rounds.
+TEST(Queries, FindAmongAllSizesWhatTheFormulaOfABallFinds)
+{
+    Dice dice{std::mt19937_64(31)};
+    Scene scene;
+    std::vector<double> radius;
+    for (std::uint32_t i = 0; i < 1500; ++i) {
+        radius.push_back(std::pow(10.0, dice.between(-3, 2)));
+        scene.shapes.push_back({"", SphereShape{radius.back()}});
+        BodyDescription body;
+        body.shape = i;
+        body.position = dice.point(i % 50 == 0 ? 1e5 : 500);
+        scene.bodies.push_back(body);
+    }
+    const World world(scene);
+    std::vector<RayQuery> rays;
+    std::vector<PointQuery> points;
+    for (std::size_t i = 0; i < 1000; ++i) {
+        RayQuery& ray = rays.emplace_back();
+        ray.origin = dice.point(i % 3 == 0 ? 2e5 : 600);
+        const std::size_t aim = i * 7 % radius.size();
+        ray.direction = scene.bodies[aim].position + dice.point(1.2 * radius[aim]) - ray.origin;
+        if (i % 4 == 0) ray.max_distance = dice.between(0, 2e3);
+        points.push_back({ray.origin, ray.max_distance});
+    }
+    std::vector<RayHit> hits(rays.size());
+    std::vector<NearestHit> nearest(points.size());
+    Queries queries(world);
+    queries.cast_rays(rays, hits);
+    queries.find_nearest(points, nearest);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        SCOPED_TRACE("question " + std::to_string(i) + " of seed 31");
+        const Vec3 along = rays[i].direction.normalized();
+        double first = kInfinity, least = kInfinity, graze = kInfinity;
+        for (std::size_t k = 0; k < radius.size(); ++k) {
+            const Vec3 to = scene.bodies[k].position - rays[i].origin;
+            const double over = std::max(0.0, to.norm() - radius[k]);
+            if (over <= rays[i].max_distance) least = std::min(least, over);
+            const double beside = to.cross(along).norm();
+            graze = std::min(graze, std::abs(beside - radius[k]));
+            if (beside > radius[k]) continue;
+            const double half = std::sqrt(radius[k] * radius[k] - beside * beside);
+            const double enter = std::max(0.0, to.dot(along) - half);
+            if (to.dot(along) + half >= 0 && enter <= rays[i].max_distance)
+                first = std::min(first, enter);
+        }
+        ASSERT_EQ(nearest[i].found, least < kInfinity);
+        ASSERT_NEAR(nearest[i].found ? nearest[i].distance : 0, nearest[i].found ? least : 0, 1e-9);
+        if (graze < 1e-8) continue;
+        ASSERT_EQ(hits[i].hit, first < kInfinity);
+        ASSERT_NEAR(hits[i].hit ? hits[i].distance : 0, hits[i].hit ? first : 0, 1e-6);
+    }
 }
 
 TEST(Queries, AnswersDoNotDependOnThreads)

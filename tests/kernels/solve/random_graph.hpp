@@ -1,0 +1,51 @@
+// Random graphs of bodies and contacts, for tests of islands and colors.
+#pragma once
+
+#include "kernels/data/bodies.hpp"
+#include "kernels/data/contacts.hpp"
+
+#include <random>
+
+namespace throng::testing {
+
+struct Graph {
+    BodyStates states;
+    ActiveContacts contacts;
+
+    bool movable(std::uint32_t body) const { return states.dynamic(body) && states.moves(body); }
+};
+
+inline void add_body(Graph& graph, BodyKind kind, bool awake)
+{
+    graph.states.kind.push_back(kind);
+    graph.states.awake.push_back(awake ? 1 : 0);
+}
+
+/// Some bodies still, kinematic, asleep or gone; every contact has a movable side.
+inline Graph random_graph(std::uint32_t bodies, std::size_t contacts, std::mt19937& random)
+{
+    Graph graph;
+    for (std::uint32_t i = 0; i < bodies; ++i)
+        switch (random() % 10) {
+        case 0: add_body(graph, BodyKind::still, false); break;
+        case 1: add_body(graph, BodyKind::kinematic, true); break;
+        case 2: add_body(graph, BodyKind::dynamic, false); break;
+        case 3: add_body(graph, BodyKind::gone, false); break;
+        default: add_body(graph, BodyKind::dynamic, true);
+        }
+    for (std::size_t i = 0; i < contacts; ++i) {
+        const auto a = static_cast<std::uint32_t>(random() % bodies);
+        const auto b = static_cast<std::uint32_t>(random() % bodies);
+        const auto gone = [&](std::uint32_t x) { return graph.states.kind[x] == BodyKind::gone; };
+        if (a == b || gone(a) || gone(b) || (!graph.movable(a) && !graph.movable(b))) continue;
+        ActiveContacts::Entry entry;
+        entry.body_a = a;
+        entry.body_b = b;
+        entry.slot = static_cast<std::uint32_t>(i);
+        entry.points = static_cast<std::uint8_t>(1 + random() % 4);
+        graph.contacts.entries.push_back(entry);
+    }
+    return graph;
+}
+
+}  // namespace throng::testing
