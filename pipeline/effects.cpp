@@ -19,12 +19,14 @@ struct Known {
 
 // In the order of the enumeration.
 constexpr Known kKnown[] = {
-    {"motion", true},           {"gravity", true},      {"forces", false},
-    {"drive", true},            {"rotation", true},     {"gyroscopic", true},
-    {"contact", true},          {"friction", true},     {"rolling friction", true},
-    {"restitution", true},      {"fast motion", false}, {"mesh contact", true},
-    {"springs", false},         {"attractors", false},  {"wind", false},
-    {"drag", false},            {"pivot", false},       {"sleeping", true},
+    {"motion", true},         {"gravity", true},        {"forces", false},
+    {"drive", true},          {"rotation", true},       {"gyroscopic", true},
+    {"contact", true},        {"friction", true},       {"rolling friction", true},
+    {"restitution", true},    {"fast motion", false},   {"mesh contact", true},
+    {"voxel contact", false}, {"springs", false},       {"attractors", false},
+    {"wind", false},          {"drag", false},          {"pivot", false},
+    {"joints", false},        {"motors", false},        {"sleeping", true},
+    {"sensors", false},       {"events", false},        {"agents", false},
 };
 static_assert(std::size(kKnown) == kEffects);
 

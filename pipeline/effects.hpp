@@ -26,14 +26,20 @@ enum class Effect : std::uint8_t {
     restitution,
     fast_motion,
     mesh_contact,
+    voxel_contact,
     springs,
     attractors,
     wind,
     drag,
     pivot,
+    joints,
+    motors,
     sleeping,
+    sensors,
+    events,
+    agents,
 };
-inline constexpr int kEffects = static_cast<int>(Effect::sleeping) + 1;
+inline constexpr int kEffects = static_cast<int>(Effect::agents) + 1;
 
 std::string_view name_of(Effect effect);
 

@@ -28,7 +28,8 @@ private:
         ShapeRef shape;
         Pose placed;
     };
-    /// The best answer so far of a ray or a point: a collider, and where on it in its own frame.
+    /// The best answer so far: a collider and, in its own frame, the normal where a ray meets it or
+    /// the point of it that is nearest.
     struct Best {
         double distance = std::numeric_limits<double>::infinity();
         std::uint32_t collider = kNobody;

@@ -1,6 +1,6 @@
 #include "pipeline/world.hpp"
 
-#include "kernels/math/hash.hpp"
+#include "kernels/solve/sweep.hpp"
 #include "pipeline/scene_check.hpp"
 #include "pipeline/step_table.hpp"
 #include "pipeline/world_state.hpp"
@@ -11,8 +11,23 @@
 
 namespace throng {
 
+namespace {
+
+void check_settings(const Settings& settings, const char* caller)
+{
+    Scene scene;
+    scene.settings = settings;
+    if (const std::string trouble = check_scene(scene); !trouble.empty())
+        throw std::invalid_argument(std::string(caller) + ": " + trouble);
+}
+
+}  // namespace
+
 World::State::State(const Settings& settings, int thread_count) : pool(thread_count)
 {
+    check_settings(settings, "world");
+    // Throws here and not in a step where the environment asks for lanes that cannot be had.
+    solve_kernels<float>();
     if (settings.precision == Precision::double_) step.emplace<Step<double>>();
     get<Conditions>().settings = settings;
 }
@@ -24,29 +39,6 @@ std::uint32_t World::State::place_of(BodyId body, const char* caller) const
         return body.index;
     throw std::invalid_argument(std::string(caller) + ": body " + std::to_string(body.index)
                                 + " was removed or never was; give one that is alive");
-}
-
-void World::State::wake(std::uint32_t body)
-{
-    BodyStates& states = get<BodyStates>();
-    const std::uint32_t bed = states.bed[body];
-    if (bed == kNobody) return;
-    Beds& beds = get<Beds>();
-    for (const std::uint32_t sleeper : beds.sleepers[bed]) {
-        states.awake[sleeper] = 1;
-        states.quiet_time[sleeper] = 0;
-        states.bed[sleeper] = kNobody;
-    }
-    beds.sleepers[bed].clear();
-    beds.free.push_back(bed);
-}
-
-void World::State::touch(std::uint32_t body)
-{
-    const Colliders& colliders = get<Colliders>();
-    Bounds& bounds = get<Bounds>();
-    for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
-        bounds.touched.push_back(colliders.begin[body] + i);
 }
 
 void World::State::choose_broad_phase()
@@ -93,6 +85,7 @@ void World::State::refresh()
                             get<Masses>(), get<Drives>(), get<Shapes>(), get<Colliders>(),
                             get<Surfaces>(), get<PairFilter>(), requests, names, material_names});
     conditions.effects = effects.on;
+    empty_unused();
     if (effects.on.has(Effect::contact)) choose_broad_phase();
     std::visit(
         [&](auto& chosen) {
@@ -127,48 +120,6 @@ std::vector<BodyId> World::add(const Scene& scene)
     if (const std::string trouble = check_scene(scene); !trouble.empty())
         throw std::invalid_argument("scene: " + trouble);
     return SceneBuilder(*state_).add(scene);
-}
-
-void World::remove(std::span<const BodyId> bodies)
-{
-    State& state = *state_;
-    for (const BodyId id : bodies) state.place_of(id, "remove");
-    BodyStates& states = state.get<BodyStates>();
-    Colliders& colliders = state.get<Colliders>();
-    // What rested on them has to notice.
-    std::vector<std::uint8_t> going(state.generation.size(), 0);
-    for (const BodyId id : bodies) going[id.index] = 1;
-    for (const PairKey key : state.get<Pairs>().keys) {
-        const std::uint32_t a = colliders.body[first_of(key)], b = colliders.body[second_of(key)];
-        if (going[a] != 0) state.wake(b);
-        if (going[b] != 0) state.wake(a);
-    }
-    for (const BodyId id : bodies) {
-        const std::uint32_t body = id.index;
-        if (states.kind[body] == BodyKind::gone) continue;
-        state.wake(body);
-        state.touch(body);
-        states.kind[body] = BodyKind::gone;
-        states.awake[body] = 0;
-        const std::uint32_t first = colliders.begin[body], count = colliders.count[body];
-        for (std::uint32_t i = 0; i < count; ++i) {
-            colliders.body[first + i] = kNobody;
-            state.get<PairFilter>().mask[first + i] = 0;
-        }
-        if (count > 0) state.free_colliders[count].push_back(first);
-        Drives& drives = state.get<Drives>();
-        const auto at = std::lower_bound(drives.body.begin(), drives.body.end(), body);
-        if (at != drives.body.end() && *at == body) {
-            drives.velocity.erase(drives.velocity.begin() + (at - drives.body.begin()));
-            drives.body.erase(at);
-        }
-        if (body < state.names.size()) state.names[body].clear();
-        ++state.generation[body];
-        state.free_bodies.push_back(body);
-        --state.alive;
-    }
-    std::sort(state.free_bodies.rbegin(), state.free_bodies.rend());
-    state.effects_stale = true;
 }
 
 void World::step(int steps)
@@ -224,6 +175,7 @@ void World::set_settings(const Settings& settings)
 {
     if (settings.precision != this->settings().precision)
         throw std::invalid_argument("set_settings: precision cannot change in a world; make another");
+    check_settings(settings, "set_settings");
     state_->get<Conditions>().settings = settings;
     state_->effects_stale = true;
 }
@@ -304,43 +256,6 @@ Vec3 World::velocity(BodyId body) const
 Vec3 World::angular_velocity(BodyId body) const
 {
     return state_->get<Velocities>().angular[state_->place_of(body, "angular_velocity")];
-}
-
-void World::set_pose(BodyId body, const Pose& pose)
-{
-    const std::uint32_t at = state_->place_of(body, "set_pose");
-    const double length = std::sqrt(pose.orientation.squaredNorm());
-    if (!pose.position.allFinite() || !(std::abs(length - 1) < 1e-6))
-        throw std::invalid_argument("set_pose: give a finite position and a unit quaternion");
-    Poses& poses = state_->get<Poses>();
-    poses.orientation[at] = Quat(pose.orientation.coeffs() / length);
-    poses.position[at] = poses.orientation[at] * state_->center[at] + pose.position;
-    const Colliders& colliders = state_->get<Colliders>();
-    for (const PairKey key : state_->get<Pairs>().keys) {
-        const std::uint32_t a = colliders.body[first_of(key)], b = colliders.body[second_of(key)];
-        if (a == at || b == at) state_->wake(a == at ? b : a);
-    }
-    state_->wake(at);
-    state_->touch(at);
-}
-
-void World::set_velocity(BodyId body, const Vec3& linear, const Vec3& angular)
-{
-    const std::uint32_t at = state_->place_of(body, "set_velocity");
-    if (!linear.allFinite() || !angular.allFinite())
-        throw std::invalid_argument("set_velocity: give finite numbers, m/s and rad/s");
-    state_->get<Velocities>().linear[at] = linear;
-    state_->get<Velocities>().angular[at] = angular;
-    state_->wake(at);
-    state_->effects_stale = true;
-}
-
-void World::add_impulse(BodyId body, const Vec3& impulse)
-{
-    const std::uint32_t at = state_->place_of(body, "add_impulse");
-    if (!impulse.allFinite()) throw std::invalid_argument("add_impulse: give finite numbers, N s");
-    state_->get<Velocities>().linear[at] += impulse * state_->get<Masses>().inverse_mass[at];
-    state_->wake(at);
 }
 
 Vec3 World::contact_force(BodyId body) const

@@ -14,6 +14,7 @@ namespace throng {
 /// A step over one kind of number.
 template <class Real>
 struct Step {
+    using Number = Real;
     StepData<Real> data;
     std::unique_ptr<StepGraph<Real>> graph;
 };
@@ -64,8 +65,18 @@ struct World::State {
     void wake(std::uint32_t body);
     /// The broad phase has to look at a body's colliders again.
     void touch(std::uint32_t body);
+    /// Wakes whoever is in a pair with one of some bodies (by body: 1 for those).
+    void wake_neighbors(const std::vector<std::uint8_t>& of);
+    /// Drops the pairs of some bodies with all they remember.
+    void forget_pairs(const std::vector<std::uint8_t>& of);
+    /// Sets velocities as far as the body is free to have them, and wakes it. Beyond what a step can
+    /// hold it is quarantined.
+    void set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular);
+    void quarantine(std::uint32_t body);
     /// Effects and graph, brought up to date.
     void refresh();
+    /// Empties what no stage writes any more, and wakes all where nobody may sleep.
+    void empty_unused();
     void choose_broad_phase();
 };
 

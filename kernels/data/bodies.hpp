@@ -8,12 +8,21 @@
 #include "kernels/math/types.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
 
 namespace throng {
 
 inline constexpr std::uint32_t kNobody = 0xffffffffu;
+
+/// True for what a step can hold, of any quantity of a body: finite, with squares that fit float.
+/// Far beyond what a scene may state (see scene_rules.hpp); a body that gets here is lost.
+inline bool holdable(const Vec3& v)
+{
+    constexpr double kMost = 1e18;
+    return std::abs(v.x()) < kMost && std::abs(v.y()) < kMost && std::abs(v.z()) < kMost;
+}
 
 /// Where each body's center of mass is and how its axes are turned.
 struct Poses {

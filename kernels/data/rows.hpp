@@ -15,7 +15,8 @@ inline constexpr int kBlock = 16;
 /// What the solver knows of one body, in three lines of eight numbers.
 ///
 ///   motion   velocity, 0, angular velocity, 0
-///   drift    how far it moved since the step began (3), 0, and its turn as a quaternion x, y, z, w
+///   drift    how far it moved since the step began (3), 1 once it ran away (see stop_runaways) and
+///            else 0, and its turn as a quaternion x, y, z, w
 ///   inertia  inverse mass, inverse inertia in world axes xx, yy, zz, xy, xz, yz, 0
 template <class Real>
 struct SolverBody {

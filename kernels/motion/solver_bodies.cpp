@@ -2,7 +2,9 @@
 
 #include "kernels/math/rotation.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace throng {
 
@@ -40,6 +42,20 @@ void add_velocity(std::span<SolverBody<Real>> bodies, const Vec3& change)
 }
 
 template <class Real>
+void stop_runaways(std::span<SolverBody<Real>> bodies)
+{
+    constexpr Real kGreatest = Real(1e16);
+    for (SolverBody<Real>& body : bodies) {
+        bool sound = true;
+        for (const Real number : body.motion) sound = sound && std::abs(number) < kGreatest;
+        if (sound) continue;
+        std::fill(std::begin(body.motion), std::end(body.motion), Real(0));
+        std::fill(std::begin(body.inertia), std::end(body.inertia), Real(0));
+        body.drift[3] = 1;
+    }
+}
+
+template <class Real>
 void move_bodies(std::span<SolverBody<Real>> bodies, Real time)
 {
     for (SolverBody<Real>& body : bodies)
@@ -69,6 +85,7 @@ void turn_bodies(std::span<SolverBody<Real>> bodies, Real time)
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void add_velocity<Real>(std::span<SolverBody<Real>>, const Vec3&);                    \
+    template void stop_runaways<Real>(std::span<SolverBody<Real>>);                                \
     template void move_bodies<Real>(std::span<SolverBody<Real>>, Real);                            \
     template void turn_bodies<Real>(std::span<SolverBody<Real>>, Real);
 THRONG_INSTANTIATE(float)

@@ -70,6 +70,7 @@ public:
         for (int step = 0; step < conditions_.settings.substeps; ++step) {
             if (conditions_.has(Effect::gravity)) add_gravity();
             if (conditions_.has(Effect::gyroscopic)) turn_gyroscopic();
+            for_bodies([](auto bodies, std::size_t) { stop_runaways(bodies); });
             warm_start();
             for (int visit = 0; visit < visits; ++visit) sweep(true);
             move();
@@ -188,7 +189,7 @@ private:
     Visit<Real> visit_;
 };
 
-// Gives one body its new state. False, and the body as it was, when that is not finite.
+// Gives one body its new state. False, and the body as it was, when that is not sound.
 template <class Real>
 bool take_back(const SolverBody<Real>& seat, std::uint32_t body, Poses& poses, Velocities& velocities)
 {
@@ -199,7 +200,7 @@ bool take_back(const SolverBody<Real>& seat, std::uint32_t body, Poses& poses, V
     Quat orientation = turn_of(seat) * poses.orientation[body];
     const double length = std::sqrt(orientation.squaredNorm());
     orientation.coeffs() /= length;
-    if (!position.allFinite() || !orientation.coeffs().allFinite() || !v.allFinite()
+    if (ran_away(seat) || !position.allFinite() || !orientation.coeffs().allFinite() || !v.allFinite()
         || !w.allFinite())
         return false;
     poses.position[body] = position;

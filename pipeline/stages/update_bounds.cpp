@@ -25,6 +25,7 @@ Box3 grown(const Box3& box, double by)
 struct Mover {
     Vec3 velocity;  // m/s, of the collider's middle
     double sweep;   // m/s, of its fastest point besides
+    double widest;  // m, turning takes no point further than this
 };
 
 Mover mover_of(const Colliders& colliders,
@@ -37,7 +38,7 @@ Mover mover_of(const Colliders& colliders,
     const Vec3& spin = velocities.angular[body];
     const Vec3 arm = placed.position - poses.position[body];
     return {velocities.linear[body] + spin.cross(arm),
-            spin.norm() * colliders.outer_radius[collider]};
+            spin.norm() * colliders.outer_radius[collider], 2 * colliders.outer_radius[collider]};
 }
 
 }  // namespace
@@ -83,7 +84,8 @@ void update_bounds(const Conditions& conditions,
         }
         const Mover mover = mover_of(colliders, velocities, placed, poses, collider);
         const double rest = kRestingReach * colliders.inner_extent[collider];
-        const double reach = rest + (mover.velocity.norm() + mover.sweep) * dt;
+        const double reach
+            = rest + mover.velocity.norm() * dt + std::min(mover.sweep * dt, mover.widest);
         bounds.reach[collider] = reach;
         if (touched[collider] == 0 && bounds.boxes[collider].contains(grown(tight, reach))) return;
         bounds.boxes[collider]

@@ -42,17 +42,9 @@ void wake_touched(const Pairs& pairs,
     std::sort(rest.awoken.begin(), rest.awoken.end());
 }
 
-template void wake_touched<float>(const Pairs&,
-                                  const Colliders&,
-                                  const ConvexContacts<float>&,
-                                  Beds&,
-                                  BodyStates&,
-                                  Rest&);
-template void wake_touched<double>(const Pairs&,
-                                   const Colliders&,
-                                   const ConvexContacts<double>&,
-                                   Beds&,
-                                   BodyStates&,
-                                   Rest&);
+template void wake_touched<float>(
+    const Pairs&, const Colliders&, const ConvexContacts<float>&, Beds&, BodyStates&, Rest&);
+template void wake_touched<double>(
+    const Pairs&, const Colliders&, const ConvexContacts<double>&, Beds&, BodyStates&, Rest&);
 
 }  // namespace throng
