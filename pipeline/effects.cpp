@@ -85,7 +85,8 @@ private:
         const auto mover = first_body([&](std::size_t body) { return movable(body); });
         if (mover == kNobody) return;
         call(Effect::motion, name(mover));
-        const auto falls = first_body([&](std::size_t b) { return facts_.masses.inverse_mass[b] > 0; });
+        const auto falls = first_body(
+            [&](std::size_t b) { return movable(b) && facts_.masses.inverse_mass[b] > 0; });
         if (!facts_.conditions.gravity.isZero(0) && falls != kNobody)
             call(Effect::gravity, "gravity of the scene");
         if (!facts_.drives.body.empty()) call(Effect::drive, name(facts_.drives.body.front()));

@@ -127,6 +127,7 @@ std::string World::state_hash() const
         }
         add3(contact.friction);
         hash.add(contact.twist);
+        add3(contact.rolling);
     };
     std::visit(
         [&](const auto& chosen) {

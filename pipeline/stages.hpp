@@ -8,7 +8,7 @@
 
 namespace throng {
 
-/// Sets the velocities that the user drives, and puts to rest what could not enter the step finite.
+/// Sets the velocities that the user drives.
 void drive_bodies(const Drives&, const BodyStates&, Velocities&);
 
 /// Boxes round the shapes of what moves: a body within its margin costs no more than a look.
@@ -51,6 +51,7 @@ void collide_meshes(const Conditions&,
 template <class Real>
 void wake_touched(const Pairs&,
                   const Colliders&,
+                  const Velocities&,
                   const ConvexContacts<Real>&,
                   Beds&,
                   BodyStates&,
@@ -111,7 +112,13 @@ void integrate_poses(const Conditions&,
 void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
 
 /// Islands that have been quiet long enough fall asleep.
-void rest_islands(const Conditions&, const Islands&, BodyStates&, Beds&, Velocities&, Rest&);
+void rest_islands(const Conditions&,
+                  const Drives&,
+                  const Islands&,
+                  BodyStates&,
+                  Beds&,
+                  Velocities&,
+                  Rest&);
 
 /// A row of a stage's inner table: what runs within a substep, and who calls for it.
 struct InnerRow {

@@ -128,7 +128,7 @@ test_sanitized() {
     export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
     export TSAN_OPTIONS=halt_on_error=1
     if [[ $1 == tsan ]]; then
-        which+=(-R "Thread|Blocks|Graph|Sort")
+        which+=(-R "Thread|Blocks|Graph|Sort|SameBits/|Determinism" -E "Lanes|Catalogue/HardCases")
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi
     fi

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kNobody = 0xffffffffu;
 /// Far beyond what a scene may state (see scene_rules.hpp); a body that gets here is lost.
 inline bool holdable(const Vec3& v)
 {
-    constexpr double kMost = 1e18;
+    constexpr double kMost = 1e16;
     return std::abs(v.x()) < kMost && std::abs(v.y()) < kMost && std::abs(v.z()) < kMost;
 }
 

@@ -15,10 +15,10 @@ struct Flight {
     Pose pose;
     Vec3 linear, angular;
 
-    bool finite() const
+    bool sound() const
     {
-        return pose.position.allFinite() && pose.orientation.coeffs().allFinite()
-            && linear.allFinite() && angular.allFinite();
+        return holdable(pose.position) && pose.orientation.coeffs().allFinite()
+            && holdable(linear) && holdable(angular);
     }
 };
 
@@ -72,7 +72,7 @@ void integrate_poses(const Conditions& conditions,
             const auto body = static_cast<std::uint32_t>(i);
             Flight flight{poses.at(i), velocities.linear[i], velocities.angular[i]};
             fly(conditions, masses, body, flight);
-            if (!flight.finite()) {
+            if (!flight.sound()) {
                 trouble.of_block[block].push_back(body);
                 continue;
             }

@@ -40,6 +40,7 @@ void put_to_bed(std::span<const std::uint32_t> bodies,
 }  // namespace
 
 void rest_islands(const Conditions& conditions,
+                  const Drives& drives,
                   const Islands& islands,
                   BodyStates& states,
                   Beds& beds,
@@ -49,7 +50,9 @@ void rest_islands(const Conditions& conditions,
     rest.rested.clear();
     const Settings& settings = conditions.settings;
     const auto quiet_for = [&](std::uint32_t body) {
-        const bool quiet = speed_of(velocities, states, body) < settings.sleep_speed;
+        // Who is driven wants to move, even where something holds it up.
+        const bool quiet = speed_of(velocities, states, body) < settings.sleep_speed
+            && !std::binary_search(drives.body.begin(), drives.body.end(), body);
         states.quiet_time[body] = quiet ? states.quiet_time[body] + settings.dt : 0.0;
         return states.quiet_time[body];
     };

@@ -200,8 +200,8 @@ bool take_back(const SolverBody<Real>& seat, std::uint32_t body, Poses& poses, V
     Quat orientation = turn_of(seat) * poses.orientation[body];
     const double length = std::sqrt(orientation.squaredNorm());
     orientation.coeffs() /= length;
-    if (ran_away(seat) || !position.allFinite() || !orientation.coeffs().allFinite() || !v.allFinite()
-        || !w.allFinite())
+    if (ran_away(seat) || !holdable(position) || !orientation.coeffs().allFinite() || !holdable(v)
+        || !holdable(w))
         return false;
     poses.position[body] = position;
     poses.orientation[body] = orientation;

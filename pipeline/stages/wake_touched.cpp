@@ -24,6 +24,7 @@ void wake_bed(std::uint32_t bed, Beds& beds, BodyStates& states, Rest& rest)
 template <class Real>
 void wake_touched(const Pairs& pairs,
                   const Colliders& colliders,
+                  const Velocities& velocities,
                   const ConvexContacts<Real>& contacts,
                   Beds& beds,
                   BodyStates& states,
@@ -31,20 +32,33 @@ void wake_touched(const Pairs& pairs,
 {
     rest.awoken.clear();
     if (beds.sleepers.size() == beds.free.size()) return;
-    for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
-        if (contacts.of_pair[i].count == 0) continue;
-        const std::uint32_t a = colliders.body[first_of(pairs.keys[i])];
-        const std::uint32_t b = colliders.body[second_of(pairs.keys[i])];
-        if (states.moves(a) == states.moves(b)) continue;
-        const std::uint32_t asleep = states.moves(a) ? b : a;
-        if (states.bed[asleep] != kNobody) wake_bed(states.bed[asleep], beds, states, rest);
-    }
+    // What moves by itself and stands still disturbs nobody.
+    const auto stirs = [&](std::uint32_t body) {
+        return states.moves(body)
+            && (states.dynamic(body) || !velocities.linear[body].isZero(0)
+                || !velocities.angular[body].isZero(0));
+    };
+    const auto disturb = [&](std::uint32_t a, std::uint32_t b) {
+        if (states.bed[b] != kNobody && stirs(a)) wake_bed(states.bed[b], beds, states, rest);
+    };
+    const auto meet = [&](PairKey key) {
+        const std::uint32_t a = colliders.body[first_of(key)];
+        const std::uint32_t b = colliders.body[second_of(key)];
+        disturb(a, b);
+        disturb(b, a);
+    };
+    for (std::size_t i = 0; i < pairs.keys.size(); ++i)
+        if (contacts.of_pair[i].count > 0) meet(pairs.keys[i]);
+    // Contacts with meshes are not known yet: a mesh that moves wakes whoever is near.
+    for (const std::uint32_t i : pairs.on_mesh) meet(pairs.keys[i]);
     std::sort(rest.awoken.begin(), rest.awoken.end());
 }
 
-template void wake_touched<float>(
-    const Pairs&, const Colliders&, const ConvexContacts<float>&, Beds&, BodyStates&, Rest&);
-template void wake_touched<double>(
-    const Pairs&, const Colliders&, const ConvexContacts<double>&, Beds&, BodyStates&, Rest&);
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void wake_touched<Real>(const Pairs&, const Colliders&, const Velocities&,            \
+                                     const ConvexContacts<Real>&, Beds&, BodyStates&, Rest&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
 
 }  // namespace throng

@@ -121,8 +121,9 @@ TEST(Exponential, AgreesWithTheAxisAndAngle)
         ASSERT_NEAR(q.norm(), 1, 4e-16) << size;
         ASSERT_NEAR(q.w(), std::cos(half), 4e-16) << size;
         const Vec3 wanted = turn.normalized() * std::sin(half);
-        ASSERT_LE((q.vec() - wanted).norm(), 1e-15 * std::min(1.0, half) + 1e-15 * std::abs(
-            std::sin(half)) + 2e-16 * half) << size;
+        ASSERT_LE((q.vec() - wanted).norm(),
+                  1e-15 * std::min(1.0, half) + 1e-15 * std::abs(std::sin(half)) + 2e-16 * half)
+            << size;
     }
 }
 

@@ -1,6 +1,7 @@
 // Solver bodies: what a substep does to them, against the same in double.
-#include "kernels/math/rotation.hpp"
 #include "kernels/motion/solver_bodies.hpp"
+
+#include "kernels/math/rotation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -93,8 +94,8 @@ TEST(SolverBodies, WhatIsNotFiniteStaysSo)
 {
     // The stage that takes bodies back counts on seeing it.
     for (const double spin : {1e25, HUGE_VAL, std::nan("")}) {
-        std::vector<SolverBody<float>> bodies
-            = {body_with<float>(Vec3::Zero(), Vec3(spin, 0, 0), 1)};
+        std::vector<SolverBody<float>> bodies = {
+            body_with<float>(Vec3::Zero(), Vec3(spin, 0, 0), 1)};
         turn_bodies<float>(bodies, 1.0f / 256);
         const Quat q = turn_of(bodies[0]);
         EXPECT_TRUE(!q.coeffs().allFinite() || std::abs(q.norm() - 1) < 1e-6) << spin;

@@ -86,8 +86,7 @@ TEST(ThreadPool, MeetsEveryThreadEvenWhereThereAreFewerCores)
 TEST(ThreadPool, OfNoNumberTakesTheMachines)
 {
     const ThreadPool pool(0);
-    EXPECT_EQ(pool.threads(),
-              std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+    EXPECT_EQ(pool.threads(), std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
 }
 
 TEST(ThreadPool, DoesNotHoldAnotherBack)

@@ -1,5 +1,6 @@
 // Coloring: each contact laid out once, no color moves a body twice, batches share nothing.
 #include "kernels/solve/coloring.hpp"
+
 #include "kernels/solve/islands.hpp"
 #include "tests/kernels/solve/random_graph.hpp"
 
@@ -90,8 +91,7 @@ void check_layout(const Graph& graph, const Layout& layout)
                         const auto at = static_cast<std::uint32_t>(slot);
                         ASSERT_GE(at, batch.first_body);
                         ASSERT_LE(at, batch.first_body + batch.dynamic + batch.kinematic);
-                        if (graph.movable(body)
-                            || graph.states.kind[body] == BodyKind::kinematic) {
+                        if (graph.movable(body) || graph.states.kind[body] == BodyKind::kinematic) {
                             ASSERT_EQ(layout.body_of_slot[at], body);
                         } else {
                             ASSERT_EQ(at, batch.first_body);

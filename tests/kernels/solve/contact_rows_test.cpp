@@ -39,8 +39,8 @@ TEST(ContactRows, EffectiveMassesAreThoseOfBruteForce)
             Vec3 center_a = Vec3::Zero(), center_b = Vec3::Zero();
             for (int k = 0; k < contact.count; ++k) {
                 const auto& point = contact.points[static_cast<std::size_t>(k)];
-                const double answer
-                    = contact.normal.dot(answer_to(contact.normal, point.from_a, point.from_b, a, b));
+                const double answer =
+                    contact.normal.dot(answer_to(contact.normal, point.from_a, point.from_b, a, b));
                 ASSERT_NEAR(made.block.point[k].mass.at[lane] * answer, 1, 1e-12);
                 center_a += point.from_a / contact.count;
                 center_b += point.from_b / contact.count;
@@ -62,8 +62,8 @@ TEST(ContactRows, EffectiveMassesAreThoseOfBruteForce)
             double greatest = 0;
             for (int i = 0; i < 360; ++i) {
                 const Vec3 along = std::cos(i * 0.0174532925) * t + std::sin(i * 0.0174532925) * u;
-                greatest = std::max(
-                    greatest, along.dot(answer_to(along, center_a, center_b, a, b)));
+                greatest =
+                    std::max(greatest, along.dot(answer_to(along, center_a, center_b, a, b)));
             }
             ASSERT_NEAR(made.block.sliding_mass.at[lane] * greatest, 1, 1e-3);
             ASSERT_NEAR(made.block.sliding_mass.at[lane] * made.block.sliding_answer.at[lane], 1,
@@ -207,7 +207,8 @@ TEST(CarryImpulses, ASinglePointTakesNoTwist)
 
 TEST(Softness, IsADampedSpringIntegratedImplicitly)
 {
-    // One mass on a spring and a damper, by implicit Euler on paper: v' = (v - h w^2 x) / (1 + 2 z h w
+    // One mass on a spring and a damper, by implicit Euler on paper: v' = (v - h w^2 x) / (1 + 2 z
+    // h w
     // + h^2 w^2). The solver's form: v' = v - (1 - leak) (v + bias x) - leak * impulse, impulse 0.
     for (const double rate : {5.0, 30.0, 100.0})
         for (const double damping : {0.5, 1.0, 10.0})
@@ -215,7 +216,8 @@ TEST(Softness, IsADampedSpringIntegratedImplicitly)
                 const auto soft = softness<double>(rate, damping, h);
                 const double w = 2 * 3.14159265358979323846 * rate;
                 const double x = -0.01, v = -0.3;
-                const double wanted = (v - h * w * w * x) / (1 + 2 * damping * h * w + h * h * w * w);
+                const double wanted =
+                    (v - h * w * w * x) / (1 + 2 * damping * h * w + h * h * w * w);
                 const double got = v - (1 - soft.impulse_scale) * (v + soft.bias_rate * x);
                 EXPECT_NEAR(got, wanted, 1e-13);
                 EXPECT_GT(soft.impulse_scale, 0);

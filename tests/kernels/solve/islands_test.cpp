@@ -1,5 +1,6 @@
 // Islands: union-find against a search through the graph.
 #include "kernels/solve/islands.hpp"
+
 #include "tests/kernels/solve/random_graph.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +33,8 @@ Islands islands_by_search(const Graph& graph)
             island.push_back(body);
             for (const auto& contact : contacts) {
                 if (contact.body_a != body && contact.body_b != body) continue;
-                const std::uint32_t other = contact.body_a == body ? contact.body_b : contact.body_a;
+                const std::uint32_t other =
+                    contact.body_a == body ? contact.body_b : contact.body_a;
                 if (!graph.movable(other) || seen[other]) continue;
                 seen[other] = true;
                 next.push_back(other);

@@ -14,20 +14,20 @@ namespace throng::testing {
 
 /// What a block is to be made of.
 struct BlockWish {
-    int lanes = kBlock;         // in use, from lane 0
-    int points = 4;             // greatest number a contact
-    bool still = true;          // some contacts with the still body, some with a kinematic one
-    bool impulses = true;       // contacts start with some
-    double greatest_gap = 0.02; // m; overlaps go as far
+    int lanes = kBlock;          // in use, from lane 0
+    int points = 4;              // greatest number a contact
+    bool still = true;           // some contacts with the still body, some with a kinematic one
+    bool impulses = true;        // contacts start with some
+    double greatest_gap = 0.02;  // m; overlaps go as far
 };
 
 template <class Real>
 struct BlockCase {
     ContactBlock<Real> block;
-    std::vector<SolverBody<Real>> bodies;     // still one, 2 a lane, kinematic one
-    std::vector<Vec3> positions;              // of the bodies, m
-    std::vector<Contact<Real>> contacts;      // [lanes]
-    std::vector<ContactTerms<Real>> terms;    // [lanes]
+    std::vector<SolverBody<Real>> bodies;   // still one, 2 a lane, kinematic one
+    std::vector<Vec3> positions;            // of the bodies, m
+    std::vector<Contact<Real>> contacts;    // [lanes]
+    std::vector<ContactTerms<Real>> terms;  // [lanes]
 };
 
 inline Vec3 random_vector(std::mt19937& random, double size)
@@ -60,10 +60,13 @@ SolverBody<Real> random_body(std::mt19937& random)
     const double mass = std::exp(random_number(random, -2, 2));
     const double x = random_number(random, 0.3, 1), y = random_number(random, 0.3, 1),
                  z = random_number(random, 0.3, 1);
-    const Sym3 inverse{3 / (mass * (y * y + z * z)), 3 / (mass * (x * x + z * z)),
-                       3 / (mass * (x * x + y * y)), 0, 0, 0};
-    const Sym3 six
-        = Sym3::from(in_world_axes(inverse, exponential(random_vector(random, 2))));
+    const Sym3 inverse{3 / (mass * (y * y + z * z)),
+                       3 / (mass * (x * x + z * z)),
+                       3 / (mass * (x * x + y * y)),
+                       0,
+                       0,
+                       0};
+    const Sym3 six = Sym3::from(in_world_axes(inverse, exponential(random_vector(random, 2))));
     const double numbers[7] = {1 / mass, six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
     for (int k = 0; k < 7; ++k) body.inertia[k] = static_cast<Real>(numbers[k]);
     return body;
@@ -87,9 +90,10 @@ Contact<Real> random_contact(std::mt19937& random,
         off -= normal * normal.dot(off);
         point.from_a = (middle + off - position_a).cast<Real>();
         point.from_b = (middle + off - position_b).cast<Real>();
-        point.separation
-            = static_cast<Real>(random_number(random, -wish.greatest_gap, wish.greatest_gap));
-        point.impulse = wish.impulses && k != 2 ? static_cast<Real>(random_number(random, 0, 2)) : 0;
+        point.separation =
+            static_cast<Real>(random_number(random, -wish.greatest_gap, wish.greatest_gap));
+        point.impulse =
+            wish.impulses && k != 2 ? static_cast<Real>(random_number(random, 0, 2)) : 0;
         point.feature = static_cast<std::uint32_t>(10 + k);
     }
     if (wish.impulses) {
@@ -126,8 +130,10 @@ BlockCase<Real> random_block(std::mt19937& random, const BlockWish& wish)
         if (side == 2) b = replaced;
         made.block.a[at] = a;
         made.block.b[at] = b;
-        if (side != 1) made.block.writes_a = static_cast<std::uint16_t>(made.block.writes_a | 1u << lane);
-        if (side != 2) made.block.writes_b = static_cast<std::uint16_t>(made.block.writes_b | 1u << lane);
+        if (side != 1)
+            made.block.writes_a = static_cast<std::uint16_t>(made.block.writes_a | 1u << lane);
+        if (side != 2)
+            made.block.writes_b = static_cast<std::uint16_t>(made.block.writes_b | 1u << lane);
         made.contacts.push_back(
             random_contact<Real>(random, made.positions[static_cast<std::size_t>(a)],
                                  made.positions[static_cast<std::size_t>(b)], wish));

@@ -25,13 +25,21 @@ inline void add_body(Graph& graph, BodyKind kind, bool awake)
 inline Graph random_graph(std::uint32_t bodies, std::size_t contacts, std::mt19937& random)
 {
     Graph graph;
-    for (std::uint32_t i = 0; i < bodies; ++i)
-        switch (random() % 10) {
-        case 0: add_body(graph, BodyKind::still, false); break;
-        case 1: add_body(graph, BodyKind::kinematic, true); break;
-        case 2: add_body(graph, BodyKind::dynamic, false); break;
-        case 3: add_body(graph, BodyKind::gone, false); break;
-        default: add_body(graph, BodyKind::dynamic, true);
+    for (std::uint32_t i = 0; i < bodies; ++i) switch (random() % 10) {
+        case 0:
+            add_body(graph, BodyKind::still, false);
+            break;
+        case 1:
+            add_body(graph, BodyKind::kinematic, true);
+            break;
+        case 2:
+            add_body(graph, BodyKind::dynamic, false);
+            break;
+        case 3:
+            add_body(graph, BodyKind::gone, false);
+            break;
+        default:
+            add_body(graph, BodyKind::dynamic, true);
         }
     for (std::size_t i = 0; i < contacts; ++i) {
         const auto a = static_cast<std::uint32_t>(random() % bodies);

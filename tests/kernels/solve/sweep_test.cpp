@@ -33,10 +33,10 @@ struct PlainBody {
                     double{body.drift[6]})
                    .toRotationMatrix();
         inverse_mass = double{body.inertia[0]};
-        inverse_inertia = Sym3{double{body.inertia[1]}, double{body.inertia[2]},
-                               double{body.inertia[3]}, double{body.inertia[4]},
-                               double{body.inertia[5]}, double{body.inertia[6]}}
-                              .matrix();
+        inverse_inertia =
+            Sym3{double{body.inertia[1]}, double{body.inertia[2]}, double{body.inertia[3]},
+                 double{body.inertia[4]}, double{body.inertia[5]}, double{body.inertia[6]}}
+                .matrix();
     }
     Vec3 velocity_at(const Vec3& arm) const { return velocity + spin.cross(arm); }
     void push(const Vec3& impulse, const Vec3& arm)
@@ -64,9 +64,9 @@ public:
         : a(body_a), b(body_b), normal(contact.normal.template cast<double>()),
           friction_impulse(contact.friction.template cast<double>()),
           rolling_impulse(contact.rolling.template cast<double>()), twist_impulse(contact.twist),
-          friction(terms.friction), restitution(terms.restitution),
-          rolling(terms.rolling_friction), bias_rate(terms.softness.bias_rate),
-          impulse_scale(terms.softness.impulse_scale), deep(terms.deep)
+          friction(terms.friction), restitution(terms.restitution), rolling(terms.rolling_friction),
+          bias_rate(terms.softness.bias_rate), impulse_scale(terms.softness.impulse_scale),
+          deep(terms.deep)
     {
         for (int k = 0; k < contact.count; ++k) {
             const auto& from = contact.points[static_cast<std::size_t>(k)];
@@ -132,10 +132,11 @@ public:
     {
         for (Point& point : points) {
             if (!(point.approach < -threshold) || point.greatest <= 0 || restitution <= 0) continue;
-            const double speed = normal.dot(b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
+            const double speed =
+                normal.dot(b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
             const double before = point.impulse;
-            point.impulse = std::max(
-                0.0, before - mass_of(point) * (speed + restitution * point.approach));
+            point.impulse =
+                std::max(0.0, before - mass_of(point) * (speed + restitution * point.approach));
             apply((point.impulse - before) * normal, point.arm_a, point.arm_b);
         }
     }
@@ -200,8 +201,9 @@ private:
     {
         const double speed = normal.dot(b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
         const double before = point.impulse;
-        point.impulse = std::max(0.0, before - mass_of(point) * (1 - point.leak) * (speed + point.bias)
-                                          - point.leak * before);
+        point.impulse = std::max(0.0,
+                                 before - mass_of(point) * (1 - point.leak) * (speed + point.bias)
+                                     - point.leak * before);
         point.greatest = std::max(point.greatest, point.impulse);
         apply((point.impulse - before) * normal, point.arm_a, point.arm_b);
     }
@@ -212,13 +214,13 @@ private:
         Eigen::Matrix<double, 3, 2> plane;
         plane << u, v;
         const Eigen::Matrix2d k = plane.transpose() * response(center_a, center_b) * plane;
-        const Eigen::Vector2d slip
-            = plane.transpose() * (b.velocity_at(center_b) - a.velocity_at(center_a));
+        const Eigen::Vector2d slip =
+            plane.transpose() * (b.velocity_at(center_b) - a.velocity_at(center_a));
         const Eigen::Vector2d before = plane.transpose() * friction_impulse;
         Eigen::Vector2d after = before - k.inverse() * slip;
         if (after.norm() > most) {
-            const double stiffest
-                = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(k).eigenvalues()[1];
+            const double stiffest =
+                Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(k).eigenvalues()[1];
             after = before - slip / stiffest;
             if (after.norm() > most) after *= most / after.norm();
         }
@@ -261,11 +263,10 @@ bool same_bits(const BlockCase<Real>& x, const BlockCase<Real>& y)
     const auto tail = [](const ContactBlock<Real>& block) {
         return reinterpret_cast<const char*>(&block.normal);
     };
-    const auto size = static_cast<std::size_t>(
-        reinterpret_cast<const char*>(&x.block + 1) - tail(x.block));
+    const auto size =
+        static_cast<std::size_t>(reinterpret_cast<const char*>(&x.block + 1) - tail(x.block));
     return std::memcmp(tail(x.block), tail(y.block), size) == 0
-        && std::memcmp(x.bodies.data(), y.bodies.data(),
-                       x.bodies.size() * sizeof(SolverBody<Real>))
+        && std::memcmp(x.bodies.data(), y.bodies.data(), x.bodies.size() * sizeof(SolverBody<Real>))
         == 0;
 }
 
@@ -342,12 +343,11 @@ void check_against_textbook(double tolerance, bool turns)
         std::vector<PlainContact> wanted;
         for (int lane = 0; lane < wish.lanes; ++lane) {
             const auto at = static_cast<std::size_t>(lane);
-            PlainContact contact(
-                made.contacts[at], made.terms[at],
-                PlainBody(made.bodies[static_cast<std::size_t>(made.block.a[at])],
-                          (made.block.writes_a >> lane & 1) != 0),
-                PlainBody(made.bodies[static_cast<std::size_t>(made.block.b[at])],
-                          (made.block.writes_b >> lane & 1) != 0));
+            PlainContact contact(made.contacts[at], made.terms[at],
+                                 PlainBody(made.bodies[static_cast<std::size_t>(made.block.a[at])],
+                                           (made.block.writes_a >> lane & 1) != 0),
+                                 PlainBody(made.bodies[static_cast<std::size_t>(made.block.b[at])],
+                                           (made.block.writes_b >> lane & 1) != 0));
             contact.warm_start(plain);
             contact.sweep(plain);
             PlainVisit relax = plain;
