@@ -36,7 +36,8 @@ void plant(Fault fault, Scene& scene)
         for (BodyDescription& body : scene.bodies)
             if (body.mass) *body.mass *= 1.1;
         break;
-    default: break;
+    default:
+        break;
     }
 }
 
@@ -54,8 +55,7 @@ void round_poses(World& world)
 
 CaseBench::CaseBench(Settings settings, Fault fault, int threads)
     : settings_(settings), fault_(fault), threads_(threads)
-{
-}
+{ }
 
 Scene CaseBench::scene() const
 {
@@ -83,11 +83,8 @@ void CaseBench::run(const Scene& scene,
     spent_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-void CaseBench::report(std::string setting,
-                       std::string quantity,
-                       double figure,
-                       double bound,
-                       std::string unit)
+void CaseBench::report(
+    std::string setting, std::string quantity, double figure, double bound, std::string unit)
 {
     CaseResult result;
     result.setting = std::move(setting);

@@ -24,18 +24,18 @@ struct CaseResult {
     std::string quantity;  // greatest overlap
     double figure = 0;
     double bound = 0;
-    std::string unit;      // 1 where it has none
+    std::string unit;  // 1 where it has none
     Verdict verdict = Verdict::fail;
-    std::string why;       // of a skipped one
-    double time_ms = 0;    // of the run that the figure comes from
+    std::string why;     // of a skipped one
+    double time_ms = 0;  // of the run that the figure comes from
 };
 
 /// A mistake planted on purpose, to show that a case would notice it.
 enum class Fault : std::uint8_t {
     none,
-    friction,       // coefficients 10 % too small
-    mass,           // bodies 10 % too heavy
-    float_poses,    // poses rounded to float after every step
+    friction,     // coefficients 10 % too small
+    mass,         // bodies 10 % too heavy
+    float_poses,  // poses rounded to float after every step
 };
 
 /// What a case runs on: it makes the worlds, so that settings and faults reach all of them.
@@ -47,18 +47,15 @@ public:
 
     /// A scene with the bench's settings, ready to be filled.
     Scene scene() const;
-    /// Runs a scene for a time; `watch` sees the world after every step and may end the run early by
-    /// answering false.
+    /// Runs a scene for a time; `watch` sees the world after every step and may end the run early
+    /// by answering false.
     void run(const Scene& scene,
              double time,
              const std::function<bool(class World&, double now)>& watch);
 
     /// Adds a line. Time is counted from the last line, or from the start.
-    void report(std::string setting,
-                std::string quantity,
-                double figure,
-                double bound,
-                std::string unit);
+    void report(
+        std::string setting, std::string quantity, double figure, double bound, std::string unit);
 
     std::vector<CaseResult> take_results(std::string_view name);
 

@@ -9,10 +9,9 @@ namespace throng {
 /// Finds where two convex shapes touch or come within reach of one another.
 ///
 ///   a, b     shapes, a's kind not after b's kind in ShapeKind (collide() sees to that)
-///   b_in_a   pose of b in a's frame; computed in double, so it is exact however far from the origin
-///   reach    m, points further apart than this are left out (at least 0)
-///   cache    what the pair remembers
-///   out      in a's frame; count 0 where nothing is within reach
+///   b_in_a   pose of b in a's frame; computed in double, so it is exact however far from the
+///   origin reach    m, points further apart than this are left out (at least 0) cache    what the
+///   pair remembers out      in a's frame; count 0 where nothing is within reach
 ///
 /// Never throws; finite input gives finite output. Instantiated for float and double.
 template <class Real>
@@ -27,24 +26,19 @@ using PairFunction = void (*)(const Shapes& shapes,
 // One declaration for each function in the table of narrowphase.cpp.
 #define THRONG_PAIR_FUNCTION(name)                                                                 \
     template <class Real>                                                                          \
-    void name(const Shapes&,                                                                       \
-              ShapeRef,                                                                            \
-              ShapeRef,                                                                            \
-              const PoseT<Real>&,                                                                  \
-              Real,                                                                                \
-              PairCache&,                                                                          \
+    void name(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real, PairCache&,             \
               LocalManifold<Real>&)
 
-THRONG_PAIR_FUNCTION(sphere_sphere);      // sphere_pairs.cpp
+THRONG_PAIR_FUNCTION(sphere_sphere);  // sphere_pairs.cpp
 THRONG_PAIR_FUNCTION(sphere_capsule);
 THRONG_PAIR_FUNCTION(sphere_cylinder);
 THRONG_PAIR_FUNCTION(sphere_box);
 THRONG_PAIR_FUNCTION(sphere_hull);
-THRONG_PAIR_FUNCTION(capsule_capsule);    // capsule_pairs.cpp
-THRONG_PAIR_FUNCTION(box_box);            // box_box.cpp
-THRONG_PAIR_FUNCTION(hull_hull);          // hull_hull.cpp: box-hull too, a box being a hull
-THRONG_PAIR_FUNCTION(convex_plane);       // plane_pairs.cpp: any convex shape a, plane b
-THRONG_PAIR_FUNCTION(convex_convex);      // convex_pairs.cpp: any two, by their cores
+THRONG_PAIR_FUNCTION(capsule_capsule);  // capsule_pairs.cpp
+THRONG_PAIR_FUNCTION(box_box);          // box_box.cpp
+THRONG_PAIR_FUNCTION(hull_hull);        // hull_hull.cpp: box-hull too, a box being a hull
+THRONG_PAIR_FUNCTION(convex_plane);     // plane_pairs.cpp: any convex shape a, plane b
+THRONG_PAIR_FUNCTION(convex_convex);    // convex_pairs.cpp: any two, by their cores
 
 #undef THRONG_PAIR_FUNCTION
 

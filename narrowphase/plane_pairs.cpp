@@ -32,7 +32,8 @@ struct Ground {
     }
 };
 
-// The lowest corner, then those reached from it along the edges that climb least.
+// The lowest corner, then the others of the side that faces the plane; where some of that is out of
+// reach, those reached along the edges that climb least.
 template <class Real>
 void touch_box(const Core<Real>& box, const Ground<Real>& ground)
 {
@@ -48,10 +49,27 @@ void touch_box(const Core<Real>& box, const Ground<Real>& ground)
     if (climb[order[2]] < climb[order[1]]) std::swap(order[1], order[2]);
     if (climb[order[1]] < climb[order[0]]) std::swap(order[0], order[1]);
 
+    // The side that faces the plane, where all of it is within reach: a thin box that leans a
+    // little climbs less along its thickness than along its length, and would be held at one end
+    // alone.
+    std::size_t facing = 0;
+    for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+        const auto along = [&](std::size_t axis) {
+            return std::abs(ground.into[static_cast<int>(axis)]);
+        };
+        if (along(i) > along(facing)) facing = i;
+    }
+    const Real highest = ground.depth - 2 * climb[facing] + climb[0] + climb[1] + climb[2];
+    const bool whole = highest <= ground.reach;
+    if (whole && order[2] != facing) {
+        if (order[0] == facing) std::swap(order[0], order[1]);
+        std::swap(order[1], order[2]);
+    }
+
     const std::uint32_t first = 1u << order[0];
     const std::uint32_t second = 1u << order[1];
     const std::uint32_t third = 1u << order[2];
-    const bool face = climb[order[0]] + climb[order[1]] <= climb[order[2]];
+    const bool face = whole || climb[order[0]] + climb[order[1]] <= climb[order[2]];
     const std::uint32_t last = face ? first | second : third;
     for (const std::uint32_t flipped : {0u, first, second, last}) {
         const std::uint32_t corner = lowest ^ flipped;

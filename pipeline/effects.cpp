@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
+#include <vector>
 
 namespace throng {
 
@@ -19,14 +21,14 @@ struct Known {
 
 // In the order of the enumeration.
 constexpr Known kKnown[] = {
-    {"motion", true},         {"gravity", true},        {"forces", false},
-    {"drive", true},          {"rotation", true},       {"gyroscopic", true},
-    {"contact", true},        {"friction", true},       {"rolling friction", true},
-    {"restitution", true},    {"fast motion", false},   {"mesh contact", true},
-    {"voxel contact", false}, {"springs", false},       {"attractors", false},
-    {"wind", false},          {"drag", false},          {"pivot", false},
-    {"joints", false},        {"motors", false},        {"sleeping", true},
-    {"sensors", false},       {"events", false},        {"agents", false},
+    {"motion", true},         {"gravity", true},      {"forces", false},
+    {"drive", true},          {"rotation", true},     {"gyroscopic", true},
+    {"contact", true},        {"friction", true},     {"rolling friction", true},
+    {"restitution", true},    {"fast motion", false}, {"mesh contact", true},
+    {"voxel contact", false}, {"springs", false},     {"attractors", false},
+    {"wind", false},          {"drag", false},        {"pivot", false},
+    {"joints", false},        {"motors", false},      {"sleeping", true},
+    {"sensors", false},       {"events", false},      {"agents", false},
 };
 static_assert(std::size(kKnown) == kEffects);
 
@@ -45,7 +47,8 @@ public:
         if (found_.on.has(Effect::contact)) find_materials();
         find_rotation();
         if (found_.on.has(Effect::contact) && facts_.conditions.settings.sleep)
-            if (const auto body = first_body([&](std::size_t b) { return facts_.states.dynamic(b); });
+            if (const auto body =
+                    first_body([&](std::size_t b) { return facts_.states.dynamic(b); });
                 body != kNobody)
                 call(Effect::sleeping, name(body));
         return std::move(found_);
@@ -104,16 +107,18 @@ private:
     void find_contact()
     {
         struct Kind {
-            std::uint32_t first = kNobody, second = kNobody;      // bodies
-            std::uint32_t dynamic = kNobody, other_than = kNobody;  // first dynamic one
+            std::uint32_t first = kNobody, second = kNobody;  // bodies
+            std::uint32_t dynamic = kNobody;                  // first dynamic one
         };
         std::map<std::pair<std::uint32_t, std::uint32_t>, Kind> kinds;
         for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
             const std::uint32_t body = facts_.colliders.body[i];
             if (body == kNobody) continue;
             Kind& kind = kinds[{facts_.filter.group[i], facts_.filter.mask[i]}];
-            if (kind.first == kNobody) kind.first = body;
-            else if (kind.second == kNobody && kind.first != body) kind.second = body;
+            if (kind.first == kNobody)
+                kind.first = body;
+            else if (kind.second == kNobody && kind.first != body)
+                kind.second = body;
             if (kind.dynamic == kNobody && facts_.states.dynamic(body)) kind.dynamic = body;
         }
         for (const auto& [x, a] : kinds)
@@ -123,12 +128,34 @@ private:
                 const std::uint32_t other = b.first != a.dynamic ? b.first : b.second;
                 if (other == kNobody) continue;
                 call(Effect::contact, name(a.dynamic) + " may touch " + name(other));
+                find_meshes();
+                return;
             }
-        if (!found_.on.has(Effect::contact)) return;
+    }
+
+    void find_meshes()
+    {
         for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i)
             if (facts_.colliders.body[i] != kNobody
                 && facts_.colliders.shape[i].kind == ShapeKind::mesh)
                 call(Effect::mesh_contact, name(facts_.colliders.body[i]));
+    }
+
+    // Of materials that nothing tells apart, the first.
+    std::vector<std::uint32_t> distinct(const std::set<std::uint32_t>& materials) const
+    {
+        const Surfaces& surfaces = facts_.surfaces;
+        std::set<std::uint32_t> overridden;
+        for (const auto& entry : surfaces.overrides) overridden.insert({entry.a, entry.b});
+        std::set<std::tuple<double, double, double>> seen;
+        std::vector<std::uint32_t> first;
+        for (const std::uint32_t i : materials)
+            if (overridden.count(i) != 0
+                || seen.insert({surfaces.friction[i], surfaces.restitution[i],
+                                surfaces.rolling_friction[i]})
+                       .second)
+                first.push_back(i);
+        return first;
     }
 
     void find_materials()
@@ -140,14 +167,18 @@ private:
             on_any.insert(facts_.colliders.material[i]);
             if (facts_.states.dynamic(body)) on_dynamic.insert(facts_.colliders.material[i]);
         }
-        for (const std::uint32_t a : on_dynamic)
-            for (const std::uint32_t b : on_any) {
+        const std::vector<std::uint32_t> others = distinct(on_any);
+        for (const std::uint32_t a : distinct(on_dynamic))
+            for (const std::uint32_t b : others) {
                 const auto meeting = facts_.surfaces.between(a, b);
-                const std::string who = "materials " + facts_.material_names[a] + " and "
-                    + facts_.material_names[b];
-                if (meeting.friction > 0) call(Effect::friction, who);
-                if (meeting.rolling_friction > 0) call(Effect::rolling_friction, who);
-                if (meeting.restitution > 0) call(Effect::restitution, who);
+                const auto call_if = [&](bool called, Effect effect) {
+                    if (!called || found_.on.has(effect)) return;
+                    call(effect, "materials " + facts_.material_names[a] + " and "
+                             + facts_.material_names[b]);
+                };
+                call_if(meeting.friction > 0, Effect::friction);
+                call_if(meeting.rolling_friction > 0, Effect::rolling_friction);
+                call_if(meeting.restitution > 0, Effect::restitution);
             }
     }
 

@@ -83,7 +83,7 @@ struct EffectFacts {
     const Surfaces& surfaces;
     const PairFilter& filter;
     const Requests& requests;
-    const std::vector<std::string>& body_names;      // may be shorter than the bodies
+    const std::vector<std::string>& body_names;  // may be shorter than the bodies
     const std::vector<std::string>& material_names;
 };
 

@@ -20,8 +20,7 @@ double mesh_depth(const Shapes& shapes, ShapeRef mesh, ShapeRef other, const Pos
     double depth = 0;
     for (const auto& touch : found)
         for (int k = 0; k < touch.manifold.count; ++k)
-            depth = std::max(depth,
-                             -touch.manifold.points[static_cast<std::size_t>(k)].separation);
+            depth = std::max(depth, -touch.manifold.points[static_cast<std::size_t>(k)].separation);
     return depth;
 }
 
@@ -54,8 +53,7 @@ void measure_overlaps(const World::State& state, Measures& measures)
             if (colliders.shape[b].kind == ShapeKind::mesh
                 || colliders.shape[a].kind == ShapeKind::plane)
                 std::swap(a, b);
-            const Pose b_in_a
-                = pose_seen_from_a(shapes, colliders.shape[b], placed[a], placed[b]);
+            const Pose b_in_a = pose_seen_from_a(shapes, colliders.shape[b], placed[a], placed[b]);
             depth[i] = colliders.shape[a].kind == ShapeKind::mesh
                 ? mesh_depth(shapes, colliders.shape[a], colliders.shape[b], b_in_a)
                 : overlap_depth(shapes, colliders.shape[a], colliders.shape[b], b_in_a);
@@ -90,8 +88,7 @@ Measures World::measure() const
         const Vec3& w = velocities.angular[body];
         const Vec3 spin = in_world_axes(masses.inertia[body], poses.orientation[body]) * w;
         measures.kinetic_energy += 0.5 * (masses.mass[body] * v.squaredNorm() + w.dot(spin));
-        measures.potential_energy
-            -= masses.mass[body] * gravity().dot(poses.position[body]);
+        measures.potential_energy -= masses.mass[body] * gravity().dot(poses.position[body]);
         measures.momentum += masses.mass[body] * v;
         measures.angular_momentum += masses.mass[body] * poses.position[body].cross(v) + spin;
     }
@@ -131,8 +128,9 @@ std::string World::state_hash() const
     };
     std::visit(
         [&](const auto& chosen) {
-            using Real = std::conditional_t<
-                std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>, float, double>;
+            using Real =
+                std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
+                                   float, double>;
             const Pairs& pairs = std::get<Pairs>(chosen.data);
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
@@ -158,15 +156,16 @@ std::size_t World::memory_bytes() const
     const Colliders& c = state_->get<Colliders>();
     const Bounds& b = state_->get<Bounds>();
     const Shapes& shapes = state_->get<Shapes>();
-    std::size_t sum = bytes(p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass,
-                            m.inertia, m.inverse_inertia, s.kind, s.awake, s.quiet_time, s.bed,
-                            c.body, c.shape, c.local, c.material, c.inner_extent, c.outer_radius,
-                            b.boxes, b.reach, b.placed, shapes.boxes, shapes.spheres,
-                            state_->center, state_->names, state_->generation);
+    std::size_t sum =
+        bytes(p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass, m.inertia,
+              m.inverse_inertia, s.kind, s.awake, s.quiet_time, s.bed, c.body, c.shape, c.local,
+              c.material, c.inner_extent, c.outer_radius, b.boxes, b.reach, b.placed, shapes.boxes,
+              shapes.spheres, state_->center, state_->names, state_->generation);
     std::visit(
         [&](const auto& chosen) {
-            using Real = std::conditional_t<
-                std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>, float, double>;
+            using Real =
+                std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
+                                   float, double>;
             const Pairs& pairs = std::get<Pairs>(chosen.data);
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             const auto& rows = std::get<Rows<Real>>(chosen.data);

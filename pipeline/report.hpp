@@ -10,12 +10,12 @@ namespace throng {
 
 /// Of the last step.
 struct StepReport {
-    std::uint64_t step = 0;              // steps done so far
-    std::size_t pairs = 0;               // that the broad phase holds
-    std::size_t contacts = 0;            // points
+    std::uint64_t step = 0;    // steps done so far
+    std::size_t pairs = 0;     // that the broad phase holds
+    std::size_t contacts = 0;  // points
     std::size_t manifolds = 0;
     std::size_t islands = 0;
-    std::size_t colors = 0;              // of the most colorful island
+    std::size_t colors = 0;  // of the most colorful island
     std::size_t bodies_awake = 0;
     std::size_t bodies_quarantined = 0;  // since the beginning
     std::uint64_t contacts_dropped = 0;  // since the beginning
@@ -34,8 +34,8 @@ struct Measures {
     double greatest_overlap = 0;  // m, least-translation depth
     double mean_overlap = 0;      // m, over pairs that overlap
     std::size_t overlapping_pairs = 0;
-    double kinetic_energy = 0;    // J
-    double potential_energy = 0;  // J, of gravity, 0 at the origin
+    double kinetic_energy = 0;             // J
+    double potential_energy = 0;           // J, of gravity, 0 at the origin
     Vec3 momentum = Vec3::Zero();          // N s
     Vec3 angular_momentum = Vec3::Zero();  // N m s, about the origin of the world
 };

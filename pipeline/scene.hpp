@@ -1,7 +1,7 @@
 // Scene: what the user states, before it becomes a world.
 //
-// Plain values, SI units, radians. The scene file is one way to fill this in, the catalogue another,
-// a program a third; World takes it from there and refuses what is impossible.
+// Plain values, SI units, radians. The scene file is one way to fill this in, the catalogue
+// another, a program a third; World takes it from there and refuses what is impossible.
 #pragma once
 
 #include "kernels/math/types.hpp"
@@ -54,7 +54,7 @@ struct PlaneShape {  // solid where normal . x < offset
     double offset = 0;
 };
 struct MeshShape {
-    std::string file;     // as written in the scene; empty when made by a program
+    std::string file;  // as written in the scene; empty when made by a program
     double scale = 1;
     std::string nonconvex;  // how a moving one is taken: the dial's value, empty for the dial's own
     std::vector<Vec3> vertices;  // already scaled
@@ -70,7 +70,13 @@ struct CompoundShape {
 
 struct ShapeDescription {
     std::string name;
-    std::variant<SphereShape, CapsuleShape, CylinderShape, BoxShape, HullShape, PlaneShape, MeshShape,
+    std::variant<SphereShape,
+                 CapsuleShape,
+                 CylinderShape,
+                 BoxShape,
+                 HullShape,
+                 PlaneShape,
+                 MeshShape,
                  CompoundShape>
         shape;
 };
@@ -88,14 +94,14 @@ struct BodyDescription {
     Quat orientation = Quat::Identity();
     Vec3 velocity = Vec3::Zero();
     Vec3 angular_velocity = Vec3::Zero();
-    std::optional<double> mass;     // kg; else from density and volume
-    std::optional<Sym3> inertia;    // kg m2 about the center, body axes; else from the shape
-    std::optional<Vec3> center;     // of mass, body axes; else from the shape
-    Vec3 force = Vec3::Zero();      // N, world axes, constant
-    Vec3 torque = Vec3::Zero();     // N m
-    double linear_drag = 0;         // kg/s
-    double angular_drag = 0;        // kg m2/s
-    std::optional<Vec3> pivot;      // this point of the body stays where it is
+    std::optional<double> mass;   // kg; else from density and volume
+    std::optional<Sym3> inertia;  // kg m2 about the center, body axes; else from the shape
+    std::optional<Vec3> center;   // of mass, body axes; else from the shape
+    Vec3 force = Vec3::Zero();    // N, world axes, constant
+    Vec3 torque = Vec3::Zero();   // N m
+    double linear_drag = 0;       // kg/s
+    double angular_drag = 0;      // kg m2/s
+    std::optional<Vec3> pivot;    // this point of the body stays where it is
     std::array<std::optional<double>, 3> drive_velocity;  // set before every step where given
     std::uint32_t group = 1;
     std::uint32_t mask = 0xffffffffu;
@@ -106,9 +112,9 @@ struct BodyDescription {
 
 /// Many bodies that share all but pose, velocity and perhaps size.
 struct Instances {
-    BodyDescription common;       // shape: the kind they share (its size when sizes are not given)
-    bool own_sizes = false;       // records carry three more numbers
-    std::string file;             // as written in the scene; empty when made by a program
+    BodyDescription common;  // shape: the kind they share (its size when sizes are not given)
+    bool own_sizes = false;  // records carry three more numbers
+    std::string file;        // as written in the scene; empty when made by a program
     /// 13 numbers a body: position, orientation (w, x, y, z), velocity, angular velocity; with
     /// own_sizes 16: half extents of a box; radius of a sphere; radius and half length.
     std::vector<double> records;
@@ -132,12 +138,12 @@ struct Scene {
     std::string name;
     Vec3 gravity = Vec3(0, 0, -9.81);
     Settings settings;
-    std::vector<std::string> dials_set;    // those the scene asks for by name, in its order
+    std::vector<std::string> dials_set;  // those the scene asks for by name, in its order
     std::vector<Material> materials;
     std::vector<MaterialPair> pairs;
     std::vector<ShapeDescription> shapes;
-    std::vector<BodyDescription> bodies;   // ids 0, 1, ...
-    std::vector<Instances> instances;      // ids go on from there
+    std::vector<BodyDescription> bodies;  // ids 0, 1, ...
+    std::vector<Instances> instances;     // ids go on from there
     std::vector<Spring> springs;
     std::vector<Attractor> attractors;
     Vec3 wind = Vec3::Zero();

@@ -4,6 +4,8 @@
 #include "kernels/geometry/shape_bounds.hpp"
 #include "pipeline/world_state.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -23,15 +25,29 @@ ShapeRef append(std::vector<Shape>& shapes, ShapeKind kind, Shape shape)
 bool uneven(const Sym3& inertia)
 {
     const double size = inertia.xx + inertia.yy + inertia.zz;
-    const double spread = std::max({std::abs(inertia.xx - inertia.yy),
-                                    std::abs(inertia.yy - inertia.zz), std::abs(inertia.xy),
-                                    std::abs(inertia.xz), std::abs(inertia.yz)});
+    const double spread =
+        std::max({std::abs(inertia.xx - inertia.yy), std::abs(inertia.yy - inertia.zz),
+                  std::abs(inertia.xy), std::abs(inertia.xz), std::abs(inertia.yz)});
     return spread > 1e-9 * size;
 }
 
 Sym3 scaled(const Sym3& m, double by)
 {
     return {m.xx * by, m.yy * by, m.zz * by, m.xy * by, m.xz * by, m.yz * by};
+}
+
+// What an impulse turns. Of a needle, the ease of turning about its length is cut to `most` times
+// that of turning across: in world axes the two stand side by side in numbers of one precision, and
+// what rounding takes from the greater must not drown the lesser.
+Sym3 turning_ease(const Sym3& inertia, double most)
+{
+    const Mat3 inverse = inertia.matrix().inverse();
+    if (inverse.trace() * inertia.matrix().trace() < most) return Sym3::from(inverse);
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia.matrix());
+    const Vec3 moments = solver.eigenvalues();  // ascending
+    const Vec3 ease = moments.cwiseMax(moments[2] / most).cwiseInverse();
+    return Sym3::from(solver.eigenvectors() * ease.asDiagonal()
+                      * solver.eigenvectors().transpose());
 }
 
 // Moments about a point that lies off the center.
@@ -74,10 +90,9 @@ void SceneBuilder::add_materials(const Scene& scene)
         meeting.restitution = pair.restitution.value_or(meeting.restitution);
         surfaces.overrides.push_back({a, b, meeting});
     }
-    std::stable_sort(surfaces.overrides.begin(), surfaces.overrides.end(),
-                     [](const auto& x, const auto& y) {
-                         return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-                     });
+    std::stable_sort(
+        surfaces.overrides.begin(), surfaces.overrides.end(),
+        [](const auto& x, const auto& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
 }
 
 PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& description)
@@ -114,8 +129,7 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
         {
             // Its frame is put on its surface, so that no great offset is left for float to hold.
             const Vec3 normal = s.normal.normalized();
-            PlacedShape placed
-                = single(append(shapes.planes, ShapeKind::plane, Plane{normal, 0}));
+            PlacedShape placed = single(append(shapes.planes, ShapeKind::plane, Plane{normal, 0}));
             placed.poses[0].position = normal * s.offset;
             return placed;
         }
@@ -224,8 +238,8 @@ void SceneBuilder::weigh(std::uint32_t body,
         return;
     }
     const double volume = shape == nullptr ? 0 : shape->mass.volume;
-    const double density
-        = density_[stated.material == kNone ? default_material_ - first_material_ : stated.material];
+    const double density =
+        density_[stated.material == kNone ? default_material_ - first_material_ : stated.material];
     const double mass = stated.mass.value_or(density * volume);
     masses.mass[body] = mass;
     if (!stated.lock_position) masses.inverse_mass[body] = 1 / mass;
@@ -236,14 +250,15 @@ void SceneBuilder::weigh(std::uint32_t body,
         masses.inertia[body] = shifted(about_natural, mass, state_.center[body] - natural);
     }
     if (stated.lock_rotation || masses.inertia[body] == Sym3{}) return;
-    masses.inverse_inertia[body] = Sym3::from(masses.inertia[body].matrix().inverse());
+    const bool in_double = state_.get<Conditions>().settings.precision == Precision::double_;
+    masses.inverse_inertia[body] = turning_ease(masses.inertia[body], in_double ? 1e14 : 1e6);
     masses.spins_unevenly[body] = uneven(masses.inertia[body]) ? 1 : 0;
 }
 
 void SceneBuilder::note_requests(std::uint32_t body, const BodyDescription& stated)
 {
-    const std::string who
-        = "body " + std::to_string(body) + (stated.name.empty() ? "" : " " + stated.name);
+    const std::string who =
+        "body " + std::to_string(body) + (stated.name.empty() ? "" : " " + stated.name);
     Requests& requests = state_.requests;
     if (!stated.force.isZero(0) || !stated.torque.isZero(0)) requests.ask(Effect::forces, who);
     if (stated.linear_drag != 0 || stated.angular_drag != 0) requests.ask(Effect::drag, who);
@@ -269,7 +284,7 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     BodyStates& states = state_.get<BodyStates>();
     const bool moves = stated.motion != Motion::static_;
     put(states.kind, body,
-        !moves                                ? BodyKind::still
+        !moves                                 ? BodyKind::still
             : stated.motion == Motion::dynamic ? BodyKind::dynamic
                                                : BodyKind::kinematic);
     put(states.awake, body, std::uint8_t{moves});
@@ -299,11 +314,16 @@ ShapeRef SceneBuilder::sized(ShapeKind kind, const double* sizes)
 {
     Shapes& shapes = state_.get<Shapes>();
     switch (kind) {
-    case ShapeKind::sphere: return append(shapes.spheres, kind, Sphere{sizes[0]});
-    case ShapeKind::capsule: return append(shapes.capsules, kind, Capsule{sizes[0], sizes[1]});
-    case ShapeKind::cylinder: return append(shapes.cylinders, kind, Cylinder{sizes[0], sizes[1]});
-    case ShapeKind::box: return append(shapes.boxes, kind, Box{Vec3(sizes[0], sizes[1], sizes[2])});
-    default: throw std::invalid_argument("instances: this shape has no sizes of its own");
+    case ShapeKind::sphere:
+        return append(shapes.spheres, kind, Sphere{sizes[0]});
+    case ShapeKind::capsule:
+        return append(shapes.capsules, kind, Capsule{sizes[0], sizes[1]});
+    case ShapeKind::cylinder:
+        return append(shapes.cylinders, kind, Cylinder{sizes[0], sizes[1]});
+    case ShapeKind::box:
+        return append(shapes.boxes, kind, Box{Vec3(sizes[0], sizes[1], sizes[2])});
+    default:
+        throw std::invalid_argument("instances: this shape has no sizes of its own");
     }
 }
 

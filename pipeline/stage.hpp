@@ -65,10 +65,10 @@ struct Wired<Real, function> {
     template <class Parameter>
     static constexpr DataSet data = data_set<Real, std::remove_cvref_t<Parameter>>;
 
-    static constexpr DataSet reads
-        = (DataSet{} | ... | (only_read<Parameters> ? data<Parameters> : DataSet{}));
-    static constexpr DataSet writes
-        = (DataSet{} | ... | (only_read<Parameters> ? DataSet{} : data<Parameters>));
+    static constexpr DataSet reads =
+        (DataSet{} | ... | (only_read<Parameters> ? data<Parameters> : DataSet{}));
+    static constexpr DataSet writes =
+        (DataSet{} | ... | (only_read<Parameters> ? DataSet{} : data<Parameters>));
     static void run(StepData<Real>& step)
     {
         function(std::get<std::remove_cvref_t<Parameters>>(step)...);

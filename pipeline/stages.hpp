@@ -112,13 +112,8 @@ void integrate_poses(const Conditions&,
 void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
 
 /// Islands that have been quiet long enough fall asleep.
-void rest_islands(const Conditions&,
-                  const Drives&,
-                  const Islands&,
-                  BodyStates&,
-                  Beds&,
-                  Velocities&,
-                  Rest&);
+void rest_islands(
+    const Conditions&, const Drives&, const Islands&, BodyStates&, Beds&, Velocities&, Rest&);
 
 /// A row of a stage's inner table: what runs within a substep, and who calls for it.
 struct InnerRow {

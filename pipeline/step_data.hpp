@@ -18,8 +18,9 @@ namespace throng {
 
 /// What a step has to tell of trouble.
 struct Trouble {
-    std::vector<std::uint32_t> quarantined;  // bodies that turned non-finite in this step, ascending
-    std::uint64_t contacts_dropped = 0;      // of this step
+    std::vector<std::uint32_t>
+        quarantined;                     // bodies that turned non-finite in this step, ascending
+    std::uint64_t contacts_dropped = 0;  // of this step
     std::vector<std::vector<std::uint32_t>> of_block;  // scratch
 };
 

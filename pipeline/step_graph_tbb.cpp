@@ -23,8 +23,8 @@ StepGraph<Real>::StepGraph(std::vector<Stage<Real>> stages, StepData<Real>& data
       nodes_(std::make_unique<Nodes>())
 {
     for (std::size_t place = 0; place < stages_.size(); ++place) {
-        auto& node = nodes_->stages.emplace_back(nodes_->graph,
-                                                 [this, place](Signal) { run_stage(place); });
+        auto& node =
+            nodes_->stages.emplace_back(nodes_->graph, [this, place](Signal) { run_stage(place); });
         tbb::flow::make_edge(nodes_->start, node);
     }
     for (const auto& [earlier, later] : waits(stages_))

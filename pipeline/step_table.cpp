@@ -32,10 +32,10 @@ constexpr Stage<Real> kStep[] = {
 template <class Real>
 consteval bool reads_follow_writes()
 {
-    DataSet ready = data_set<Real, Conditions> | data_set<Real, Shapes> | data_set<Real, Surfaces>
-        | data_set<Real, PairFilter> | data_set<Real, Drives> | data_set<Real, Poses>
-        | data_set<Real, Velocities> | data_set<Real, Masses> | data_set<Real, BodyStates>
-        | data_set<Real, Colliders>;
+    DataSet ready =
+        data_set<
+            Real,
+            Conditions> | data_set<Real, Shapes> | data_set<Real, Surfaces> | data_set<Real, PairFilter> | data_set<Real, Drives> | data_set<Real, Poses> | data_set<Real, Velocities> | data_set<Real, Masses> | data_set<Real, BodyStates> | data_set<Real, Colliders>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;

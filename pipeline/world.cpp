@@ -47,11 +47,16 @@ void World::State::choose_broad_phase()
     const Colliders& colliders = get<Colliders>();
     const auto kind = [&] {
         switch (asked) {
-        case BroadPhase::embree: return FinderKind::embree;
-        case BroadPhase::grid: return FinderKind::grid;
-        case BroadPhase::sweep: return FinderKind::sweep;
-        case BroadPhase::all_pairs: return FinderKind::all_pairs;
-        default: break;
+        case BroadPhase::embree:
+            return FinderKind::embree;
+        case BroadPhase::grid:
+            return FinderKind::grid;
+        case BroadPhase::sweep:
+            return FinderKind::sweep;
+        case BroadPhase::all_pairs:
+            return FinderKind::all_pairs;
+        default:
+            break;
         }
         std::vector<Box3> boxes(colliders.size());
         std::vector<std::uint8_t> moving(colliders.size(), 0);
@@ -93,8 +98,7 @@ void World::State::refresh()
             if (chosen.graph && before == effects.on) return;
             using Real = std::conditional_t<std::is_same_v<Graph, StepGraph<float>>, float, double>;
             pool.run([&](std::size_t, std::size_t, std::size_t) {
-                chosen.graph
-                    = std::make_unique<Graph>(stages_for<Real>(effects.on), chosen.data);
+                chosen.graph = std::make_unique<Graph>(stages_for<Real>(effects.on), chosen.data);
             });
         },
         step);
@@ -102,8 +106,7 @@ void World::State::refresh()
 
 World::World(const Settings& settings, int threads)
     : state_(std::make_unique<State>(settings, threads))
-{
-}
+{ }
 
 World::World(const Scene& scene, int threads) : World(scene.settings, threads)
 {
@@ -174,7 +177,8 @@ const Settings& World::settings() const { return state_->get<Conditions>().setti
 void World::set_settings(const Settings& settings)
 {
     if (settings.precision != this->settings().precision)
-        throw std::invalid_argument("set_settings: precision cannot change in a world; make another");
+        throw std::invalid_argument(
+            "set_settings: precision cannot change in a world; make another");
     check_settings(settings, "set_settings");
     state_->get<Conditions>().settings = settings;
     state_->effects_stale = true;
@@ -216,10 +220,7 @@ const std::string& World::name(BodyId body) const
     return at < state_->names.size() ? state_->names[at] : kUnnamed;
 }
 
-Motion World::motion(BodyId body) const
-{
-    return state_->motion[state_->place_of(body, "motion")];
-}
+Motion World::motion(BodyId body) const { return state_->motion[state_->place_of(body, "motion")]; }
 
 bool World::awake(BodyId body) const
 {
@@ -279,8 +280,9 @@ Vec3 World::contact_force(BodyId body) const
                         * double{contact.points[static_cast<std::size_t>(k)].impulse};
                 impulse += is_b ? on_b : Vec3(-on_b);
             };
-            using Real = std::conditional_t<
-                std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>, float, double>;
+            using Real =
+                std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
+                                   float, double>;
             const auto& convex = std::get<ConvexContacts<Real>>(data);
             for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
                 if (convex.of_pair[i].count > 0) add(i, convex.of_pair[i]);

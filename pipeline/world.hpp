@@ -48,14 +48,14 @@ public:
     Vec3 gravity() const;
     void set_gravity(const Vec3& gravity);
 
-    std::size_t body_count() const;       // alive
-    std::vector<BodyId> bodies() const;   // alive, by index
+    std::size_t body_count() const;      // alive
+    std::vector<BodyId> bodies() const;  // alive, by index
     bool alive(BodyId body) const;
     const std::string& name(BodyId body) const;
     Motion motion(BodyId body) const;
     bool awake(BodyId body) const;
     bool quarantined(BodyId body) const;
-    double mass(BodyId body) const;       // kg; 0 when it is not dynamic
+    double mass(BodyId body) const;  // kg; 0 when it is not dynamic
 
     /// Of the body's own frame, where its shape was placed.
     Pose pose(BodyId body) const;
@@ -91,7 +91,8 @@ public:
     int threads_met() const;  // that really run
     std::size_t memory_bytes() const;
 
-    /// Runs the stages top to bottom on the calling thread from now on: the reference for the graph.
+    /// Runs the stages top to bottom on the calling thread from now on: the reference for the
+    /// graph.
     void run_in_order(bool in_order);
 
     struct State;

@@ -14,6 +14,7 @@ namespace throng {
 void World::State::wake(std::uint32_t body)
 {
     BodyStates& states = get<BodyStates>();
+    states.quiet_time[body] = 0;
     const std::uint32_t bed = states.bed[body];
     if (bed == kNobody) return;
     Beds& beds = get<Beds>();

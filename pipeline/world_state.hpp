@@ -39,10 +39,10 @@ struct World::State {
 
     // By body.
     std::vector<std::uint32_t> generation;
-    std::vector<std::string> names;       // may be shorter: the rest have none
-    std::vector<Vec3> center;             // of mass, in the body's own frame
+    std::vector<std::string> names;  // may be shorter: the rest have none
+    std::vector<Vec3> center;        // of mass, in the body's own frame
     std::vector<Motion> motion;
-    std::vector<std::uint32_t> free_bodies;                      // descending, so the least goes first
+    std::vector<std::uint32_t> free_bodies;  // descending, so the least goes first
     std::map<std::uint32_t, std::vector<std::uint32_t>> free_colliders;  // by how many in a row
     std::size_t alive = 0;
 
@@ -56,7 +56,8 @@ struct World::State {
     template <class Data>
     const Data& get() const
     {
-        return std::visit([](const auto& s) -> const Data& { return std::get<Data>(s.data); }, step);
+        return std::visit([](const auto& s) -> const Data& { return std::get<Data>(s.data); },
+                          step);
     }
 
     /// The body's index. Throws std::invalid_argument for one that is gone.
@@ -69,8 +70,8 @@ struct World::State {
     void wake_neighbors(const std::vector<std::uint8_t>& of);
     /// Drops the pairs of some bodies with all they remember.
     void forget_pairs(const std::vector<std::uint8_t>& of);
-    /// Sets velocities as far as the body is free to have them, and wakes it. Beyond what a step can
-    /// hold it is quarantined.
+    /// Sets velocities as far as the body is free to have them, and wakes it. Beyond what a step
+    /// can hold it is quarantined.
     void set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular);
     void quarantine(std::uint32_t body);
     /// Effects and graph, brought up to date.
@@ -93,7 +94,8 @@ private:
     BodyId add_body(const BodyDescription& body, const PlacedShape* shape);
     std::uint32_t take_body();
     std::uint32_t take_colliders(std::uint32_t count);
-    void place_colliders(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
+    void
+    place_colliders(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
     void weigh(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
     void note_requests(std::uint32_t body, const BodyDescription& stated);
 

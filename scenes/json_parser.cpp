@@ -177,10 +177,11 @@ private:
         const bool signed_power = tiny_power || (e + 1 < digits.size() && digits[e + 1] == '+');
         const std::string_view power =
             digits.substr(std::min(e + (signed_power ? 2 : 1), digits.size()));
+        // Far beyond any number of digits in a file, and small enough to add them to.
+        constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max() / 2;
         std::int64_t exponent = 0;
-        if (std::from_chars(power.data(), power.data() + power.size(), exponent).ec
-            == std::errc::result_out_of_range)
-            exponent = std::numeric_limits<std::int64_t>::max() / 2;
+        const auto read = std::from_chars(power.data(), power.data() + power.size(), exponent);
+        if (read.ec == std::errc::result_out_of_range || exponent > kMost) exponent = kMost;
         const std::int64_t before_point =
             static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);
         const bool tiny = before_point + (tiny_power ? -exponent : exponent) <= 0;

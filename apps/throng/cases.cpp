@@ -79,9 +79,10 @@ std::string json_line(const CaseResult& result)
 {
     std::string line = "{\"case\": " + json_string(result.name) + ", \"setting\": "
         + json_string(result.setting) + ", \"quantity\": " + json_string(result.quantity)
-        + ", \"figure\": " + (std::isfinite(result.figure) ? number_text(result.figure) : "null") + ", \"bound\": "
-        + number_text(result.bound) + ", \"unit\": " + json_string(result.unit) + ", \"status\": "
-        + json_string(text_of(result.verdict)) + ", \"ms\": " + number_text(result.time_ms);
+        + ", \"figure\": " + (std::isfinite(result.figure) ? number_text(result.figure) : "null")
+        + ", \"bound\": " + number_text(result.bound) + ", \"unit\": " + json_string(result.unit)
+        + ", \"status\": " + json_string(text_of(result.verdict))
+        + ", \"ms\": " + number_text(result.time_ms);
     if (!result.why.empty()) line += ", \"why\": " + json_string(result.why);
     return line + "}";
 }

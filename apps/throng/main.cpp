@@ -1,5 +1,6 @@
 // Main: finds the command, and turns whatever stops it into a sentence and an exit code.
 #include "apps/throng/commands.hpp"
+#include "kernels/solve/sweep.hpp"
 #include "pipeline/names.hpp"
 #include "scenes/scene_error.hpp"
 
@@ -49,6 +50,16 @@ const Command& find_command(std::string_view name)
         + " (throng --help says more)");
 }
 
+// Before any work: a wrong environment is the user's to mend, and no fault of throng.
+void check_environment()
+{
+    try {
+        solve_kernels<float>();
+    } catch (const std::runtime_error& error) {
+        throw BadInput(error.what());
+    }
+}
+
 int run_command(std::span<const std::string_view> arguments)
 {
     if (arguments.empty()) {
@@ -66,7 +77,10 @@ int run_command(std::span<const std::string_view> arguments)
     }
     const Command& command = find_command(first);
     const Options options(command.usage, arguments.subspan(1));
-    if (!options.wants_help()) return command.run(options);
+    if (!options.wants_help()) {
+        check_environment();
+        return command.run(options);
+    }
     print_usage(command.usage, std::cout);
     if (command.more_help != nullptr) command.more_help(std::cout);
     return kDone;

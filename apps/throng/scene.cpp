@@ -110,6 +110,11 @@ int write_to_file(const Scene& scene, const fs::path& out)
     std::error_code ignored;
     if (!out.has_filename() || fs::is_directory(out, ignored))
         throw BadInput("--out: " + out.string() + ": wanted the name of a file");
+    // A new file takes the place of the old: a device or a pipe must not lose its name to it.
+    if (fs::exists(out, ignored) && !fs::is_regular_file(fs::symlink_status(out, ignored)))
+        throw BadInput("--out: " + out.string()
+                       + ": wanted the name of a plain file; without --out, a scene that needs no "
+                         "other file goes to the standard output");
     const fs::path where = out.has_parent_path() ? out.parent_path() : fs::path(".");
     const PassingFolder folder(where / own_name(out.filename().string()));
     const std::vector<fs::path> files = write_in(folder, scene, out.filename().string());

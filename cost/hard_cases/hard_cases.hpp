@@ -5,11 +5,11 @@
 
 namespace throng {
 
-void case_stack(CaseBench& bench);          // H8, stack.cpp
-void case_sliding(CaseBench& bench);        // H12, sliding.cpp
-void case_slope_limit(CaseBench& bench);    // H13, slope_limit.cpp
-void case_leaning(CaseBench& bench);        // H22, leaning.cpp
-void case_far_away(CaseBench& bench);       // H33, stack.cpp
+void case_stack(CaseBench& bench);        // H8, stack.cpp
+void case_sliding(CaseBench& bench);      // H12, sliding.cpp
+void case_slope_limit(CaseBench& bench);  // H13, slope_limit.cpp
+void case_leaning(CaseBench& bench);      // H22, leaning.cpp
+void case_far_away(CaseBench& bench);     // H33, stack.cpp
 
 /// A scene under construction: shapes, materials and bodies by value, ids in order.
 class SceneParts {
@@ -21,12 +21,10 @@ public:
     /// Solid where normal . x < offset.
     std::uint32_t plane(std::uint32_t material, const Vec3& normal, double offset);
     /// Dynamic bodies of a mass; inertia from the shape.
-    std::uint32_t box(std::uint32_t material, double mass, const Vec3& half_extents, const Pose& pose);
-    std::uint32_t cylinder(std::uint32_t material,
-                           double mass,
-                           double radius,
-                           double half_length,
-                           const Pose& pose);
+    std::uint32_t
+    box(std::uint32_t material, double mass, const Vec3& half_extents, const Pose& pose);
+    std::uint32_t cylinder(
+        std::uint32_t material, double mass, double radius, double half_length, const Pose& pose);
     BodyDescription& body(std::uint32_t id) { return scene_.bodies[id]; }
     Scene& scene() { return scene_; }
 

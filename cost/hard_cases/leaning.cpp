@@ -1,9 +1,9 @@
 // Leaning bodies: H22, thresholds of standing and falling.
 //
-// Three equal logs, two on the floor and one on top, stand when log on log mu is at least tan 15 deg
-// and log on floor a third of that. A ladder on a smooth wall holds when the foot's mu is at least
-// (horizontal way from foot to center) / (height of the upper contact above the foot).
-// Each threshold is tried 5 % either side.
+// Three equal logs, two on the floor and one on top, stand when log on log mu is at least tan 15
+// deg and log on floor a third of that. A ladder on a smooth wall holds when the foot's mu is at
+// least (horizontal way from foot to center) / (height of the upper contact above the foot). Each
+// threshold is tried 5 % either side.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
 #include "pipeline/world.hpp"
@@ -15,8 +15,8 @@ namespace throng {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kTime = 10;      // s; at 5 % below a threshold things have moved far by then
-constexpr double kMoved = 0.05;   // of the body's size: more is a fall
+constexpr double kTime = 10;     // s; at 5 % below a threshold things have moved far by then
+constexpr double kMoved = 0.05;  // of the body's size: more is a fall
 
 // How far the highest body sinks, as a share of `size`.
 double sinks(CaseBench& bench, const Scene& scene, double size)
@@ -49,8 +49,8 @@ Scene log_pile(const CaseBench& bench, double on_log, double on_floor)
     parts.plane(floor, Vec3::UnitZ(), 0);
     const Quat lying = exponential(Vec3(kPi / 2, 0, 0));  // axis along y
     const double up = radius * std::sqrt(3.0);
-    for (const Vec3& at : {Vec3(-radius, 0, radius), Vec3(radius, 0, radius),
-                           Vec3(0, 0, radius + up)})
+    for (const Vec3& at :
+         {Vec3(-radius, 0, radius), Vec3(radius, 0, radius), Vec3(0, 0, radius + up)})
         parts.cylinder(log, 1, radius, half_length, Pose{at, lying});
     return parts.scene();
 }
@@ -75,10 +75,7 @@ struct Ladder {
         const Vec3 other = half_length * along() + half_thickness * across();
         return head().x() > other.x() ? head() : other;
     }
-    double least_friction() const
-    {
-        return -lowest().x() / (outermost().z() - lowest().z());
-    }
+    double least_friction() const { return -lowest().x() / (outermost().z() - lowest().z()); }
 };
 
 Scene leaning_ladder(const CaseBench& bench, const Ladder& ladder, double friction)
@@ -113,8 +110,8 @@ void case_leaning(CaseBench& bench)
         Ladder ladder;
         ladder.angle = std::atan(1 / (2 * friction));
         const double least = ladder.least_friction();
-        const std::string name
-            = "ladder at " + std::to_string(ladder.angle * 180 / kPi).substr(0, 5) + " deg, mu ";
+        const std::string name =
+            "ladder at " + std::to_string(ladder.angle * 180 / kPi).substr(0, 5) + " deg, mu ";
         expect(bench, name + "+5 %", true,
                sinks(bench, leaning_ladder(bench, ladder, 1.05 * least), 1));
         expect(bench, name + "-5 %", false,

@@ -44,11 +44,8 @@ SceneParts::box(std::uint32_t material, double mass, const Vec3& half_extents, c
     return add(BoxShape{half_extents}, body);
 }
 
-std::uint32_t SceneParts::cylinder(std::uint32_t material,
-                                   double mass,
-                                   double radius,
-                                   double half_length,
-                                   const Pose& pose)
+std::uint32_t SceneParts::cylinder(
+    std::uint32_t material, double mass, double radius, double half_length, const Pose& pose)
 {
     BodyDescription body;
     body.material = material;

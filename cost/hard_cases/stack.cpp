@@ -66,10 +66,9 @@ void case_stack(CaseBench& bench)
         double edge, gap;
         bool sleep;
     };
-    for (const Setting& setting : {Setting{"n=10", 1, 0, true},
-                                   Setting{"n=10, sleep=off", 1, 0, false},
-                                   Setting{"n=10, 0.1 m", 0.1, 0, true},
-                                   Setting{"n=10, from 1 mm gaps", 1, 1e-3, true}}) {
+    for (const Setting& setting :
+         {Setting{"n=10", 1, 0, true}, Setting{"n=10, sleep=off", 1, 0, false},
+          Setting{"n=10, 0.1 m", 0.1, 0, true}, Setting{"n=10, from 1 mm gaps", 1, 1e-3, true}}) {
         Scene scene = stack(bench, setting.edge, setting.gap, Vec3::Zero());
         scene.settings.sleep = scene.settings.sleep && setting.sleep;
         const Rest rest = watch_stack(bench, scene);

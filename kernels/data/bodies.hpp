@@ -40,16 +40,16 @@ struct Velocities {
 
 /// What resists motion. Zero inverses do not move, or do not turn.
 struct Masses {
-    std::vector<double> mass;             // kg; 0 for a body that is not dynamic
-    std::vector<double> inverse_mass;     // 1/kg
-    std::vector<Sym3> inertia;            // kg m2 about the center, body axes
-    std::vector<Sym3> inverse_inertia;    // 1/(kg m2), body axes
+    std::vector<double> mass;                  // kg; 0 for a body that is not dynamic
+    std::vector<double> inverse_mass;          // 1/kg
+    std::vector<Sym3> inertia;                 // kg m2 about the center, body axes
+    std::vector<Sym3> inverse_inertia;         // 1/(kg m2), body axes
     std::vector<std::uint8_t> spins_unevenly;  // principal moments differ: the gyroscopic term acts
 };
 
 /// Velocities that the user sets before every step.
 struct Drives {
-    std::vector<std::uint32_t> body;  // ascending
+    std::vector<std::uint32_t> body;              // ascending
     std::vector<std::array<double, 3>> velocity;  // m/s; not a number where it is free
 };
 
@@ -79,10 +79,10 @@ struct Beds {
 struct Colliders {
     std::vector<std::uint32_t> body;
     std::vector<ShapeRef> shape;
-    std::vector<Pose> local;              // in the frame of the center of mass, body axes
+    std::vector<Pose> local;  // in the frame of the center of mass, body axes
     std::vector<std::uint32_t> material;
-    std::vector<double> inner_extent;     // m, smallest half extent
-    std::vector<double> outer_radius;     // m, furthest point from the body's center of mass
+    std::vector<double> inner_extent;         // m, smallest half extent
+    std::vector<double> outer_radius;         // m, furthest point from the body's center of mass
     std::vector<std::uint32_t> begin, count;  // [bodies] the colliders of each
 
     std::size_t size() const { return body.size(); }

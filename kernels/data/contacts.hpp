@@ -19,10 +19,10 @@ struct Contact {
         Real impulse = 0;            // N s along the normal, total over the last substep
         std::uint32_t feature = 0;
     };
-    Vec3T<Real> normal = Vec3T<Real>::UnitZ();          // from a to b
-    Vec3T<Real> friction = Vec3T<Real>::Zero();         // N s on b, at the middle of the points
-    Vec3T<Real> rolling = Vec3T<Real>::Zero();          // N m s on b
-    Real twist = 0;                                     // N m s on b about the normal
+    Vec3T<Real> normal = Vec3T<Real>::UnitZ();   // from a to b
+    Vec3T<Real> friction = Vec3T<Real>::Zero();  // N s on b, at the middle of the points
+    Vec3T<Real> rolling = Vec3T<Real>::Zero();   // N m s on b
+    Real twist = 0;                              // N m s on b about the normal
     std::array<Point, 4> points;
     int count = 0;
     PairCache cache;
@@ -51,11 +51,11 @@ struct MeshContacts {
 struct ActiveContacts {
     struct Entry {
         std::uint32_t body_a = 0, body_b = 0;
-        std::uint32_t slot = 0;   // in ConvexContacts, or in MeshContacts
+        std::uint32_t slot = 0;  // in ConvexContacts, or in MeshContacts
         bool on_mesh = false;
         std::uint8_t points = 0;
         float friction = 0, restitution = 0, rolling_friction = 0;
-        float extent = 0;         // m, the lesser of the smallest half extents of the two shapes
+        float extent = 0;  // m, the lesser of the smallest half extents of the two shapes
     };
     std::vector<Entry> entries;
 };

@@ -13,7 +13,7 @@ namespace throng {
 struct Islands {
     std::vector<std::uint32_t> body_begin, bodies;
     std::vector<std::uint32_t> contact_begin, contacts;
-    std::vector<std::uint32_t> lone;  // awake dynamic bodies that touch nothing that can move them
+    std::vector<std::uint32_t> lone;  // awake dynamic bodies that touch nothing
 
     std::size_t size() const { return body_begin.empty() ? 0 : body_begin.size() - 1; }
 };

@@ -42,24 +42,25 @@ struct PointRows {
     Lane16<Real> greatest;              // N s, greatest impulse of the step
 };
 
-/// 16 contacts of up to four points each. Friction acts once a contact, at the middle of its points.
+/// 16 contacts of up to four points each. Friction acts once a contact, at the middle of its
+/// points.
 template <class Real>
 struct ContactBlock {
     std::int32_t a[kBlock], b[kBlock];  // places among the solver bodies
     std::uint16_t writes_a, writes_b;   // bit a lane: that body may be changed
     std::int32_t points;                // greatest number of points of a lane
     Lane16<Real> normal[3];
-    Lane16<Real> tangent[3];            // the other tangent is normal x tangent
+    Lane16<Real> tangent[3];  // the other tangent is normal x tangent
     Lane16<Real> center_a[3], center_b[3];
     Lane16<Real> friction, restitution, rolling;  // coefficients
-    Lane16<Real> friction_mass[3];      // inverse of the 2x2 matrix at the center: 11, 22, 12
-    Lane16<Real> sliding_mass;          // 1 / its greatest eigenvalue: keeps the cone round
-    Lane16<Real> sliding_answer;        // that eigenvalue, 1/kg: the speed that an impulse gives
+    Lane16<Real> friction_mass[3];  // inverse of the 2x2 matrix at the center: 11, 22, 12
+    Lane16<Real> sliding_mass;      // 1 / its greatest eigenvalue: keeps the cone round
+    Lane16<Real> sliding_answer;    // that eigenvalue, 1/kg: the speed that an impulse gives
     Lane16<Real> twist_mass, rolling_mass;
     Lane16<Real> friction_impulse[2], twist_impulse, rolling_impulse[3];
     Lane16<Real> bias_rate, impulse_scale;  // softness, see contact_rows.hpp
-    Lane16<Real> inverse_deep;          // 1/m, of the overlap from which a contact turns rigid
-    Lane16<Real> reach[4];              // m, each point's distance from the center, for the twist
+    Lane16<Real> inverse_deep;              // 1/m, of the overlap from which a contact turns rigid
+    Lane16<Real> reach[4];  // m, each point's distance from the center, for the twist
     PointRows<Real> point[4];
 };
 
@@ -76,21 +77,21 @@ struct Color {
 
 /// What one task solves through all substeps: some small islands, or one big one.
 struct Batch {
-    std::uint32_t first_body = 0;   // solver bodies; the first is the still one
-    std::uint32_t dynamic = 0;      // how many follow it that can be moved
-    std::uint32_t kinematic = 0;    // and how many after those that move by themselves
+    std::uint32_t first_body = 0;  // solver bodies; the first is the still one
+    std::uint32_t dynamic = 0;     // how many follow it that can be moved
+    std::uint32_t kinematic = 0;   // and how many after those that move by themselves
     std::uint32_t first_color = 0, colors = 0;
     std::uint32_t first_block = 0, blocks = 0;
-    bool wide = false;              // big: its colors are shared among the threads
+    bool wide = false;  // big: its colors are shared among the threads
 };
 
 /// Which contact goes into which lane, and which body is which solver body.
 struct Layout {
     std::vector<Batch> batches;
     std::vector<Color> colors;
-    std::vector<LaneSource> lanes;           // [blocks * 16]
+    std::vector<LaneSource> lanes;             // [blocks * 16]
     std::vector<std::int32_t> slot_a, slot_b;  // [blocks * 16] places among the batch's bodies
-    std::vector<std::uint32_t> body_of_slot;  // [solver bodies] body, or none for the still one
+    std::vector<std::uint32_t> body_of_slot;   // [solver bodies] body, or none for the still one
 };
 
 template <class Real>

@@ -57,16 +57,16 @@ struct Hull {
         std::uint16_t from, to, left, right;
     };
     std::vector<Vec3> vertices;
-    std::vector<Vec3> normals;     // [faces] unit, outward
-    std::vector<double> offsets;   // [faces] normal . x of the face's plane
+    std::vector<Vec3> normals;    // [faces] unit, outward
+    std::vector<double> offsets;  // [faces] normal . x of the face's plane
     std::vector<std::uint32_t> face_begin;
     std::vector<std::uint16_t> face_vertices;
     std::vector<Edge> edges;
     std::vector<std::uint32_t> neighbor_begin;
     std::vector<std::uint16_t> neighbors;
-    Vec3 center = Vec3::Zero();    // a point well inside (the centroid)
-    double inner_radius = 0;       // of a ball about center inside the hull
-    double outer_radius = 0;       // of a ball about center round the hull
+    Vec3 center = Vec3::Zero();  // a point well inside (the centroid)
+    double inner_radius = 0;     // of a ball about center inside the hull
+    double outer_radius = 0;     // of a ball about center round the hull
 };
 
 /// Static triangles, solid on neither side but one-sided in contact: pushes come out along the
@@ -75,17 +75,17 @@ struct Hull {
 /// edge_cos/edge_kind say for each edge (0: v0-v1, 1: v1-v2, 2: v2-v0) what lies beyond it, so that
 /// contacts on internal edges take the normal of the surface and not of the triangle's rim.
 struct Mesh {
-    struct Node {                  // binary tree over triangles, boxes in mesh axes
+    struct Node {  // binary tree over triangles, boxes in mesh axes
         Vec3 lower, upper;
-        std::uint32_t first = 0;   // leaf: first in `order`; inner: left child; right is left + 1
-        std::uint32_t count = 0;   // leaf: triangles; inner: 0
+        std::uint32_t first = 0;  // leaf: first in `order`; inner: left child; right is left + 1
+        std::uint32_t count = 0;  // leaf: triangles; inner: 0
     };
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Vec3> normals;     // [triangles] unit
+    std::vector<Vec3> normals;                        // [triangles] unit
     std::vector<std::array<std::int32_t, 3>> beyond;  // triangle over each edge, -1 at a rim
-    std::vector<std::uint8_t> convex_edges;  // bit e set: edge e sticks out, or is a rim
-    std::vector<Node> tree;        // [0] is the root
+    std::vector<std::uint8_t> convex_edges;           // bit e set: edge e sticks out, or is a rim
+    std::vector<Node> tree;                           // [0] is the root
     std::vector<std::uint32_t> order;
 };
 

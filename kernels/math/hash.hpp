@@ -14,10 +14,7 @@ namespace throng {
 ///         (2014), chained.
 class Hash {
 public:
-    void add(std::uint64_t value)
-    {
-        state_ = mixed(state_ ^ mixed(value + 0x9e3779b97f4a7c15u));
-    }
+    void add(std::uint64_t value) { state_ = mixed(state_ ^ mixed(value + 0x9e3779b97f4a7c15u)); }
     void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
     void add(float value) { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
 

@@ -40,8 +40,7 @@ struct Wide {
     Wide(T value)  // NOLINT(google-explicit-constructor): a number
         requires(W > 1)
         : v(Register<T, W>::all(value))
-    {
-    }
+    { }
 
     static Wide load(const T* from)
     {
@@ -56,8 +55,16 @@ struct Wide {
     friend Wide operator*(Wide a, Wide b) { return a.v * b.v; }
     friend Wide operator/(Wide a, Wide b) { return a.v / b.v; }
     friend Wide operator-(Wide a) { return -a.v; }
-    Wide& operator+=(Wide b) { v += b.v; return *this; }
-    Wide& operator-=(Wide b) { v -= b.v; return *this; }
+    Wide& operator+=(Wide b)
+    {
+        v += b.v;
+        return *this;
+    }
+    Wide& operator-=(Wide b)
+    {
+        v -= b.v;
+        return *this;
+    }
     friend auto operator<(Wide a, Wide b) { return a.v < b.v; }
     friend auto operator>(Wide a, Wide b) { return a.v > b.v; }
 
@@ -124,7 +131,8 @@ void turn_8x8(V (&r)[8])
         for (int k = 0; k < 2; ++k) {
             V &lower = t[4 * i + k], &upper = t[4 * i + k + 2];
             u[4 * i + 2 * k] = __builtin_shufflevector(lower, upper, 0, 1, 8, 9, 4, 5, 12, 13);
-            u[4 * i + 2 * k + 1] = __builtin_shufflevector(lower, upper, 2, 3, 10, 11, 6, 7, 14, 15);
+            u[4 * i + 2 * k + 1] =
+                __builtin_shufflevector(lower, upper, 2, 3, 10, 11, 6, 7, 14, 15);
         }
     for (int i = 0; i < 4; ++i) {
         r[i] = __builtin_shufflevector(u[i], u[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
@@ -139,8 +147,8 @@ void turn_two_8x8(V (&r)[8])
     V t[8], u[8];
     for (int i = 0; i < 4; ++i) {
         const V a = r[2 * i], b = r[2 * i + 1];
-        t[2 * i] = __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28,
-                                           13, 29);
+        t[2 * i] =
+            __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
         t[2 * i + 1] = __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14,
                                                30, 15, 31);
     }
@@ -154,8 +162,8 @@ void turn_two_8x8(V (&r)[8])
         }
     for (int i = 0; i < 4; ++i) {
         const V a = u[i], b = u[i + 4];
-        r[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 8, 9, 10, 11, 24, 25, 26,
-                                       27);
+        r[i] =
+            __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 8, 9, 10, 11, 24, 25, 26, 27);
         r[i + 4] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 20, 21, 22, 23, 12, 13, 14, 15, 28, 29,
                                            30, 31);
     }
@@ -196,11 +204,8 @@ void gather_8(const T* base, int stride, const std::int32_t* index, Wide<T, W> (
 
 /// The reverse of gather_8, for the lanes whose bit in `writes` is set.
 template <class T, int W>
-void scatter_8(const Wide<T, W> (&in)[8],
-               T* base,
-               int stride,
-               const std::int32_t* index,
-               unsigned writes)
+void scatter_8(
+    const Wide<T, W> (&in)[8], T* base, int stride, const std::int32_t* index, unsigned writes)
 {
     if constexpr (W == 8 || W == 16) {
         typedef T V8 __attribute__((vector_size(8 * sizeof(T))));
@@ -226,7 +231,8 @@ void scatter_8(const Wide<T, W> (&in)[8],
     } else {
         for (int i = 0; i < W; ++i)
             if ((writes >> i & 1u) != 0)
-                for (int k = 0; k < 8; ++k) base[std::int64_t{stride} * index[i] + k] = in[k].get(i);
+                for (int k = 0; k < 8; ++k)
+                    base[std::int64_t{stride} * index[i] + k] = in[k].get(i);
     }
 }
 

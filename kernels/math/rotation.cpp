@@ -11,8 +11,10 @@ double sin_near_zero(double x)
 {
     const double z = x * x;
     const double tail = 8.33333333332248946124e-03
-        + z * (-1.98412698298579493134e-04
-               + z * (2.75573137070700676789e-06
+        + z
+            * (-1.98412698298579493134e-04
+               + z
+                   * (2.75573137070700676789e-06
                       + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
     return x + z * x * (-1.66666666666666324348e-01 + z * tail);
 }
@@ -22,10 +24,14 @@ double cos_near_zero(double x)
     const double z = x * x;
     const double tail = z
         * (4.16666666666666019037e-02
-           + z * (-1.38888888888741095749e-03
-                  + z * (2.48015872894767294178e-05
-                         + z * (-2.75573143513906633035e-07
-                                + z * (2.08757232129817482790e-09
+           + z
+               * (-1.38888888888741095749e-03
+                  + z
+                      * (2.48015872894767294178e-05
+                         + z
+                             * (-2.75573143513906633035e-07
+                                + z
+                                    * (2.08757232129817482790e-09
                                        - z * 1.13596475577881948265e-11)))));
     const double half = 0.5 * z;
     const double near_one = 1.0 - half;
@@ -59,10 +65,14 @@ SinCos sin_cos(double angle)
     const double s = sin_near_zero(x);
     const double c = cos_near_zero(x);
     switch (static_cast<std::int64_t>(quarters) & 3) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
+    case 0:
+        return {s, c};
+    case 1:
+        return {c, -s};
+    case 2:
+        return {-s, -c};
+    default:
+        return {-c, s};
     }
 }
 

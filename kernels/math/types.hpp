@@ -52,7 +52,10 @@ struct Sym3 {
         m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
         return m;
     }
-    static Sym3 from(const Mat3& m) { return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)}; }
+    static Sym3 from(const Mat3& m)
+    {
+        return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
+    }
     bool operator==(const Sym3&) const = default;
 };
 

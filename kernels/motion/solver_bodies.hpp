@@ -21,8 +21,8 @@ void move_bodies(std::span<SolverBody<Real>> bodies, Real time);
 template <class Real>
 void turn_bodies(std::span<SolverBody<Real>> bodies, Real time);
 
-/// Stops every body whose velocity is no longer a number, or beyond what products of it can hold, and
-/// marks it: it stands still for the rest of the step, so that what touches it stays sound.
+/// Stops every body whose velocity is no longer a number, or beyond what products of it can hold,
+/// and marks it: it stands still for the rest of the step, so that what touches it stays sound.
 template <class Real>
 void stop_runaways(std::span<SolverBody<Real>> bodies);
 

@@ -15,12 +15,11 @@ class BlockBody {
 public:
     template <class Function>
     BlockBody(const Function& function)  // NOLINT(google-explicit-constructor): reads as a lambda
-        : object_(&function), call_([](const void* object, std::size_t begin, std::size_t end,
-                                       std::size_t block) {
+        : object_(&function),
+          call_([](const void* object, std::size_t begin, std::size_t end, std::size_t block) {
               (*static_cast<const Function*>(object))(begin, end, block);
           })
-    {
-    }
+    { }
     void operator()(std::size_t begin, std::size_t end, std::size_t block) const
     {
         call_(object_, begin, end, block);

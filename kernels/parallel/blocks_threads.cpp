@@ -106,10 +106,8 @@ struct ThreadPool::Inside {
 ThreadPool::ThreadPool(int threads)
     : threads_(threads > 0 ? threads
                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
-      met_(threads_),
-      inside_(std::make_unique<Inside>(threads_))
-{
-}
+      met_(threads_), inside_(std::make_unique<Inside>(threads_))
+{ }
 
 ThreadPool::~ThreadPool() = default;
 

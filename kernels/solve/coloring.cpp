@@ -42,8 +42,7 @@ public:
             Layout& layout)
         : islands_(islands), contacts_(contacts), states_(states), layout_(layout),
           slot_(states.kind.size(), kStill), used_(states.kind.size(), 0)
-    {
-    }
+    { }
 
     void paint(const Range& range)
     {

@@ -32,8 +32,8 @@ Real inverse_or_zero(Real x)
 template <class Real>
 Vec3T<Real> across(const Vec3T<Real>& normal)
 {
-    const Vec3T<Real> axis = std::abs(normal.x()) < Real(0.6) ? Vec3T<Real>::UnitX()
-                                                             : Vec3T<Real>::UnitY();
+    const Vec3T<Real> axis =
+        std::abs(normal.x()) < Real(0.6) ? Vec3T<Real>::UnitX() : Vec3T<Real>::UnitY();
     return normal.cross(axis).normalized();
 }
 
@@ -52,6 +52,22 @@ struct Response {
         return linear + turn_a + turn_b;
     }
 };
+
+// The effective mass of a point along the normal. Where neither body can be moved, only turned, a
+// point next to below the center has no lever to speak of: pushed there, a body would spin without
+// end and part by nothing.
+template <class Real>
+Real normal_mass(const Response<Real>& response, const Vec3T<Real>& normal)
+{
+    const Real answer = response(normal, normal);
+    if (response.inverse_mass == 0) {
+        constexpr Real kLever = Real(1e-2);  // of the arm
+        const Real most = response.inertia_a.trace() * response.arm_a.squaredNorm()
+            + response.inertia_b.trace() * response.arm_b.squaredNorm();
+        if (answer <= kLever * kLever * most) return 0;
+    }
+    return inverse_or_zero(answer);
+}
 
 template <class Real>
 void fill_friction(ContactBlock<Real>& block,
@@ -136,11 +152,11 @@ void fill_lane(ContactBlock<Real>& block,
         set3(point.from_a, lane, from.from_a);
         set3(point.from_b, lane, from.from_b);
         point.gap.at[lane] = from.separation - normal.dot(from.from_b - from.from_a);
-        point.mass.at[lane] = inverse_or_zero(response(normal, normal));
+        point.mass.at[lane] = normal_mass(response, normal);
         point.impulse.at[lane] = from.impulse;
         point.greatest.at[lane] = 0;
-        point.approach.at[lane]
-            = normal.dot(velocity_at(b, from.from_b) - velocity_at(a, from.from_a));
+        point.approach.at[lane] =
+            normal.dot(velocity_at(b, from.from_b) - velocity_at(a, from.from_a));
         center_a += from.from_a;
         center_b += from.from_b;
     }
@@ -148,8 +164,8 @@ void fill_lane(ContactBlock<Real>& block,
     center_a *= share;
     center_b *= share;
     for (int k = 0; k < contact.count; ++k)
-        block.reach[k].at[lane]
-            = (contact.points[static_cast<std::size_t>(k)].from_a - center_a).norm();
+        block.reach[k].at[lane] =
+            (contact.points[static_cast<std::size_t>(k)].from_a - center_a).norm();
     set3(block.center_a, lane, center_a);
     set3(block.center_b, lane, center_b);
     response.arm_a = center_a;
@@ -194,9 +210,9 @@ void store_impulses(const ContactBlock<Real>& block, int lane_at, Contact<Real>&
     contact.friction = tangent * block.friction_impulse[0].at[lane]
         + contact.normal.cross(tangent) * block.friction_impulse[1].at[lane];
     contact.twist = block.twist_impulse.at[lane];
-    contact.rolling = Vec3T<Real>(block.rolling_impulse[0].at[lane],
-                                  block.rolling_impulse[1].at[lane],
-                                  block.rolling_impulse[2].at[lane]);
+    contact.rolling =
+        Vec3T<Real>(block.rolling_impulse[0].at[lane], block.rolling_impulse[1].at[lane],
+                    block.rolling_impulse[2].at[lane]);
 }
 
 template <class Real>
@@ -217,8 +233,8 @@ void carry_impulses(const Contact<Real>& before, Real friction, Real scale, Cont
     }
     if (total <= 0) return;
     // Friction lives in the tangent plane and within the cone of the impulses that were kept.
-    const Vec3T<Real> flat
-        = scale * (before.friction - contact.normal * contact.normal.dot(before.friction));
+    const Vec3T<Real> flat =
+        scale * (before.friction - contact.normal * contact.normal.dot(before.friction));
     const Real length = flat.norm();
     const Real most = friction * total;
     contact.friction = length > most ? Vec3T<Real>(flat * (most / length)) : flat;

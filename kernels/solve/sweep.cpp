@@ -1,172 +1,23 @@
 // One visit of the solver, written once over the width of the machine's registers.
-#include "kernels/math/lanes.hpp"
 #include "kernels/solve/sweep.hpp"
+
+#include "kernels/solve/contact_lanes.hpp"
 
 namespace throng::THRONG_LANES {
 
 namespace {
 
-template <class L>
-struct V3 {
-    L x, y, z;
-};
-template <class L>
-V3<L> operator+(const V3<L>& a, const V3<L>& b)
-{
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class L>
-V3<L> operator-(const V3<L>& a, const V3<L>& b)
-{
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class L>
-V3<L> operator*(const V3<L>& a, L s)
-{
-    return {a.x * s, a.y * s, a.z * s};
-}
-template <class L>
-L dot(const V3<L>& a, const V3<L>& b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class L>
-V3<L> cross(const V3<L>& a, const V3<L>& b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-template <class L>
-L lane(const Lane16<typename L::Number>& of, int at)
-{
-    return L::load(of.at + at);
-}
-template <class L>
-V3<L> lane3(const Lane16<typename L::Number> (&of)[3], int at)
-{
-    return {lane<L>(of[0], at), lane<L>(of[1], at), lane<L>(of[2], at)};
-}
-
-// One side of W contacts: velocities in registers, with what resists them.
-template <class L, bool turns>
-struct Side {
-    using Real = typename L::Number;
-    V3<L> velocity, spin;
-    L inverse_mass;
-    L xx, yy, zz, xy, xz, yz;
-
-    Side(const SolverBody<Real>* bodies, const std::int32_t* index)
-    {
-        constexpr int kStride = sizeof(SolverBody<Real>) / sizeof(Real);
-        L m[8];
-        gather_8(bodies->motion, kStride, index, m);
-        velocity = {m[0], m[1], m[2]};
-        spin = {m[4], m[5], m[6]};
-        L i[8];
-        gather_8(bodies->inertia, kStride, index, i);
-        inverse_mass = i[0];
-        xx = i[1], yy = i[2], zz = i[3], xy = i[4], xz = i[5], yz = i[6];
-    }
-    void write(SolverBody<Real>* bodies, const std::int32_t* index, unsigned writes) const
-    {
-        constexpr int kStride = sizeof(SolverBody<Real>) / sizeof(Real);
-        const L m[8]
-            = {velocity.x, velocity.y, velocity.z, L(Real(0)), spin.x, spin.y, spin.z, L(Real(0))};
-        scatter_8(m, bodies->motion, kStride, index, writes);
-    }
-    V3<L> at(const V3<L>& arm) const
-    {
-        if constexpr (turns) return velocity + cross(spin, arm);
-        return velocity;
-    }
-    V3<L> turned_by(const V3<L>& torque) const
-    {
-        return {xx * torque.x + xy * torque.y + xz * torque.z,
-                xy * torque.x + yy * torque.y + yz * torque.z,
-                xz * torque.x + yz * torque.y + zz * torque.z};
-    }
-    void push(const V3<L>& impulse, const V3<L>& arm)
-    {
-        velocity = velocity + impulse * inverse_mass;
-        if constexpr (turns) spin = spin + turned_by(cross(arm, impulse));
-    }
-    void twist(const V3<L>& impulse)
-    {
-        if constexpr (turns) spin = spin + turned_by(impulse);
-    }
-};
-
-// How far W bodies have moved and turned since the step began.
-template <class L, bool turns>
-struct Drift {
-    using Real = typename L::Number;
-    V3<L> moved, axis;
-    L w;
-
-    Drift(const SolverBody<Real>* bodies, const std::int32_t* index)
-    {
-        constexpr int kStride = sizeof(SolverBody<Real>) / sizeof(Real);
-        L d[8];
-        gather_8(bodies->drift, kStride, index, d);
-        moved = {d[0], d[1], d[2]};
-        axis = {d[4], d[5], d[6]};
-        w = d[7];
-    }
-    V3<L> of(const V3<L>& arm) const
-    {
-        if constexpr (!turns) return moved + arm;
-        const V3<L> t = cross(axis, arm);
-        const V3<L> twice = t + t;
-        return moved + arm + twice * w + cross(axis, twice);
-    }
-};
-
-template <class L, bool turns>
-struct Contacts {
-    using Real = typename L::Number;
-    ContactBlock<Real>& block;
-    int at;  // first lane
-    unsigned writes_a, writes_b;
-    Side<L, turns> a, b;
-    V3<L> normal;
-
-    Contacts(ContactBlock<Real>& in, int first, const SolverBody<Real>* bodies)
-        : block(in), at(first), writes_a(unsigned{in.writes_a} >> first),
-          writes_b(unsigned{in.writes_b} >> first), a(bodies, in.a + first), b(bodies, in.b + first),
-          normal(lane3<L>(in.normal, first))
-    {
-    }
-    void write(SolverBody<Real>* bodies) const
-    {
-        a.write(bodies, block.a + at, writes_a);
-        b.write(bodies, block.b + at, writes_b);
-    }
-    void push(const V3<L>& impulse, const V3<L>& arm_a, const V3<L>& arm_b)
-    {
-        a.push(impulse * L(Real(-1)), arm_a);
-        b.push(impulse, arm_b);
-    }
-    void twist(const V3<L>& impulse)
-    {
-        a.twist(impulse * L(Real(-1)));
-        b.twist(impulse);
-    }
-};
-
 // One point: towards the wanted normal speed, then refuse to pull. Returns the total impulse.
 template <class L, bool turns>
-L push_point(Contacts<L, turns>& c,
-             PointRows<typename L::Number>& point,
-             L bias,
-             L leak)
+L push_point(Contacts<L, turns>& c, PointRows<typename L::Number>& point, L bias, L leak)
 {
     using Real = typename L::Number;
     const V3<L> arm_a = lane3<L>(point.from_a, c.at);
     const V3<L> arm_b = lane3<L>(point.from_b, c.at);
     const L speed = dot(c.normal, c.b.at(arm_b) - c.a.at(arm_a));
     const L old = lane<L>(point.impulse, c.at);
-    const L change
-        = -(lane<L>(point.mass, c.at) * (L(Real(1)) - leak) * (speed + bias)) - leak * old;
+    const L change =
+        -(lane<L>(point.mass, c.at) * (L(Real(1)) - leak) * (speed + bias)) - leak * old;
     const L total = max(old + change, L(Real(0)));
     total.store(point.impulse.at + c.at);
     c.push(c.normal * (total - old), arm_a, arm_b);
@@ -196,8 +47,8 @@ Aims<L> aims_of(const Contacts<L, turns>& c,
     L separation[4], loaded = zero;
     for (int k = 0; k < c.block.points; ++k) {
         const PointRows<Real>& point = c.block.point[k];
-        const V3<L> apart
-            = drift_b.of(lane3<L>(point.from_b, c.at)) - drift_a.of(lane3<L>(point.from_a, c.at));
+        const V3<L> apart =
+            drift_b.of(lane3<L>(point.from_b, c.at)) - drift_a.of(lane3<L>(point.from_a, c.at));
         separation[k] = dot(c.normal, apart) + lane<L>(point.gap, c.at);
         // A point that this contact has not got, but another of the block has, bears nothing.
         const L there = select(lane<L>(point.mass, c.at) > zero, one, zero);
@@ -295,12 +146,12 @@ void resist_rolling(Contacts<L, turns>& c, L most)
     const L mass = lane<L>(c.block.rolling_mass, c.at);
     const V3<L> wanted = old - (c.b.spin - c.a.spin) * mass;
     // In units of its greatest part: squares leave float where bodies are huge or tiny.
-    const L greatest = max(max(max(wanted.x, -wanted.x), max(wanted.y, -wanted.y)),
-                           max(wanted.z, -wanted.z));
+    const L greatest =
+        max(max(max(wanted.x, -wanted.x), max(wanted.y, -wanted.y)), max(wanted.z, -wanted.z));
     const V3<L> parts = wanted * (L(Real(1)) / select(greatest > L(Real(0)), greatest, L(Real(1))));
     const L length = greatest * sqrt(dot(parts, parts));
-    const L shrink
-        = select(length > most, most / select(length > L(Real(0)), length, L(Real(1))), L(Real(1)));
+    const L shrink =
+        select(length > most, most / select(length > L(Real(0)), length, L(Real(1))), L(Real(1)));
     const V3<L> total = wanted * shrink;
     total.x.store(c.block.rolling_impulse[0].at + c.at);
     total.y.store(c.block.rolling_impulse[1].at + c.at);
@@ -388,19 +239,32 @@ void restitute_lanes(ContactBlock<typename L::Number>& block,
     c.write(bodies);
 }
 
+template <bool value>
+struct Flag {
+    static constexpr bool kValue = value;
+};
+
+// Calls body(turns, block, first lane) for each group of lanes of the blocks.
+template <class Real, class Body>
+void for_lanes(ContactBlock<Real>* blocks, std::size_t count, bool turns, Body body)
+{
+    for (std::size_t i = 0; i < count; ++i)
+        for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
+            if (turns)
+                body(Flag<true>{}, blocks[i], at);
+            else
+                body(Flag<false>{}, blocks[i], at);
+}
+
 template <class Real>
 void warm_start(ContactBlock<Real>* blocks,
                 std::size_t count,
                 SolverBody<Real>* bodies,
                 const Visit<Real>& visit)
 {
-    using L = Lanes<Real>;
-    for (std::size_t i = 0; i < count; ++i)
-        for (int at = 0; at < kBlock; at += L::kWidth)
-            if (visit.turns)
-                warm_start_lanes<L, true>(blocks[i], at, bodies, visit);
-            else
-                warm_start_lanes<L, false>(blocks[i], at, bodies, visit);
+    for_lanes(blocks, count, visit.turns, [&](auto turns, ContactBlock<Real>& block, int at) {
+        warm_start_lanes<Lanes<Real>, turns.kValue>(block, at, bodies, visit);
+    });
 }
 
 template <class Real>
@@ -409,13 +273,9 @@ void sweep(ContactBlock<Real>* blocks,
            SolverBody<Real>* bodies,
            const Visit<Real>& visit)
 {
-    using L = Lanes<Real>;
-    for (std::size_t i = 0; i < count; ++i)
-        for (int at = 0; at < kBlock; at += L::kWidth)
-            if (visit.turns)
-                sweep_lanes<L, true>(blocks[i], at, bodies, visit);
-            else
-                sweep_lanes<L, false>(blocks[i], at, bodies, visit);
+    for_lanes(blocks, count, visit.turns, [&](auto turns, ContactBlock<Real>& block, int at) {
+        sweep_lanes<Lanes<Real>, turns.kValue>(block, at, bodies, visit);
+    });
 }
 
 template <class Real>
@@ -425,13 +285,9 @@ void restitute(ContactBlock<Real>* blocks,
                Real threshold,
                const Visit<Real>& visit)
 {
-    using L = Lanes<Real>;
-    for (std::size_t i = 0; i < count; ++i)
-        for (int at = 0; at < kBlock; at += L::kWidth)
-            if (visit.turns)
-                restitute_lanes<L, true>(blocks[i], at, bodies, threshold);
-            else
-                restitute_lanes<L, false>(blocks[i], at, bodies, threshold);
+    for_lanes(blocks, count, visit.turns, [&](auto turns, ContactBlock<Real>& block, int at) {
+        restitute_lanes<Lanes<Real>, turns.kValue>(block, at, bodies, threshold);
+    });
 }
 
 template <class Real>

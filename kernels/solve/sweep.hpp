@@ -27,7 +27,8 @@ struct Visit {
 /// that the blocks name (places in `bodies`).
 ///
 ///   warm_start  gives the bodies the impulses of the last visit again
-///   sweep       moves every point towards its wanted normal speed, never pulling; then friction, on
+///   sweep       moves every point towards its wanted normal speed, never pulling; then friction,
+///   on
 ///               a round cone of the contact's normal impulse; then the points again
 ///   restitute   lets points that came in fast leave with `restitution` times that speed
 ///

@@ -8,9 +8,9 @@ namespace throng {
 
 /// The colliders of a pair and where they are.
 struct PairPlace {
-    std::uint32_t a = 0, b = 0;            // colliders
+    std::uint32_t a = 0, b = 0;  // colliders
     std::uint32_t body_a = 0, body_b = 0;
-    double reach = 0;                      // m, of both together
+    double reach = 0;  // m, of both together
 };
 
 inline PairPlace place_of(PairKey key, const Colliders& colliders, const Bounds& bounds)
@@ -36,10 +36,8 @@ PoseT<Real> rounded(const Pose& pose)
 
 /// Where a body's anchors are counted from. A still body has no use for its own center, which may
 /// be far away: it takes the other's, so that the numbers stay small.
-inline const Vec3& anchor_origin(std::uint32_t body,
-                                 std::uint32_t other,
-                                 const BodyStates& states,
-                                 const Poses& poses)
+inline const Vec3&
+anchor_origin(std::uint32_t body, std::uint32_t other, const BodyStates& states, const Poses& poses)
 {
     return poses.position[states.kind[body] == BodyKind::still ? other : body];
 }
@@ -86,6 +84,17 @@ void turn_round(Contact<Real>& contact)
 inline double impulse_scale(const Conditions& conditions)
 {
     return conditions.last_substep > 0 ? conditions.substep() / conditions.last_substep : 0.0;
+}
+
+/// The same for a contact that stays as it is.
+template <class Real>
+void scale_impulses(Contact<Real>& contact, Real scale)
+{
+    for (int k = 0; k < contact.count; ++k)
+        contact.points[static_cast<std::size_t>(k)].impulse *= scale;
+    contact.friction *= scale;
+    contact.rolling *= scale;
+    contact.twist *= scale;
 }
 
 }  // namespace throng

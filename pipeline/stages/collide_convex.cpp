@@ -21,13 +21,12 @@ void follow_pairs(const Pairs& pairs, ConvexContacts<Real>& contacts)
     contacts.of_pair.resize(pairs.keys.size());
     for_each_block(pairs.keys.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i)
-            contacts.of_pair[i] = pairs.from[i] == Pairs::kNewPair
-                ? Contact<Real>{}
-                : contacts.before[pairs.from[i]];
+            contacts.of_pair[i] =
+                pairs.from[i] == Pairs::kNewPair ? Contact<Real>{} : contacts.before[pairs.from[i]];
     });
 }
 
-bool on_mesh(const Shapes&, const Colliders& colliders, const PairPlace& pair)
+bool on_mesh(const Colliders& colliders, const PairPlace& pair)
 {
     return colliders.shape[pair.a].kind == ShapeKind::mesh
         || colliders.shape[pair.b].kind == ShapeKind::mesh;
@@ -51,14 +50,18 @@ void collide_convex(const Conditions& conditions,
 
     const auto refresh = [&](std::size_t i) {
         const PairPlace pair = place_of(pairs.keys[i], colliders, bounds);
-        if (!wants_contact(pair, states) || on_mesh(shapes, colliders, pair)) return;
         Contact<Real>& contact = contacts.of_pair[i];
+        if (!wants_contact(pair, states)) {
+            if (contact.count > 0 && scale != 1) scale_impulses(contact, scale);
+            return;
+        }
+        if (on_mesh(colliders, pair)) return;
         // A plane goes second: it is seen from the other shape, so that numbers stay small.
         const bool turned = colliders.shape[pair.a].kind == ShapeKind::plane;
         const std::uint32_t first = turned ? pair.b : pair.a, second = turned ? pair.a : pair.b;
         const Pose& placed = bounds.placed[first];
-        const Pose seen
-            = pose_seen_from_a(shapes, colliders.shape[second], placed, bounds.placed[second]);
+        const Pose seen =
+            pose_seen_from_a(shapes, colliders.shape[second], placed, bounds.placed[second]);
         LocalManifold<Real> manifold;
         collide(shapes, colliders.shape[first], colliders.shape[second], rounded<Real>(seen),
                 static_cast<Real>(pair.reach), contact.cache, manifold);
@@ -72,8 +75,8 @@ void collide_convex(const Conditions& conditions,
                      anchor_origin(body_2, body_1, states, poses), contact);
         if (turned) turn_round(contact);
         if (before.count == 0) return;
-        const auto meeting
-            = surfaces.between(colliders.material[pair.a], colliders.material[pair.b]);
+        const auto meeting =
+            surfaces.between(colliders.material[pair.a], colliders.material[pair.b]);
         carry_impulses(before, static_cast<Real>(meeting.friction), scale, contact);
     };
     for_each_block(pairs.keys.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {

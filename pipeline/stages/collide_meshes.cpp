@@ -1,4 +1,5 @@
-// Collide meshes: convex shapes against static triangle meshes, a contact for each triangle touched.
+// Collide meshes: convex shapes against static triangle meshes, a contact for each triangle
+// touched.
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solve/contact_rows.hpp"
 #include "narrowphase/narrowphase.hpp"
@@ -19,8 +20,8 @@ using Entries = std::vector<typename MeshContacts<Real>::Entry>;
 template <class Real>
 std::pair<std::size_t, std::size_t> range_of(const Entries<Real>& entries, std::uint32_t pair)
 {
-    const auto [first, last] = std::equal_range(
-        entries.begin(), entries.end(), pair, [](const auto& x, const auto& y) {
+    const auto [first, last] =
+        std::equal_range(entries.begin(), entries.end(), pair, [](const auto& x, const auto& y) {
             const auto number = [](const auto& value) {
                 if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::uint32_t>)
                     return value;
@@ -60,6 +61,7 @@ void collide_meshes(const Conditions& conditions,
             for (std::size_t k = old.first; k < old.second; ++k) {
                 out.push_back(contacts.before[k]);
                 out.back().pair = i;
+                scale_impulses(out.back().contact, scale);
             }
             return;
         }

@@ -9,23 +9,23 @@ namespace throng {
 
 namespace {
 
-// A half-space has no useful box: its pairs are cut by the plane itself.
-bool box_reaches_plane(const Box3& box, const Plane& plane, const Pose& placed)
+// A half-space has no useful box: its pairs are cut by the plane itself, as far as it may move.
+bool box_reaches_plane(const Box3& box, const Plane& plane, const Pose& placed, double reach)
 {
     const Vec3 normal = placed.orientation * plane.normal;
-    const double offset = plane.offset + normal.dot(placed.position);
+    const double offset = plane.offset + normal.dot(placed.position) + reach;
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
     return normal.dot(lowest) <= offset;
 }
 
 bool may_touch(PairKey key, const Bounds& bounds, const Shapes& shapes, const Colliders& colliders)
 {
-    for (const auto& [plane, other] : {std::pair(first_of(key), second_of(key)),
-                                       std::pair(second_of(key), first_of(key))}) {
+    for (const auto& [plane, other] :
+         {std::pair(first_of(key), second_of(key)), std::pair(second_of(key), first_of(key))}) {
         const ShapeRef shape = colliders.shape[plane];
         if (shape.kind == ShapeKind::plane
             && !box_reaches_plane(bounds.boxes[other], shapes.planes[shape.index],
-                                  bounds.placed[plane]))
+                                  bounds.placed[plane], bounds.reach[plane]))
             return false;
     }
     return true;

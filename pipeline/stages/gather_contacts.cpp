@@ -25,15 +25,13 @@ void gather_contacts(const Pairs& pairs,
         const bool pushes_b = states.dynamic(body_b) && states.moves(body_b);
         if (!pushes_a && !pushes_b) return;
         const auto meeting = surfaces.between(colliders.material[a], colliders.material[b]);
-        active.entries.push_back({body_a, body_b, static_cast<std::uint32_t>(slot), on_mesh,
-                                  static_cast<std::uint8_t>(contact.count),
-                                  static_cast<float>(meeting.friction),
-                                  static_cast<float>(meeting.restitution),
-                                  static_cast<float>(meeting.rolling_friction),
-                                  static_cast<float>(std::min(extent_of(a), extent_of(b)))});
+        active.entries.push_back(
+            {body_a, body_b, static_cast<std::uint32_t>(slot), on_mesh,
+             static_cast<std::uint8_t>(contact.count), static_cast<float>(meeting.friction),
+             static_cast<float>(meeting.restitution), static_cast<float>(meeting.rolling_friction),
+             static_cast<float>(std::min(extent_of(a), extent_of(b)))});
     };
-    for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
-        take(i, convex.of_pair[i], i, false);
+    for (std::size_t i = 0; i < convex.of_pair.size(); ++i) take(i, convex.of_pair[i], i, false);
     for (std::size_t i = 0; i < meshes.entries.size(); ++i)
         take(meshes.entries[i].pair, meshes.entries[i].contact, i, true);
 }

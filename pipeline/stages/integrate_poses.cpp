@@ -17,8 +17,8 @@ struct Flight {
 
     bool sound() const
     {
-        return holdable(pose.position) && pose.orientation.coeffs().allFinite()
-            && holdable(linear) && holdable(angular);
+        return holdable(pose.position) && pose.orientation.coeffs().allFinite() && holdable(linear)
+            && holdable(angular);
     }
 };
 
@@ -27,16 +27,15 @@ void fly(const Conditions& conditions, const Masses& masses, std::uint32_t body,
     const double h = conditions.substep();
     const bool falls = conditions.has(Effect::gravity) && masses.inverse_mass[body] > 0;
     const bool turns = conditions.has(Effect::rotation);
-    const bool gyroscopic
-        = conditions.has(Effect::gyroscopic) && masses.spins_unevenly[body] != 0;
+    const bool gyroscopic = conditions.has(Effect::gyroscopic) && masses.spins_unevenly[body] != 0;
     const auto torque = conditions.settings.gyroscopic == Gyroscopic::implicit
         ? after_gyroscopic_torque
         : after_explicit_gyroscopic_torque;
     for (int step = 0; step < conditions.settings.substeps; ++step) {
         if (falls) flight.linear += conditions.gravity * h;
         if (gyroscopic)
-            flight.angular
-                = torque(flight.angular, masses.inertia[body], flight.pose.orientation, h);
+            flight.angular =
+                torque(flight.angular, masses.inertia[body], flight.pose.orientation, h);
         flight.pose.position += flight.linear * h;
         if (turns) flight.pose.orientation = turned(flight.pose.orientation, flight.angular, h);
     }

@@ -39,11 +39,10 @@ void seat_body(std::uint32_t body,
         seat.motion[4 + k] = static_cast<Real>(velocities.angular[body][k]);
     }
     if (!states.dynamic(body)) return;
-    const Mat3 inertia
-        = in_world_axes(masses.inverse_inertia[body], poses.orientation[body]);
+    const Mat3 inertia = in_world_axes(masses.inverse_inertia[body], poses.orientation[body]);
     const Sym3 six = Sym3::from(inertia);
-    const double numbers[7] = {masses.inverse_mass[body], six.xx, six.yy, six.zz, six.xy, six.xz,
-                               six.yz};
+    const double numbers[7] = {
+        masses.inverse_mass[body], six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
     for (int k = 0; k < 7; ++k) seat.inertia[k] = static_cast<Real>(numbers[k]);
 }
 
@@ -106,8 +105,8 @@ void prepare_rows(const Conditions& conditions,
                 continue;
             }
             const auto& source = active.entries[entry];
-            const Contact<Real>& contact = source.on_mesh ? meshes.entries[source.slot].contact
-                                                          : convex.of_pair[source.slot];
+            const Contact<Real>& contact =
+                source.on_mesh ? meshes.entries[source.slot].contact : convex.of_pair[source.slot];
             const auto writes = [&](std::uint32_t body) {
                 return states.dynamic(body) && states.moves(body) ? 1u << lane : 0u;
             };
@@ -118,8 +117,7 @@ void prepare_rows(const Conditions& conditions,
             fill_lane(block, lane_at, contact, rows.bodies[static_cast<std::size_t>(block.a[lane])],
                       rows.bodies[static_cast<std::size_t>(block.b[lane])],
                       {Real(source.friction), Real(source.restitution),
-                       Real(source.rolling_friction),
-                       softness[source.points - 1u],
+                       Real(source.rolling_friction), softness[source.points - 1u],
                        static_cast<Real>(kDeep * double{source.extent})});
         }
     };

@@ -51,22 +51,25 @@ void rest_islands(const Conditions& conditions,
     const Settings& settings = conditions.settings;
     const auto quiet_for = [&](std::uint32_t body) {
         // Who is driven wants to move, even where something holds it up.
-        const bool quiet = speed_of(velocities, states, body) < settings.sleep_speed
+        const bool quiet = states.moves(body)  // not put to rest in this very step
+            && speed_of(velocities, states, body) < settings.sleep_speed
             && !std::binary_search(drives.body.begin(), drives.body.end(), body);
         states.quiet_time[body] = quiet ? states.quiet_time[body] + settings.dt : 0.0;
         return states.quiet_time[body];
     };
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        const auto bodies = std::span(islands.bodies)
-                                .subspan(islands.body_begin[island],
-                                         islands.body_begin[island + 1]
-                                             - islands.body_begin[island]);
+        const auto bodies =
+            std::span(islands.bodies)
+                .subspan(islands.body_begin[island],
+                         islands.body_begin[island + 1] - islands.body_begin[island]);
         double least = std::numeric_limits<double>::infinity();
         for (const std::uint32_t body : bodies) least = std::min(least, quiet_for(body));
         if (least >= settings.sleep_time) put_to_bed(bodies, states, beds, velocities, rest);
     }
+    // What nothing holds is at rest only where it stands: a slow one drifts, or turns back to fall.
     for (const std::uint32_t body : islands.lone)
-        if (states.moves(body) && quiet_for(body) >= settings.sleep_time)
+        if (states.moves(body) && quiet_for(body) >= settings.sleep_time
+            && speed_of(velocities, states, body) == 0)
             put_to_bed({&body, 1}, states, beds, velocities, rest);
     std::sort(rest.rested.begin(), rest.rested.end());
 }

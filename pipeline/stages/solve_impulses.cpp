@@ -56,8 +56,8 @@ public:
         visit_.inverse_substep = static_cast<Real>(1 / substep_);
         visit_.push_limit = static_cast<Real>(conditions.settings.push_limit);
         visit_.turns = conditions.has(Effect::rotation);
-        visit_.grips = conditions.has(Effect::friction);
         visit_.rolls = conditions.has(Effect::rolling_friction);
+        visit_.grips = conditions.has(Effect::friction) || visit_.rolls;
         visit_.normal_sweeps = kNormalSweeps;
     }
 
@@ -85,8 +85,8 @@ private:
     template <class Body>
     void for_bodies(Body body)
     {
-        const auto all = std::span(rows_.bodies).subspan(batch_.first_body + 1,
-                                                         batch_.dynamic + batch_.kinematic);
+        const auto all = std::span(rows_.bodies)
+                             .subspan(batch_.first_body + 1, batch_.dynamic + batch_.kinematic);
         if (!batch_.wide) {
             body(all, std::size_t{batch_.first_body} + 1);
             return;
@@ -156,23 +156,21 @@ private:
 
     void move()
     {
-        for_bodies([&](auto bodies, std::size_t) {
-            move_bodies(bodies, static_cast<Real>(substep_));
-        });
+        for_bodies(
+            [&](auto bodies, std::size_t) { move_bodies(bodies, static_cast<Real>(substep_)); });
     }
 
     void turn()
     {
-        for_bodies([&](auto bodies, std::size_t) {
-            turn_bodies(bodies, static_cast<Real>(substep_));
-        });
+        for_bodies(
+            [&](auto bodies, std::size_t) { turn_bodies(bodies, static_cast<Real>(substep_)); });
     }
 
     // Slower than what gravity gives in two steps is resting, not bouncing.
     void bounce()
     {
-        const auto threshold = static_cast<Real>(2 * conditions_.gravity.norm()
-                                                 * conditions_.settings.dt);
+        const auto threshold =
+            static_cast<Real>(2 * conditions_.gravity.norm() * conditions_.settings.dt);
         for_colors([&](ContactBlock<Real>* blocks, std::size_t count) {
             kernels_.restitute(blocks, count, rows_.bodies.data(), threshold, visit_);
         });
@@ -191,7 +189,10 @@ private:
 
 // Gives one body its new state. False, and the body as it was, when that is not sound.
 template <class Real>
-bool take_back(const SolverBody<Real>& seat, std::uint32_t body, Poses& poses, Velocities& velocities)
+bool take_back(const SolverBody<Real>& seat,
+               std::uint32_t body,
+               Poses& poses,
+               Velocities& velocities)
 {
     const Vec3 moved(double{seat.drift[0]}, double{seat.drift[1]}, double{seat.drift[2]});
     const Vec3 v(double{seat.motion[0]}, double{seat.motion[1]}, double{seat.motion[2]});
@@ -234,11 +235,10 @@ void solve_impulses(const Conditions& conditions,
     // Big islands use all threads themselves, so they go one after another.
     for (const Batch& batch : layout.batches)
         if (batch.wide) solve(batch);
-    for_each_block(layout.batches.size(), 1,
-                   [&](std::size_t begin, std::size_t end, std::size_t) {
-                       for (std::size_t i = begin; i < end; ++i)
-                           if (!layout.batches[i].wide) solve(layout.batches[i]);
-                   });
+    for_each_block(layout.batches.size(), 1, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (!layout.batches[i].wide) solve(layout.batches[i]);
+    });
 
     for_each_block(layout.batches.size(), 1, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -259,8 +259,8 @@ void solve_impulses(const Conditions& conditions,
         for (std::size_t i = begin; i < end; ++i) {
             if (layout.lanes[i].entry == LaneSource{}.entry) continue;
             const auto& source = active.entries[layout.lanes[i].entry];
-            Contact<Real>& contact = source.on_mesh ? meshes.entries[source.slot].contact
-                                                    : convex.of_pair[source.slot];
+            Contact<Real>& contact =
+                source.on_mesh ? meshes.entries[source.slot].contact : convex.of_pair[source.slot];
             store_impulses(rows.blocks[i / kBlock], static_cast<int>(i % kBlock), contact);
         }
     });

@@ -17,10 +17,14 @@ constexpr std::size_t kGrain = 512;  // colliders a block: some 50 microseconds 
 // extent: far enough that a body at rest never loses its contacts to a breath.
 constexpr double kRestingReach = 0.04;
 
-Box3 grown(const Box3& box, double by)
+// A plane has no size to take a share of: it looks only as far as it moves.
+double resting_reach(const Colliders& colliders, std::size_t collider)
 {
-    return {box.lower.array() - by, box.upper.array() + by};
+    const bool plane = colliders.shape[collider].kind == ShapeKind::plane;
+    return plane ? 0 : kRestingReach * colliders.inner_extent[collider];
 }
+
+Box3 grown(const Box3& box, double by) { return {box.lower.array() - by, box.upper.array() + by}; }
 
 struct Mover {
     Vec3 velocity;  // m/s, of the collider's middle
@@ -37,8 +41,9 @@ Mover mover_of(const Colliders& colliders,
     const std::uint32_t body = colliders.body[collider];
     const Vec3& spin = velocities.angular[body];
     const Vec3 arm = placed.position - poses.position[body];
-    return {velocities.linear[body] + spin.cross(arm),
-            spin.norm() * colliders.outer_radius[collider], 2 * colliders.outer_radius[collider]};
+    // A plane has no furthest point; one that stands has no fast one either.
+    const double sweep = spin.isZero(0) ? 0 : spin.norm() * colliders.outer_radius[collider];
+    return {velocities.linear[body] + spin.cross(arm), sweep, 2 * colliders.outer_radius[collider]};
 }
 
 }  // namespace
@@ -83,13 +88,22 @@ void update_bounds(const Conditions& conditions,
             return;
         }
         const Mover mover = mover_of(colliders, velocities, placed, poses, collider);
-        const double rest = kRestingReach * colliders.inner_extent[collider];
-        const double reach
-            = rest + mover.velocity.norm() * dt + std::min(mover.sweep * dt, mover.widest);
+        // Small bodies fall further in a step than a share of their size.
+        const double falls = states.dynamic(body) ? conditions.gravity.norm() * dt * dt : 0;
+        const double rest = std::max(resting_reach(colliders, collider), falls);
+        const double reach =
+            rest + mover.velocity.norm() * dt + std::min(mover.sweep * dt, mover.widest);
         bounds.reach[collider] = reach;
+        if (colliders.shape[collider].kind == ShapeKind::plane) {
+            // Its box holds everything and says nothing of where it is now.
+            if (touched[collider] == 0 && reach == 0) return;
+            bounds.boxes[collider] = tight;
+            asked.push_back(static_cast<std::uint32_t>(collider));
+            return;
+        }
         if (touched[collider] == 0 && bounds.boxes[collider].contains(grown(tight, reach))) return;
-        bounds.boxes[collider]
-            = fattened(grown(tight, reach), mover.velocity, colliders.inner_extent[collider], dt);
+        bounds.boxes[collider] =
+            fattened(grown(tight, reach), mover.velocity, colliders.inner_extent[collider], dt);
         asked.push_back(static_cast<std::uint32_t>(collider));
     };
 

@@ -47,8 +47,21 @@ void wake_touched(const Pairs& pairs,
         disturb(a, b);
         disturb(b, a);
     };
-    for (std::size_t i = 0; i < pairs.keys.size(); ++i)
+    // Somebody who sleeps comes near what stands still only when one of them was put there.
+    const auto put_there = [&](std::size_t i) {
+        return pairs.changed && pairs.from[i] == Pairs::kNewPair;
+    };
+    const auto wake = [&](std::uint32_t body) {
+        if (states.bed[body] != kNobody) wake_bed(states.bed[body], beds, states, rest);
+    };
+    for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
         if (contacts.of_pair[i].count > 0) meet(pairs.keys[i]);
+        if (!put_there(i)) continue;
+        const std::uint32_t a = colliders.body[first_of(pairs.keys[i])];
+        const std::uint32_t b = colliders.body[second_of(pairs.keys[i])];
+        if (!states.dynamic(a)) wake(b);
+        if (!states.dynamic(b)) wake(a);
+    }
     // Contacts with meshes are not known yet: a mesh that moves wakes whoever is near.
     for (const std::uint32_t i : pairs.on_mesh) meet(pairs.keys[i]);
     std::sort(rest.awoken.begin(), rest.awoken.end());

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <sys/stat.h>
+
 namespace throng {
 namespace {
 
@@ -135,6 +138,26 @@ TEST(Scenes, BigOnesNeedAFileAndKeepTheirState)
     const auto tail = [](const std::string& out) { return out.substr(out.find("state_hash")); };
     EXPECT_EQ(tail(run_throng({"run", folder / "p.json", "--steps", "3"}).out),
               tail(run_throng({"run", "pile:2000", "--steps", "3"}).out));
+}
+
+TEST(Scenes, TakeTheNameOfNoDevice)
+{
+    const TestFolder folder;
+    const std::string pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const Outcome refused = run_throng({"scene", "cradle", "5", "--out", pipe});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("plain file"), std::string::npos) << refused.err;
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+}
+
+TEST(Usage, WrongLanesAreNoFaultOfThrong)
+{
+    ASSERT_EQ(::setenv("THRONG_LANES", "wide", 1), 0);
+    const Outcome refused = run_throng({"run", "cradle", "--steps", "1"});
+    ::unsetenv("THRONG_LANES");
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("THRONG_LANES: wanted"), std::string::npos) << refused.err;
 }
 
 }  // namespace

@@ -152,6 +152,22 @@ TEST(ConvexPlane, PlaneFarAlongItselfIsTheSameInFloat)
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(manifold.points[i].separation, -0.001, 1e-6);
 }
 
+// A card that leans by more than its thickness over its length has its four lowest corners all at
+// one end; sunk deep, it must be held at both, or it turns about that end and sinks on.
+TEST(ConvexPlane, SunkenCardIsHeldAtAllFourCornersOfItsSide)
+{
+    Shapes shapes = some_shapes();
+    shapes.boxes[0].half_extents = Vec3(0.2, 0.125, 0.001);
+    for (const double lean : {0.004, 0.03, -0.03}) {
+        const Pose card = {Vec3(0, 0, 0.25 - 0.06), turn_about(Vec3(0, 1, 0), lean)};
+        PairCache cache;
+        LocalManifold<double> manifold;
+        collide<double>(shapes, kBox, kPlane, inverse_of(card), 0.02, cache, manifold);
+        ASSERT_EQ(manifold.count, 4) << lean;
+        EXPECT_GT(area_of(manifold), 0.9 * 0.4 * 0.25) << lean;
+    }
+}
+
 TEST(SpherePairs, CenterInsideLeavesByTheNearestWay)
 {
     const LocalManifold<double> box = meet(kSphere, kBox, {Vec3(0.1, 0, -0.2), Quat::Identity()});

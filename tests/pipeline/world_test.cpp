@@ -351,6 +351,18 @@ TEST(World, APlatformThatTurnsCarriesABox)
     EXPECT_NEAR(world.angular_velocity(box).z(), 0.5, 0.02);
 }
 
+TEST(World, APlaneThatMovesCarriesABox)
+{
+    SceneOf made;
+    BodyDescription& lift = made.floor();
+    lift.motion = Motion::kinematic;
+    lift.velocity = Vec3(0, 0, 1);
+    made.box(Vec3(0.5, 0.5, 0.5), Vec3(0, 0, 0.5));
+    World world(made.scene);
+    world.step(60);
+    EXPECT_NEAR(world.pose(world.bodies()[1]).position.z(), 1.5, 0.002);
+}
+
 TEST(World, ADrivenBodyKeepsItsSpeedWhateverItPushes)
 {
     SceneOf made;

@@ -129,6 +129,8 @@ TEST(Json, TellsTooGreatFromTooSmallHoweverSpelled)
     EXPECT_NE(error_of("[1" + zeros + "e-1]"), "no error");
     EXPECT_EQ(error_of("[0." + zeros + "1e1]"), "no error");
     EXPECT_NE(error_of("[1e99999999999999999999999]"), "no error");
+    EXPECT_NE(error_of("[88e9223372036854775807]"), "no error");
+    EXPECT_EQ(error_of("[88e-9223372036854775807]"), "no error");
     EXPECT_EQ(error_of("[1e-99999999999999999999999]"), "no error");
 }
 
