@@ -26,7 +26,7 @@ struct CaseResult {
     double bound = 0;
     std::string unit;  // 1 where it has none
     Verdict verdict = Verdict::fail;
-    std::string why;     // of a skipped one
+    std::string why;     // of a skipped one, or one that lost a body
     double time_ms = 0;  // of the run that the figure comes from
 };
 
@@ -64,6 +64,7 @@ private:
     Fault fault_;
     int threads_;
     double spent_ms_ = 0;
+    std::size_t lost_ = 0;  // bodies quarantined since the last line
     std::vector<CaseResult> results_;
 };
 

@@ -173,7 +173,8 @@ private:
                 const auto meeting = facts_.surfaces.between(a, b);
                 const auto call_if = [&](bool called, Effect effect) {
                     if (!called || found_.on.has(effect)) return;
-                    call(effect, "materials " + facts_.material_names[a] + " and "
+                    call(effect,
+                         "materials " + facts_.material_names[a] + " and "
                              + facts_.material_names[b]);
                 };
                 call_if(meeting.friction > 0, Effect::friction);

@@ -22,7 +22,9 @@ struct Contact {
     Vec3T<Real> normal = Vec3T<Real>::UnitZ();   // from a to b
     Vec3T<Real> friction = Vec3T<Real>::Zero();  // N s on b, at the middle of the points
     Vec3T<Real> rolling = Vec3T<Real>::Zero();   // N m s on b
-    Real twist = 0;                              // N m s on b about the normal
+    Real round_a = 0,
+         round_b = 0;  // m, radius about the normal: round sides do not turn with the body
+    Real twist = 0;    // N m s on b about the normal
     std::array<Point, 4> points;
     int count = 0;
     PairCache cache;

@@ -50,7 +50,8 @@ struct ContactBlock {
     std::uint16_t writes_a, writes_b;   // bit a lane: that body may be changed
     std::int32_t points;                // greatest number of points of a lane
     Lane16<Real> normal[3];
-    Lane16<Real> tangent[3];  // the other tangent is normal x tangent
+    Lane16<Real> tangent[3];        // the other tangent is normal x tangent
+    Lane16<Real> round_a, round_b;  // m, of sides that look the same however they are turned
     Lane16<Real> center_a[3], center_b[3];
     Lane16<Real> friction, restitution, rolling;  // coefficients
     Lane16<Real> friction_mass[3];  // inverse of the 2x2 matrix at the center: 11, 22, 12
@@ -90,7 +91,7 @@ struct Layout {
     std::vector<Batch> batches;
     std::vector<Color> colors;
     std::vector<LaneSource> lanes;             // [blocks * 16]
-    std::vector<std::int32_t> slot_a, slot_b;  // [blocks * 16] places among the batch's bodies
+    std::vector<std::int32_t> slot_a, slot_b;  // [blocks * 16] places among the solver bodies
     std::vector<std::uint32_t> body_of_slot;   // [solver bodies] body, or none for the still one
 };
 

@@ -6,6 +6,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
@@ -42,12 +43,16 @@ void for_each_block(std::size_t count, std::size_t grain, BlockBody body)
 
 namespace {
 
-// oneTBB obeys the least of all limits that live, so pools share one: that of the largest, until
-// the last of them is gone.
+// More threads than cores have to be asked for, and what is asked holds for the whole program: a
+// pool that has no need to leaves the host's own oneTBB alone. oneTBB obeys the least of all limits
+// that live, so pools share one: that of the largest, until the last of them is gone.
 class SharedLimit {
 public:
+    static bool wanted(int threads) { return threads > tbb::info::default_concurrency(); }
+
     void enter(int threads)
     {
+        if (!wanted(threads)) return;
         const std::lock_guard lock(guard_);
         ++pools_;
         if (limit_ && threads <= most_) return;
@@ -56,8 +61,9 @@ public:
         limit_.emplace(tbb::global_control::max_allowed_parallelism,
                        static_cast<std::size_t>(threads));
     }
-    void leave()
+    void leave(int threads)
     {
+        if (!wanted(threads)) return;
         const std::lock_guard lock(guard_);
         if (--pools_ == 0) limit_.reset();
     }
@@ -77,10 +83,15 @@ SharedLimit& shared_limit()
 }  // namespace
 
 struct ThreadPool::Inside {
-    explicit Inside(int threads) : arena(threads) { shared_limit().enter(threads); }
-    ~Inside() { shared_limit().leave(); }
+    explicit Inside(int thread_count) : threads(thread_count), arena(thread_count)
+    {
+        shared_limit().enter(threads);
+    }
+    ~Inside() { shared_limit().leave(threads); }
     Inside(const Inside&) = delete;
     Inside& operator=(const Inside&) = delete;
+
+    int threads;
     tbb::task_arena arena;
 };
 

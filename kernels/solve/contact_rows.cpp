@@ -134,6 +134,8 @@ void fill_lane(ContactBlock<Real>& block,
     const Vec3T<Real> tangent = across(normal);
     set3(block.normal, lane, normal);
     set3(block.tangent, lane, tangent);
+    block.round_a.at[lane] = contact.round_a;
+    block.round_b.at[lane] = contact.round_b;
     block.friction.at[lane] = terms.friction;
     block.restitution.at[lane] = terms.restitution;
     block.rolling.at[lane] = terms.rolling_friction;
@@ -151,7 +153,8 @@ void fill_lane(ContactBlock<Real>& block,
         response.arm_b = from.from_b;
         set3(point.from_a, lane, from.from_a);
         set3(point.from_b, lane, from.from_b);
-        point.gap.at[lane] = from.separation - normal.dot(from.from_b - from.from_a);
+        point.gap.at[lane] = from.separation - normal.dot(from.from_b - from.from_a)
+            - (contact.round_a + contact.round_b);
         point.mass.at[lane] = normal_mass(response, normal);
         point.impulse.at[lane] = from.impulse;
         point.greatest.at[lane] = 0;

@@ -44,11 +44,14 @@ Aims<L> aims_of(const Contacts<L, turns>& c,
     const Drift<L, turns> drift_b(bodies, c.block.b + c.at);
     const L zero = Real(0), one = Real(1);
     const L limit = -visit.push_limit;
+    // A round side is the same however it turns: only what lies within it turns with the body.
+    const V3<L> round_a = c.normal * lane<L>(c.block.round_a, c.at);
+    const V3<L> round_b = c.normal * lane<L>(c.block.round_b, c.at);
     L separation[4], loaded = zero;
     for (int k = 0; k < c.block.points; ++k) {
         const PointRows<Real>& point = c.block.point[k];
-        const V3<L> apart =
-            drift_b.of(lane3<L>(point.from_b, c.at)) - drift_a.of(lane3<L>(point.from_a, c.at));
+        const V3<L> apart = drift_b.of(lane3<L>(point.from_b, c.at) + round_b)
+            - drift_a.of(lane3<L>(point.from_a, c.at) - round_a);
         separation[k] = dot(c.normal, apart) + lane<L>(point.gap, c.at);
         // A point that this contact has not got, but another of the block has, bears nothing.
         const L there = select(lane<L>(point.mass, c.at) > zero, one, zero);

@@ -4,6 +4,8 @@
 #include "kernels/data/contacts.hpp"
 #include "pipeline/stages.hpp"
 
+#include <cmath>
+
 namespace throng {
 
 /// The colliders of a pair and where they are.
@@ -72,11 +74,46 @@ void make_contact(const LocalManifold<Real>& manifold,
     contact.twist = 0;
 }
 
+/// Radius of the side that a shape turns along a direction, where turning the shape leaves that
+/// side as it is; 0 for sides with a shape of their own.
+inline double
+round_radius(const Shapes& shapes, ShapeRef shape, const Pose& placed, const Vec3& direction)
+{
+    switch (shape.kind) {
+    case ShapeKind::sphere:
+        return shapes.spheres[shape.index].radius;
+    case ShapeKind::capsule:
+        return shapes.capsules[shape.index].radius;
+    case ShapeKind::cylinder: {
+        const bool on_its_side =
+            std::abs((placed.orientation * Vec3::UnitZ()).dot(direction)) < 0.5;
+        return on_its_side ? shapes.cylinders[shape.index].radius : 0;
+    }
+    default:
+        return 0;
+    }
+}
+
+/// Notes which sides of a contact are round.
+template <class Real>
+void note_round_sides(const Shapes& shapes,
+                      ShapeRef a,
+                      ShapeRef b,
+                      const Pose& placed_a,
+                      const Pose& placed_b,
+                      Contact<Real>& contact)
+{
+    const Vec3 normal = contact.normal.template cast<double>();
+    contact.round_a = static_cast<Real>(round_radius(shapes, a, placed_a, normal));
+    contact.round_b = static_cast<Real>(round_radius(shapes, b, placed_b, normal));
+}
+
 /// The same contact with a and b told the other way round.
 template <class Real>
 void turn_round(Contact<Real>& contact)
 {
     contact.normal = -contact.normal;
+    std::swap(contact.round_a, contact.round_b);
     for (auto& point : contact.points) std::swap(point.from_a, point.from_b);
 }
 

@@ -73,6 +73,8 @@ void collide_convex(const Conditions& conditions,
         const std::uint32_t body_1 = colliders.body[first], body_2 = colliders.body[second];
         make_contact(manifold, placed, anchor_origin(body_1, body_2, states, poses),
                      anchor_origin(body_2, body_1, states, poses), contact);
+        note_round_sides(shapes, colliders.shape[first], colliders.shape[second], placed,
+                         bounds.placed[second], contact);
         if (turned) turn_round(contact);
         if (before.count == 0) return;
         const auto meeting =

@@ -83,6 +83,8 @@ void collide_meshes(const Conditions& conditions,
                          anchor_origin(colliders.body[mesh], colliders.body[other], states, poses),
                          anchor_origin(colliders.body[other], colliders.body[mesh], states, poses),
                          entry.contact);
+            note_round_sides(shapes, colliders.shape[mesh], colliders.shape[other],
+                             bounds.placed[mesh], bounds.placed[other], entry.contact);
             // The answer is in the mesh's frame, mesh first; the pair may have it second.
             if (!mesh_first) turn_round(entry.contact);
             for (std::size_t k = old.first; k < old.second; ++k)
