@@ -33,7 +33,7 @@ struct Box3 {
 ///   boxes     [colliders] margin included
 ///   reach     [colliders] m, how far from its surface a contact is looked for in this step
 ///   moving    [colliders] 1 for those of bodies that can move
-///   placed    [colliders] where each shape is, as of the start of the step
+///   placed    [colliders] where each shape is, as of the start of the last step it was awake in
 ///   asked     colliders whose boxes changed in this step, ascending
 ///   touched   colliders that were added, removed or moved from outside since the last step
 struct Bounds {

@@ -180,7 +180,7 @@ TEST(Needles, LieStillWhicheverWayTheyPoint)
 
 TEST(Effects, BodiesAddedOneByOneDoNotMakeMaterialsAProductOfThemselves)
 {
-    // Ten thousand default materials would take minutes where each met each.
+    // Ten thousand default materials would take seconds where each met each.
     World world;
     for (int i = 0; i < 10000; ++i) {
         SceneOf made;
