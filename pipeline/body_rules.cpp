@@ -69,9 +69,6 @@ void check_contradictions(const BodyDescription& body, const SceneChecker& check
         .need(!drives(body) || !body.lock_position, "wanted no drive_velocity with lock_position");
     checker.at("drive_velocity")
         .need(!drives(body) || !body.pivot, "wanted no drive_velocity with pivot");
-    checker.at("drive_velocity")
-        .need(!drives(body) || body.motion != Motion::static_,
-              "wanted a body of motion kinematic or dynamic for this");
 }
 
 /// Velocities that the body can have. The keys name them.

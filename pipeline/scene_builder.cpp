@@ -296,6 +296,9 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
 
     Drives& drives = state_.get<Drives>();
     const auto& drive = stated.drive_velocity;
+    const Vec3 surface(drive[0].value_or(0), drive[1].value_or(0), drive[2].value_or(0));
+    put(states.conveys, body, std::uint8_t{!moves && !surface.isZero(0)});
+    if (!moves) velocities.linear[body] = surface;
     if (drive[0] || drive[1] || drive[2]) {
         const double free = std::nan("");
         const auto at = std::lower_bound(drives.body.begin(), drives.body.end(), body);

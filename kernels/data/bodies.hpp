@@ -64,7 +64,14 @@ struct BodyStates {
     std::vector<std::uint32_t> bed;         // the group it fell asleep with; kNobody while awake
     std::vector<double> radius;             // m, furthest point of its shapes from its center
 
+    std::vector<std::uint8_t> conveys;  // still, and its surface is driven; may be shorter
+
     bool moves(std::size_t body) const { return awake[body] != 0; }
+    /// A conveyor: it stays where it is and carries what lies on it.
+    bool carries(std::size_t body) const
+    {
+        return body < conveys.size() && conveys[body] != 0 && kind[body] == BodyKind::still;
+    }
     bool dynamic(std::size_t body) const { return kind[body] == BodyKind::dynamic; }
 };
 

@@ -80,7 +80,8 @@ struct Color {
 struct Batch {
     std::uint32_t first_body = 0;  // solver bodies; the first is the still one
     std::uint32_t dynamic = 0;     // how many follow it that can be moved
-    std::uint32_t kinematic = 0;   // and how many after those that move by themselves
+    std::uint32_t kinematic =
+        0;  // and how many after those that move by themselves; then conveyors
     std::uint32_t first_color = 0, colors = 0;
     std::uint32_t first_block = 0, blocks = 0;
     bool wide = false;  // big: its colors are shared among the threads

@@ -57,7 +57,7 @@ public:
         place(batch);
         batch.wide = count_ > kBatchContacts;
         layout_.batches.push_back(batch);
-        for (const std::uint32_t body : kinematic_) slot_[body] = kStill;
+        for (const std::uint32_t body : visitors_) slot_[body] = kStill;
     }
 
 private:
@@ -67,7 +67,7 @@ private:
     }
     bool movable(std::uint32_t body) const { return states_.dynamic(body) && states_.moves(body); }
 
-    // The still one first, then the movable ones of the islands, then kinematic ones they touch.
+    // The still one first, then the movable ones of the islands, then those they touch.
     void seat_bodies(const Range& range, Batch& batch)
     {
         auto& seats = layout_.body_of_slot;
@@ -78,15 +78,28 @@ private:
             seats.push_back(islands_.bodies[i]);
             ++batch.dynamic;
         }
-        kinematic_.clear();
+        visitors_.clear();
+        batch.kinematic = seat_visitors(
+            [&](std::uint32_t body) { return states_.kind[body] == BodyKind::kinematic; });
+        // Conveyors last: they have a velocity and go nowhere.
+        seat_visitors([&](std::uint32_t body) { return states_.carries(body); });
+    }
+
+    // Seats those that the batch touches and other batches may touch too: each has its own copy.
+    template <class Wanted>
+    std::uint32_t seat_visitors(Wanted wanted)
+    {
+        auto& seats = layout_.body_of_slot;
+        std::uint32_t seated = 0;
         for (std::size_t i = 0; i < count_; ++i)
-            for (const std::uint32_t body : {contact(i).body_a, contact(i).body_b})
-                if (states_.kind[body] == BodyKind::kinematic && slot_[body] == kStill) {
-                    slot_[body] = static_cast<std::uint32_t>(seats.size());
-                    seats.push_back(body);
-                    kinematic_.push_back(body);
-                    ++batch.kinematic;
-                }
+            for (const std::uint32_t body : {contact(i).body_a, contact(i).body_b}) {
+                if (slot_[body] != kStill || !wanted(body)) continue;
+                slot_[body] = static_cast<std::uint32_t>(seats.size());
+                seats.push_back(body);
+                visitors_.push_back(body);
+                ++seated;
+            }
+        return seated;
     }
 
     void choose_colors()
@@ -149,7 +162,7 @@ private:
     Layout& layout_;
     std::vector<std::uint32_t> slot_;
     std::vector<std::uint64_t> used_;
-    std::vector<std::uint32_t> kinematic_;
+    std::vector<std::uint32_t> visitors_;
     std::vector<std::uint8_t> color_;
     std::size_t first_ = 0, count_ = 0;
 };

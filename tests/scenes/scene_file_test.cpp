@@ -388,8 +388,6 @@ TEST(SceneFile, RefusesBadBodies)
          "bodies[1].pivot: wanted either pivot or lock_position, not both"},
         {kBody, box + "\"lock_position\": true, \"drive_velocity\": @[1, null, null]",
          "bodies[1].drive_velocity: wanted no drive_velocity with lock_position"},
-        {kBody, box + "\"motion\": \"static\", \"drive_velocity\": @[1, null, null]",
-         "bodies[1].drive_velocity: wanted a body of motion kinematic or dynamic for this"},
         {kBody, box + "\"drive_velocity\": @[1, null]",
          "bodies[1].drive_velocity: wanted three numbers or nulls [x, y, z], not a list of 2"},
         {kBody, box + "\"drive_velocity\": [1, @true, 1]",

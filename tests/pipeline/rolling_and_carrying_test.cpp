@@ -1,4 +1,5 @@
-// Round bodies that turn: a side that looks the same however it is turned must not sink for it.
+// Rolling and carrying: a side that looks the same however it is turned must not sink for turning;
+// a belt carries what lies on it.
 #include "pipeline/world.hpp"
 
 #include <gtest/gtest.h>
@@ -57,6 +58,23 @@ TEST(Rolling, ALyingCylinderRollsStraight)
     world.step(100);
     EXPECT_NEAR(world.pose(world.bodies()[1]).position.y(), 0, 5e-3);
     EXPECT_LT(world.measure().greatest_overlap, 2e-3);
+}
+
+TEST(Conveyor, CarriesWhatLiesOnItAndStaysWhereItIs)
+{
+    Scene scene = round_body_on_floor(BoxShape{Vec3(0.5, 0.5, 0.5)}, 0.5);
+    scene.shapes.push_back({"belt", BoxShape{Vec3(50, 2, 0.5)}});
+    scene.bodies[0].shape = 2;
+    scene.bodies[0].position = Vec3(0, 0, -0.5);
+    scene.bodies[0].drive_velocity[0] = 1.4;
+    World world(scene);
+    world.step(120);
+    const std::vector<BodyId> ids = world.bodies();
+    EXPECT_NEAR(world.velocity(ids[1]).x(), 1.4, 1e-3);
+    EXPECT_NEAR(world.velocity(ids[1]).y(), 0, 1e-3);
+    EXPECT_EQ(world.pose(ids[0]).position, Vec3(0, 0, -0.5));
+    // From rest at mu g until it runs with the belt: v^2 / (2 mu g) behind it.
+    EXPECT_NEAR(world.pose(ids[1]).position.x(), 1.4 * 2 - 1.4 * 1.4 / (2 * 0.5 * 9.81), 2e-2);
 }
 
 }  // namespace
