@@ -1,7 +1,8 @@
 // Convex pairs: any two convex shapes, by their cores.
 //
-// What has no closed form comes here: cylinders against all but spheres, and capsules against boxes
-// and hulls. In double whatever the number type: the search wants it, and it costs the same.
+// What has no closed form comes here: cylinders against all but spheres, and capsules that meet a
+// hull elsewhere than with an end over a face. In double whatever the number type: the search wants
+// it, and it costs the same.
 #include "narrowphase/contact_axis.hpp"
 #include "narrowphase/pair_functions.hpp"
 #include "narrowphase/support_contacts.hpp"

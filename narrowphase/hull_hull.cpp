@@ -1,10 +1,12 @@
 // Hull against hull, and box against hull: separating axes, then clipping, as for two boxes.
 //
-// The arithmetic is double for either number type: it is bound by looking things up, and hulls are
-// stored in double.
+// The wide kernels answer for float. What is too big, too thin or too unlike for them goes by the
+// plain arithmetic of double, and so do pairs in double.
 #include "narrowphase/contact_points.hpp"
+#include "narrowphase/hull_kernels.hpp"
 #include "narrowphase/pair_functions.hpp"
 #include "narrowphase/polytope_contacts.hpp"
+#include "narrowphase/wide_shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,8 +41,10 @@ void face_manifold(const PolytopePair& pair,
 // The remembered face, or a likely one: it parts the two at once or is a good face to begin with.
 FaceAxis first_guess(const PolytopePair& pair, const PairCache& cache)
 {
-    const bool known = cache.kind != static_cast<std::uint32_t>(Remembered::nothing)
-        && cache.feature_a < pair.a.normals.size() && cache.feature_b < pair.b.vertices.size();
+    const bool is_face = cache.kind == static_cast<std::uint32_t>(Remembered::face_a)
+        || cache.kind == static_cast<std::uint32_t>(Remembered::face_b);
+    const bool known = is_face && cache.feature_a < pair.a.normals.size()
+        && cache.feature_b < pair.b.vertices.size();
     return known ? face_axis(pair, static_cast<std::uint16_t>(cache.feature_a),
                              static_cast<std::uint16_t>(cache.feature_b))
                  : likely_face_axis(pair);
@@ -102,16 +106,62 @@ void collide_polytopes(const PolytopePair& pair,
     if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
 }
 
-}  // namespace
+// Of the size of both: where the balls inside are smaller, the bias of faces comes near rounding.
+constexpr float kUnlike = 2e-3F;
 
-template <class Real>
-void hull_hull(const Shapes& shapes,
+// False where float will not do.
+bool meet_wide(const Shapes& shapes,
                ShapeRef a,
                ShapeRef b,
-               const PoseT<Real>& b_in_a,
-               Real reach,
+               const PoseT<float>& b_in_a,
+               float reach,
                PairCache& cache,
-               LocalManifold<Real>& out)
+               LocalManifold<float>& out)
+{
+    const WideShape wide_a(shapes, a), wide_b(shapes, b);
+    if (!wide_a.suited() || !wide_b.suited()) return false;
+    HullPair pair;
+    pair.a = wide_a.view();
+    pair.b = wide_b.view();
+    const float inner = pair.a.inner + pair.b.inner;
+    if (inner < kUnlike * (pair.a.outer + pair.b.outer)) return false;
+    const Mat3 turn = b_in_a.orientation.cast<double>().toRotationMatrix();
+    const Vec3 offset = turn * wide_b.center() + b_in_a.position.cast<double>() - wide_a.center();
+    for (int i = 0; i < 9; ++i) pair.turn[i] = static_cast<float>(turn(i / 3, i % 3));
+    for (int i = 0; i < 3; ++i) pair.offset[i] = static_cast<float>(offset[i]);
+    pair.reach = reach;
+    pair.bias = static_cast<float>(kFaceBias) * inner;
+
+    HullGuess guess{cache.kind, cache.feature_a, cache.feature_b};
+    HullTouch touch;
+    static const HullKernel meet = hull_kernel();
+    meet(pair, guess, touch);
+    cache = {guess.a, guess.b, guess.kind};
+    out.count = 0;
+    if (touch.count == 0) return true;
+    out.normal = {touch.normal[0], touch.normal[1], touch.normal[2]};
+    std::array<LocalManifold<float>::Point, HullTouch::kMost> points;
+    const auto count = static_cast<std::size_t>(touch.count);
+    const Vec3T<float> center = wide_a.center().cast<float>();
+    for (std::size_t i = 0; i < count; ++i) {
+        const HullTouch::Point& point = touch.points[i];
+        points[i].position =
+            Vec3T<float>(point.position[0], point.position[1], point.position[2]) + center;
+        points[i].separation = point.separation;
+        points[i].feature = point.feature;
+    }
+    reduce_to_four<float>({points.data(), count}, out);
+    return true;
+}
+
+template <class Real>
+void meet_plain(const Shapes& shapes,
+                ShapeRef a,
+                ShapeRef b,
+                const PoseT<Real>& b_in_a,
+                Real reach,
+                PairCache& cache,
+                LocalManifold<Real>& out)
 {
     const PolytopeShape shape_a(shapes, a), shape_b(shapes, b);
     const Pose pose{b_in_a.position.template cast<double>(),
@@ -128,19 +178,31 @@ void hull_hull(const Shapes& shapes,
     }
 }
 
-template void hull_hull<float>(const Shapes&,
-                               ShapeRef,
-                               ShapeRef,
-                               const PoseT<float>&,
-                               float,
-                               PairCache&,
-                               LocalManifold<float>&);
-template void hull_hull<double>(const Shapes&,
-                                ShapeRef,
-                                ShapeRef,
-                                const PoseT<double>&,
-                                double,
-                                PairCache&,
-                                LocalManifold<double>&);
+}  // namespace
+
+template <>
+void hull_hull<float>(const Shapes& shapes,
+                      ShapeRef a,
+                      ShapeRef b,
+                      const PoseT<float>& b_in_a,
+                      float reach,
+                      PairCache& cache,
+                      LocalManifold<float>& out)
+{
+    if (!meet_wide(shapes, a, b, b_in_a, reach, cache, out))
+        meet_plain(shapes, a, b, b_in_a, reach, cache, out);
+}
+
+template <>
+void hull_hull<double>(const Shapes& shapes,
+                       ShapeRef a,
+                       ShapeRef b,
+                       const Pose& b_in_a,
+                       double reach,
+                       PairCache& cache,
+                       LocalManifold<double>& out)
+{
+    meet_plain(shapes, a, b, b_in_a, reach, cache, out);
+}
 
 }  // namespace throng

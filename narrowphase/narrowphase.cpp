@@ -31,7 +31,7 @@ template <class Real>
 constexpr std::array<std::array<PairFunction<Real>, kTabled>, kTabled> kTable = {{
     //               sphere               capsule                cylinder               box                  hull                 plane
     /* sphere   */ {{sphere_sphere<Real>, sphere_capsule<Real>,  sphere_cylinder<Real>, sphere_box<Real>,    sphere_hull<Real>,   convex_plane<Real>}},
-    /* capsule  */ {{nullptr,             capsule_capsule<Real>, convex_convex<Real>,   convex_convex<Real>, convex_convex<Real>, convex_plane<Real>}},
+    /* capsule  */ {{nullptr,             capsule_capsule<Real>, convex_convex<Real>,   capsule_box<Real>,   capsule_hull<Real>,  convex_plane<Real>}},
     /* cylinder */ {{nullptr,             nullptr,               convex_convex<Real>,   convex_convex<Real>, convex_convex<Real>, convex_plane<Real>}},
     /* box      */ {{nullptr,             nullptr,               nullptr,               box_box<Real>,       hull_hull<Real>,     convex_plane<Real>}},
     /* hull     */ {{nullptr,             nullptr,               nullptr,               nullptr,             hull_hull<Real>,     convex_plane<Real>}},

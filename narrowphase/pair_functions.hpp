@@ -35,6 +35,8 @@ THRONG_PAIR_FUNCTION(sphere_cylinder);
 THRONG_PAIR_FUNCTION(sphere_box);
 THRONG_PAIR_FUNCTION(sphere_hull);
 THRONG_PAIR_FUNCTION(capsule_capsule);  // capsule_pairs.cpp
+THRONG_PAIR_FUNCTION(capsule_box);      // capsule_box.cpp
+THRONG_PAIR_FUNCTION(capsule_hull);     // capsule_hull.cpp
 THRONG_PAIR_FUNCTION(box_box);          // box_box.cpp
 THRONG_PAIR_FUNCTION(hull_hull);        // hull_hull.cpp: box-hull too, a box being a hull
 THRONG_PAIR_FUNCTION(convex_plane);     // plane_pairs.cpp: any convex shape a, plane b

@@ -4,6 +4,7 @@
 // surface, and which way. A center inside b leaves by the nearest way out.
 #include "kernels/geometry/support.hpp"
 #include "narrowphase/pair_functions.hpp"
+#include "narrowphase/rod_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,69 +73,75 @@ Outward<Real> outward_of(const Box& box, const Vec3T<Real>& center)
     return away_from(offset, out_of_face);
 }
 
-template <class Real>
-Vec3T<Real> corner_of(const Hull& hull, std::size_t vertex)
+double above_face(const Hull& hull, std::size_t face, const Vec3& point)
 {
-    return hull.vertices[vertex].cast<Real>();
+    return hull.normals[face].dot(point) - hull.offsets[face];
 }
 
-// Whether a point of a face's plane lies within the face.
-template <class Real>
-bool within_face(const Hull& hull, std::size_t face, const Vec3T<Real>& point)
+// Where a point is, seen from the face's polygon: straight above it, or from the edges that it is
+// beyond. Takes the place of what is further.
+void look_from_face(const Hull& hull, std::size_t face, const Vec3& point, Outward<double>& nearest)
 {
-    const Vec3T<Real> normal = hull.normals[face].cast<Real>();
-    const std::size_t begin = hull.face_begin[face];
-    const std::size_t end = hull.face_begin[face + 1];
-    Vec3T<Real> from = corner_of<Real>(hull, hull.face_vertices[end - 1]);
+    const Vec3& normal = hull.normals[face];
+    const std::size_t begin = hull.face_begin[face], end = hull.face_begin[face + 1];
+    Vec3 from = hull.vertices[hull.face_vertices[end - 1]];
+    bool inside = true;
     for (std::size_t i = begin; i < end; ++i) {
-        const Vec3T<Real> to = corner_of<Real>(hull, hull.face_vertices[i]);
-        if (normal.dot((to - from).cross(point - from)) < 0) return false;
+        const Vec3& to = hull.vertices[hull.face_vertices[i]];
+        const Vec3 along = to - from, offset = point - from;
+        if (normal.dot(along.cross(offset)) < 0) {
+            inside = false;
+            const double square = along.squaredNorm();
+            const double part = square > 0 ? along.dot(offset) / square : 0;
+            const Vec3 away = offset - along * std::clamp(part, 0.0, 1.0);
+            const double distance = length_of(away);
+            if (distance < nearest.distance && distance > 0) nearest = {away / distance, distance};
+        }
         from = to;
     }
-    return true;
+    const double above = above_face(hull, face, point);
+    if (inside && above < nearest.distance) nearest = {normal, above};
 }
 
-// A center outside is nearest to a point of an edge or to one within a face that it looks down on.
-template <class Real>
-Outward<Real> outward_of_rim(const Hull& hull, const Vec3T<Real>& center, std::size_t best)
+// A face straight below is what the pair remembers: while it stays so, the others are further.
+bool look_from_known_face(const Hull& hull,
+                          const Vec3& point,
+                          double enough,
+                          const PairCache& cache,
+                          Outward<double>& outward)
 {
-    const Vec3T<Real> fallback = hull.normals[best].cast<Real>();
-    Outward<Real> nearest = {fallback, std::numeric_limits<Real>::infinity()};
-    for (std::size_t i = 0; i < hull.normals.size(); ++i) {
-        const Vec3T<Real> normal = hull.normals[i].cast<Real>();
-        const Real above = normal.dot(center) - static_cast<Real>(hull.offsets[i]);
-        if (!(above >= 0 && above < nearest.distance)) continue;
-        if (within_face<Real>(hull, i, center - normal * above)) nearest = {normal, above};
-    }
-    for (const Hull::Edge& edge : hull.edges) {
-        const Vec3T<Real> from = corner_of<Real>(hull, edge.from);
-        const Vec3T<Real> along = corner_of<Real>(hull, edge.to) - from;
-        const Real square = along.squaredNorm();
-        Real part = square > 0 ? along.dot(center - from) / square : Real(0);
-        part = std::clamp(part, Real(0), Real(1));
-        const Outward<Real> now = away_from(Vec3T<Real>(center - from - along * part), fallback);
-        if (now.distance < nearest.distance) nearest = now;
-    }
-    return nearest;
+    if (cache.kind == 0 || cache.feature_b >= hull.normals.size()) return false;
+    const double above = above_face(hull, cache.feature_b, point);
+    if (!(above > 0)) return false;
+    outward = {hull.normals[cache.feature_b], std::numeric_limits<double>::infinity()};
+    if (!(above > enough)) look_from_face(hull, cache.feature_b, point, outward);
+    // A plane is never further than the hull itself, so more than enough is out of reach.
+    return above > enough || outward.distance == above;
 }
 
-template <class Real>
-Outward<Real> outward_of(const Hull& hull, const Vec3T<Real>& center, Real enough)
+// A point outside is nearest to some face that it is above; one inside leaves by the nearest.
+Outward<double> outward_of(const Hull& hull, const Vec3& point, double enough, PairCache& cache)
 {
+    Outward<double> known;
+    if (look_from_known_face(hull, point, enough, cache, known)) return known;
     std::size_t best = 0;
-    Real most = -std::numeric_limits<Real>::infinity();
+    double most = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < hull.normals.size(); ++i) {
-        const Real above =
-            hull.normals[i].cast<Real>().dot(center) - static_cast<Real>(hull.offsets[i]);
+        const double above = above_face(hull, i, point);
         if (!(above > most)) continue;
         most = above;
         best = i;
     }
-    const Vec3T<Real> normal = hull.normals[best].cast<Real>();
-    // A face's plane is never further than the hull itself, so this far is out of reach.
-    if (most <= 0 || most > enough) return {normal, most};
-    if (within_face<Real>(hull, best, center - normal * most)) return {normal, most};
-    return outward_of_rim(hull, center, best);
+    cache.kind = 1;
+    cache.feature_b = static_cast<std::uint32_t>(best);
+    if (most <= 0 || most > enough) return {hull.normals[best], most};
+    Outward<double> nearest = {hull.normals[best], std::numeric_limits<double>::infinity()};
+    look_from_face(hull, best, point, nearest);
+    if (nearest.distance == most) return nearest;
+    for (std::size_t i = 0; i < hull.normals.size(); ++i) {
+        if (i != best && above_face(hull, i, point) > 0) look_from_face(hull, i, point, nearest);
+    }
+    return nearest;
 }
 
 template <class Real>
@@ -216,12 +223,17 @@ void sphere_hull(const Shapes& shapes,
                  ShapeRef b,
                  const PoseT<Real>& b_in_a,
                  Real reach,
-                 PairCache&,
+                 PairCache& cache,
                  LocalManifold<Real>& out)
 {
     const Real radius = radius_of<Real>(shapes, a);
     const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
-    touch(outward_of(shapes.hulls[b.index], center, radius + reach), radius, b_in_a, reach, out);
+    // Hulls are stored in double.
+    const Outward<double> outward =
+        outward_of(shapes.hulls[b.index], center.template cast<double>(),
+                   static_cast<double>(radius + reach), cache);
+    touch<Real>({outward.direction.cast<Real>(), static_cast<Real>(outward.distance)}, radius,
+                b_in_a, reach, out);
 }
 
 #define THRONG_INSTANTIATE(name, Real)                                                             \

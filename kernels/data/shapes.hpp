@@ -4,6 +4,7 @@
 // sizes cost 24 bytes each. Hulls and meshes are shared by all bodies that use them.
 #pragma once
 
+#include "kernels/data/wide_hull.hpp"
 #include "kernels/math/types.hpp"
 
 #include <array>
@@ -67,6 +68,7 @@ struct Hull {
     Vec3 center = Vec3::Zero();  // a point well inside (the centroid)
     double inner_radius = 0;     // of a ball about center inside the hull
     double outer_radius = 0;     // of a ball about center round the hull
+    WideHull wide;               // the same in float; made by widen()
 };
 
 /// Static triangles, solid on neither side but one-sided in contact: pushes come out along the

@@ -3,6 +3,7 @@
 #include "kernels/geometry/hull_cloud.hpp"
 #include "kernels/geometry/hull_faces.hpp"
 #include "kernels/geometry/mass.hpp"
+#include "kernels/geometry/wide_hull.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -259,6 +260,7 @@ HullResult build_hull(std::span<const Vec3> points)
     fill_faces(points, faces, result.hull);
     fill_edges(result.hull);
     fill_balls(result.hull);
+    widen(result.hull);
     return result;
 }
 
