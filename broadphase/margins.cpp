@@ -6,6 +6,11 @@
 
 namespace throng {
 
+double stretch_for(std::size_t pairs, std::size_t movers)
+{
+    return pairs * 4 < movers ? 4 : pairs < movers ? 2 : 1;
+}
+
 Box3 fattened(
     const Box3& tight, const Vec3& velocity, double size, double dt, const MarginRule& rule)
 {

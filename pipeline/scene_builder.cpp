@@ -252,7 +252,9 @@ void SceneBuilder::weigh(std::uint32_t body,
     if (stated.lock_rotation || masses.inertia[body] == Sym3{}) return;
     const bool in_double = state_.get<Conditions>().settings.precision == Precision::double_;
     masses.inverse_inertia[body] = turning_ease(masses.inertia[body], in_double ? 1e14 : 1e6);
-    masses.spins_unevenly[body] = uneven(masses.inertia[body]) ? 1 : 0;
+    const Sym3& inertia = masses.inertia[body];
+    const bool principal = inertia.xy == 0 && inertia.xz == 0 && inertia.yz == 0;
+    masses.spins_unevenly[body] = !uneven(inertia) ? 0 : principal ? 1 : 2;
 }
 
 void SceneBuilder::note_requests(std::uint32_t body, const BodyDescription& stated)

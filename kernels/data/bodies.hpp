@@ -40,11 +40,13 @@ struct Velocities {
 
 /// What resists motion. Zero inverses do not move, or do not turn.
 struct Masses {
-    std::vector<double> mass;                  // kg; 0 for a body that is not dynamic
-    std::vector<double> inverse_mass;          // 1/kg
-    std::vector<Sym3> inertia;                 // kg m2 about the center, body axes
-    std::vector<Sym3> inverse_inertia;         // 1/(kg m2), body axes
-    std::vector<std::uint8_t> spins_unevenly;  // principal moments differ: the gyroscopic term acts
+    std::vector<double> mass;           // kg; 0 for a body that is not dynamic
+    std::vector<double> inverse_mass;   // 1/kg
+    std::vector<Sym3> inertia;          // kg m2 about the center, body axes
+    std::vector<Sym3> inverse_inertia;  // 1/(kg m2), body axes
+    // 1 where principal moments differ, so that the gyroscopic term acts; 2 where, besides, the
+    // body's axes are not the principal ones.
+    std::vector<std::uint8_t> spins_unevenly;
 };
 
 /// Velocities that the user sets before every step.
@@ -54,6 +56,13 @@ struct Drives {
 };
 
 enum class BodyKind : std::uint8_t { gone, still, kinematic, dynamic };
+
+/// Who moves, so that a step need not look at all who sleep. Ascending.
+struct Movers {
+    std::vector<std::uint32_t> dynamic, kinematic;
+
+    bool none() const { return dynamic.empty() && kinematic.empty(); }
+};
 
 /// How each body takes part.
 struct BodyStates {
@@ -66,6 +75,8 @@ struct BodyStates {
 
     std::vector<std::uint8_t> conveys;  // still, and its surface is driven; may be shorter
 
+    Movers movers;  // as of the start of the step: who wakes in it is there from the next one on
+
     bool moves(std::size_t body) const { return awake[body] != 0; }
     /// A conveyor: it stays where it is and carries what lies on it.
     bool carries(std::size_t body) const
@@ -74,6 +85,11 @@ struct BodyStates {
     }
     bool dynamic(std::size_t body) const { return kind[body] == BodyKind::dynamic; }
 };
+
+/// Lists all movers afresh.
+void list_movers(BodyStates& states);
+/// The same after a step: some of them may have stopped, and these awoke (ascending, dynamic).
+void follow_movers(const std::vector<std::uint32_t>& awoken, BodyStates& states);
 
 /// Bodies that fell asleep together and wake together.
 struct Beds {

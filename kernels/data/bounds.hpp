@@ -28,21 +28,56 @@ struct Box3 {
     bool empty() const { return !(lower.x() <= upper.x()); }
 };
 
+/// Whether two boxes of float meet; four numbers a corner, of which the fourth is not looked at.
+/// Whole registers and no branch for each side: which of them parts two boxes is anybody's guess.
+inline bool
+boxes_meet(const float* lower_a, const float* upper_a, const float* lower_b, const float* upper_b)
+{
+    typedef float Four __attribute__((vector_size(16)));
+    const auto load = [](const float* from) {
+        Four four;
+        __builtin_memcpy(&four, from, sizeof four);
+        return four;
+    };
+    const auto meet = (load(lower_a) <= load(upper_b)) & (load(lower_b) <= load(upper_a));
+    return (meet[0] & meet[1] & meet[2]) != 0;
+}
+
+/// A box in float, rounded outward: two that are apart show that their contents are.
+struct NearBox {
+    alignas(16) float lower[4];
+    alignas(16) float upper[4];
+
+    bool overlaps(const NearBox& other) const
+    {
+        return boxes_meet(lower, upper, other.lower, other.upper);
+    }
+};
+
 /// What the broad phase works on.
 ///
 ///   boxes     [colliders] margin included
 ///   reach     [colliders] m, how far from its surface a contact is looked for in this step
+///   near      [colliders] where it may find contacts in this step: its tight box, grown by `reach`
 ///   moving    [colliders] 1 for those of bodies that can move
 ///   placed    [colliders] where each shape is, as of the start of the last step it was awake in
 ///   asked     colliders whose boxes changed in this step, ascending
 ///   touched   colliders that were added, removed or moved from outside since the last step
+///   half, round, form  [colliders] the shape as mover_bounds.hpp wants it, rounded up
+///   stretch   how many times further than usual margins look ahead: see stretch_for()
+///   flags     [colliders] scratch, all 0 between stages
 struct Bounds {
     std::vector<Box3> boxes;
     std::vector<double> reach;
+    std::vector<NearBox> near;
     std::vector<std::uint8_t> moving;
     std::vector<Pose> placed;
     std::vector<std::uint32_t> asked;
     std::vector<std::uint32_t> touched;
+    std::vector<float> half[3], round;
+    std::vector<std::uint8_t> form;
+    double stretch = 1;
+    std::vector<std::uint8_t> flags;
     bool still_changed = true;
     std::vector<std::vector<std::uint32_t>> of_block;  // scratch
 };

@@ -28,6 +28,8 @@ struct Pairs {
     std::vector<std::uint32_t> on_mesh;
     bool changed = false;
     std::vector<PairKey> found, merged;  // scratch
+    std::vector<std::uint32_t> merged_from;
+    std::vector<std::uint8_t> asked;  // [colliders] all 0 between stages
 };
 
 }  // namespace throng

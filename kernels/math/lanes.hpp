@@ -14,6 +14,10 @@
 #define THRONG_LANE_BYTES 0
 #endif
 
+#if THRONG_LANE_BYTES > 0
+#include <immintrin.h>
+#endif
+
 namespace throng::THRONG_LANES {
 
 // The register that holds W numbers; one number is just itself.
@@ -103,12 +107,20 @@ Wide<T, W> min(Wide<T, W> a, Wide<T, W> b)
 }
 inline float root(float x) { return __builtin_sqrtf(x); }
 inline double root(double x) { return __builtin_sqrt(x); }
+// The compiler would take roots of wide registers one number at a time.
+#if THRONG_LANE_BYTES == 64
+inline __m512 root(__m512 x) { return _mm512_mask_sqrt_ps(x, 0xffff, x); }
+inline __m512d root(__m512d x) { return _mm512_mask_sqrt_pd(x, 0xff, x); }
+#elif THRONG_LANE_BYTES == 32
+inline __m256 root(__m256 x) { return _mm256_sqrt_ps(x); }
+inline __m256d root(__m256d x) { return _mm256_sqrt_pd(x); }
+#endif
 template <class T, int W>
 Wide<T, W> sqrt(Wide<T, W> a)
 {
-    if constexpr (W == 1) {
-        return root(a.v);
-    } else {
+    if constexpr (W == 1 || W * int(sizeof(T)) == THRONG_LANE_BYTES) {
+        return Wide<T, W>(root(a.v));
+    } else {  // a width that is not this instruction set's own
         Wide<T, W> result;
         for (int i = 0; i < W; ++i) result.v[i] = root(a.v[i]);
         return result;

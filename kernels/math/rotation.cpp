@@ -38,11 +38,17 @@ double cos_near_zero(double x)
     return near_one + ((1.0 - near_one) - half + z * tail);
 }
 
-Mat3 skew(const Vec3& v)
+Vec3 times(const Sym3& m, const Vec3& v)
 {
-    Mat3 m;
-    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-    return m;
+    return {m.xx * v.x() + m.xy * v.y() + m.xz * v.z(), m.xy * v.x() + m.yy * v.y() + m.yz * v.z(),
+            m.xz * v.x() + m.yz * v.y() + m.zz * v.z()};
+}
+
+// The solution of [a b c] x = right, its columns given: by Cramer's rule.
+Vec3 solved(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& right)
+{
+    const Vec3 bc = b.cross(c);
+    return Vec3(bc.dot(right), c.cross(a).dot(right), a.cross(b).dot(right)) / a.dot(bc);
 }
 
 }  // namespace
@@ -108,16 +114,24 @@ Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,
                              const Quat& orientation,
                              double time)
 {
-    const Mat3 inertia = inertia_local.matrix();
     const Vec3 w = orientation.conjugate() * angular_velocity;
-    const Vec3 momentum = inertia * w;
+    return orientation * after_gyroscopic_torque_local(w, inertia_local, time);
+}
+
+Vec3 after_gyroscopic_torque_local(const Vec3& w, const Sym3& inertia, double time)
+{
+    const Vec3 momentum = times(inertia, w);
     const Vec3 residual = time * w.cross(momentum);
-    const Mat3 jacobian = inertia + time * (skew(w) * inertia - skew(momentum));
-    Vec3 after = w - jacobian.inverse() * residual;
+    // Column k of the matrix is I e + time (w x I e - I w x e), with e the unit vector along k.
+    const Vec3 x(inertia.xx, inertia.xy, inertia.xz), y(inertia.xy, inertia.yy, inertia.yz),
+        z(inertia.xz, inertia.yz, inertia.zz);
+    const Vec3 a = x + time * (w.cross(x) - Vec3(0, momentum.z(), -momentum.y()));
+    const Vec3 b = y + time * (w.cross(y) - Vec3(-momentum.z(), 0, momentum.x()));
+    const Vec3 c = z + time * (w.cross(z) - Vec3(momentum.y(), -momentum.x(), 0));
+    const Vec3 after = w - solved(a, b, c, residual);
     // A body that turns by a radian and more in this time may come out of a single step faster.
-    const double energy = w.dot(momentum), energy_after = after.dot(inertia * after);
-    if (energy_after > energy) after *= std::sqrt(energy / energy_after);
-    return orientation * after;
+    const double energy = w.dot(momentum), energy_after = after.dot(times(inertia, after));
+    return energy_after > energy ? Vec3(after * std::sqrt(energy / energy_after)) : after;
 }
 
 Vec3 after_explicit_gyroscopic_torque(const Vec3& angular_velocity,
@@ -125,9 +139,15 @@ Vec3 after_explicit_gyroscopic_torque(const Vec3& angular_velocity,
                                       const Quat& orientation,
                                       double time)
 {
-    const Mat3 inertia = inertia_local.matrix();
     const Vec3 w = orientation.conjugate() * angular_velocity;
-    return orientation * (w - time * (inertia.inverse() * w.cross(inertia * w)));
+    return orientation * after_explicit_gyroscopic_torque_local(w, inertia_local, time);
+}
+
+Vec3 after_explicit_gyroscopic_torque_local(const Vec3& w, const Sym3& inertia, double time)
+{
+    const Mat3 columns = inertia.matrix();
+    const Vec3 torque = w.cross(times(inertia, w));
+    return w - time * solved(columns.col(0), columns.col(1), columns.col(2), torque);
 }
 
 }  // namespace throng

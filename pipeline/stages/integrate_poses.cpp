@@ -2,6 +2,7 @@
 //
 // In double throughout: free flight is exact where the integrator is.
 #include "kernels/math/rotation.hpp"
+#include "kernels/motion/flight.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
 
@@ -9,36 +10,69 @@ namespace throng {
 
 namespace {
 
-constexpr std::size_t kGrain = 256;  // bodies a block: some 50 microseconds of work
+constexpr std::size_t kGrain = 1024;  // bodies a block: some 20 microseconds of work
 
-struct Flight {
-    Pose pose;
-    Vec3 linear, angular;
-
-    bool sound() const
-    {
-        return holdable(pose.position) && pose.orientation.coeffs().allFinite() && holdable(linear)
-            && holdable(angular);
-    }
-};
-
-void fly(const Conditions& conditions, const Masses& masses, std::uint32_t body, Flight& flight)
+FlightRule rule_of(const Conditions& conditions)
 {
-    const double h = conditions.substep();
+    FlightRule rule;
+    rule.substep = conditions.substep();
+    rule.substeps = conditions.settings.substeps;
+    for (int axis = 0; axis < 3; ++axis)
+        rule.gravity[axis] = conditions.has(Effect::gravity) ? conditions.gravity[axis] : 0;
+    rule.turns = conditions.has(Effect::rotation);
+    rule.gyroscopic = conditions.has(Effect::gyroscopic)
+        && conditions.settings.gyroscopic == Gyroscopic::implicit;
+    return rule;
+}
+
+FlightArrays arrays_of(const Masses& masses, Poses& poses, Velocities& velocities)
+{
+    if (poses.position.empty()) return {};
+    return {poses.position[0].data(),    poses.orientation[0].coeffs().data(),
+            velocities.linear[0].data(), velocities.angular[0].data(),
+            &masses.inertia[0].xx,       masses.inverse_mass.data(),
+            masses.spins_unevenly.data()};
+}
+
+// What the wide kernel leaves: any inertia, any speed. False, and the body as it was, where it
+// would become what a step cannot hold.
+bool fly_one(const Conditions& conditions,
+             const Masses& masses,
+             std::uint32_t body,
+             Poses& poses,
+             Velocities& velocities)
+{
+    const double h = conditions.substep(), n = conditions.settings.substeps;
     const bool falls = conditions.has(Effect::gravity) && masses.inverse_mass[body] > 0;
-    const bool turns = conditions.has(Effect::rotation);
-    const bool gyroscopic = conditions.has(Effect::gyroscopic) && masses.spins_unevenly[body] != 0;
-    const auto torque = conditions.settings.gyroscopic == Gyroscopic::implicit
-        ? after_gyroscopic_torque
-        : after_explicit_gyroscopic_torque;
-    for (int step = 0; step < conditions.settings.substeps; ++step) {
-        if (falls) flight.linear += conditions.gravity * h;
-        if (gyroscopic)
-            flight.angular =
-                torque(flight.angular, masses.inertia[body], flight.pose.orientation, h);
-        flight.pose.position += flight.linear * h;
-        if (turns) flight.pose.orientation = turned(flight.pose.orientation, flight.angular, h);
+    const Vec3 pull = falls ? conditions.gravity : Vec3(Vec3::Zero());
+    const Vec3 linear = velocities.linear[body] + pull * (n * h);
+    const Vec3 position = poses.position[body] + velocities.linear[body] * (n * h)
+        + pull * (h * h * (n * (n + 1) / 2));
+    Quat orientation = poses.orientation[body];
+    Vec3 angular = velocities.angular[body];
+    if (conditions.has(Effect::rotation)) {
+        // In body axes: about them the angular velocity stays as it is while the body turns by it.
+        const bool precesses =
+            conditions.has(Effect::gyroscopic) && masses.spins_unevenly[body] != 0;
+        const auto torque = conditions.settings.gyroscopic == Gyroscopic::implicit
+            ? after_gyroscopic_torque_local
+            : after_explicit_gyroscopic_torque_local;
+        Vec3 w = orientation.conjugate() * angular;
+        for (int step = 0; step < conditions.settings.substeps; ++step) {
+            if (precesses) w = torque(w, masses.inertia[body], h);
+            orientation = orientation * exponential(h * w);
+        }
+        orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
+        if (precesses) angular = orientation * w;
     }
+    if (!holdable(position) || !orientation.coeffs().allFinite() || !holdable(linear)
+        || !holdable(angular))
+        return false;
+    poses.position[body] = position;
+    poses.orientation[body] = orientation;
+    velocities.linear[body] = linear;
+    velocities.angular[body] = angular;
+    return true;
 }
 
 }  // namespace
@@ -53,36 +87,31 @@ void integrate_poses(const Conditions& conditions,
 {
     // Without contact there are no islands: every awake body flies.
     const bool alone = !conditions.has(Effect::contact);
-    const std::size_t count = states.kind.size();
-    std::vector<std::uint8_t> lone;
-    if (!alone) {
-        lone.assign(count, 0);
-        for (const std::uint32_t body : islands.lone) lone[body] = 1;
-    } else {
-        trouble.quarantined.clear();
-    }
-    trouble.of_block.resize(block_count(count, kGrain));
-    for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        trouble.of_block[block].clear();
-        for (std::size_t i = begin; i < end; ++i) {
-            const bool flies = states.kind[i] == BodyKind::kinematic
-                || (states.dynamic(i) && (alone || lone[i] != 0));
-            if (!flies || !states.moves(i)) continue;
-            const auto body = static_cast<std::uint32_t>(i);
-            Flight flight{poses.at(i), velocities.linear[i], velocities.angular[i]};
-            fly(conditions, masses, body, flight);
-            if (!flight.sound()) {
-                trouble.of_block[block].push_back(body);
-                continue;
-            }
-            poses.position[i] = flight.pose.position;
-            poses.orientation[i] = flight.pose.orientation;
-            velocities.linear[i] = flight.linear;
-            velocities.angular[i] = flight.angular;
-        }
-    });
-    for (const auto& found : trouble.of_block)
-        trouble.quarantined.insert(trouble.quarantined.end(), found.begin(), found.end());
+    if (alone) trouble.quarantined.clear();
+
+    const FlightRule rule = rule_of(conditions);
+    const FlightArrays arrays = arrays_of(masses, poses, velocities);
+    const FlyKernel kernel = fly_kernel();
+    const bool wide = !conditions.has(Effect::gyroscopic) || rule.gyroscopic;
+    const auto fly = [&](const std::vector<std::uint32_t>& bodies) {
+        trouble.of_block.resize(block_count(bodies.size(), kGrain));
+        for_each_block(bodies.size(), kGrain, [&](auto begin, auto end, auto block) {
+            std::array<std::uint32_t, kGrain> chosen, left;
+            std::size_t count = 0;
+            for (std::size_t i = begin; i < end; ++i)
+                if (states.moves(bodies[i])) chosen[count++] = bodies[i];
+            if (wide) count = kernel(rule, arrays, chosen.data(), count, left.data());
+            auto& lost = trouble.of_block[block];
+            lost.clear();
+            for (std::size_t i = 0; i < count; ++i)
+                if (!fly_one(conditions, masses, wide ? left[i] : chosen[i], poses, velocities))
+                    lost.push_back(wide ? left[i] : chosen[i]);
+        });
+        for (const auto& found : trouble.of_block)
+            trouble.quarantined.insert(trouble.quarantined.end(), found.begin(), found.end());
+    };
+    fly(alone ? states.movers.dynamic : islands.lone);
+    fly(states.movers.kinematic);
 }
 
 }  // namespace throng

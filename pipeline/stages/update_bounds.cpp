@@ -1,17 +1,21 @@
 // Update bounds: poses into boxes. A body that stays within its margin keeps its box, and the broad
 // phase is not asked about it.
 #include "broadphase/margins.hpp"
+#include "broadphase/mover_bounds.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 namespace throng {
 
 namespace {
 
-constexpr std::size_t kGrain = 512;  // colliders a block: some 50 microseconds of work
+constexpr std::size_t kGrain = 1024;  // bodies a block: some 20 microseconds of work
 
 // Contacts are looked for this far from a resting surface, as a share of the shape's smallest half
 // extent: far enough that a body at rest never loses its contacts to a breath.
@@ -25,6 +29,28 @@ double resting_reach(const Colliders& colliders, std::size_t collider)
 }
 
 Box3 grown(const Box3& box, double by) { return {box.lower.array() - by, box.upper.array() + by}; }
+
+// What the box, grown, holds in float: rounded outward by two units in the last place and more.
+NearBox near_box(const Box3& tight, double reach)
+{
+    constexpr float kOutward = 3 * 0x1p-24f;
+    constexpr float kLeast = std::numeric_limits<float>::min();
+    NearBox box{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto lower = static_cast<float>(tight.lower[axis] - reach);
+        const auto upper = static_cast<float>(tight.upper[axis] + reach);
+        box.lower[axis] = lower - (std::abs(lower) * kOutward + kLeast);
+        box.upper[axis] = upper + (std::abs(upper) * kOutward + kLeast);
+    }
+    return box;
+}
+
+// Overlaps nothing, not even what is everywhere.
+NearBox nowhere()
+{
+    constexpr float kNever = std::numeric_limits<float>::quiet_NaN();
+    return {{kNever, kNever, kNever, kNever}, {kNever, kNever, kNever, kNever}};
+}
 
 struct Mover {
     Vec3 velocity;  // m/s, of the collider's middle
@@ -46,6 +72,256 @@ Mover mover_of(const Colliders& colliders,
     return {velocities.linear[body] + spin.cross(arm), sweep, 2 * colliders.outer_radius[collider]};
 }
 
+float rounded_up(double x)
+{
+    const auto near = static_cast<float>(x);
+    return double{near} < x ? std::nextafter(near, std::numeric_limits<float>::infinity()) : near;
+}
+
+// What the wide kernel needs to know of a collider's shape; a form of `other` where it cannot help.
+void note_form(const Shapes& shapes, const Colliders& colliders, std::size_t at, Bounds& bounds)
+{
+    const ShapeRef shape = colliders.shape[at];
+    const Pose& local = colliders.local[at];
+    Vec3 half = Vec3::Zero();
+    double round = 0;
+    MoverForm form = MoverForm::box;
+    switch (shape.kind) {
+    case ShapeKind::sphere:
+        round = shapes.spheres[shape.index].radius;
+        break;
+    case ShapeKind::capsule:
+        half.z() = shapes.capsules[shape.index].half_length;
+        round = shapes.capsules[shape.index].radius;
+        break;
+    case ShapeKind::cylinder:
+        half.z() = shapes.cylinders[shape.index].half_length;
+        round = shapes.cylinders[shape.index].radius;
+        form = MoverForm::cylinder;
+        break;
+    case ShapeKind::box:
+        half = shapes.boxes[shape.index].half_extents;
+        break;
+    default:
+        form = MoverForm::other;
+    }
+    const bool centered = local.position.isZero(0) && local.orientation.vec().isZero(0);
+    const double greatest = std::max(half.maxCoeff(), round);
+    // Sizes that float would hold badly go the long way.
+    if (!centered || !(greatest < 1e30) || !(colliders.inner_extent[at] > 1e-30))
+        form = MoverForm::other;
+    bounds.form[at] = static_cast<std::uint8_t>(form);
+    if (form == MoverForm::other) return;
+    for (int axis = 0; axis < 3; ++axis) bounds.half[axis][at] = rounded_up(half[axis]);
+    bounds.round[at] = rounded_up(round);
+}
+
+// One call of the stage.
+class Update {
+public:
+    Update(const Conditions& conditions,
+           const Shapes& shapes,
+           const Colliders& colliders,
+           const Poses& poses,
+           const Velocities& velocities,
+           const BodyStates& states,
+           Bounds& bounds)
+        : dt_(conditions.settings.dt), falls_(conditions.gravity.norm() * dt_ * dt_),
+          shapes_(shapes), colliders_(colliders), poses_(poses), velocities_(velocities),
+          states_(states), bounds_(bounds)
+    { }
+
+    void run()
+    {
+        make_room();
+        const std::vector<std::uint32_t> touched = take_touched();
+        bounds_.asked.clear();
+        of_movers(states_.movers.kinematic, 0);
+        of_movers(states_.movers.dynamic, falls_);
+        of_others(touched);
+        for (const std::uint32_t collider : touched) bounds_.flags[collider] = 0;
+    }
+
+private:
+    void make_room()
+    {
+        const std::size_t count = colliders_.size();
+        if (bounds_.boxes.size() == count && bounds_.flags.size() == count) return;
+        bounds_.boxes.resize(count);
+        bounds_.reach.resize(count, 0.0);
+        bounds_.near.resize(count, nowhere());
+        bounds_.moving.resize(count, 0);
+        bounds_.placed.resize(count);
+        for (std::vector<float>& half : bounds_.half) half.resize(count, 0.0f);
+        bounds_.round.resize(count, 0.0f);
+        bounds_.form.resize(count, 0);
+        bounds_.flags.resize(count, 0);
+    }
+
+    // Ascending, none twice; their flags are up until the end.
+    std::vector<std::uint32_t> take_touched()
+    {
+        std::vector<std::uint32_t> touched;
+        touched.swap(bounds_.touched);
+        bounds_.still_changed = !touched.empty();
+        if (!std::is_sorted(touched.begin(), touched.end()))
+            std::sort(touched.begin(), touched.end());
+        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        for (const std::uint32_t collider : touched) bounds_.flags[collider] = 1;
+        return touched;
+    }
+
+    // Every collider of some bodies that move: most of them side by side.
+    void of_movers(const std::vector<std::uint32_t>& bodies, double falls)
+    {
+        const MoverArrays arrays = arrays_of();
+        const MarginRule margin = margin_of();
+        const MoverRule rule{dt_, kRestingReach, falls, margin.base, margin.steps, margin.longest};
+        in_blocks(bodies.size(), [&](std::size_t begin, std::size_t end, auto& asked) {
+            std::array<std::uint32_t, kGrain> colliders, owners, found;
+            std::size_t count = 0;
+            const auto flush = [&] {
+                const std::size_t left =
+                    kernel_(rule, arrays, colliders.data(), owners.data(), count, found.data());
+                asked.insert(asked.end(), found.data(), found.data() + left);
+                count = 0;
+            };
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::uint32_t body = bodies[i], first = colliders_.begin[body];
+                if (!states_.moves(body)) continue;
+                for (std::uint32_t at = first; at < first + colliders_.count[body]; ++at) {
+                    if (bounds_.flags[at] != 0
+                        || bounds_.form[at] == static_cast<std::uint8_t>(MoverForm::other)) {
+                        if (colliders_.body[at] == body) update(at, asked);
+                        continue;
+                    }
+                    colliders[count] = at;
+                    owners[count] = body;
+                    if (++count == kGrain) flush();
+                }
+            }
+            flush();
+        });
+    }
+
+    // Those that were touched and do not move.
+    void of_others(const std::vector<std::uint32_t>& touched)
+    {
+        in_blocks(touched.size(), [&](std::size_t begin, std::size_t end, auto& asked) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::uint32_t body = colliders_.body[touched[i]];
+                if (body == kNobody || !states_.moves(body)) update(touched[i], asked);
+            }
+        });
+    }
+
+    MarginRule margin_of() const
+    {
+        MarginRule rule;
+        rule.steps *= bounds_.stretch;
+        rule.longest *= bounds_.stretch;
+        return rule;
+    }
+
+    // Calls body(begin, end, asked) block by block; what is asked ends up in order among the rest.
+    template <class Body>
+    void in_blocks(std::size_t count, const Body& body)
+    {
+        if (count == 0) return;
+        const std::size_t blocks = block_count(count, kGrain);
+        if (bounds_.of_block.size() < blocks) bounds_.of_block.resize(blocks);
+        for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+            std::vector<std::uint32_t>& asked = bounds_.of_block[block];
+            asked.clear();
+            body(begin, end, asked);
+            if (!std::is_sorted(asked.begin(), asked.end())) std::sort(asked.begin(), asked.end());
+        });
+        std::vector<std::uint32_t>& all = bounds_.asked;
+        const auto middle = static_cast<std::ptrdiff_t>(all.size());
+        for (std::size_t block = 0; block < blocks; ++block) {
+            const std::vector<std::uint32_t>& found = bounds_.of_block[block];
+            all.insert(all.end(), found.begin(), found.end());
+        }
+        // Places of removed bodies are taken again in any order.
+        if (!std::is_sorted(all.begin() + middle, all.end()))
+            std::sort(all.begin() + middle, all.end());
+        std::inplace_merge(all.begin(), all.begin() + middle, all.end());
+    }
+
+    MoverArrays arrays_of()
+    {
+        if (colliders_.size() == 0 || poses_.position.empty()) return {};
+        return {poses_.position[0].data(),
+                velocities_.linear[0].data(),
+                velocities_.angular[0].data(),
+                poses_.orientation[0].coeffs().data(),
+                {bounds_.half[0].data(), bounds_.half[1].data(), bounds_.half[2].data()},
+                bounds_.round.data(),
+                bounds_.form.data(),
+                colliders_.inner_extent.data(),
+                colliders_.outer_radius.data(),
+                bounds_.placed[0].position.data(),
+                bounds_.boxes[0].lower.data(),
+                bounds_.reach.data(),
+                bounds_.near[0].lower};
+    }
+
+    // One collider, the long way.
+    void update(std::uint32_t collider, std::vector<std::uint32_t>& asked)
+    {
+        const bool touched = bounds_.flags[collider] != 0;
+        const std::uint32_t body = colliders_.body[collider];
+        if (body == kNobody) {
+            bounds_.boxes[collider] = {};
+            bounds_.near[collider] = nowhere();
+            asked.push_back(collider);
+            return;
+        }
+        if (touched) note_form(shapes_, colliders_, collider, bounds_);
+        const Pose placed = poses_.at(body) * colliders_.local[collider];
+        bounds_.placed[collider] = placed;
+        const bool moving = states_.kind[body] != BodyKind::still;
+        bounds_.moving[collider] = moving ? 1 : 0;
+        const Box3 tight = shape_bounds(shapes_, colliders_.shape[collider], placed);
+        if (!moving) {
+            bounds_.reach[collider] = 0;
+            bounds_.near[collider] = near_box(tight, 0);
+            bounds_.boxes[collider] = tight;
+            asked.push_back(collider);
+            return;
+        }
+        const Mover mover = mover_of(colliders_, velocities_, placed, poses_, collider);
+        // Small bodies fall further in a step than a share of their size.
+        const double falls = states_.dynamic(body) ? falls_ : 0;
+        const double rest = std::max(resting_reach(colliders_, collider), falls);
+        const double reach =
+            rest + mover.velocity.norm() * dt_ + std::min(mover.sweep * dt_, mover.widest);
+        bounds_.reach[collider] = reach;
+        bounds_.near[collider] = near_box(tight, reach);
+        if (colliders_.shape[collider].kind == ShapeKind::plane) {
+            // Its box holds everything and says nothing of where it is now.
+            if (!touched && reach == 0) return;
+            bounds_.boxes[collider] = tight;
+            asked.push_back(collider);
+            return;
+        }
+        const Box3 wanted = grown(tight, reach);
+        if (!touched && bounds_.boxes[collider].contains(wanted)) return;
+        bounds_.boxes[collider] =
+            fattened(wanted, mover.velocity, colliders_.inner_extent[collider], dt_, margin_of());
+        asked.push_back(collider);
+    }
+
+    double dt_, falls_;
+    const Shapes& shapes_;
+    const Colliders& colliders_;
+    const Poses& poses_;
+    const Velocities& velocities_;
+    const BodyStates& states_;
+    Bounds& bounds_;
+    MoverKernel kernel_ = mover_kernel();
+};
+
 }  // namespace
 
 void update_bounds(const Conditions& conditions,
@@ -56,65 +332,9 @@ void update_bounds(const Conditions& conditions,
                    const BodyStates& states,
                    Bounds& bounds)
 {
-    const double dt = conditions.settings.dt;
-    const std::size_t count = colliders.size();
-    bounds.boxes.resize(count);
-    bounds.reach.resize(count, 0.0);
-    bounds.moving.resize(count, 0);
-    bounds.placed.resize(count);
-    std::vector<std::uint8_t> touched(count, 0);
-    for (const std::uint32_t collider : bounds.touched) touched[collider] = 1;
-    bounds.still_changed = !bounds.touched.empty();
-    bounds.touched.clear();
-
-    const auto update = [&](std::size_t collider, std::vector<std::uint32_t>& asked) {
-        const std::uint32_t body = colliders.body[collider];
-        if (body == kNobody) {
-            if (touched[collider] == 0) return;
-            bounds.boxes[collider] = {};
-            asked.push_back(static_cast<std::uint32_t>(collider));
-            return;
-        }
-        if (touched[collider] == 0 && !states.moves(body)) return;
-        const Pose placed = poses.at(body) * colliders.local[collider];
-        bounds.placed[collider] = placed;
-        const bool moving = states.kind[body] != BodyKind::still;
-        bounds.moving[collider] = moving ? 1 : 0;
-        const Box3 tight = shape_bounds(shapes, colliders.shape[collider], placed);
-        if (!moving) {
-            bounds.reach[collider] = 0;
-            bounds.boxes[collider] = tight;
-            asked.push_back(static_cast<std::uint32_t>(collider));
-            return;
-        }
-        const Mover mover = mover_of(colliders, velocities, placed, poses, collider);
-        // Small bodies fall further in a step than a share of their size.
-        const double falls = states.dynamic(body) ? conditions.gravity.norm() * dt * dt : 0;
-        const double rest = std::max(resting_reach(colliders, collider), falls);
-        const double reach =
-            rest + mover.velocity.norm() * dt + std::min(mover.sweep * dt, mover.widest);
-        bounds.reach[collider] = reach;
-        if (colliders.shape[collider].kind == ShapeKind::plane) {
-            // Its box holds everything and says nothing of where it is now.
-            if (touched[collider] == 0 && reach == 0) return;
-            bounds.boxes[collider] = tight;
-            asked.push_back(static_cast<std::uint32_t>(collider));
-            return;
-        }
-        if (touched[collider] == 0 && bounds.boxes[collider].contains(grown(tight, reach))) return;
-        bounds.boxes[collider] =
-            fattened(grown(tight, reach), mover.velocity, colliders.inner_extent[collider], dt);
-        asked.push_back(static_cast<std::uint32_t>(collider));
-    };
-
-    bounds.of_block.resize(block_count(count, kGrain));
-    for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        bounds.of_block[block].clear();
-        for (std::size_t i = begin; i < end; ++i) update(i, bounds.of_block[block]);
-    });
-    bounds.asked.clear();
-    for (const auto& found : bounds.of_block)
-        bounds.asked.insert(bounds.asked.end(), found.begin(), found.end());
+    static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(Box3) == 6 * sizeof(double)
+                  && sizeof(NearBox) == 8 * sizeof(float));
+    Update(conditions, shapes, colliders, poses, velocities, states, bounds).run();
 }
 
 }  // namespace throng

@@ -54,6 +54,14 @@ TEST(Margins, OfAFastBodyAreOneStepAndNoMore)
     EXPECT_NEAR(fat.upper.x(), 0.1 + 10 + MarginRule().base * 0.1, 1e-9);
 }
 
+TEST(Margins, StretchWherePairsAreFew)
+{
+    EXPECT_EQ(stretch_for(0, 0), 1);
+    EXPECT_EQ(stretch_for(10, 1000), 4);
+    EXPECT_EQ(stretch_for(500, 1000), 2);
+    EXPECT_EQ(stretch_for(1000, 1000), 1);
+}
+
 TEST(Margins, BadVelocityLeavesTheBase)
 {
     const Box3 tight = box_around(Vec3::Zero(), Vec3::Ones());

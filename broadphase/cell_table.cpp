@@ -1,0 +1,299 @@
+#include "broadphase/cell_table.hpp"
+
+#include "kernels/check.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace throng {
+namespace {
+
+constexpr double kFarthest = 1e300;  // m, beyond it differences are no longer finite
+// Cells of a level are this many times larger than those of the one below.
+constexpr int kStep = 2;
+// The middle level holds boxes down to so small a share of its cells, the others down to half.
+constexpr double kSmall = 8;
+// The share of boxes that fit a cell of the middle level. With larger cells a search passes more
+// boxes that are not met, with smaller ones more cells.
+constexpr double kUsual = 0.9, kRoom = 2.5;
+constexpr std::size_t kSample = 1024;
+// A place is so many cells from the origin at most: further out only larger cells tell places
+// apart.
+constexpr double kPlaces = 0x1p40;
+
+constexpr std::uint32_t kFirstRoom = 2;  // entries
+// In large worlds memory is what a search waits for: so many places are asked for ahead.
+constexpr std::size_t kAhead = 8, kCellsAhead = 32;
+
+float rounded_down(double x)
+{
+    const auto near = static_cast<float>(std::min(x, 3e38));
+    return near - (std::abs(near) * (3 * 0x1p-24f) + 0x1p-126f);
+}
+float rounded_up(double x)
+{
+    const auto near = static_cast<float>(std::max(x, -3e38));
+    return near + (std::abs(near) * (3 * 0x1p-24f) + 0x1p-126f);
+}
+
+std::int64_t cell_at(double place, double per_m)
+{
+    constexpr double kMost = 0x1p62;
+    const double cell = std::clamp(place * per_m, -kMost, kMost);
+    const auto whole = static_cast<std::int64_t>(cell);
+    return whole - (cell < static_cast<double>(whole) ? 1 : 0);
+}
+
+std::uint64_t mixed(std::uint64_t z)
+{
+    z = (z ^ (z >> 32)) * 0xd6e8feb86659fd93u;
+    return z ^ (z >> 32);
+}
+
+template <class Entry>
+bool near(const Entry& a, const Entry& b)
+{
+    return boxes_meet(a.lower, a.upper, b.lower, b.upper);
+}
+
+// The size that nearly all boxes stay below. The sample is taken at even distances, so it is the
+// same on every run.
+double usual_size(std::span<const Box3> boxes)
+{
+    std::vector<double> sizes;
+    const std::size_t stride = std::max<std::size_t>(1, boxes.size() / kSample);
+    for (std::size_t i = 0; i < boxes.size(); i += stride) {
+        const double size = (boxes[i].upper - boxes[i].lower).maxCoeff();
+        if (size > 0 && size < kFarthest) sizes.push_back(size);
+    }
+    if (sizes.empty()) return 1;
+    const auto at = static_cast<std::size_t>(kUsual * static_cast<double>(sizes.size() - 1));
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(at), sizes.end());
+    return kRoom * sizes[at];
+}
+
+}  // namespace
+
+std::uint8_t CellTable::level_of(const Box3& box) const
+{
+    if (meets_nothing(box)) return kNowhere;
+    const double farthest =
+        std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
+    if (!(farthest < kFarthest)) return kAside;
+    const double size = std::max((box.upper - box.lower).maxCoeff(), farthest / kPlaces);
+    double cell = usual_;
+    std::uint8_t level = kMiddle;
+    for (; size > cell; ++level) cell *= kStep;
+    if (size * kSmall >= cell) return level;
+    for (; level > kLowest && size * kStep < cell; --level) cell /= kStep;
+    return level;
+}
+
+// Where the cells of a row along x begin among the buckets: neighbors in it are neighbors there.
+std::uint64_t CellTable::row_of(std::uint8_t level, std::int64_t y, std::int64_t z) const
+{
+    return mixed(static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fu
+                 + static_cast<std::uint64_t>(z) * 0x165667b19e3779f9u
+                 + level * 0x27d4eb2f165667c5u);
+}
+
+void CellTable::take_out(std::uint32_t id)
+{
+    const std::uint8_t level = level_[id];
+    level_[id] = kNowhere;
+    if (level == kNowhere) return;
+    if (level == kAside) {
+        std::erase(aside_, id);
+        return;
+    }
+    --levels_[level].count;
+    // The last of its bucket takes its seat.
+    Bucket& bucket = buckets_[seats_[id].bucket];
+    const Entry& last = entries_[bucket.begin + --bucket.count];
+    entries_[seats_[id].at] = last;
+    seats_[last.id].at = seats_[id].at;
+}
+
+void CellTable::seat(const Entry& entry, std::uint32_t at)
+{
+    Bucket& bucket = buckets_[at];
+    if (bucket.count == bucket.room) {
+        // Moves to the end, where there is room for twice as many.
+        const auto begin = static_cast<std::uint32_t>(entries_.size());
+        bucket.room = std::max(kFirstRoom, 2 * bucket.room);
+        entries_.resize(entries_.size() + bucket.room);
+        for (std::uint32_t i = 0; i < bucket.count; ++i) {
+            entries_[begin + i] = entries_[bucket.begin + i];
+            seats_[entries_[begin + i].id].at = begin + i;
+        }
+        bucket.begin = begin;
+    }
+    seats_[entry.id] = {at, bucket.begin + bucket.count};
+    entries_[bucket.begin + bucket.count++] = entry;
+}
+
+void CellTable::put(std::uint32_t id, const Box3& box)
+{
+    take_out(id);
+    const std::uint8_t at = level_of(box);
+    level_[id] = at;
+    if (at == kNowhere) return;
+    if (at == kAside) {
+        aside_.push_back(id);
+        return;
+    }
+    Level& level = levels_[at];
+    if (level.cell == 0) {
+        active_.push_back(at);
+        level.cell = usual_ * std::pow(kStep, at - kMiddle);
+        level.per_m = 1 / level.cell;
+    }
+    ++level.count;
+    level.longest = level.longest.cwiseMax(box.upper - box.lower);
+    const auto cell = [&](int axis) { return cell_at(box.lower[axis], level.per_m); };
+    const std::uint64_t bucket = row_of(at, cell(1), cell(2)) + static_cast<std::uint64_t>(cell(0));
+    seat(entry_of(id, box), static_cast<std::uint32_t>(bucket & (buckets_.size() - 1)));
+}
+
+CellTable::Entry CellTable::entry_of(std::uint32_t id, const Box3& box)
+{
+    Entry entry{};
+    entry.id = id;
+    for (int axis = 0; axis < 3; ++axis) {
+        entry.lower[axis] = rounded_down(box.lower[axis]);
+        entry.upper[axis] = rounded_up(box.upper[axis]);
+    }
+    return entry;
+}
+
+void CellTable::rebuild(const OverlapQuery& query)
+{
+    const std::size_t count = query.boxes.size();
+    buckets_.assign(std::bit_ceil(2 * count + 1), {});
+    entries_.clear();
+    seats_.assign(count, {});
+    level_.assign(count, kNowhere);
+    aside_.clear();
+    active_.clear();
+    levels_.fill({});
+    usual_ = usual_size(query.boxes);
+    for (std::uint32_t id = 0; id < count; ++id) put(id, query.boxes[id]);
+}
+
+void CellTable::update(const OverlapQuery& query)
+{
+    const std::size_t count = query.boxes.size(), before = level_.size();
+    THRONG_CHECK(query.moving.size() == count, "a flag for each box");
+    THRONG_CHECK(std::adjacent_find(query.asked.begin(), query.asked.end(), std::greater_equal<>())
+                     == query.asked.end(),
+                 "asked ids ascend");
+    for (const std::uint32_t id : named_)
+        if (id < asked_.size()) asked_[id] = 0;
+    asked_.resize(count, 0);
+    named_.assign(query.asked.begin(), query.asked.end());
+    for (const std::uint32_t id : named_) asked_[id] = 1;
+
+    // Once in a while a world outgrows its table, or all change at once.
+    const bool grown = 2 * count > buckets_.size() || entries_.size() > 16 * count + 1024;
+    if (before == 0 || count < before || grown || 2 * named_.size() > count) {
+        rebuild(query);
+        return;
+    }
+    seats_.resize(count);
+    level_.resize(count, kNowhere);
+    for (std::size_t i = 0; i < named_.size(); ++i) {
+        if (i + kAhead < named_.size()) {
+            const Seat& seat = seats_[named_[i + kAhead]];
+            if (seat.bucket < buckets_.size()) __builtin_prefetch(&buckets_[seat.bucket]);
+            if (seat.at < entries_.size()) __builtin_prefetch(&entries_[seat.at]);
+        }
+        put(named_[i], query.boxes[named_[i]]);
+    }
+    for (auto id = static_cast<std::uint32_t>(before); id < count; ++id)
+        if (asked_[id] == 0) put(id, query.boxes[id]);
+    if (!query.still_changed) return;
+    for (std::uint32_t id = 0; id < before; ++id)
+        if (query.moving[id] == 0 && asked_[id] == 0) put(id, query.boxes[id]);
+}
+
+// The cells in which a box may lie that meets this one.
+CellTable::Cells CellTable::cells_round(const Box3& box, const Level& level) const
+{
+    Cells cells;
+    cells.count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        // A little more than the longest: subtraction rounds, more so far from the origin.
+        const double longest = level.longest[axis];
+        const double slack = longest * 1e-12 + (std::abs(box.lower[axis]) + longest) * 1e-15;
+        cells.first[axis] = cell_at(box.lower[axis] - longest - slack, level.per_m);
+        cells.last[axis] = cell_at(box.upper[axis], level.per_m);
+        cells.count *= static_cast<double>(cells.last[axis] - cells.first[axis] + 1);
+    }
+    return cells;
+}
+
+void CellTable::meet(const OverlapQuery& query, std::uint32_t id, std::vector<PairKey>& pairs) const
+{
+    if (level_[id] == kNowhere) return;
+    const Box3& box = query.boxes[id];
+    const bool moves = query.moving[id] != 0;
+    const auto meet = [&](std::uint32_t other) {
+        if (other == id || (asked_[other] != 0 && other < id)) return;
+        if (!moves && query.moving[other] == 0) return;
+        if (!box.overlaps(query.boxes[other])) return;
+        if (query.filter != nullptr && !query.filter->allows(id, other)) return;
+        pairs.push_back(pair_key(id, other));
+    };
+    const Entry mine = entry_of(id, box);
+    const auto walk = [&](const Bucket& bucket, const auto& wanted) {
+        const Entry* const begin = entries_.data() + bucket.begin;
+        for (const Entry* entry = begin; entry < begin + bucket.count; ++entry)
+            if (near(mine, *entry) && wanted(entry->id)) meet(entry->id);
+    };
+    // Buckets first, then their entries, then a look: each round waits for memory once.
+    std::array<const Bucket*, kCellsAhead> cells_ahead;
+    std::size_t ahead = 0;
+    const auto look = [&] {
+        std::size_t full = 0;
+        for (std::size_t i = 0; i < ahead; ++i) {
+            if (cells_ahead[i]->count == 0) continue;
+            __builtin_prefetch(entries_.data() + cells_ahead[i]->begin);
+            cells_ahead[full++] = cells_ahead[i];
+        }
+        for (std::size_t i = 0; i < full; ++i)
+            walk(*cells_ahead[i], [](std::uint32_t) { return true; });
+        ahead = 0;
+    };
+    std::array<bool, 256> all{};
+    bool scans = false;
+    const std::uint64_t mask = buckets_.size() - 1;
+    for (const std::uint8_t at : active_) {
+        const Level& level = levels_[at];
+        if (level.count == 0) continue;
+        const Cells cells = cells_round(box, level);
+        // A large box beside small ones: to look at each of them is less than to look for them.
+        if (level_[id] == kAside || !(cells.count < static_cast<double>(level_.size()) / 2 + 64)) {
+            all[at] = scans = true;
+            continue;
+        }
+        for (std::int64_t z = cells.first[2]; z <= cells.last[2]; ++z)
+            for (std::int64_t y = cells.first[1]; y <= cells.last[1]; ++y) {
+                const std::uint64_t row = row_of(at, y, z);
+                for (std::int64_t x = cells.first[0]; x <= cells.last[0]; ++x) {
+                    const Bucket* const bucket =
+                        &buckets_[(row + static_cast<std::uint64_t>(x)) & mask];
+                    __builtin_prefetch(bucket);
+                    cells_ahead[ahead++] = bucket;
+                    if (ahead == kCellsAhead) look();
+                }
+            }
+    }
+    look();
+    if (scans)
+        for (const Bucket& bucket : buckets_)
+            walk(bucket, [&](std::uint32_t other) { return all[level_[other]]; });
+    for (const std::uint32_t other : aside_) meet(other);
+}
+
+}  // namespace throng

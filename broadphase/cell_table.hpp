@@ -1,0 +1,72 @@
+// Cell table: boxes in a hashed grid of cells, each in the one cell of its lower corner.
+//
+// A box that changes costs the same however many others there are: it leaves one cell and enters
+// another. Nearly all boxes of a scene share a level of cells; far smaller and larger ones have
+// levels of their own. Boxes that no cell can hold, such as infinite ones, stand aside and are
+// compared one by one.
+#pragma once
+
+#include "broadphase/overlap_query.hpp"
+
+#include <array>
+
+namespace throng {
+
+class CellTable {
+public:
+    /// Takes in a query: afterwards every box is where it belongs, and asked() is true to it.
+    void update(const OverlapQuery& query);
+
+    /// Appends the pairs of an asked collider with all that its box meets; those of two asked ones
+    /// by the lower id alone. Some may come up twice. May run on several threads.
+    void meet(const OverlapQuery& query, std::uint32_t id, std::vector<PairKey>& pairs) const;
+
+private:
+    static constexpr std::uint8_t kNowhere = 0, kAside = 1, kLowest = 2, kMiddle = 100;
+
+    // Rounded outward: most that do not meet are told apart without a look at the box itself.
+    struct Entry {
+        alignas(16) float lower[3];
+        std::uint32_t id;
+        alignas(16) float upper[3];
+        std::uint32_t unused;
+    };
+    // The entries of a bucket follow one another, with room for some more.
+    struct Bucket {
+        std::uint32_t begin = 0, count = 0, room = 0;
+    };
+    struct Seat {
+        std::uint32_t bucket = 0, at = 0;
+    };
+    struct Level {
+        double cell = 0, per_m = 0;   // m, 1/m; 0 while no box was in it
+        Vec3 longest = Vec3::Zero();  // m, of any box that was ever in it
+        std::size_t count = 0;
+    };
+    struct Cells {
+        std::int64_t first[3], last[3];
+        double count = 0;
+    };
+
+    void rebuild(const OverlapQuery& query);
+    void put(std::uint32_t id, const Box3& box);
+    void take_out(std::uint32_t id);
+    void seat(const Entry& entry, std::uint32_t bucket);
+    static Entry entry_of(std::uint32_t id, const Box3& box);
+    std::uint8_t level_of(const Box3& box) const;
+    Cells cells_round(const Box3& box, const Level& level) const;
+    std::uint64_t row_of(std::uint8_t level, std::int64_t y, std::int64_t z) const;
+
+    std::vector<Entry> entries_;        // of all buckets
+    std::vector<Bucket> buckets_;       // a power of two of them
+    std::vector<Seat> seats_;           // [colliders]
+    std::vector<std::uint8_t> level_;   // [colliders]
+    std::vector<std::uint8_t> asked_;   // [colliders] 1 for those of the last query
+    std::vector<std::uint32_t> named_;  // whose flag is up
+    std::vector<std::uint32_t> aside_;
+    std::array<Level, 256> levels_;
+    std::vector<std::uint8_t> active_;  // levels that ever held a box
+    double usual_ = 1;                  // m, of a cell of the middle level
+};
+
+}  // namespace throng

@@ -1,0 +1,238 @@
+// Boxes of movers, written once over the width of the machine's registers.
+#include "broadphase/mover_bounds.hpp"
+#include "kernels/math/lane_rows.hpp"
+
+namespace throng::THRONG_LANES {
+
+namespace {
+
+using L = Lanes<double>;
+constexpr int kWidth = L::kWidth;
+
+L absolute(L x) { return max(x, -x); }
+
+template <class Lane = L>  // a template, so that each width sees its own branch alone
+Lane load_floats(const float* from, const RowIds& ids)
+{
+    if constexpr (Lane::kWidth > 1) {
+        if (ids.run) {
+            typedef float F __attribute__((vector_size(Lane::kWidth * sizeof(float))));
+            F numbers;
+            __builtin_memcpy(&numbers, from + ids.at[0], sizeof(F));
+            return Lane(__builtin_convertvector(numbers, typename Lane::V));
+        }
+    }
+    double numbers[kWidth];
+    for (int i = 0; i < kWidth; ++i) numbers[i] = double{from[ids.at[i]]};
+    return Lane::load(numbers);
+}
+
+L load_one(const double* from, const RowIds& ids)
+{
+    if (ids.run) return L::load(from + ids.at[0]);
+    L out[1];
+    load_rows(from, 1, ids, out);
+    return out[0];
+}
+
+L length(const L (&v)[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+struct Mover {
+    RowIds collider, body;
+    std::size_t valid = 0;  // lanes; idle ones repeat the last
+    L position[3], orientation[4], linear[3];
+    L lower[3], upper[3];  // tight, then grown by the reach
+    L reach;
+};
+
+// How far the shape reaches along the world's axes.
+void extend(const MoverArrays& arrays, const Mover& mover, L (&out)[3])
+{
+    const L x = mover.orientation[0], y = mover.orientation[1], z = mover.orientation[2],
+            w = mover.orientation[3];
+    const L one = 1.0, x2 = x + x, y2 = y + y, z2 = z + z;
+    const L xx = x2 * x, yy = y2 * y, zz = z2 * z, xy = x2 * y, xz = x2 * z, yz = y2 * z;
+    const L wx = x2 * w, wy = y2 * w, wz = z2 * w;
+    const L turn[3][3] = {{one - (yy + zz), xy - wz, xz + wy},
+                          {xy + wz, one - (xx + zz), yz - wx},
+                          {xz - wy, yz + wx, one - (xx + yy)}};
+    L half[3];
+    for (int k = 0; k < 3; ++k) half[k] = load_floats(arrays.half[k], mover.collider);
+    const L round = load_floats(arrays.round, mover.collider);
+    for (int k = 0; k < 3; ++k)
+        out[k] = absolute(turn[k][0]) * half[0] + absolute(turn[k][1]) * half[1]
+            + absolute(turn[k][2]) * half[2];
+    double cylinders[kWidth];
+    bool any = false;
+    for (int i = 0; i < kWidth; ++i) {
+        const bool is = arrays.form[mover.collider.at[i]] == std::uint8_t(MoverForm::cylinder);
+        cylinders[i] = is ? 1 : 0;
+        any |= is;
+    }
+    if (!any) {
+        for (L& part : out) part += round;
+        return;
+    }
+    // A disk across the axis; the two other components say it without cancellation.
+    const L is = L::load(cylinders);
+    for (int k = 0; k < 3; ++k) {
+        const L a = turn[(k + 1) % 3][2], b = turn[(k + 2) % 3][2];
+        out[k] += round * select(is > L(0.0), sqrt(a * a + b * b), L(1.0));
+    }
+}
+
+L reach_of(const MoverRule& rule, const MoverArrays& arrays, const Mover& mover)
+{
+    L spin[3];
+    load_3(arrays.angular, mover.body, spin);
+    const L outer = load_one(arrays.outer, mover.collider);
+    const L rest = max(L(rule.resting) * load_one(arrays.inner, mover.collider), L(rule.falls));
+    const L swept = min(length(spin) * outer * L(rule.dt), L(2.0) * outer);
+    return rest + length(mover.linear) * L(rule.dt) + swept;
+}
+
+// A number rounded outward, see near_box() of update_bounds.cpp.
+template <class F>
+F outward(F x, float way)
+{
+    const F size = x < F{} ? -x : x;
+    return x + (size * (3 * 0x1p-24f) + 0x1p-126f) * way;
+}
+
+template <class Wanted = Mover>  // a template, so that each width sees its own branch alone
+void store_near(const Wanted& mover, float* near)
+{
+    if constexpr (decltype(mover.reach)::kWidth == 8) {
+        typedef float F __attribute__((vector_size(8 * sizeof(float))));
+        F rows[8] = {};
+        for (int k = 0; k < 3; ++k) {
+            rows[k] = outward(__builtin_convertvector(mover.lower[k].v, F), -1.0f);
+            rows[4 + k] = outward(__builtin_convertvector(mover.upper[k].v, F), 1.0f);
+        }
+        detail::turn_8x8(rows);
+        for (std::size_t i = 0; i < mover.valid; ++i)
+            __builtin_memcpy(near + std::size_t{mover.collider.at[i]} * 8, &rows[i], sizeof(F));
+    } else {
+        for (std::size_t i = 0; i < mover.valid; ++i) {
+            float* to = near + std::size_t{mover.collider.at[i]} * 8;
+            const int lane = static_cast<int>(i);
+            for (int k = 0; k < 3; ++k) {
+                to[k] = outward(static_cast<float>(mover.lower[k].get(lane)), -1.0f);
+                to[4 + k] = outward(static_cast<float>(mover.upper[k].get(lane)), 1.0f);
+            }
+            to[3] = to[7] = 0;
+        }
+    }
+}
+
+void store_placed(const Mover& mover, const MoverArrays& arrays)
+{
+    for (std::size_t i = 0; i < mover.valid; ++i) {
+        double* to = arrays.placed + std::size_t{mover.collider.at[i]} * 7;
+        const std::size_t body = mover.body.at[i];
+        __builtin_memcpy(to, arrays.position + body * 3, 3 * sizeof(double));
+        __builtin_memcpy(to + 3, arrays.orientation + body * 4, 4 * sizeof(double));
+    }
+}
+
+// Bit a lane: those that are no longer within their box.
+unsigned outside(const Mover& mover, const double* boxes)
+{
+    L box[6];
+    load_6(boxes, mover.collider, box);
+    L out = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        out = select(mover.lower[k] < box[k], L(1.0), out);
+        out = select(mover.upper[k] > box[3 + k], L(1.0), out);
+    }
+    double numbers[kWidth];
+    out.store(numbers);
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < mover.valid; ++i) bits |= (numbers[i] != 0 ? 1u : 0u) << i;
+    return bits;
+}
+
+// The same sums as fattened() of margins.cpp, which says why.
+void store_fattened(const MoverRule& rule,
+                    const MoverArrays& arrays,
+                    const Mover& mover,
+                    unsigned of)
+{
+    constexpr double kSlack = 4 * 0x1p-52;
+    const L size = load_one(arrays.inner, mover.collider);
+    const L base = L(rule.base) * size, longest = L(rule.longest) * size, zero = 0.0;
+    L box[6];
+    for (int k = 0; k < 3; ++k) {
+        const L step = mover.linear[k] * L(rule.dt), way = absolute(step);
+        const L ahead = max(way, min(L(rule.steps) * way, longest));
+        const L rounding =
+            L(kSlack) * (max(absolute(mover.lower[k]), absolute(mover.upper[k])) + ahead);
+        const L room = base + rounding;
+        box[k] = mover.lower[k] - (room + select(step < zero, ahead, zero));
+        box[3 + k] = mover.upper[k] + (room + select(step > zero, ahead, zero));
+    }
+    store_rows(box, arrays.boxes, 6, mover.collider, of);
+}
+
+unsigned update(const MoverRule& rule, const MoverArrays& arrays, Mover& mover)
+{
+    load_3(arrays.position, mover.body, mover.position);
+    load_3(arrays.linear, mover.body, mover.linear);
+    load_4(arrays.orientation, mover.body, mover.orientation);
+    L extent[3];
+    extend(arrays, mover, extent);
+    mover.reach = reach_of(rule, arrays, mover);
+    for (int k = 0; k < 3; ++k) {
+        mover.lower[k] = mover.position[k] - extent[k] - mover.reach;
+        mover.upper[k] = mover.position[k] + extent[k] + mover.reach;
+    }
+    const L reach[1] = {mover.reach};
+    if (mover.collider.run)
+        mover.reach.store(arrays.reach + mover.collider.at[0]);
+    else
+        store_rows(reach, arrays.reach, 1, mover.collider, (1u << mover.valid) - 1);
+    store_near(mover, arrays.near);
+    store_placed(mover, arrays);
+    const unsigned left = outside(mover, arrays.boxes);
+    if (left != 0) store_fattened(rule, arrays, mover, left);
+    return left;
+}
+
+bool follow_on(const RowIds& ids)
+{
+    bool all = true;
+    for (std::uint32_t i = 1; i < kWidth; ++i) all &= ids.at[i] == ids.at[0] + i;
+    return all;
+}
+
+std::size_t bound_movers(const MoverRule& rule,
+                         const MoverArrays& arrays,
+                         const std::uint32_t* colliders,
+                         const std::uint32_t* bodies,
+                         std::size_t count,
+                         std::uint32_t* asked)
+{
+    std::size_t found = 0;
+    for (std::size_t at = 0; at < count; at += kWidth) {
+        Mover mover;
+        mover.valid = count - at < kWidth ? count - at : kWidth;
+        for (std::size_t i = 0; i < kWidth; ++i) {
+            const std::size_t from = at + (i < mover.valid ? i : mover.valid - 1);
+            mover.collider.at[i] = colliders[from];
+            mover.body.at[i] = bodies[from];
+        }
+        mover.collider.run = follow_on(mover.collider);
+        mover.body.run = follow_on(mover.body);
+        const unsigned left = update(rule, arrays, mover);
+        for (std::size_t i = 0; i < mover.valid; ++i)
+            if ((left >> i & 1u) != 0) asked[found++] = colliders[at + i];
+    }
+    return found;
+}
+
+}  // namespace
+
+extern const MoverKernel kBoundMovers;
+const MoverKernel kBoundMovers = bound_movers;
+
+}  // namespace throng::THRONG_LANES
