@@ -271,7 +271,7 @@ std::vector<Dial> make_dials()
         number_dial("iterations", "auto, or a whole number: visits a substep (soft_step 1, pgs 20, Newton steps of direct 50)",
             "", set_iterations, get_iterations,
             "more visits leave less error in the velocities, and cost a sweep of all rows each"),
-        number_dial("contact_rate", "auto (0.177 a substep for manifolds, 0.5 for one point), a number, fixed:HERTZ",
+        number_dial("contact_rate", "auto (0.25 a substep for manifolds, 0.5 for one point), a number, fixed:HERTZ",
             "a substep", set_contact_rate, get_contact_rate,
             "a higher rate leaves less overlap and rests less quietly"),
         number_dial("push_limit", "a number", "m/s", set_push_limit, get_push_limit,

@@ -134,7 +134,8 @@ std::string World::state_hash() const
             const Pairs& pairs = std::get<Pairs>(chosen.data);
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
-                add_contact(pairs.keys[i], convex.of_pair[i]);
+                if (const Contact<Real>* contact = convex.at(i))
+                    add_contact(pairs.keys[i], *contact);
             for (const auto& entry : std::get<MeshContacts<Real>>(chosen.data).entries) {
                 hash.add(std::uint64_t{entry.triangle});
                 add_contact(pairs.keys[entry.pair], entry.contact);
@@ -159,7 +160,8 @@ std::size_t World::memory_bytes() const
     std::size_t sum =
         bytes(p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass, m.inertia,
               m.inverse_inertia, s.kind, s.awake, s.quiet_time, s.bed, c.body, c.shape, c.local,
-              c.material, c.inner_extent, c.outer_radius, b.boxes, b.reach, b.placed, shapes.boxes,
+              c.material, c.inner_extent, c.outer_radius, b.boxes, b.reach, b.placed, b.near,
+              b.half[0], b.half[1], b.half[2], b.round, b.form, b.flags, shapes.boxes,
               shapes.spheres, state_->center, state_->names, state_->generation);
     std::visit(
         [&](const auto& chosen) {
@@ -170,7 +172,8 @@ std::size_t World::memory_bytes() const
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             const auto& rows = std::get<Rows<Real>>(chosen.data);
             sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.merged, convex.of_pair,
-                         convex.before, rows.blocks, rows.bodies);
+                         convex.before, convex.contacts, rows.blocks, rows.points, rows.bounces,
+                         rows.rollings, rows.bodies, rows.inertias);
         },
         state_->step);
     return sum;

@@ -31,7 +31,7 @@ struct Settings {
     int substeps = 4;      // they divide dt
     int iterations = 0;    // solver visits a substep; 0: the solver's own default
 
-    // Stiffness of contacts. 0: auto, 0.177 of the substep's rate for manifolds of four points,
+    // Stiffness of contacts. 0: auto, 0.25 of the substep's rate for manifolds of four points,
     // more for fewer, 0.5 for one (stiffer does not come to rest). contact_rate > 0: that factor
     // for all. contact_hertz > 0: a fixed rate in Hz, whatever the substep.
     double contact_rate = 0;

@@ -17,6 +17,7 @@ void World::State::wake(std::uint32_t body)
     states.quiet_time[body] = 0;
     const std::uint32_t bed = states.bed[body];
     if (bed == kNobody) return;
+    movers_stale = true;
     Beds& beds = get<Beds>();
     for (const std::uint32_t sleeper : beds.sleepers[bed]) {
         states.awake[sleeper] = 1;
@@ -66,10 +67,14 @@ void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
     std::visit(
         [&](auto& chosen) {
             using Real = typename std::decay_t<decltype(chosen)>::Number;
-            auto& contacts = std::get<ConvexContacts<Real>>(chosen.data).of_pair;
-            for (std::size_t i = 0; i < contacts.size(); ++i)
-                if (kept_as[i] != Pairs::kNewPair) contacts[kept_as[i]] = contacts[i];
-            contacts.resize(std::min<std::size_t>(contacts.size(), kept));
+            auto& contacts = std::get<ConvexContacts<Real>>(chosen.data);
+            auto& states = contacts.of_pair;
+            for (std::size_t i = 0; i < states.size(); ++i)
+                if (kept_as[i] != Pairs::kNewPair)
+                    states[kept_as[i]] = states[i];
+                else if (states[i].contact != PairState::kApart)
+                    contacts.free.push_back(states[i].contact);
+            states.resize(std::min<std::size_t>(states.size(), kept));
             auto& entries = std::get<MeshContacts<Real>>(chosen.data).entries;
             std::erase_if(entries, [&](const auto& entry) { return gone(entry.pair); });
             for (auto& entry : entries) entry.pair = kept_as[entry.pair];

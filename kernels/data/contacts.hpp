@@ -6,6 +6,7 @@
 
 #include "kernels/data/manifolds.hpp"
 #include "kernels/data/pairs.hpp"
+#include "kernels/parallel/compact.hpp"
 
 #include <vector>
 
@@ -14,12 +15,14 @@ namespace throng {
 template <class Real>
 struct Contact {
     struct Point {
-        Vec3T<Real> from_a, from_b;  // m, where the surfaces meet, from each center of mass
-        Real separation = 0;         // m
-        Real impulse = 0;            // N s along the normal, total over the last substep
+        Vec3T<Real> from_a =
+            Vec3T<Real>::Zero();  // m, on the surface of a, from its center of mass
+        Real separation = 0;      // m, along the normal to the surface of b
+        Real impulse = 0;         // N s along the normal, total over the last substep
         std::uint32_t feature = 0;
     };
     Vec3T<Real> normal = Vec3T<Real>::UnitZ();   // from a to b
+    Vec3T<Real> between = Vec3T<Real>::Zero();   // m, from b's center of mass to a's
     Vec3T<Real> friction = Vec3T<Real>::Zero();  // N s on b, at the middle of the points
     Vec3T<Real> rolling = Vec3T<Real>::Zero();   // N m s on b
     Real round_a = 0,
@@ -27,14 +30,43 @@ struct Contact {
     Real twist = 0;    // N m s on b about the normal
     std::array<Point, 4> points;
     int count = 0;
-    PairCache cache;
+
+    /// The same point on the surface of b, from its center of mass.
+    Vec3T<Real> from_b(int point) const
+    {
+        const Point& at = points[static_cast<std::size_t>(point)];
+        return at.from_a + normal * at.separation + between;
+    }
 };
 
-/// One contact a pair of convex colliders, in the order of the pairs.
+/// What is kept of a pair of convex colliders, touching or not.
+struct PairState {
+    static constexpr std::uint32_t kApart = 0xffffffffu;
+    PairCache cache;
+    std::uint32_t contact = kApart;  // place among the contacts
+};
+
+/// The contacts of pairs of convex colliders. A contact keeps its place as long as its pair
+/// touches; a place that falls free is taken again.
 template <class Real>
 struct ConvexContacts {
-    std::vector<Contact<Real>> of_pair;
-    std::vector<Contact<Real>> before;  // scratch: those of the last step
+    struct Made {
+        std::uint32_t pair = 0;
+        Contact<Real> contact;
+    };
+    std::vector<PairState> of_pair;  // in the order of the pairs
+    std::vector<Contact<Real>> contacts;
+    std::vector<std::uint32_t> free;   // places
+    std::vector<PairState> before;     // scratch: of_pair of the last step
+    BlockLists<Made> made;             // scratch: contacts that began in this step
+    BlockLists<std::uint32_t> parted;  // scratch: pairs whose contacts ended
+
+    /// The contact of a pair, or none.
+    const Contact<Real>* at(std::size_t pair) const
+    {
+        const std::uint32_t place = of_pair[pair].contact;
+        return place == PairState::kApart ? nullptr : &contacts[place];
+    }
 };
 
 /// Contacts of convex colliders with meshes: any number a pair, in order of pair and triangle.
@@ -60,6 +92,7 @@ struct ActiveContacts {
         float extent = 0;  // m, the lesser of the smallest half extents of the two shapes
     };
     std::vector<Entry> entries;
+    BlockLists<Entry> of_block;  // scratch
 };
 
 }  // namespace throng

@@ -12,17 +12,27 @@ namespace throng {
 
 inline constexpr int kBlock = 16;
 
-/// What the solver knows of one body, in three lines of eight numbers.
+/// What the solver knows of one body, in four lines of eight numbers.
 ///
 ///   motion   velocity, 0, angular velocity, 0
-///   drift    how far it moved since the step began (3), 1 once it ran away (see stop_runaways) and
+///   drift    how far it moved since the step began (3), 1 once it ran away (see begin_substep) and
 ///            else 0, and its turn as a quaternion x, y, z, w
-///   inertia  inverse mass, inverse inertia in world axes xx, yy, zz, xy, xz, yz, 0
+///   inertia  inverse mass, inverse inertia in world axes as of the step's beginning xx, yy, zz,
+///            xy, xz, yz, 0
+///   free     `motion` as it would be in this substep without any contact
 template <class Real>
 struct SolverBody {
-    alignas(8 * sizeof(Real)) Real motion[8];
+    alignas(64) Real motion[8];
     Real drift[8];
     Real inertia[8];
+    Real free[8];
+};
+
+/// What turning a body takes, for the gyroscopic torque: inertia in world axes as of the step's
+/// beginning as a share of its trace, xx, yy, zz, xy, xz, yz; then 1 where the torque acts; 0.
+template <class Real>
+struct SpinInertia {
+    alignas(32) Real share[8];
 };
 
 /// One number a lane.
@@ -31,38 +41,61 @@ struct alignas(64) Lane16 {
     Real at[kBlock];
 };
 
-/// A point of 16 contacts.
+/// A point of 16 contacts. lever[0] is its distance from the center of its contact along
+/// the second tangent, lever[1] against the first: its normal velocity is
+/// vn + lever[0] w1 + lever[1] w2, and an impulse on it has these torques about the tangents.
 template <class Real>
 struct PointRows {
-    Lane16<Real> from_a[3], from_b[3];  // m, from the centers of mass
-    Lane16<Real> gap;                   // m, separation less what the anchors say
-    Lane16<Real> mass;                  // kg, effective along the normal; 0: no such point
-    Lane16<Real> impulse;               // N s, total
-    Lane16<Real> approach;              // m/s, normal velocity before the step; for restitution
-    Lane16<Real> greatest;              // N s, greatest impulse of the step
+    Lane16<Real> lever[2];  // m
+    Lane16<Real> reach;     // m, its distance from the center, for the twist
+    Lane16<Real> gap;       // m, separation as of the step's beginning
+    Lane16<Real> mass;      // kg, effective along the normal; 0: no such point
+    Lane16<Real> impulse;   // N s, total
 };
 
-/// 16 contacts of up to four points each. Friction acts once a contact, at the middle of its
-/// points.
+/// 16 contacts of up to four points each, as the solver sees them: in the axes of the contact, the
+/// normal and two tangents, all that the two bodies do to one another is six numbers, the relative
+/// velocity at the center of the points (vn, v1, v2) and the relative spin (w1, w2, wn). Friction
+/// acts once a contact, at that center.
+///
+///   response  what an impulse or angular impulse at the center does to the six, symmetric: nn, n1,
+///             n2, 11, 12, 22 among the velocities; then the three spins w1, w2, wn against n, 1, 2
+///             each; then 11, 22, nn, 12, 1n, 2n among the spins
 template <class Real>
 struct ContactBlock {
     std::int32_t a[kBlock], b[kBlock];  // places among the solver bodies
     std::uint16_t writes_a, writes_b;   // bit a lane: that body may be changed
     std::int32_t points;                // greatest number of points of a lane
+    std::uint32_t first_point;          // place of the first among Rows::points
     Lane16<Real> normal[3];
-    Lane16<Real> tangent[3];        // the other tangent is normal x tangent
-    Lane16<Real> round_a, round_b;  // m, of sides that look the same however they are turned
+    Lane16<Real> tangent[3];  // the other tangent is normal x tangent
     Lane16<Real> center_a[3], center_b[3];
-    Lane16<Real> friction, restitution, rolling;  // coefficients
+    Lane16<Real> round_a, round_b;  // m, of sides that look the same however they are turned
+    Lane16<Real> friction;          // coefficient
     Lane16<Real> friction_mass[3];  // inverse of the 2x2 matrix at the center: 11, 22, 12
     Lane16<Real> sliding_mass;      // 1 / its greatest eigenvalue: keeps the cone round
     Lane16<Real> sliding_answer;    // that eigenvalue, 1/kg: the speed that an impulse gives
-    Lane16<Real> twist_mass, rolling_mass;
-    Lane16<Real> friction_impulse[2], twist_impulse, rolling_impulse[3];
+    Lane16<Real> friction_impulse[2];
     Lane16<Real> bias_rate, impulse_scale;  // softness, see contact_rows.hpp
     Lane16<Real> inverse_deep;              // 1/m, of the overlap from which a contact turns rigid
-    Lane16<Real> reach[4];  // m, each point's distance from the center, for the twist
-    PointRows<Real> point[4];
+    Lane16<Real> response[21];
+    Lane16<Real> twist_mass, twist_impulse;
+};
+
+/// What restitution needs of a point of 16 contacts.
+template <class Real>
+struct BounceRows {
+    Lane16<Real> restitution;  // coefficient
+    Lane16<Real> approach;     // m/s, normal velocity before the step
+    Lane16<Real> greatest;     // N s, greatest impulse of the step
+};
+
+/// What resisting to roll needs of 16 contacts.
+template <class Real>
+struct RollingRows {
+    Lane16<Real> rolling;     // coefficient, m
+    Lane16<Real> mass;        // kg m2
+    Lane16<Real> impulse[3];  // N m s on b, along tangent, other tangent, normal
 };
 
 /// Where a lane came from, to give its impulses back.
@@ -84,7 +117,8 @@ struct Batch {
         0;  // and how many after those that move by themselves; then conveyors
     std::uint32_t first_color = 0, colors = 0;
     std::uint32_t first_block = 0, blocks = 0;
-    bool wide = false;  // big: its colors are shared among the threads
+    std::uint32_t contacts = 0, on_faces = 0;  // how many, and how many of three points or four
+    bool wide = false;                         // big: its colors are shared among the threads
 };
 
 /// Which contact goes into which lane, and which body is which solver body.
@@ -92,14 +126,26 @@ struct Layout {
     std::vector<Batch> batches;
     std::vector<Color> colors;
     std::vector<LaneSource> lanes;             // [blocks * 16]
+    std::vector<std::uint8_t> points;          // [blocks] greatest number of points of a lane
     std::vector<std::int32_t> slot_a, slot_b;  // [blocks * 16] places among the solver bodies
     std::vector<std::uint32_t> body_of_slot;   // [solver bodies] body, or none for the still one
+    std::vector<std::uint32_t> slot;           // scratch
+    std::vector<std::uint64_t> used;           // scratch
 };
 
+/// The rows of a step. What an effect needs is there only where the effect is.
+///
+///   bounces   [points] while restitution acts
+///   rollings  [blocks] while rolling friction acts
+///   inertias  [bodies] while the gyroscopic torque acts
 template <class Real>
 struct Rows {
     std::vector<ContactBlock<Real>> blocks;
+    std::vector<PointRows<Real>> points;
+    std::vector<BounceRows<Real>> bounces;
+    std::vector<RollingRows<Real>> rollings;
     std::vector<SolverBody<Real>> bodies;
+    std::vector<SpinInertia<Real>> inertias;
 };
 
 }  // namespace throng

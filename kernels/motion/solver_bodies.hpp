@@ -8,24 +8,12 @@
 
 namespace throng {
 
-/// Adds a change of velocity to every body that has mass.
+/// Turns the bodies that turn by kFastTurn and more in a time, and no other: the exponential map,
+/// exact for a constant angular velocity. The wide kernels turn the rest.
 template <class Real>
-void add_velocity(std::span<SolverBody<Real>> bodies, const Vec3& change);
+void turn_fast(std::span<SolverBody<Real>> bodies, Real time);
 
-/// Moves every body by its velocity for a time.
-template <class Real>
-void move_bodies(std::span<SolverBody<Real>> bodies, Real time);
-
-/// Turns every body by its angular velocity for a time: the exponential map, exact for a constant
-/// angular velocity.
-template <class Real>
-void turn_bodies(std::span<SolverBody<Real>> bodies, Real time);
-
-/// Stops every body whose velocity is no longer a number, or beyond what products of it can hold,
-/// and marks it: it stands still for the rest of the step, so that what touches it stays sound.
-template <class Real>
-void stop_runaways(std::span<SolverBody<Real>> bodies);
-
+/// True for a body that begin_substep() stopped because its velocity could not be held.
 template <class Real>
 bool ran_away(const SolverBody<Real>& body)
 {

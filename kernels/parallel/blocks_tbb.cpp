@@ -2,6 +2,7 @@
 //
 // The pool is an arena of its own. oneTBB starts workers only on demand and may start fewer than
 // asked for, so the constructor holds a rendezvous: no task of it ends before all have begun.
+#include "kernels/parallel/block_watch.hpp"
 #include "kernels/parallel/blocks.hpp"
 
 #include <tbb/blocked_range.h>
@@ -24,6 +25,7 @@ namespace throng {
 
 void for_each_block(std::size_t count, std::size_t grain, BlockBody body)
 {
+    if (run_watched(count, grain, body)) return;
     const std::size_t blocks = block_count(count, grain);
     const auto run = [&](std::size_t block) {
         body(block * grain, std::min(count, (block + 1) * grain), block);

@@ -1,6 +1,7 @@
 // Blocks on plain threads: the twin of blocks_tbb.cpp that a race checker can see through.
 //
 // A pool of std::thread takes blocks from a counter under one mutex. Simple rather than fast.
+#include "kernels/parallel/block_watch.hpp"
 #include "kernels/parallel/blocks.hpp"
 
 #include <algorithm>
@@ -87,6 +88,7 @@ thread_local Crew* current_crew = nullptr;  // NOLINT: one thread, one crew
 
 void for_each_block(std::size_t count, std::size_t grain, BlockBody body)
 {
+    if (run_watched(count, grain, body)) return;
     const std::size_t blocks = block_count(count, grain);
     const auto run = [&](std::size_t block, std::size_t, std::size_t) {
         body(block * grain, std::min(count, (block + 1) * grain), block);

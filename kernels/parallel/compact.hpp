@@ -23,6 +23,12 @@ public:
         for (std::size_t block = 0; block < used_; ++block) lists_[block].clear();
     }
     std::vector<T>& operator[](std::size_t block) { return lists_[block]; }
+    std::size_t bytes() const
+    {
+        std::size_t sum = 0;
+        for (const auto& list : lists_) sum += list.capacity() * sizeof(T);
+        return sum;
+    }
 
     /// Appends every list, in block order, to what `all` already holds.
     void append_to(std::vector<T>& all)

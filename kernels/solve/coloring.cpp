@@ -10,6 +10,7 @@ namespace {
 // Colors are bits of a word. A body that has used them all (a plate under a hundred things) puts
 // its further contacts into a last color whose blocks go one after another.
 constexpr int kColors = 63;
+constexpr std::uint32_t kPoints = 4;  // a contact has at most
 
 constexpr std::uint32_t kStill = 0xffffffffu;
 
@@ -41,8 +42,11 @@ public:
             const BodyStates& states,
             Layout& layout)
         : islands_(islands), contacts_(contacts), states_(states), layout_(layout),
-          slot_(states.kind.size(), kStill), used_(states.kind.size(), 0)
-    { }
+          slot_(layout.slot), used_(layout.used)
+    {
+        slot_.resize(states.kind.size(), kStill);
+        used_.resize(states.kind.size());
+    }
 
     void paint(const Range& range)
     {
@@ -55,9 +59,12 @@ public:
         seat_bodies(range, batch);
         choose_colors();
         place(batch);
+        batch.contacts = static_cast<std::uint32_t>(count_);
         batch.wide = count_ > kBatchContacts;
         layout_.batches.push_back(batch);
-        for (const std::uint32_t body : visitors_) slot_[body] = kStill;
+        // Clean for the next batch, and for the next step.
+        for (std::size_t i = batch.first_body + 1u; i < layout_.body_of_slot.size(); ++i)
+            slot_[layout_.body_of_slot[i]] = kStill;
     }
 
 private:
@@ -75,10 +82,10 @@ private:
         for (std::size_t i = islands_.body_begin[range.begin]; i < islands_.body_begin[range.end];
              ++i) {
             slot_[islands_.bodies[i]] = static_cast<std::uint32_t>(seats.size());
+            used_[islands_.bodies[i]] = 0;
             seats.push_back(islands_.bodies[i]);
             ++batch.dynamic;
         }
-        visitors_.clear();
         batch.kinematic = seat_visitors(
             [&](std::uint32_t body) { return states_.kind[body] == BodyKind::kinematic; });
         // Conveyors last: they have a velocity and go nowhere.
@@ -96,7 +103,6 @@ private:
                 if (slot_[body] != kStill || !wanted(body)) continue;
                 slot_[body] = static_cast<std::uint32_t>(seats.size());
                 seats.push_back(body);
-                visitors_.push_back(body);
                 ++seated;
             }
         return seated;
@@ -116,25 +122,28 @@ private:
         }
     }
 
-    // Counting sort by color and by number of points; each kind of a color begins a block.
+    // Counting sort by color, and by number of points within a color: the fewer points a block has
+    // at most, the less there is to do for it.
     void place(Batch& batch)
     {
-        std::array<std::uint32_t, 2 * (kColors + 1)> size{};
+        std::array<std::uint32_t, kPoints*(kColors + 1)> size{};
         for (std::size_t i = 0; i < count_; ++i) ++size[bin(i)];
-        std::array<std::uint32_t, 2 * (kColors + 1)> next{};
+        std::array<std::uint32_t, kPoints*(kColors + 1)> next{};
         std::uint32_t block = batch.first_block;
         for (std::uint32_t color = 0; color <= kColors; ++color) {
-            const std::uint32_t first = block;
-            const std::uint32_t per_block = color == kColors ? 1 : kBlock;
-            for (std::uint32_t kind = 0; kind < 2; ++kind) {
-                next[2 * color + kind] = block * kBlock;
-                block += (size[2 * color + kind] + per_block - 1) / per_block;
+            const std::uint32_t per_block = color == kColors ? 1 : kBlock, first = block;
+            std::uint32_t held = 0;
+            for (std::uint32_t kind = 0; kind < kPoints; ++kind) {
+                next[kPoints * color + kind] = first * kBlock + held * (kBlock / per_block);
+                held += size[kPoints * color + kind];
             }
-            if (block > first) layout_.colors.push_back({first, block - first, color == kColors});
+            block += (held + per_block - 1) / per_block;
+            if (held > 0) layout_.colors.push_back({first, block - first, color == kColors});
         }
         batch.colors = static_cast<std::uint32_t>(layout_.colors.size()) - batch.first_color;
         batch.blocks = block - batch.first_block;
         layout_.lanes.resize(std::size_t{block} * kBlock);
+        layout_.points.resize(block, 1);
         layout_.slot_a.resize(layout_.lanes.size(), static_cast<std::int32_t>(batch.first_body));
         layout_.slot_b.resize(layout_.lanes.size(), static_cast<std::int32_t>(batch.first_body));
         for (std::size_t i = 0; i < count_; ++i) {
@@ -143,12 +152,15 @@ private:
             layout_.lanes[lane].entry = islands_.contacts[first_ + i];
             layout_.slot_a[lane] = seat(contact(i).body_a, batch);
             layout_.slot_b[lane] = seat(contact(i).body_b, batch);
+            if (contact(i).points >= 3) ++batch.on_faces;
+            std::uint8_t& most = layout_.points[lane / kBlock];
+            most = std::max(most, contact(i).points);
         }
     }
 
     std::size_t bin(std::size_t i) const
     {
-        return 2 * std::size_t{color_[i]} + (contact(i).points == 1 ? 1 : 0);
+        return kPoints * std::size_t{color_[i]} + (kPoints - contact(i).points);
     }
     std::int32_t seat(std::uint32_t body, const Batch& batch) const
     {
@@ -160,9 +172,8 @@ private:
     const ActiveContacts& contacts_;
     const BodyStates& states_;
     Layout& layout_;
-    std::vector<std::uint32_t> slot_;
-    std::vector<std::uint64_t> used_;
-    std::vector<std::uint32_t> visitors_;
+    std::vector<std::uint32_t>& slot_;
+    std::vector<std::uint64_t>& used_;
     std::vector<std::uint8_t> color_;
     std::size_t first_ = 0, count_ = 0;
 };
@@ -177,6 +188,7 @@ void lay_out(const Islands& islands,
     layout.batches.clear();
     layout.colors.clear();
     layout.lanes.clear();
+    layout.points.clear();
     layout.slot_a.clear();
     layout.slot_b.clear();
     layout.body_of_slot.clear();

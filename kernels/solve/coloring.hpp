@@ -13,7 +13,7 @@ namespace throng {
 inline constexpr std::size_t kBatchContacts = 512;
 
 /// Gathers islands into batches, colors each batch greedily in the order of its contacts, and lays
-/// the contacts out: batch by batch, color by color, those of several points before those of one.
+/// the contacts out: batch by batch, color by color, those of more points before those of fewer.
 /// All of it depends on ids alone.
 void lay_out(const Islands& islands,
              const ActiveContacts& contacts,

@@ -1,6 +1,4 @@
-// Contact lanes: W contacts side by side as the solver's kernels see them, bodies in registers.
-//
-// For sources that are compiled once for each instruction set, like lanes.hpp.
+// Contact lanes: the algebra of W contacts side by side. For sources compiled once a width.
 #pragma once
 
 #include "kernels/data/rows.hpp"
@@ -48,26 +46,56 @@ V3<L> lane3(const Lane16<typename L::Number> (&of)[3], int at)
 {
     return {lane<L>(of[0], at), lane<L>(of[1], at), lane<L>(of[2], at)};
 }
+template <class L>
+void store3(const V3<L>& v, Lane16<typename L::Number> (&to)[3], int at)
+{
+    v.x.store(to[0].at + at);
+    v.y.store(to[1].at + at);
+    v.z.store(to[2].at + at);
+}
 
-// One side of W contacts: velocities in registers, with what resists them.
-template <class L, bool turns>
-struct Side {
+/// Eight of the numbers of each of W solver bodies.
+template <class L>
+void gather_bodies(const typename L::Number* line, const std::int32_t* index, L (&out)[8])
+{
     using Real = typename L::Number;
-    V3<L> velocity, spin;
+    gather_8(line, int(sizeof(SolverBody<Real>) / sizeof(Real)), index, out);
+}
+
+/// How one side of W contacts answers to an impulse.
+template <class L, bool turns>
+struct Mobility {
+    using Real = typename L::Number;
     L inverse_mass;
     L xx, yy, zz, xy, xz, yz;
 
-    Side(const SolverBody<Real>* bodies, const std::int32_t* index)
+    Mobility(const SolverBody<Real>* bodies, const std::int32_t* index)
     {
-        constexpr int kStride = sizeof(SolverBody<Real>) / sizeof(Real);
+        L i[8];
+        gather_bodies(bodies->inertia, index, i);
+        inverse_mass = i[0];
+        if constexpr (turns) xx = i[1], yy = i[2], zz = i[3], xy = i[4], xz = i[5], yz = i[6];
+    }
+    V3<L> turned_by(const V3<L>& torque) const
+    {
+        return {xx * torque.x + xy * torque.y + xz * torque.z,
+                xy * torque.x + yy * torque.y + yz * torque.z,
+                xz * torque.x + yz * torque.y + zz * torque.z};
+    }
+};
+
+/// The velocities of one side of W contacts.
+template <class L, bool turns>
+struct Motion {
+    using Real = typename L::Number;
+    V3<L> velocity, spin;
+
+    Motion(const SolverBody<Real>* bodies, const std::int32_t* index)
+    {
         L m[8];
-        gather_8(bodies->motion, kStride, index, m);
+        gather_bodies(bodies->motion, index, m);
         velocity = {m[0], m[1], m[2]};
         spin = {m[4], m[5], m[6]};
-        L i[8];
-        gather_8(bodies->inertia, kStride, index, i);
-        inverse_mass = i[0];
-        xx = i[1], yy = i[2], zz = i[3], xy = i[4], xz = i[5], yz = i[6];
     }
     void write(SolverBody<Real>* bodies, const std::int32_t* index, unsigned writes) const
     {
@@ -81,24 +109,14 @@ struct Side {
         if constexpr (turns) return velocity + cross(spin, arm);
         return velocity;
     }
-    V3<L> turned_by(const V3<L>& torque) const
+    void push(const Mobility<L, turns>& how, const V3<L>& impulse, const V3<L>& torque)
     {
-        return {xx * torque.x + xy * torque.y + xz * torque.z,
-                xy * torque.x + yy * torque.y + yz * torque.z,
-                xz * torque.x + yz * torque.y + zz * torque.z};
-    }
-    void push(const V3<L>& impulse, const V3<L>& arm)
-    {
-        velocity = velocity + impulse * inverse_mass;
-        if constexpr (turns) spin = spin + turned_by(cross(arm, impulse));
-    }
-    void twist(const V3<L>& impulse)
-    {
-        if constexpr (turns) spin = spin + turned_by(impulse);
+        velocity = velocity + impulse * how.inverse_mass;
+        if constexpr (turns) spin = spin + how.turned_by(torque);
     }
 };
 
-// How far W bodies have moved and turned since the step began.
+/// How far W bodies have moved and turned since the step began.
 template <class L, bool turns>
 struct Drift {
     using Real = typename L::Number;
@@ -107,51 +125,82 @@ struct Drift {
 
     Drift(const SolverBody<Real>* bodies, const std::int32_t* index)
     {
-        constexpr int kStride = sizeof(SolverBody<Real>) / sizeof(Real);
         L d[8];
-        gather_8(bodies->drift, kStride, index, d);
+        gather_bodies(bodies->drift, index, d);
         moved = {d[0], d[1], d[2]};
         axis = {d[4], d[5], d[6]};
         w = d[7];
     }
-    V3<L> of(const V3<L>& arm) const
+    /// By how much a direction, turned back by the drift, differs from itself.
+    V3<L> turned_back(const V3<L>& direction) const
     {
-        if constexpr (!turns) return moved + arm;
-        const V3<L> t = cross(axis, arm);
+        const V3<L> t = cross(axis, direction);
         const V3<L> twice = t + t;
-        return moved + arm + twice * w + cross(axis, twice);
+        return cross(axis, twice) - twice * w;
     }
 };
 
+/// The six numbers of W contacts: what the sides do to each other, or push each other with, at the
+/// center, along the normal and the two tangents; linear, then about them.
+template <class L>
+struct Six {
+    L n, v1, v2;
+    L w1, w2, wn;
+};
+
+/// The axes and arms of W contacts.
 template <class L, bool turns>
-struct Contacts {
+struct Frame {
     using Real = typename L::Number;
-    ContactBlock<Real>& block;
-    int at;  // first lane
-    unsigned writes_a, writes_b;
-    Side<L, turns> a, b;
-    V3<L> normal;
+    V3<L> normal, tangent, other;
+    V3<L> center_a, center_b;
 
-    Contacts(ContactBlock<Real>& in, int first, const SolverBody<Real>* bodies)
-        : block(in), at(first), writes_a(unsigned{in.writes_a} >> first),
-          writes_b(unsigned{in.writes_b} >> first), a(bodies, in.a + first),
-          b(bodies, in.b + first), normal(lane3<L>(in.normal, first))
-    { }
-    void write(SolverBody<Real>* bodies) const
+    Frame(const ContactBlock<Real>& block, int at)
+        : normal(lane3<L>(block.normal, at)), tangent(lane3<L>(block.tangent, at)),
+          other(cross(normal, tangent))
     {
-        a.write(bodies, block.a + at, writes_a);
-        b.write(bodies, block.b + at, writes_b);
+        if constexpr (turns) {
+            center_a = lane3<L>(block.center_a, at);
+            center_b = lane3<L>(block.center_b, at);
+        }
     }
-    void push(const V3<L>& impulse, const V3<L>& arm_a, const V3<L>& arm_b)
+    Six<L> between(const Motion<L, turns>& a, const Motion<L, turns>& b) const
     {
-        a.push(impulse * L(Real(-1)), arm_a);
-        b.push(impulse, arm_b);
+        const V3<L> v = b.at(center_b) - a.at(center_a);
+        Six<L> six{dot(normal, v), dot(tangent, v), dot(other, v), {}, {}, {}};
+        if constexpr (turns) {
+            const V3<L> w = b.spin - a.spin;
+            six.w1 = dot(tangent, w);
+            six.w2 = dot(other, w);
+            six.wn = dot(normal, w);
+        }
+        return six;
     }
-    void twist(const V3<L>& impulse)
+    /// Gives both sides what they push each other with.
+    void push(const Six<L>& by,
+              const Mobility<L, turns>& how_a,
+              const Mobility<L, turns>& how_b,
+              Motion<L, turns>& a,
+              Motion<L, turns>& b) const
     {
-        a.twist(impulse * L(Real(-1)));
-        b.twist(impulse);
+        const V3<L> impulse = normal * by.n + tangent * by.v1 + other * by.v2;
+        const V3<L> back = impulse * L(Real(-1));
+        if constexpr (turns) {
+            const V3<L> torque = tangent * by.w1 + other * by.w2 + normal * by.wn;
+            a.push(how_a, back, cross(center_a, back) - torque);
+            b.push(how_b, impulse, cross(center_b, impulse) + torque);
+        } else {
+            a.push(how_a, back, {});
+            b.push(how_b, impulse, {});
+        }
     }
 };
+
+/// Places of ContactBlock::response.
+namespace response {
+enum Place : int { nn, n1, n2, v11, v12, v22 };  // among the velocities
+inline constexpr int kSpin = 6;                  // + 3 * spin (w1, w2, wn) + velocity (n, 1, 2)
+enum Spins : int { w11 = 15, w22, wnn, w12, w1n, w2n };
+}  // namespace response
 
 }  // namespace throng::THRONG_LANES

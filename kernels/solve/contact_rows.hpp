@@ -1,8 +1,9 @@
-// Contact rows: a contact made into one lane of a block, and its impulses given back.
+// Contact rows: contacts into the lanes of the solver, and their impulses given back.
 #pragma once
 
 #include "kernels/data/contacts.hpp"
 #include "kernels/data/rows.hpp"
+#include "kernels/solve/sweep.hpp"
 
 namespace throng {
 
@@ -31,28 +32,32 @@ struct ContactTerms {
     Real deep = 0;  // m, overlap from which the contact no longer gives way; 0: it always does
 };
 
-/// Fills one lane from a contact. The lane's two places among `bodies` are already set.
+/// Writes a contact into one lane of a loose block, whose contacts have up to `points` points.
 template <class Real>
-void fill_lane(ContactBlock<Real>& block,
-               int lane,
-               const Contact<Real>& contact,
-               const SolverBody<Real>& a,
-               const SolverBody<Real>& b,
-               const ContactTerms<Real>& terms);
+void loosen(const Contact<Real>& contact,
+            const ContactTerms<Real>& terms,
+            int points,
+            int lane,
+            LooseBlock<Real>& loose);
 
-/// Makes a lane do nothing; `still` is the place of the batch's still body.
+/// Makes a lane of a loose block do nothing.
 template <class Real>
-void clear_lane(ContactBlock<Real>& block, int lane, std::int32_t still);
+void loosen_nothing(int points, int lane, LooseBlock<Real>& loose);
 
-/// Gives the lane's impulses back to its contact, to start the next step from.
+/// Gives the impulses of a lane of the block at `place` back to its contact, to start the next step
+/// from.
 template <class Real>
-void store_impulses(const ContactBlock<Real>& block, int lane, Contact<Real>& contact);
+void store_impulses(const RowsView<Real>& rows,
+                    std::size_t place,
+                    int lane,
+                    Contact<Real>& contact);
 
 /// Carries impulses over from the contact of the same pair in the last step: point by point where
-/// the same features touch, friction turned into the new tangent plane and cut to the cone.
+/// the same features touch, friction turned into the new tangent plane. What of it lies beyond the
+/// cone is cut when rows are made.
 ///
 ///   scale  new substep over old, for the impulses of a step of another length
 template <class Real>
-void carry_impulses(const Contact<Real>& before, Real friction, Real scale, Contact<Real>& contact);
+void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& contact);
 
 }  // namespace throng

@@ -1,4 +1,4 @@
-// Sweep: one visit of the solver to blocks of contacts.
+// Sweep: the wide kernels of the solver: contacts into rows, visits to rows, steps of bodies.
 //
 // The blocks of a call may be visited in any order and by any thread, provided they share no body
 // (coloring sees to that). Width is chosen once, when the program starts; the answer never depends
@@ -11,6 +11,9 @@
 
 namespace throng {
 
+/// From this turn (rad) on, advance() leaves turning to turn_fast().
+inline constexpr double kFastTurn = 0.25;
+
 /// What is asked of a visit.
 template <class Real>
 struct Visit {
@@ -19,18 +22,65 @@ struct Visit {
     bool push = false;         // push overlap apart; else only take away what pushing left behind
     bool turns = true;         // some body can turn: without, the angular half is not computed
     bool grips = true;         // some contact has friction
-    bool rolls = false;        // some contact resists rolling
+    bool rolls = false;        // some contact resists rolling: rows.rollings is there
     int normal_sweeps = 2;     // times the points are gone through; the last one after friction
 };
 
-/// The solver's kernels for one width. All work in place on `count` blocks and the solver bodies
-/// that the blocks name (places in `bodies`).
+/// Sixteen contacts as they are kept, before the solver's own numbers are made of them.
+template <class Real>
+struct LooseBlock {
+    struct Point {
+        Lane16<Real> there;  // 1 where the lane has this point, else 0
+        Lane16<Real> from_a[3], separation, impulse;
+    };
+    Lane16<Real> normal[3], between[3];
+    Lane16<Real> held[3], twist, rolling[3];  // N s, N m s, N m s
+    Lane16<Real> round_a, round_b;
+    Lane16<Real> friction, restitution, rolling_friction, bias_rate, impulse_scale, deep;
+    Point point[4];
+};
+
+/// The rows and bodies that the kernels work on. Null where an effect does not act.
+template <class Real>
+struct RowsView {
+    ContactBlock<Real>* blocks = nullptr;
+    PointRows<Real>* points = nullptr;
+    BounceRows<Real>* bounces = nullptr;
+    RollingRows<Real>* rollings = nullptr;
+    SolverBody<Real>* bodies = nullptr;
+
+    static RowsView of(Rows<Real>& rows)
+    {
+        return {rows.blocks.data(), rows.points.data(),
+                rows.bounces.empty() ? nullptr : rows.bounces.data(),
+                rows.rollings.empty() ? nullptr : rows.rollings.data(), rows.bodies.data()};
+    }
+};
+
+/// What a substep does to bodies before contacts push them.
+template <class Real>
+struct Substep {
+    Real gravity[3] = {};  // m/s, what gravity adds
+    Real time = 0;         // s
+    bool first = false;    // of the step: nothing has been pushed yet
+    enum class Gyroscopic : std::uint8_t { off, implicit, direct } gyroscopic = Gyroscopic::off;
+};
+
+/// The solver's kernels for one width. All work in place on the blocks from `begin` to before
+/// `end`, or on `count` solver bodies.
 ///
-///   warm_start  gives the bodies the impulses of the last visit again
-///   sweep       moves every point towards its wanted normal speed, never pulling; then friction,
-///   on
-///               a round cone of the contact's normal impulse; then the points again
-///   restitute   lets points that came in fast leave with `restitution` times that speed
+///   prepare        fills the block at `place` (whose lanes have their bodies, points and
+///                  first_point already) from contacts as they are kept
+///   warm_start     gives the bodies the impulses that the contacts hold
+///   sweep          moves every point towards its wanted normal speed, never pulling; then
+///                  friction, a round cone of the contact's normal impulse; then the points again
+///   restitute      lets points that came in fast leave with `restitution` times that speed
+///   begin_substep  stops bodies that ran away; adds gravity and the gyroscopic torque; then, but
+///                  in the first substep, what all contacts gave in the last one: within a step
+///                  arms and inertia do not change, so it is `motion` less `free`, and no contact
+///                  has to be asked. `inertias` null: no gyroscopic torque
+///   advance        moves and turns bodies by their velocities for a time; returns how many turn
+///                  too fast for it and were moved only (see turn_fast)
 ///
 /// Source: Catto, Iterative Dynamics with Temporal Coherence (2005) for impulses that accumulate;
 ///         Catto, Solver2D (2024) for substeps of soft contacts with a relaxing visit.
@@ -38,19 +88,28 @@ template <class Real>
 struct SolveKernels {
     const char* name;
     int lanes;
-    void (*warm_start)(ContactBlock<Real>* blocks,
-                       std::size_t count,
-                       SolverBody<Real>* bodies,
+    void (*prepare)(const LooseBlock<Real>& loose,
+                    std::size_t place,
+                    const RowsView<Real>& rows,
+                    bool turns);
+    void (*warm_start)(const RowsView<Real>& rows,
+                       std::size_t begin,
+                       std::size_t end,
                        const Visit<Real>& visit);
-    void (*sweep)(ContactBlock<Real>* blocks,
-                  std::size_t count,
-                  SolverBody<Real>* bodies,
+    void (*sweep)(const RowsView<Real>& rows,
+                  std::size_t begin,
+                  std::size_t end,
                   const Visit<Real>& visit);
-    void (*restitute)(ContactBlock<Real>* blocks,
-                      std::size_t count,
-                      SolverBody<Real>* bodies,
+    void (*restitute)(const RowsView<Real>& rows,
+                      std::size_t begin,
+                      std::size_t end,
                       Real threshold,
                       const Visit<Real>& visit);
+    void (*begin_substep)(SolverBody<Real>* bodies,
+                          const SpinInertia<Real>* inertias,
+                          std::size_t count,
+                          const Substep<Real>& substep);
+    std::size_t (*advance)(SolverBody<Real>* bodies, std::size_t count, Real time, bool turns);
 };
 
 /// The kernels of one width: "scalar", "avx2" or "avx512"; none where the machine has not got it

@@ -53,9 +53,10 @@ void make_contact(const LocalManifold<Real>& manifold,
                   const Vec3& center_b,
                   Contact<Real>& contact)
 {
-    const Mat3T<Real> axes = placed_a.orientation.toRotationMatrix().template cast<Real>();
+    const Mat3T<Real> axes =
+        QuatT<Real>(placed_a.orientation.template cast<Real>()).toRotationMatrix();
     const Vec3T<Real> offset_a = (placed_a.position - center_a).template cast<Real>();
-    const Vec3T<Real> offset_b = (placed_a.position - center_b).template cast<Real>();
+    contact.between = (center_a - center_b).template cast<Real>();
     contact.normal = axes * manifold.normal;
     contact.count = manifold.count;
     for (int k = 0; k < manifold.count; ++k) {
@@ -64,7 +65,6 @@ void make_contact(const LocalManifold<Real>& manifold,
         const Vec3T<Real> middle = axes * from.position;
         const Vec3T<Real> half = contact.normal * (from.separation / 2);
         to.from_a = middle + offset_a - half;
-        to.from_b = middle + offset_b + half;
         to.separation = from.separation;
         to.feature = from.feature;
         to.impulse = 0;
@@ -112,9 +112,11 @@ void note_round_sides(const Shapes& shapes,
 template <class Real>
 void turn_round(Contact<Real>& contact)
 {
+    for (int k = 0; k < contact.count; ++k)
+        contact.points[static_cast<std::size_t>(k)].from_a = contact.from_b(k);
     contact.normal = -contact.normal;
+    contact.between = -contact.between;
     std::swap(contact.round_a, contact.round_b);
-    for (auto& point : contact.points) std::swap(point.from_a, point.from_b);
 }
 
 /// Impulses of the last step are for its substep; a step of another length scales them.

@@ -40,7 +40,6 @@ template <class Real>
 void collide_meshes(const Conditions& conditions,
                     const Pairs& pairs,
                     const Shapes& shapes,
-                    const Surfaces& surfaces,
                     const Colliders& colliders,
                     const Bounds& bounds,
                     const Poses& poses,
@@ -73,8 +72,6 @@ void collide_meshes(const Conditions& conditions,
                      rounded<Real>(pose_seen_from_a(shapes, colliders.shape[other],
                                                     bounds.placed[mesh], bounds.placed[other])),
                      static_cast<Real>(pair.reach), found);
-        const Real friction = static_cast<Real>(
-            surfaces.between(colliders.material[mesh], colliders.material[other]).friction);
         for (const TriangleManifold<Real>& touch : found) {
             auto& entry = out.emplace_back();
             entry.pair = i;
@@ -89,7 +86,7 @@ void collide_meshes(const Conditions& conditions,
             if (!mesh_first) turn_round(entry.contact);
             for (std::size_t k = old.first; k < old.second; ++k)
                 if (contacts.before[k].triangle == touch.triangle)
-                    carry_impulses(contacts.before[k].contact, friction, scale, entry.contact);
+                    carry_impulses(contacts.before[k].contact, scale, entry.contact);
         }
     };
 
@@ -106,8 +103,8 @@ void collide_meshes(const Conditions& conditions,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void collide_meshes<Real>(const Conditions&, const Pairs&, const Shapes&,             \
-                                       const Surfaces&, const Colliders&, const Bounds&,           \
-                                       const Poses&, const BodyStates&, MeshContacts<Real>&);
+                                       const Colliders&, const Bounds&, const Poses&,              \
+                                       const BodyStates&, MeshContacts<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -3,7 +3,6 @@
 // A batch of small islands is one task that goes through all substeps while its rows stay in cache.
 // A big island goes phase by phase, the blocks of each color shared among the threads. Either way
 // the order within an island is that of its colors, which ids alone decide.
-#include "kernels/math/rotation.hpp"
 #include "kernels/motion/solver_bodies.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solve/contact_rows.hpp"
@@ -24,9 +23,10 @@ constexpr std::size_t kBodies = 512;  // a task
 // much again before they stop coming to rest.
 constexpr int kNormalSweeps = 2;
 
-// Relaxing visits a substep. What pushing leaves behind shakes tall piles: a second visit takes a
-// tenth of the step's time and leaves a pyramid of 10,000 with a twentieth of the energy.
-constexpr int kRelaxVisits = 2;
+// Relaxing visits a substep, by what there is to hold up. One quietens a heap. Where bodies lie on
+// one another by their faces, as in towers, a second one leaves a hundredth of the energy; in a big
+// structure what happens at its foot takes a third one to arrive at its top.
+constexpr int kInHeaps = 1, kInTowers = 2, kInStructures = 3;
 
 constexpr InnerRow kSolveTable[] = {
     {"add_gravity", {Effect::gravity}, "each substep"},
@@ -44,14 +44,10 @@ constexpr InnerRow kSolveTable[] = {
 template <class Real>
 class Task {
 public:
-    Task(const Conditions& conditions,
-         const Layout& layout,
-         const Masses& masses,
-         const Poses& poses,
-         const Batch& batch,
-         Rows<Real>& rows)
-        : conditions_(conditions), layout_(layout), masses_(masses), poses_(poses), batch_(batch),
-          rows_(rows), kernels_(solve_kernels<Real>()), substep_(conditions.substep())
+    Task(const Conditions& conditions, const Layout& layout, const Batch& batch, Rows<Real>& rows)
+        : conditions_(conditions), layout_(layout), batch_(batch), rows_(rows),
+          view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
+          substep_(conditions.substep())
     {
         visit_.inverse_substep = static_cast<Real>(1 / substep_);
         visit_.push_limit = static_cast<Real>(conditions.settings.push_limit);
@@ -59,6 +55,8 @@ public:
         visit_.rolls = conditions.has(Effect::rolling_friction);
         visit_.grips = conditions.has(Effect::friction) || visit_.rolls;
         visit_.normal_sweeps = kNormalSweeps;
+        if (2 * batch.on_faces > batch.contacts)
+            relax_visits_ = batch.wide ? kInStructures : kInTowers;
     }
 
     void run()
@@ -68,80 +66,77 @@ public:
             : pgs                                              ? 20
                                                                : 1;
         for (int step = 0; step < conditions_.settings.substeps; ++step) {
-            if (conditions_.has(Effect::gravity)) add_gravity();
-            if (conditions_.has(Effect::gyroscopic)) turn_gyroscopic();
-            for_bodies([](auto bodies, std::size_t) { stop_runaways(bodies); });
-            warm_start();
+            backward_ = relax_visits_ > kInHeaps && step % 2 == 1;
+            begin_substep(step == 0);
+            if (step == 0) warm_start();
             for (int visit = 0; visit < visits; ++visit) sweep(true);
-            move();
-            if (conditions_.has(Effect::rotation)) turn();
+            advance();
             if (pgs) continue;
-            for (int visit = 0; visit < kRelaxVisits; ++visit) sweep(false);
+            for (int visit = 0; visit < relax_visits_; ++visit) sweep(false);
         }
         if (conditions_.has(Effect::restitution)) bounce();
     }
 
 private:
+    // Calls body(first, count) for what moves: dynamic and kinematic bodies.
     template <class Body>
     void for_bodies(Body body)
     {
-        const auto all = std::span(rows_.bodies)
-                             .subspan(batch_.first_body + 1, batch_.dynamic + batch_.kinematic);
+        const std::size_t first = batch_.first_body + 1u, count = batch_.dynamic + batch_.kinematic;
         if (!batch_.wide) {
-            body(all, std::size_t{batch_.first_body} + 1);
+            body(first, count);
             return;
         }
-        for_each_block(all.size(), kBodies, [&](std::size_t begin, std::size_t end, std::size_t) {
-            body(all.subspan(begin, end - begin), batch_.first_body + 1 + begin);
+        for_each_block(count, kBodies, [&](std::size_t begin, std::size_t end, std::size_t) {
+            body(first + begin, end - begin);
         });
     }
 
+    // Calls body(begin, end) for the blocks of one color after another. In towers and structures
+    // there in one substep and back in the next: who comes first takes a little more of a load than
+    // its share, which would lean a whole wall to one side. Heaps and crowds, which have no side,
+    // come to rest sooner in one order.
     template <class Body>
     void for_colors(Body body)
     {
         for (std::uint32_t i = 0; i < batch_.colors; ++i) {
-            const Color& color = layout_.colors[batch_.first_color + i];
-            ContactBlock<Real>* const first = rows_.blocks.data() + color.first;
+            const std::uint32_t place = backward_ ? batch_.colors - 1 - i : i;
+            const Color& color = layout_.colors[batch_.first_color + place];
             if (!batch_.wide || color.serial || color.count <= 2 * kBlocks) {
-                body(first, color.count);
+                body(color.first, color.first + color.count);
                 continue;
             }
             for_each_block(color.count, kBlocks,
                            [&](std::size_t begin, std::size_t end, std::size_t) {
-                               body(first + begin, end - begin);
+                               body(color.first + begin, color.first + end);
                            });
         }
     }
 
-    void add_gravity()
+    void begin_substep(bool first)
     {
-        const Vec3 change = conditions_.gravity * substep_;
-        for_bodies([&](auto bodies, std::size_t) { add_velocity(bodies, change); });
-    }
-
-    void turn_gyroscopic()
-    {
-        const Gyroscopic how = conditions_.settings.gyroscopic;
-        for_bodies([&](std::span<SolverBody<Real>> bodies, std::size_t first) {
-            for (std::size_t i = 0; i < bodies.size(); ++i) {
-                const std::uint32_t body = layout_.body_of_slot[first + i];
-                if (masses_.spins_unevenly[body] == 0) continue;
-                Real* const w = bodies[i].motion + 4;
-                const Vec3 before(double{w[0]}, double{w[1]}, double{w[2]});
-                const Quat orientation = turn_of(bodies[i]) * poses_.orientation[body];
-                const Vec3 after = how == Gyroscopic::implicit
-                    ? after_gyroscopic_torque(before, masses_.inertia[body], orientation, substep_)
-                    : after_explicit_gyroscopic_torque(before, masses_.inertia[body], orientation,
-                                                       substep_);
-                for (int k = 0; k < 3; ++k) w[k] = static_cast<Real>(after[k]);
-            }
+        Substep<Real> substep;
+        substep.time = static_cast<Real>(substep_);
+        substep.first = first;
+        if (conditions_.has(Effect::gravity)) {
+            const Vec3 change = conditions_.gravity * substep_;
+            for (int k = 0; k < 3; ++k) substep.gravity[k] = static_cast<Real>(change[k]);
+        }
+        if (conditions_.has(Effect::gyroscopic))
+            substep.gyroscopic = conditions_.settings.gyroscopic == Gyroscopic::implicit
+                ? Substep<Real>::Gyroscopic::implicit
+                : Substep<Real>::Gyroscopic::direct;
+        for_bodies([&](std::size_t at, std::size_t count) {
+            kernels_.begin_substep(rows_.bodies.data() + at,
+                                   rows_.inertias.empty() ? nullptr : rows_.inertias.data() + at,
+                                   count, substep);
         });
     }
 
     void warm_start()
     {
-        for_colors([&](ContactBlock<Real>* blocks, std::size_t count) {
-            kernels_.warm_start(blocks, count, rows_.bodies.data(), visit_);
+        for_colors([&](std::size_t begin, std::size_t end) {
+            kernels_.warm_start(view_, begin, end, visit_);
         });
     }
 
@@ -149,21 +144,18 @@ private:
     {
         Visit<Real> visit = visit_;
         visit.push = push;
-        for_colors([&](ContactBlock<Real>* blocks, std::size_t count) {
-            kernels_.sweep(blocks, count, rows_.bodies.data(), visit);
+        for_colors(
+            [&](std::size_t begin, std::size_t end) { kernels_.sweep(view_, begin, end, visit); });
+    }
+
+    void advance()
+    {
+        const auto time = static_cast<Real>(substep_);
+        for_bodies([&](std::size_t at, std::size_t count) {
+            const auto bodies = std::span(rows_.bodies).subspan(at, count);
+            if (kernels_.advance(bodies.data(), count, time, visit_.turns) > 0)
+                turn_fast(bodies, time);
         });
-    }
-
-    void move()
-    {
-        for_bodies(
-            [&](auto bodies, std::size_t) { move_bodies(bodies, static_cast<Real>(substep_)); });
-    }
-
-    void turn()
-    {
-        for_bodies(
-            [&](auto bodies, std::size_t) { turn_bodies(bodies, static_cast<Real>(substep_)); });
     }
 
     // Slower than what gravity gives in two steps is resting, not bouncing.
@@ -171,20 +163,21 @@ private:
     {
         const auto threshold =
             static_cast<Real>(2 * conditions_.gravity.norm() * conditions_.settings.dt);
-        for_colors([&](ContactBlock<Real>* blocks, std::size_t count) {
-            kernels_.restitute(blocks, count, rows_.bodies.data(), threshold, visit_);
+        for_colors([&](std::size_t begin, std::size_t end) {
+            kernels_.restitute(view_, begin, end, threshold, visit_);
         });
     }
 
     const Conditions& conditions_;
     const Layout& layout_;
-    const Masses& masses_;
-    const Poses& poses_;
     const Batch& batch_;
     Rows<Real>& rows_;
+    RowsView<Real> view_;
     const SolveKernels<Real>& kernels_;
     double substep_;
     Visit<Real> visit_;
+    int relax_visits_ = kInHeaps;
+    bool backward_ = false;
 };
 
 // Gives one body its new state. False, and the body as it was, when that is not sound.
@@ -219,7 +212,6 @@ template <class Real>
 void solve_impulses(const Conditions& conditions,
                     const Layout& layout,
                     const ActiveContacts& active,
-                    const Masses& masses,
                     Rows<Real>& rows,
                     ConvexContacts<Real>& convex,
                     MeshContacts<Real>& meshes,
@@ -230,7 +222,7 @@ void solve_impulses(const Conditions& conditions,
     trouble.quarantined.clear();
     trouble.of_block.resize(layout.batches.size());
     const auto solve = [&](const Batch& batch) {
-        Task<Real>(conditions, layout, masses, poses, batch, rows).run();
+        Task<Real>(conditions, layout, batch, rows).run();
     };
     // Big islands use all threads themselves, so they go one after another.
     for (const Batch& batch : layout.batches)
@@ -255,21 +247,22 @@ void solve_impulses(const Conditions& conditions,
     for (const auto& found : trouble.of_block)
         trouble.quarantined.insert(trouble.quarantined.end(), found.begin(), found.end());
 
+    const RowsView<Real> view = RowsView<Real>::of(rows);
     for_each_block(layout.lanes.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
             if (layout.lanes[i].entry == LaneSource{}.entry) continue;
             const auto& source = active.entries[layout.lanes[i].entry];
             Contact<Real>& contact =
-                source.on_mesh ? meshes.entries[source.slot].contact : convex.of_pair[source.slot];
-            store_impulses(rows.blocks[i / kBlock], static_cast<int>(i % kBlock), contact);
+                source.on_mesh ? meshes.entries[source.slot].contact : convex.contacts[source.slot];
+            store_impulses(view, i / kBlock, static_cast<int>(i % kBlock), contact);
         }
     });
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(const Conditions&, const Layout&, const ActiveContacts&,    \
-                                       const Masses&, Rows<Real>&, ConvexContacts<Real>&,          \
-                                       MeshContacts<Real>&, Poses&, Velocities&, Trouble&);
+                                       Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,    \
+                                       Poses&, Velocities&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

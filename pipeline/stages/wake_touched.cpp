@@ -55,7 +55,7 @@ void wake_touched(const Pairs& pairs,
         if (states.bed[body] != kNobody) wake_bed(states.bed[body], beds, states, rest);
     };
     for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
-        if (contacts.of_pair[i].count > 0) meet(pairs.keys[i]);
+        if (contacts.of_pair[i].contact != PairState::kApart) meet(pairs.keys[i]);
         if (!put_there(i)) continue;
         const std::uint32_t a = colliders.body[first_of(pairs.keys[i])];
         const std::uint32_t b = colliders.body[second_of(pairs.keys[i])];

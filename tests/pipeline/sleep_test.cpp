@@ -44,6 +44,28 @@ TEST(Sleep, APileThatRestsFallsAsleepAndNothingOfItChanges)
     EXPECT_EQ(testing::greatest_speed(world), 0);
 }
 
+TEST(Sleep, AWorldThatSleepsIsNotLookedAtUntilSomebodyTouchesIt)
+{
+    World world = sleeping_towers();
+    const std::string hash = world.state_hash();
+    world.step(10);
+    EXPECT_EQ(world.report().step, 190u);
+    EXPECT_EQ(world.report().islands, 0u);
+    EXPECT_EQ(world.report().manifolds, 0u);
+    for (const StageReport& stage : world.stages()) EXPECT_EQ(stage.time_ms, 0) << stage.name;
+    // Neither another step nor a look at the effects disturbs it.
+    Settings settings = world.settings();
+    settings.dt /= 2;
+    world.set_settings(settings);
+    world.step(10);
+    static_cast<void>(world.effects());
+    EXPECT_EQ(world.report().bodies_awake, 0u);
+    world.set_velocity(world.bodies()[8], Vec3(0, 0, 3), Vec3::Zero());
+    world.step(10);
+    EXPECT_EQ(world.report().bodies_awake, 4u);
+    EXPECT_NE(world.state_hash(), hash);
+}
+
 TEST(Sleep, MovesNobody)
 {
     World on(two_towers(true)), off(two_towers(false));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace throng {
 namespace {
 
@@ -38,6 +40,7 @@ struct Bodies {
             states.quiet_time.push_back(0);
             states.bed.push_back(kNobody);
             states.radius.push_back(0.5);
+            states.movers.dynamic.push_back(i);
             colliders.body.push_back(i);
             colliders.shape.push_back({ShapeKind::sphere, 0});
             colliders.local.emplace_back();
@@ -92,6 +95,30 @@ TEST(UpdateBounds, SleepersCostNothingAndRemovedOnesHaveNoBox)
     b.update();
     EXPECT_EQ(b.bounds.asked, (std::vector<std::uint32_t>{1}));
     EXPECT_TRUE(b.bounds.boxes[1].empty());
+}
+
+TEST(UpdateBounds, NearHoldsTheTightBoxAndTheReachHoweverFarOut)
+{
+    Bodies b(4, 10);
+    b.poses.position[1] = Vec3(1e7, -1e7, 0.1);
+    b.poses.position[2] = Vec3(-1e-7, 1e12, 3);
+    b.velocities.linear[3] = Vec3(40, 0, 0);
+    b.update();
+    for (std::size_t i = 0; i < 4; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const double reach = 0.5 + b.bounds.reach[i], at = b.poses.position[i][k];
+            EXPECT_LE(double{b.bounds.near[i].lower[k]}, at - reach);
+            EXPECT_GE(double{b.bounds.near[i].upper[k]}, at + reach);
+            const double rounding = 1e-6 * (std::abs(at) + 1);
+            EXPECT_NEAR(double{b.bounds.near[i].lower[k]}, at - reach, rounding);
+            EXPECT_NEAR(double{b.bounds.near[i].upper[k]}, at + reach, rounding);
+        }
+    EXPECT_TRUE(b.bounds.near[0].overlaps(b.bounds.near[0]));
+    EXPECT_FALSE(b.bounds.near[0].overlaps(b.bounds.near[1]));
+    b.colliders.body[0] = kNobody;
+    b.bounds.touched = {0};
+    b.update();
+    EXPECT_FALSE(b.bounds.near[0].overlaps(b.bounds.near[0]));
 }
 
 TEST(FindPairs, PairsLiveOnUntilTheirBoxesPart)
@@ -201,7 +228,8 @@ TEST(WakeTouched, WakesTheWholeBedOfWhoeverIsTouched)
     Rest rest;
     wake_touched(pairs, b.colliders, b.velocities, contacts, beds, b.states, rest);
     EXPECT_TRUE(rest.awoken.empty());
-    contacts.of_pair[0].count = 1;
+    contacts.contacts.resize(1);
+    contacts.of_pair[0].contact = 0;
     wake_touched(pairs, b.colliders, b.velocities, contacts, beds, b.states, rest);
     EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1, 3}));
     EXPECT_EQ(b.states.awake[3], 1);
@@ -219,8 +247,8 @@ TEST(WakeTouched, WhatMovesByItselfWakesOnlyWhileItMoves)
     Pairs pairs;
     pairs.keys = {pair_key(0, 1)};
     ConvexContacts<double> contacts;
-    contacts.of_pair.resize(1);
-    contacts.of_pair[0].count = 1;
+    contacts.contacts.resize(1);
+    contacts.of_pair.push_back({{}, 0});
     Rest rest;
     wake_touched(pairs, b.colliders, b.velocities, contacts, beds, b.states, rest);
     EXPECT_TRUE(rest.awoken.empty());

@@ -21,13 +21,16 @@ inline void add_body(Graph& graph, BodyKind kind, bool awake)
     graph.states.awake.push_back(awake ? 1 : 0);
 }
 
-/// Some bodies still, kinematic, asleep or gone; every contact has a movable side.
+/// Some bodies still (every second one a conveyor), kinematic, asleep or gone; every contact has a
+/// movable side.
 inline Graph random_graph(std::uint32_t bodies, std::size_t contacts, std::mt19937& random)
 {
     Graph graph;
     for (std::uint32_t i = 0; i < bodies; ++i) switch (random() % 10) {
         case 0:
             add_body(graph, BodyKind::still, false);
+            graph.states.conveys.resize(i + std::size_t{1});
+            graph.states.conveys[i] = random() % 2 == 0;
             break;
         case 1:
             add_body(graph, BodyKind::kinematic, true);

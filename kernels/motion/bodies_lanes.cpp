@@ -1,0 +1,273 @@
+// Solver bodies through a substep, written once over the width of the machine's registers.
+#include "kernels/solve/solve_lanes.hpp"
+
+namespace throng::THRONG_LANES {
+
+namespace {
+
+constexpr std::int32_t kInOrder[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+template <class L>
+L length_of(L a)
+{
+    return max(a, -a);
+}
+
+// The symmetric inertia of W bodies, as a share of its trace.
+template <class L>
+struct Inertia {
+    L xx, yy, zz, xy, xz, yz;
+    V3<L> operator*(const V3<L>& w) const
+    {
+        return {xx * w.x + xy * w.y + xz * w.z, xy * w.x + yy * w.y + yz * w.z,
+                xz * w.x + yz * w.y + zz * w.z};
+    }
+};
+
+// Turned by the unit quaternion (axis, w).
+template <class L>
+V3<L> turned(const V3<L>& axis, L w, const V3<L>& v)
+{
+    const V3<L> t = cross(axis, v);
+    const V3<L> twice = t + t;
+    return v + twice * w + cross(axis, twice);
+}
+
+// One Newton step of the implicit Euler equation of a free top.
+template <class L>
+V3<L> after_implicit(const Inertia<L>& inertia, const V3<L>& w, L time)
+{
+    using Real = typename L::Number;
+    const V3<L> m = inertia * w;
+    const V3<L> residual = cross(w, m) * time;
+    // Columns of inertia + time (w x inertia - m x).
+    const V3<L> column_x{inertia.xx, inertia.xy, inertia.xz};
+    const V3<L> column_y{inertia.xy, inertia.yy, inertia.yz};
+    const V3<L> column_z{inertia.xz, inertia.yz, inertia.zz};
+    const L zero = Real(0);
+    const V3<L> x = column_x + (cross(w, column_x) - V3<L>{zero, m.z, -m.y}) * time;
+    const V3<L> y = column_y + (cross(w, column_y) - V3<L>{-m.z, zero, m.x}) * time;
+    const V3<L> z = column_z + (cross(w, column_z) - V3<L>{m.y, -m.x, zero}) * time;
+    const V3<L> yz = cross(y, z);
+    const L determinant = dot(x, yz);
+    const L sound = length_of(determinant);
+    const L inverse = L(Real(1)) / select(sound > zero, determinant, L(Real(1)));
+    const V3<L> change{dot(residual, yz), dot(residual, cross(z, x)), dot(residual, cross(x, y))};
+    V3<L> after = w - change * inverse;
+    // A body that turns by a radian and more in this time may come out of a single step faster.
+    const L energy = dot(w, m), energy_after = dot(after, inertia * after);
+    const L shrink =
+        select(energy_after > energy,
+               sqrt(energy / select(energy_after > zero, energy_after, L(Real(1)))), L(Real(1)));
+    after = after * shrink;
+    // Rounding may leave nothing of the least moment of a needle, or squares of a spin may be past
+    // all numbers: then it turns on as it did.
+    const L there = select(energy > zero, sound, zero);
+    const auto fine = select(energy_after < L(Real(1e38)), there, zero) > zero;
+    return {select(fine, after.x, w.x), select(fine, after.y, w.y), select(fine, after.z, w.z)};
+}
+
+// Euler's equation, one explicit step.
+template <class L>
+V3<L> after_explicit(const Inertia<L>& inertia, const V3<L>& w, L time)
+{
+    using Real = typename L::Number;
+    const V3<L> torque = cross(w, inertia * w);
+    const V3<L> x{inertia.xx, inertia.xy, inertia.xz}, y{inertia.xy, inertia.yy, inertia.yz},
+        z{inertia.xz, inertia.yz, inertia.zz};
+    const V3<L> yz = cross(y, z);
+    const L determinant = dot(x, yz), zero = Real(0);
+    const L inverse = select(length_of(determinant) > zero, time / determinant, zero);
+    return w - V3<L>{dot(torque, yz), dot(torque, cross(z, x)), dot(torque, cross(x, y))} * inverse;
+}
+
+// In the axes of the step's beginning, in which the inertia stays what it was.
+template <class L>
+V3<L> gyroscopic(const V3<L>& spin,
+                 const L (&drift)[8],
+                 const L (&share)[8],
+                 const Substep<typename L::Number>& substep)
+{
+    using Real = typename L::Number;
+    const V3<L> axis{drift[4], drift[5], drift[6]};
+    const Inertia<L> inertia{share[0], share[1], share[2], share[3], share[4], share[5]};
+    const V3<L> w = turned(axis * L(Real(-1)), drift[7], spin);
+    const L time = substep.time;
+    const V3<L> after = substep.gyroscopic == Substep<Real>::Gyroscopic::implicit
+        ? after_implicit(inertia, w, time)
+        : after_explicit(inertia, w, time);
+    const V3<L> back = turned(axis, drift[7], after);
+    const auto acts = share[6] > L(Real(0));
+    return {select(acts, back.x, spin.x), select(acts, back.y, spin.y),
+            select(acts, back.z, spin.z)};
+}
+
+template <class Real>
+constexpr int kStride = int(sizeof(SolverBody<Real>) / sizeof(Real));
+
+// Stops every body whose velocity is no longer a number, or beyond what products of it can hold,
+// and marks it: it stands still for the rest of the step, so that what touches it stays sound.
+template <class Real>
+void stop_runaways(SolverBody<Real>* bodies, int count)
+{
+    constexpr Real kGreatest = Real(1e16);
+    for (int i = 0; i < count; ++i) {
+        SolverBody<Real>& body = bodies[i];
+        bool sound = true;
+        for (const Real number : body.motion)
+            sound = sound && number < kGreatest && number > -kGreatest;
+        if (sound) continue;
+        for (int k = 0; k < 8; ++k) body.motion[k] = body.inertia[k] = body.free[k] = 0;
+        body.drift[3] = 1;
+    }
+}
+
+template <class L>
+[[gnu::flatten]] void begin_lanes(SolverBody<typename L::Number>* bodies,
+                                  const SpinInertia<typename L::Number>* inertias,
+                                  unsigned writes,
+                                  const Substep<typename L::Number>& substep)
+{
+    using Real = typename L::Number;
+    L motion[8], free[8], inertia[8];
+    gather_bodies(bodies->motion, kInOrder, motion);
+    gather_bodies(bodies->free, kInOrder, free);
+    gather_bodies(bodies->inertia, kInOrder, inertia);
+    const L zero = Real(0);
+    L given[8];
+    for (int k = 0; k < 8; ++k) given[k] = substep.first ? zero : motion[k] - free[k];
+    const L falls = select(inertia[0] > zero, L(Real(1)), zero);
+    for (int k = 0; k < 3; ++k) motion[k] += falls * L(substep.gravity[k]);
+    if (inertias != nullptr) {
+        L drift[8], share[8];
+        gather_bodies(bodies->drift, kInOrder, drift);
+        gather_8(inertias->share, 8, kInOrder, share);
+        const V3<L> spin = gyroscopic({motion[4], motion[5], motion[6]}, drift, share, substep);
+        motion[4] = spin.x;
+        motion[5] = spin.y;
+        motion[6] = spin.z;
+    }
+    scatter_8(motion, bodies->free, kStride<Real>, kInOrder, writes);
+    for (int k = 0; k < 8; ++k) motion[k] += given[k];
+    scatter_8(motion, bodies->motion, kStride<Real>, kInOrder, writes);
+}
+
+// The quaternion of a turn by a rotation vector, as a series that is exact to double below a
+// quarter radian.
+template <class L>
+void small_turn(const V3<L>& turn, L squared, V3<L>& axis, L& w)
+{
+    using Real = typename L::Number;
+    const L z = squared * L(Real(0.25)), one = Real(1);  // of the half angle
+    const auto share = [](int k) { return L(Real(1) / Real(k)); };
+    const L scale =
+        (one - z * share(6) * (one - z * share(20) * (one - z * share(42) * (one - z * share(72)))))
+        * L(Real(0.5));
+    w = one
+        - z * share(2)
+            * (one
+               - z * share(12)
+                   * (one - z * share(30) * (one - z * share(56) * (one - z * share(90)))));
+    axis = turn * scale;
+}
+
+template <class L>
+[[gnu::flatten]] L advance_lanes(SolverBody<typename L::Number>* bodies,
+                                 unsigned writes,
+                                 typename L::Number time,
+                                 bool turns)
+{
+    using Real = typename L::Number;
+    const L zero = Real(0), one = Real(1);
+    L motion[8], drift[8];
+    gather_bodies(bodies->motion, kInOrder, motion);
+    gather_bodies(bodies->drift, kInOrder, drift);
+    for (int k = 0; k < 3; ++k) drift[k] += motion[k] * L(time);
+    L fast = zero;
+    if (turns) {
+        const V3<L> turn{motion[4] * L(time), motion[5] * L(time), motion[6] * L(time)};
+        const L squared = dot(turn, turn);
+        const auto slow = squared < L(Real(kFastTurn * kFastTurn));
+        fast = select(slow, zero, one);
+        V3<L> p;
+        L pw;
+        small_turn(turn, squared, p, pw);
+        const V3<L> q{drift[4], drift[5], drift[6]};
+        const V3<L> axis = q * pw + p * drift[7] + cross(p, q);
+        const L w = pw * drift[7] - dot(p, q);
+        const L length = sqrt(dot(axis, axis) + w * w);
+        const L shrink = one / length;
+        // Who does not turn keeps its very bits.
+        const auto turned = select(squared > zero, one - fast, zero) > zero;
+        drift[4] = select(turned, axis.x * shrink, drift[4]);
+        drift[5] = select(turned, axis.y * shrink, drift[5]);
+        drift[6] = select(turned, axis.z * shrink, drift[6]);
+        drift[7] = select(turned, w * shrink, drift[7]);
+    }
+    scatter_8(drift, bodies->drift, kStride<Real>, kInOrder, writes);
+    return fast;
+}
+
+// Calls body(first, writes) for each group of W bodies; what is over comes in ones, by the narrow
+// formula, which has the same bits.
+template <class Real, class Wide, class One>
+void for_bodies(std::size_t count, Wide wide, One one)
+{
+    constexpr std::size_t kWidth = Lanes<Real>::kWidth;
+    std::size_t i = 0;
+    for (; i + kWidth <= count; i += kWidth) wide(i);
+    for (; i < count; ++i) one(i);
+}
+
+using std::size_t;
+
+}  // namespace
+
+template <class Real>
+void begin_substep(SolverBody<Real>* bodies,
+                   const SpinInertia<Real>* inertias,
+                   std::size_t count,
+                   const Substep<Real>& substep)
+{
+    using L = Lanes<Real>;
+    using One = Wide<Real, 1>;
+    const auto at = [&](std::size_t i) { return inertias == nullptr ? nullptr : inertias + i; };
+    for_bodies<Real>(
+        count,
+        [&](std::size_t i) {
+            stop_runaways(bodies + i, L::kWidth);
+            begin_lanes<L>(bodies + i, at(i), ~0u, substep);
+        },
+        [&](std::size_t i) {
+            stop_runaways(bodies + i, 1);
+            begin_lanes<One>(bodies + i, at(i), 1u, substep);
+        });
+}
+
+template <class Real>
+std::size_t advance(SolverBody<Real>* bodies, std::size_t count, Real time, bool turns)
+{
+    using L = Lanes<Real>;
+    using One = Wide<Real, 1>;
+    std::size_t fast = 0;
+    const auto tally = [&](auto lanes) {
+        for (int k = 0; k < decltype(lanes)::kWidth; ++k) fast += lanes.get(k) > 0 ? 1 : 0;
+    };
+    for_bodies<Real>(
+        count, [&](std::size_t i) { tally(advance_lanes<L>(bodies + i, ~0u, time, turns)); },
+        [&](std::size_t i) { tally(advance_lanes<One>(bodies + i, 1u, time, turns)); });
+    return fast;
+}
+
+template void begin_substep<float>(SolverBody<float>*,
+                                   const SpinInertia<float>*,
+                                   std::size_t,
+                                   const Substep<float>&);
+template void begin_substep<double>(SolverBody<double>*,
+                                    const SpinInertia<double>*,
+                                    std::size_t,
+                                    const Substep<double>&);
+template std::size_t advance<float>(SolverBody<float>*, std::size_t, float, bool);
+template std::size_t advance<double>(SolverBody<double>*, std::size_t, double, bool);
+
+}  // namespace throng::THRONG_LANES

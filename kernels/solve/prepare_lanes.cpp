@@ -1,0 +1,322 @@
+// Contacts as they are kept, made into rows: written once over the width of the registers.
+#include "kernels/solve/solve_lanes.hpp"
+
+namespace throng::THRONG_LANES {
+
+namespace {
+
+// Nothing is divided by numbers whose inverse is not one.
+template <class L>
+L inverse_or_zero(L x)
+{
+    using Real = typename L::Number;
+    constexpr Real kLeast = sizeof(Real) == 4 ? Real(1.2e-38) : Real(2.3e-308);
+    return select(x > L(kLeast), L(Real(1)) / x, L(Real(0)));
+}
+
+// Any direction across the normal; which one does not matter, friction is a round cone.
+template <class L>
+V3<L> across(const V3<L>& n)
+{
+    using Real = typename L::Number;
+    const L zero = Real(0);
+    const auto flat = max(n.x, -n.x) < L(Real(0.6));
+    // normal x (the x axis where the normal leans away from it, else the y axis)
+    const V3<L> t = {select(flat, zero, -n.z), select(flat, n.z, zero), select(flat, -n.y, n.x)};
+    return t * (L(Real(1)) / sqrt(dot(t, t)));
+}
+
+// A tangent along the longest way between points, where there are several: on needles and plates
+// that keeps what turns easily apart from what does not.
+template <class L>
+V3<L> along_points(const LooseBlock<typename L::Number>& loose, int at, int count, const V3<L>& n)
+{
+    using Real = typename L::Number;
+    const V3<L> first = lane3<L>(loose.point[0].from_a, at);
+    const L zero = Real(0), one = Real(1);
+    V3<L> way{zero, zero, zero};
+    L longest = zero;
+    for (int k = 1; k < count; ++k) {
+        const V3<L> between = lane3<L>(loose.point[k].from_a, at) - first;
+        const V3<L> flat = (between - n * dot(n, between)) * lane<L>(loose.point[k].there, at);
+        const L length = dot(flat, flat);
+        const auto longer = length > longest;
+        way = {select(longer, flat.x, way.x), select(longer, flat.y, way.y),
+               select(longer, flat.z, way.z)};
+        longest = max(length, longest);
+    }
+    // What is short beside the arms is mostly rounding.
+    const auto found = longest > dot(first, first) * L(Real(1e-4)) + L(Real(1e-30));
+    const V3<L> any = across(n);
+    const V3<L> flat = way - n * dot(n, way);
+    const V3<L> unit = flat * (one / sqrt(select(found, dot(flat, flat), one)));
+    return {select(found, unit.x, any.x), select(found, unit.y, any.y),
+            select(found, unit.z, any.z)};
+}
+
+// What one side answers to pushes along the contact's axes at an arm: torques and spins.
+template <class L>
+struct Levers {
+    V3<L> torque[3], spin[3];
+
+    Levers(const Mobility<L, true>& how, const V3<L>& arm, const V3<L> (&axes)[3])
+    {
+        for (int k = 0; k < 3; ++k) {
+            torque[k] = cross(arm, axes[k]);
+            spin[k] = how.turned_by(torque[k]);
+        }
+    }
+};
+
+template <class L>
+void fill_response(ContactBlock<typename L::Number>& block,
+                   int at,
+                   bool spins,
+                   const Mobility<L, true>& a,
+                   const Mobility<L, true>& b)
+{
+    const Frame<L, true> frame(block, at);
+    const V3<L> axes[3] = {frame.normal, frame.tangent, frame.other};
+    const V3<L> spin_axes[3] = {frame.tangent, frame.other, frame.normal};
+    const Levers<L> from_a(a, frame.center_a, axes), from_b(b, frame.center_b, axes);
+    const L mass = a.inverse_mass + b.inverse_mass;
+    const auto put = [&](int place, L value) { value.store(block.response[place].at + at); };
+    const auto linear = [&](int i, int k) {
+        return dot(from_a.torque[i], from_a.spin[k]) + dot(from_b.torque[i], from_b.spin[k]);
+    };
+    put(response::nn, mass + linear(0, 0));
+    put(response::n1, linear(0, 1));
+    put(response::n2, linear(0, 2));
+    put(response::v11, mass + linear(1, 1));
+    put(response::v12, linear(1, 2));
+    put(response::v22, mass + linear(2, 2));
+    if (!spins) return;
+    for (int k = 0; k < 3; ++k) {
+        const V3<L> spin = from_a.spin[k] + from_b.spin[k];
+        for (int i = 0; i < 3; ++i) put(response::kSpin + 3 * i + k, dot(spin_axes[i], spin));
+    }
+    V3<L> turned[3];
+    for (int i = 0; i < 3; ++i) turned[i] = a.turned_by(spin_axes[i]) + b.turned_by(spin_axes[i]);
+    put(response::w11, dot(spin_axes[0], turned[0]));
+    put(response::w22, dot(spin_axes[1], turned[1]));
+    put(response::wnn, dot(spin_axes[2], turned[2]));
+    put(response::w12, dot(spin_axes[0], turned[1]));
+    put(response::w1n, dot(spin_axes[0], turned[2]));
+    put(response::w2n, dot(spin_axes[1], turned[2]));
+}
+
+// Without rotation only masses answer.
+template <class L>
+void fill_response(ContactBlock<typename L::Number>& block,
+                   int at,
+                   bool,
+                   const Mobility<L, false>& a,
+                   const Mobility<L, false>& b)
+{
+    using Real = typename L::Number;
+    const L mass = a.inverse_mass + b.inverse_mass, zero = Real(0);
+    const L values[6] = {mass, zero, zero, mass, zero, mass};
+    for (int k = 0; k < 6; ++k) values[k].store(block.response[k].at + at);
+}
+
+template <class L>
+void fill_friction(ContactBlock<typename L::Number>& block, int at)
+{
+    using Real = typename L::Number;
+    // In units of its own size: squares of 1/kg leave float where bodies are huge or tiny.
+    L k11 = lane<L>(block.response[response::v11], at);
+    L k22 = lane<L>(block.response[response::v22], at);
+    const L size = (k11 + k22) * L(Real(0.5)), unit = inverse_or_zero(size);
+    k11 = k11 * unit;
+    k22 = k22 * unit;
+    const L k12 = lane<L>(block.response[response::v12], at) * unit;
+    const L inverse = inverse_or_zero(k11 * k22 - k12 * k12) * unit;
+    (k22 * inverse).store(block.friction_mass[0].at + at);
+    (k11 * inverse).store(block.friction_mass[1].at + at);
+    (-k12 * inverse).store(block.friction_mass[2].at + at);
+    const L half = (k11 - k22) * L(Real(0.5));
+    const L greatest = L(Real(1)) + sqrt(half * half + k12 * k12);
+    (unit / greatest).store(block.sliding_mass.at + at);
+    (size * greatest).store(block.sliding_answer.at + at);
+}
+
+// The effective mass of a point along the normal. Where neither body can be moved, only turned, a
+// point next to below the center has no lever to speak of: pushed there, a body would spin without
+// end and part by nothing.
+template <class L, bool turns>
+L normal_mass(const Mobility<L, turns>& a,
+              const Mobility<L, turns>& b,
+              const V3<L>& normal,
+              const V3<L>& arm_a,
+              const V3<L>& arm_b)
+{
+    using Real = typename L::Number;
+    const L mass = a.inverse_mass + b.inverse_mass;
+    if constexpr (!turns) return inverse_or_zero(mass);
+    const V3<L> torque_a = cross(arm_a, normal), torque_b = cross(arm_b, normal);
+    const L answer =
+        mass + dot(torque_a, a.turned_by(torque_a)) + dot(torque_b, b.turned_by(torque_b));
+    constexpr Real kLever = Real(1e-2);  // of the arm
+    const L most =
+        (a.xx + a.yy + a.zz) * dot(arm_a, arm_a) + (b.xx + b.yy + b.zz) * dot(arm_b, arm_b);
+    const L least = select(mass > L(Real(0)), L(Real(0)), L(kLever * kLever) * most);
+    return select(answer > least, L(Real(1)) / answer, L(Real(0)));
+}
+
+// The friction that carried over, within the cone of the impulses that did.
+template <class L, bool turns>
+void fill_held(ContactBlock<typename L::Number>& block,
+               int at,
+               const LooseBlock<typename L::Number>& loose,
+               const Frame<L, turns>& frame,
+               L load)
+{
+    using Real = typename L::Number;
+    const V3<L> held = lane3<L>(loose.held, at);
+    const L one = Real(1);
+    // Measured in units of the greatest that may be held: squares leave float where bodies are
+    // huge.
+    const L most = lane<L>(block.friction, at) * load;
+    // Impulses that fade away pass through numbers too small to have an inverse.
+    constexpr Real kLeast = sizeof(Real) == 4 ? Real(1e-37) : Real(1e-307);
+    const L unit = select(most > L(kLeast), one / most, L(Real(0)));
+    const L held_1 = dot(held, frame.tangent) * unit, held_2 = dot(held, frame.other) * unit;
+    const L length = sqrt(held_1 * held_1 + held_2 * held_2);
+    const L shrink = most * select(length > one, one / select(length > one, length, one), one);
+    (held_1 * shrink).store(block.friction_impulse[0].at + at);
+    (held_2 * shrink).store(block.friction_impulse[1].at + at);
+}
+
+template <class L, bool turns>
+void fill_bounce(BounceRows<typename L::Number>& bounce,
+                 int at,
+                 const LooseBlock<typename L::Number>& loose,
+                 const Frame<L, turns>& frame,
+                 const PointRows<typename L::Number>& point,
+                 const Motion<L, turns>& a,
+                 const Motion<L, turns>& b)
+{
+    using Real = typename L::Number;
+    Six<L> speed = frame.between(a, b);
+    if constexpr (turns)
+        speed.n = speed.n + lane<L>(point.lever[0], at) * speed.w1
+            + lane<L>(point.lever[1], at) * speed.w2;
+    speed.n.store(bounce.approach.at + at);
+    lane<L>(loose.restitution, at).store(bounce.restitution.at + at);
+    L(Real(0)).store(bounce.greatest.at + at);
+}
+
+template <class L, bool turns>
+void fill_rolling(RollingRows<typename L::Number>& rolling,
+                  int at,
+                  const LooseBlock<typename L::Number>& loose,
+                  const Frame<L, turns>& frame,
+                  const Mobility<L, turns>& a,
+                  const Mobility<L, turns>& b)
+{
+    lane<L>(loose.rolling_friction, at).store(rolling.rolling.at + at);
+    // The trace is at least the greatest eigenvalue: one number that never overshoots.
+    if constexpr (turns)
+        inverse_or_zero(a.xx + b.xx + a.yy + b.yy + a.zz + b.zz).store(rolling.mass.at + at);
+    const V3<L> impulse = lane3<L>(loose.rolling, at);
+    store3(
+        V3<L>{dot(frame.tangent, impulse), dot(frame.other, impulse), dot(frame.normal, impulse)},
+        rolling.impulse, at);
+}
+
+template <class L, bool turns>
+[[gnu::flatten]] void prepare_lanes(const LooseBlock<typename L::Number>& loose,
+                                    std::size_t place,
+                                    int at,
+                                    const RowsView<typename L::Number>& rows)
+{
+    using Real = typename L::Number;
+    ContactBlock<Real>& block = rows.blocks[place];
+    PointRows<Real>* const points = rows.points + block.first_point;
+    const L zero = Real(0);
+    const Mobility<L, turns> a(rows.bodies, block.a + at), b(rows.bodies, block.b + at);
+
+    const V3<L> normal = lane3<L>(loose.normal, at);
+    store3(normal, block.normal, at);
+    store3(along_points(loose, at, block.points, normal), block.tangent, at);
+    const auto copy = [at](const Lane16<Real>& from, Lane16<Real>& to) {
+        lane<L>(from, at).store(to.at + at);
+    };
+    copy(loose.round_a, block.round_a);
+    copy(loose.round_b, block.round_b);
+    copy(loose.friction, block.friction);
+    copy(loose.bias_rate, block.bias_rate);
+    copy(loose.impulse_scale, block.impulse_scale);
+    copy(loose.twist, block.twist_impulse);
+    inverse_or_zero(lane<L>(loose.deep, at)).store(block.inverse_deep.at + at);
+
+    // The middle of the points, on either surface.
+    V3<L> middle{zero, zero, zero};
+    L gap = zero, count = zero, load = zero;
+    for (int k = 0; k < block.points; ++k) {
+        const auto& point = loose.point[k];
+        const L there = lane<L>(point.there, at);
+        middle = middle + lane3<L>(point.from_a, at) * there;
+        gap += lane<L>(point.separation, at) * there;
+        count += there;
+        load += lane<L>(point.impulse, at);
+    }
+    const L share = L(Real(1)) / count;
+    const V3<L> center_a = middle * share;
+    const V3<L> between = lane3<L>(loose.between, at);
+    store3(center_a, block.center_a, at);
+    store3(center_a + normal * (gap * share) + between, block.center_b, at);
+
+    const Frame<L, turns> frame(block, at);
+    for (int k = 0; k < block.points; ++k) {
+        const auto& from = loose.point[k];
+        PointRows<Real>& to = points[k];
+        const L there = lane<L>(from.there, at);
+        const V3<L> arm = lane3<L>(from.from_a, at);
+        const L separation = lane<L>(from.separation, at);
+        const V3<L> off = (arm - center_a) * there;
+        const L along = dot(off, frame.tangent), other = dot(off, frame.other);
+        other.store(to.lever[0].at + at);
+        (-along).store(to.lever[1].at + at);
+        sqrt(along * along + other * other).store(to.reach.at + at);
+        (separation * there).store(to.gap.at + at);
+        copy(from.impulse, to.impulse);
+        const L mass = normal_mass(a, b, normal, arm, arm + normal * separation + between);
+        (mass * there).store(to.mass.at + at);
+    }
+    // A single point has no lever: only what resists rolling asks what spins do.
+    fill_response(block, at, block.points > 1 || rows.rollings != nullptr, a, b);
+    if constexpr (turns)
+        inverse_or_zero(dot(normal, a.turned_by(normal)) + dot(normal, b.turned_by(normal)))
+            .store(block.twist_mass.at + at);
+    fill_friction<L>(block, at);
+    fill_held(block, at, loose, frame, load);
+
+    if (rows.rollings != nullptr) fill_rolling(rows.rollings[place], at, loose, frame, a, b);
+    if (rows.bounces == nullptr) return;
+    const Motion<L, turns> motion_a(rows.bodies, block.a + at), motion_b(rows.bodies, block.b + at);
+    for (int k = 0; k < block.points; ++k)
+        fill_bounce(rows.bounces[block.first_point + std::uint32_t(k)], at, loose, frame, points[k],
+                    motion_a, motion_b);
+}
+
+}  // namespace
+
+template <class Real>
+void prepare(const LooseBlock<Real>& loose,
+             std::size_t place,
+             const RowsView<Real>& rows,
+             bool turns)
+{
+    for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
+        if (turns)
+            prepare_lanes<Lanes<Real>, true>(loose, place, at, rows);
+        else
+            prepare_lanes<Lanes<Real>, false>(loose, place, at, rows);
+}
+
+template void prepare<float>(const LooseBlock<float>&, std::size_t, const RowsView<float>&, bool);
+template void
+prepare<double>(const LooseBlock<double>&, std::size_t, const RowsView<double>&, bool);
+
+}  // namespace throng::THRONG_LANES

@@ -1,0 +1,24 @@
+// Solve lanes: the kernels of the solver, as the sources that are compiled once a width see them.
+#pragma once
+
+#include "kernels/solve/contact_lanes.hpp"
+#include "kernels/solve/sweep.hpp"
+
+namespace throng::THRONG_LANES {
+
+template <class Real>
+void prepare(const LooseBlock<Real>& loose,
+             std::size_t place,
+             const RowsView<Real>& rows,
+             bool turns);
+
+template <class Real>
+void begin_substep(SolverBody<Real>* bodies,
+                   const SpinInertia<Real>* inertias,
+                   std::size_t count,
+                   const Substep<Real>& substep);
+
+template <class Real>
+std::size_t advance(SolverBody<Real>* bodies, std::size_t count, Real time, bool turns);
+
+}  // namespace throng::THRONG_LANES

@@ -1,0 +1,35 @@
+// Random visits: what the solver may be asked of a block, for tests that run all of it.
+#pragma once
+
+#include "tests/kernels/solve/random_contacts.hpp"
+
+namespace throng::testing {
+
+template <class Real>
+Visit<Real> random_visit(std::mt19937& random, const BlockWish& wish)
+{
+    Visit<Real> visit;
+    visit.inverse_substep = 240;
+    visit.push_limit = 3;
+    visit.push = random() % 2 == 0;
+    visit.turns = wish.turns;
+    visit.grips = random() % 4 != 0;
+    visit.rolls = wish.rolls;
+    visit.normal_sweeps = 1 + static_cast<int>(random() % 3);
+    return visit;
+}
+
+/// A substep's worth of visits: a warm start, one that pushes and one that relaxes in either order,
+/// and a bounce.
+template <class Real>
+void run_all(const SolveKernels<Real>& kernels, BlockCase<Real>& made, const Visit<Real>& visit)
+{
+    made.warm_start(kernels, visit);
+    made.sweep(kernels, visit);
+    Visit<Real> other = visit;
+    other.push = !visit.push;
+    made.sweep(kernels, other);
+    if (!made.rows.bounces.empty()) made.restitute(kernels, Real(0.5), visit);
+}
+
+}  // namespace throng::testing

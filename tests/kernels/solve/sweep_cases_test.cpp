@@ -1,0 +1,191 @@
+// Sweep cases: contacts so simple that what a visit does to them is known beforehand.
+#include "kernels/solve/sweep.hpp"
+#include "tests/kernels/solve/random_contacts.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+using testing::BlockCase;
+
+// A body of 2 kg that a still one holds from below at one point, on the axis through its center.
+template <class Real>
+BlockCase<Real> on_one_point(const Vec3& velocity, double arm, const ContactTerms<Real>& terms)
+{
+    BlockCase<Real> made;
+    testing::make_room(1, true, false, made);
+    made.block().b[0] = 1;
+    made.block().writes_b = 1;
+    SolverBody<Real> still = {};
+    still.drift[7] = 1;
+    SolverBody<Real> body = still;
+    for (int k = 0; k < 3; ++k) body.motion[k] = static_cast<Real>(velocity[k]);
+    body.inertia[0] = Real(0.5);
+    for (int k = 1; k < 4; ++k) body.inertia[k] = 5;
+    made.rows.bodies = {still, body};
+    Contact<Real> contact;
+    contact.count = 1;
+    contact.points[0].from_a.setZero();
+    contact.between = Vec3T<Real>(0, 0, static_cast<Real>(-arm));
+    made.contacts = {contact};
+    made.terms = {terms};
+    made.prepare(solve_kernels<Real>());
+    return made;
+}
+
+BlockCase<double> falling_ball(double speed, double restitution)
+{
+    return on_one_point<double>(Vec3(0, 0, -speed), 0.1,
+                                {0.5, restitution, 0.0, softness<double>(40, 10, 1.0 / 240), 0});
+}
+
+template <class Real>
+Visit<Real> plain_visit()
+{
+    Visit<Real> visit;
+    visit.inverse_substep = 240;
+    return visit;
+}
+
+TEST(SweepCases, AVisitThatDoesNotPushStopsABallDead)
+{
+    for (const double speed : {0.1, 3.0, 1000.0}) {
+        BlockCase<double> made = falling_ball(speed, 0);
+        made.sweep(solve_kernels<double>(), plain_visit<double>());
+        EXPECT_NEAR(made.rows.bodies[1].motion[2], 0, 1e-13 * speed);
+        EXPECT_NEAR(made.point(0).impulse.at[0], 2 * speed, 1e-13 * speed);
+    }
+}
+
+TEST(SweepCases, ABallLeavesWithItsShareOfTheSpeedItCameWith)
+{
+    for (const double share : {0.25, 0.5, 1.0}) {
+        BlockCase<double> made = falling_ball(3, share);
+        made.sweep(solve_kernels<double>(), plain_visit<double>());
+        made.restitute(solve_kernels<double>(), 0.5, plain_visit<double>());
+        EXPECT_NEAR(made.rows.bodies[1].motion[2], 3 * share, 1e-12);
+    }
+}
+
+TEST(SweepCases, ABallThatCameSlowlyOrNeverTouchedDoesNotBounce)
+{
+    const auto& kernels = solve_kernels<double>();
+    BlockCase<double> slow = falling_ball(0.4, 1);
+    slow.sweep(kernels, plain_visit<double>());
+    slow.restitute(kernels, 0.5, plain_visit<double>());
+    EXPECT_NEAR(slow.rows.bodies[1].motion[2], 0, 1e-13);
+    BlockCase<double> far = falling_ball(3, 1);
+    far.point(0).gap.at[0] += 1;
+    far.sweep(kernels, plain_visit<double>());
+    far.restitute(kernels, 0.5, plain_visit<double>());
+    EXPECT_EQ(far.rows.bodies[1].motion[2], -3);
+}
+
+TEST(SweepCases, ATouchInAnEarlierVisitIsEnoughToBounce)
+{
+    BlockCase<double> made = falling_ball(3, 1);
+    made.sweep(solve_kernels<double>(), plain_visit<double>());
+    // By the last visit it is on its way already.
+    made.rows.bodies[1].motion[2] = 1;
+    made.sweep(solve_kernels<double>(), plain_visit<double>());
+    EXPECT_GT(made.rows.bounces[testing::kFirstPoint].greatest.at[0], 5);
+    EXPECT_LT(made.point(0).impulse.at[0], 5);
+    made.restitute(solve_kernels<double>(), 0.5, plain_visit<double>());
+    EXPECT_NEAR(made.rows.bodies[1].motion[2], 3, 1e-12);
+}
+
+// A ball that has rolled half a turn lies as deep as it did; a box that tips does not.
+TEST(SweepCases, OnlyWhatLiesWithinARoundSideTurnsWithTheBody)
+{
+    for (const double round : {0.0, 0.06, 0.1}) {
+        BlockCase<double> made = falling_ball(3, 0);
+        made.contacts[0].round_b = round;
+        made.prepare(solve_kernels<double>());
+        const double angle = 0.7;
+        made.rows.bodies[1].drift[0] = 5;
+        made.rows.bodies[1].drift[2] = 0.002;
+        made.rows.bodies[1].drift[4] = std::sin(angle / 2);
+        made.rows.bodies[1].drift[7] = std::cos(angle / 2);
+        Visit<double> visit;
+        visit.inverse_substep = 1;
+        made.sweep(solve_kernels<double>(), visit);
+        // It may close what is open, and no more.
+        const double open = 0.002 + (0.1 - round) * (1 - std::cos(angle));
+        EXPECT_NEAR(made.rows.bodies[1].motion[2], -open, 1e-14) << round;
+    }
+}
+
+TEST(SweepCases, APointWithoutALeverSpinsNobodyWhoCannotBeMoved)
+{
+    // Next to below the axle of a wheel that is held there.
+    for (const double off : {0.0, 1e-4, 1e-3, 0.05}) {
+        BlockCase<double> made = falling_ball(3, 0);
+        made.rows.bodies[1].inertia[0] = 0;
+        made.rows.bodies[1].motion[4] = -1;
+        made.contacts[0].points[0].from_a = Vec3(0, off, 0);
+        made.prepare(solve_kernels<double>());
+        made.sweep(solve_kernels<double>(), plain_visit<double>());
+        EXPECT_LE(std::abs(made.rows.bodies[1].motion[4]), off > 0.02 ? 61.0 : 1.0) << off;
+        EXPECT_EQ(made.point(0).impulse.at[0] > 0, off > 0.02) << off;
+        EXPECT_EQ(made.rows.bodies[1].motion[2], -3);
+    }
+}
+
+// A box of 2 kg comes down on its face, its points in any order.
+BlockCase<double> box_on_its_face(double speed, bool turned)
+{
+    BlockCase<double> made = falling_ball(speed, 0);
+    testing::make_room(4, true, false, made);
+    made.block().b[0] = 1;
+    made.block().writes_b = 1;
+    Contact<double>& contact = made.contacts[0];
+    contact.count = 4;
+    for (int k = 0; k < 4; ++k) {
+        const int corner = turned ? 3 - k : k;
+        contact.points[static_cast<std::size_t>(k)].from_a =
+            Vec3(corner % 2 == 0 ? 0.1 : -0.1, corner < 2 ? 0.1 : -0.1, 0);
+    }
+    made.prepare(solve_kernels<double>());
+    return made;
+}
+
+TEST(SweepCases, AFaceThatComesDownFlatStaysFlatAfterOneVisit)
+{
+    for (const bool turned : {false, true}) {
+        BlockCase<double> made = box_on_its_face(1, turned);
+        Visit<double> visit = plain_visit<double>();
+        visit.push = true;
+        made.sweep(solve_kernels<double>(), visit);
+        for (int k = 4; k < 7; ++k) EXPECT_NEAR(made.rows.bodies[1].motion[k], 0, 1e-14);
+        // A face gives way by a little, and the sweeps after it take most of that away.
+        EXPECT_NEAR(made.rows.bodies[1].motion[2], 0, 0.02);
+        for (int k = 0; k < 4; ++k) EXPECT_NEAR(made.point(k).impulse.at[0], 0.5, 0.01);
+    }
+}
+
+// Sizes from a micrometre to a thousand kilometres: the same numbers, in other units.
+TEST(SweepCases, FrictionHoldsItsConeAtEverySizeInFloat)
+{
+    for (const double size : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+        const double mass = 1000 * size * size * size;
+        // It slides across at a meter a second and presses with a tenth of that.
+        BlockCase<float> made = on_one_point<float>(Vec3(1, 0, -0.1), 0, {0.5f, 0, 0, {}, 0});
+        for (float& number : made.rows.bodies[1].inertia) number = 0;
+        made.rows.bodies[1].inertia[0] = static_cast<float>(1 / mass);
+        made.prepare(solve_kernels<float>());
+        made.sweep(solve_kernels<float>(), plain_visit<float>());
+        EXPECT_NEAR(made.rows.bodies[1].motion[2], 0, 1e-6) << size << " m";
+        EXPECT_NEAR(made.rows.bodies[1].motion[0], 0.95, 1e-6) << size << " m slides";
+
+        made.rows.bodies[1].motion[0] = 0.02f;
+        made.rows.bodies[1].motion[2] = -0.1f;
+        for (auto& impulse : made.block().friction_impulse) impulse.at[0] = 0;
+        made.point(0).impulse.at[0] = 0;
+        made.sweep(solve_kernels<float>(), plain_visit<float>());
+        EXPECT_NEAR(made.rows.bodies[1].motion[0], 0, 1e-7) << size << " m sticks";
+    }
+}
+
+}  // namespace
+}  // namespace throng

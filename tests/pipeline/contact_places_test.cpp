@@ -1,0 +1,163 @@
+// Contact places: a contact stays where it is while its pair touches; no place is lost or had
+// twice.
+#include "pipeline/stages.hpp"
+#include "pipeline/world_state.hpp"
+#include "scenes/catalog.hpp"
+#include "tests/pipeline/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace throng {
+namespace {
+
+template <class Real>
+ConvexContacts<Real>& contacts_of(World& world)
+{
+    return std::get<ConvexContacts<Real>>(std::get<Step<Real>>(world.state().step).data);
+}
+
+// Looks at a world step after step.
+template <class Real>
+class Places {
+public:
+    explicit Places(World& world) : world_(world) { }
+
+    /// After a step.
+    void check()
+    {
+        const auto& contacts = contacts_of<Real>(world_);
+        const auto& keys = world_.state().get<Pairs>().keys;
+        ASSERT_EQ(contacts.of_pair.size(), keys.size());
+        std::vector<int> holders(contacts.contacts.size(), 0);
+        std::map<PairKey, std::uint32_t> now;
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            const std::uint32_t place = contacts.of_pair[i].contact;
+            ASSERT_EQ(contacts.at(i) == nullptr, place == PairState::kApart);
+            if (place == PairState::kApart) continue;
+            ASSERT_LT(place, contacts.contacts.size());
+            ++holders[place];
+            ASSERT_GE(contacts.contacts[place].count, 1);
+            ASSERT_LE(contacts.contacts[place].count, 4);
+            now[keys[i]] = place;
+            // Whoever touches on keeps its place.
+            const auto before = last_.find(keys[i]);
+            if (before != last_.end()) {
+                ASSERT_EQ(place, before->second);
+                ++kept;
+            } else {
+                ++begun;
+            }
+        }
+        for (const auto& [key, place] : last_) ended += now.contains(key) ? 0 : 1;
+        ASSERT_EQ(contacts.contacts.size() - contacts.free.size(), now.size());
+        for (const std::uint32_t place : contacts.free) ++holders.at(place);
+        for (const int times : holders) ASSERT_EQ(times, 1);
+        // A place is made only where none is free.
+        most_ = std::max(most_, now.size());
+        ASSERT_EQ(contacts.contacts.size(), most_);
+        last_ = std::move(now);
+    }
+
+    std::size_t kept = 0, begun = 0, ended = 0;
+
+private:
+    World& world_;
+    std::map<PairKey, std::uint32_t> last_;
+    std::size_t most_ = 0;
+};
+
+TEST(ContactPlaces, NoneLeaksWhileATumblerTurns)
+{
+    for (const int threads : {1, 2}) {
+        World world(make_scene("tumbler", 100), threads);
+        Places<float> places(world);
+        for (int step = 0; step < 200; ++step) {
+            world.step();
+            ASSERT_NO_FATAL_FAILURE(places.check()) << "step " << step;
+        }
+        // Enough came and went for this to say something.
+        EXPECT_GT(places.begun, 300u);
+        EXPECT_GT(places.ended, 100u);
+        EXPECT_GT(places.kept, 10000u);
+    }
+}
+
+TEST(ContactPlaces, NoneLeaksWhenBodiesAreTakenAwayOrFallAsleep)
+{
+    Scene scene = make_scene("pile", 100);
+    scene.settings.precision = Precision::double_;
+    World world(scene);
+    Places<double> places(world);
+    std::size_t next = 0;
+    for (int step = 0; step < 300; ++step) {
+        if (step % 10 == 9) {
+            const std::vector<BodyId> bodies = world.bodies();
+            next = (next + 7) % bodies.size();
+            if (world.motion(bodies[next]) == Motion::dynamic)
+                world.remove(std::span(bodies).subspan(next, 1));
+        }
+        world.step();
+        ASSERT_NO_FATAL_FAILURE(places.check()) << "step " << step;
+    }
+    EXPECT_LT(world.body_count(), 90u);
+    EXPECT_GT(places.ended, 50u);
+}
+
+// Balls of radius a half in a row.
+struct Row {
+    World world;
+    std::vector<BodyId> balls;
+
+    explicit Row(std::initializer_list<double> places) : world(Settings{})
+    {
+        testing::SceneOf made;
+        for (const double x : places) made.ball(0.5, Vec3(x, 0, 0));
+        balls = world.add(made.scene);
+    }
+    ConvexContacts<float>& contacts() { return contacts_of<float>(world); }
+    void put(std::size_t ball, double x)
+    {
+        world.set_pose(balls[ball], {Vec3(x, 0, 0), Quat::Identity()});
+        world.set_velocity(balls[ball], Vec3::Zero(), Vec3::Zero());
+    }
+    float impulse(std::size_t place) { return contacts().contacts[place].points[0].impulse; }
+};
+
+TEST(ContactPlaces, AFreePlaceIsTakenAgainWithoutWhatWasInIt)
+{
+    Row row({0, 0.98, 10, 10.98, 20});
+    row.world.step();
+    ASSERT_EQ(row.contacts().contacts.size(), 2u);
+    // The first pair parts, and others meet: just, so that nothing pushes.
+    row.put(1, 5);
+    row.put(4, -0.9999999);
+    row.contacts().contacts[0].points[0].impulse = 1e6f;
+    row.world.step();
+    EXPECT_EQ(row.contacts().contacts.size(), 2u);
+    EXPECT_EQ(row.contacts().free.size(), 0u);
+    EXPECT_LT(row.impulse(0), 1);
+    EXPECT_LT(testing::greatest_speed(row.world), 3.1);
+}
+
+TEST(ContactPlaces, APairThatComesBackBeginsAnew)
+{
+    Row row({0, 0.98});
+    row.world.step();
+    row.contacts().contacts[0].points[0].impulse = 1e6f;
+    // Apart, but near enough to stay a pair.
+    row.put(1, 1.04);
+    row.put(0, 0);
+    row.world.step();
+    ASSERT_EQ(row.world.state().get<Pairs>().keys.size(), 1u);
+    ASSERT_EQ(row.contacts().free.size(), 1u);
+    row.put(1, 0.98);
+    row.put(0, 0);
+    row.world.step();
+    EXPECT_EQ(row.contacts().free.size(), 0u);
+    EXPECT_LT(testing::greatest_speed(row.world), 3.1);
+}
+
+}  // namespace
+}  // namespace throng
