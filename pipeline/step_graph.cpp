@@ -26,6 +26,15 @@ std::vector<std::pair<std::size_t, std::size_t>> waits(const std::vector<Stage<R
 template <class Real>
 void StepGraph<Real>::run_stage(std::size_t place)
 {
+    if (watch_ == nullptr)
+        time_stage(place);
+    else
+        watch_->run_stage(stages_[place].name, [this, place] { time_stage(place); });
+}
+
+template <class Real>
+void StepGraph<Real>::time_stage(std::size_t place)
+{
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     stages_[place].run(*data_);
@@ -42,6 +51,8 @@ template std::vector<std::pair<std::size_t, std::size_t>> waits(const std::vecto
 template std::vector<std::pair<std::size_t, std::size_t>> waits(const std::vector<Stage<double>>&);
 template void StepGraph<float>::run_stage(std::size_t);
 template void StepGraph<double>::run_stage(std::size_t);
+template void StepGraph<float>::time_stage(std::size_t);
+template void StepGraph<double>::time_stage(std::size_t);
 template void StepGraph<float>::run_in_order();
 template void StepGraph<double>::run_in_order();
 

@@ -6,7 +6,9 @@
 
 #include "pipeline/stage.hpp"
 
+#include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 namespace throng {
@@ -17,6 +19,15 @@ std::vector<std::pair<std::size_t, std::size_t>> waits(const std::vector<Stage<R
 
 /// Time spent in each stage of the graph in the last run, ms, in its order.
 using StageTimes = std::vector<double>;
+
+/// Somebody who sees the stages of a step as they run: a trace, or a benchmark that empties the
+/// caches before each.
+class StepWatch {
+public:
+    virtual ~StepWatch() = default;
+    /// Calls stage() once, on the thread that it is called on. Stages may run at the same time.
+    virtual void run_stage(std::string_view name, const std::function<void()>& stage) = 0;
+};
 
 /// The stages of a scene, ready to run. Build and run it inside the thread pool it is to use.
 template <class Real>
@@ -32,16 +43,24 @@ public:
     /// The same, top to bottom on the calling thread: the reference.
     void run_in_order();
 
+    /// From now on somebody watches; null for nobody.
+    void watch(StepWatch* watch) { watch_ = watch; }
+
+    /// Nothing was run: no stage took any time.
+    void rest() { times_.assign(times_.size(), 0.0); }
+
     const std::vector<Stage<Real>>& stages() const { return stages_; }
     const StageTimes& times() const { return times_; }
 
 private:
     struct Nodes;
     void run_stage(std::size_t place);
+    void time_stage(std::size_t place);
 
     std::vector<Stage<Real>> stages_;
     StepData<Real>* data_;
     StageTimes times_;
+    StepWatch* watch_ = nullptr;
     std::unique_ptr<Nodes> nodes_;
 };
 

@@ -1,5 +1,6 @@
 #include "pipeline/world.hpp"
 
+#include "broadphase/margins.hpp"
 #include "kernels/solve/sweep.hpp"
 #include "pipeline/scene_check.hpp"
 #include "pipeline/step_table.hpp"
@@ -80,10 +81,53 @@ void World::State::choose_broad_phase()
     for (std::uint32_t i = 0; i < colliders.size(); ++i) bounds.touched.push_back(i);
 }
 
+bool World::State::nothing_to_do() const
+{
+    const Conditions& conditions = get<Conditions>();
+    return idle && !effects_stale && !movers_stale && get<Bounds>().touched.empty()
+        && conditions.last_substep == conditions.substep();
+}
+
+void World::State::follow_step()
+{
+    Trouble& trouble = get<Trouble>();
+    Rest& rest = get<Rest>();
+    if (!trouble.quarantined.empty() || !rest.awoken.empty() || !rest.rested.empty())
+        follow_movers(rest.awoken, get<BodyStates>());
+    const Movers& movers = get<BodyStates>().movers;
+    get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size(), movers.dynamic.size());
+    if (trouble.quarantined.empty()) return;
+    report.bodies_quarantined += trouble.quarantined.size();
+    for (const std::uint32_t body : trouble.quarantined) touch(body);
+    effects_stale = true;
+    trouble.quarantined.clear();
+}
+
+void World::State::report_state()
+{
+    report.pairs = get<Pairs>().keys.size();
+    const auto& active = get<ActiveContacts>().entries;
+    report.manifolds = active.size();
+    report.contacts = 0;
+    for (const auto& entry : active) report.contacts += entry.points;
+    report.islands = get<Islands>().size();
+    report.colors = 0;
+    for (const Batch& batch : get<Layout>().batches)
+        report.colors = std::max<std::size_t>(report.colors, batch.colors);
+    report.bodies_awake = get<BodyStates>().movers.dynamic.size();
+}
+
 void World::State::refresh()
 {
-    if (!effects_stale) return;
+    if (effects_stale) refresh_effects();
+    if (movers_stale) list_movers(get<BodyStates>());
+    movers_stale = false;
+}
+
+void World::State::refresh_effects()
+{
     effects_stale = false;
+    movers_stale = true;
     Conditions& conditions = get<Conditions>();
     const Set<Effect> before = conditions.effects;
     effects = find_effects({conditions, get<BodyStates>(), get<Poses>(), get<Velocities>(),
@@ -131,45 +175,33 @@ void World::step(int steps)
     using Clock = std::chrono::steady_clock;
     for (int i = 0; i < steps; ++i) {
         const auto begin = Clock::now();
-        state.refresh();
-        state.pool.run([&](std::size_t, std::size_t, std::size_t) {
-            std::visit(
-                [&](auto& chosen) {
-                    if (state.in_order)
-                        chosen.graph->run_in_order();
-                    else
-                        chosen.graph->run();
-                },
-                state.step);
-        });
-        Conditions& conditions = state.get<Conditions>();
-        conditions.last_substep = conditions.substep();
-        Trouble& trouble = state.get<Trouble>();
-        StepReport& report = state.report;
-        ++report.step;
-        if (!trouble.quarantined.empty()) {
-            report.bodies_quarantined += trouble.quarantined.size();
-            for (const std::uint32_t body : trouble.quarantined) state.touch(body);
-            state.effects_stale = true;
-            trouble.quarantined.clear();
+        if (state.nothing_to_do()) {
+            std::visit([](auto& chosen) { chosen.graph->rest(); }, state.step);
+        } else {
+            state.refresh();
+            state.idle =
+                state.get<BodyStates>().movers.none() && state.get<Bounds>().touched.empty();
+            state.pool.run([&](std::size_t, std::size_t, std::size_t) {
+                std::visit(
+                    [&](auto& chosen) {
+                        chosen.graph->watch(state.watch);
+                        if (state.in_order)
+                            chosen.graph->run_in_order();
+                        else
+                            chosen.graph->run();
+                    },
+                    state.step);
+            });
+            Conditions& conditions = state.get<Conditions>();
+            conditions.last_substep = conditions.substep();
+            state.report.contacts_dropped += state.get<Trouble>().contacts_dropped;
+            state.follow_step();
         }
-        report.contacts_dropped += trouble.contacts_dropped;
-        report.time_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+        ++state.report.step;
+        state.report.time_ms =
+            std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     }
-    StepReport& report = state.report;
-    report.pairs = state.get<Pairs>().keys.size();
-    const auto& active = state.get<ActiveContacts>().entries;
-    report.manifolds = active.size();
-    report.contacts = 0;
-    for (const auto& entry : active) report.contacts += entry.points;
-    report.islands = state.get<Islands>().size();
-    report.colors = 0;
-    for (const Batch& batch : state.get<Layout>().batches)
-        report.colors = std::max<std::size_t>(report.colors, batch.colors);
-    const BodyStates& states = state.get<BodyStates>();
-    report.bodies_awake = 0;
-    for (std::size_t body = 0; body < states.kind.size(); ++body)
-        report.bodies_awake += states.dynamic(body) && states.moves(body) ? 1 : 0;
+    state.report_state();
 }
 
 const Settings& World::settings() const { return state_->get<Conditions>().settings; }
@@ -285,7 +317,7 @@ Vec3 World::contact_force(BodyId body) const
                                    float, double>;
             const auto& convex = std::get<ConvexContacts<Real>>(data);
             for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
-                if (convex.of_pair[i].count > 0) add(i, convex.of_pair[i]);
+                if (const Contact<Real>* contact = convex.at(i)) add(i, *contact);
             for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
                 if (entry.contact.count > 0) add(entry.pair, entry.contact);
         },

@@ -34,7 +34,10 @@ struct World::State {
     Effects effects;
     Requests requests;
     bool effects_stale = true;
+    bool movers_stale = true;  // somebody awoke between steps
+    bool idle = false;         // the last step found nobody awake and left all as it was
     bool in_order = false;
+    StepWatch* watch = nullptr;  // sees the stages run; null for nobody
     StepReport report;
 
     // By body.
@@ -74,8 +77,15 @@ struct World::State {
     /// can hold it is quarantined.
     void set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular);
     void quarantine(std::uint32_t body);
-    /// Effects and graph, brought up to date.
+    /// Effects, graph and the list of movers, brought up to date.
     void refresh();
+    void refresh_effects();
+    /// True where a step would change nothing: nobody is awake, and nothing was touched.
+    bool nothing_to_do() const;
+    /// After a step: who fell asleep, who awoke, who was quarantined.
+    void follow_step();
+    /// The report on the state that the last step left.
+    void report_state();
     /// Empties what no stage writes any more, and wakes all where nobody may sleep.
     void empty_unused();
     void choose_broad_phase();

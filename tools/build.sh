@@ -4,6 +4,7 @@
 
 build_packages=(g++ cmake ninja-build ccache libtbb-dev libeigen3-dev libembree-dev libhdf5-dev)
 test_packages=(libgtest-dev python3)
+peer_packages=(libbullet-dev libode-dev)  # used where they are, never installed
 check_packages=(clang-14 clang-format-14 clang-tidy-14 libbenchmark-dev)
 
 say() { printf 'throng: %s\n' "$*" >&2; }

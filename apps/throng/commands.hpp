@@ -21,6 +21,6 @@ struct Command {
     void (*more_help)(std::ostream& out) = nullptr;  // what follows the options; may be null
 };
 
-extern const Command kRun, kExplain, kScene, kCases;
+extern const Command kRun, kExplain, kScene, kCases, kBench;
 
 }  // namespace throng

@@ -12,7 +12,7 @@
 namespace throng {
 namespace {
 
-const Command* const kCommands[] = {&kRun, &kExplain, &kScene, &kCases};
+const Command* const kCommands[] = {&kRun, &kExplain, &kScene, &kCases, &kBench};
 
 void print_help(std::ostream& out)
 {

@@ -29,27 +29,43 @@ Progress::Progress(std::int64_t steps, bool wanted)
       last_(begin_)
 { }
 
-Progress::~Progress()
+Progress::~Progress() { clear(); }
+
+void Progress::clear()
 {
     if (shown_) std::fputs("\r\x1b[K", stderr);
+    shown_ = false;
+}
+
+bool Progress::is_due(std::int64_t done)
+{
+    if (!on_ || done == 0) return false;
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::milliseconds(100)) return false;
+    last_ = now;
+    return true;
 }
 
 void Progress::show(std::int64_t done, std::size_t bodies_awake)
 {
-    if (!on_ || done == 0) return;
-    const auto now = Clock::now();
-    // Ten times a second is as much as an eye takes in.
-    if (now - last_ < std::chrono::milliseconds(100)) return;
-    last_ = now;
-    const double seconds = std::chrono::duration<double>(now - begin_).count();
+    if (is_due(done)) write(done, std::to_string(bodies_awake) + " awake");
+}
+
+void Progress::show(std::int64_t done, const std::string& note)
+{
+    if (is_due(done)) write(done, note);
+}
+
+void Progress::write(std::int64_t done, const std::string& note)
+{
+    const double seconds = std::chrono::duration<double>(last_ - begin_).count();
     const double each = seconds / static_cast<double>(done);
     const double part = static_cast<double>(done) / static_cast<double>(steps_);
     const auto filled = static_cast<std::size_t>(part * kWidth);
     const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
-    std::fprintf(stderr, "\r\x1b[K[%s] %lld/%lld steps, %.3g ms/step, %s left, %zu awake",
-                 bar.c_str(), static_cast<long long>(done), static_cast<long long>(steps_),
-                 each * 1e3, duration_text(each * static_cast<double>(steps_ - done)).c_str(),
-                 bodies_awake);
+    std::fprintf(stderr, "\r\x1b[K[%s] %lld/%lld steps, %.3g ms/step, %s left, %s", bar.c_str(),
+                 static_cast<long long>(done), static_cast<long long>(steps_), each * 1e3,
+                 duration_text(each * static_cast<double>(steps_ - done)).c_str(), note.c_str());
     std::fflush(stderr);
     shown_ = true;
 }

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 namespace throng {
 
@@ -16,8 +17,16 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     void show(std::int64_t done, std::size_t bodies_awake);
+    /// The note says what is at work.
+    void show(std::int64_t done, const std::string& note);
+    /// Takes its line away until there is more to show, so that something else can be written.
+    void clear();
 
 private:
+    /// Whether it is time to show something; the eye takes in no more than ten a second.
+    bool is_due(std::int64_t done);
+    void write(std::int64_t done, const std::string& note);
+
     using Clock = std::chrono::steady_clock;
     std::int64_t steps_ = 0;
     bool on_ = false, shown_ = false;

@@ -5,6 +5,7 @@
 #include "apps/throng/progress.hpp"
 #include "apps/throng/run_stats.hpp"
 #include "apps/throng/scene_argument.hpp"
+#include "apps/throng/trace_option.hpp"
 #include "pipeline/final_csv.hpp"
 #include "pipeline/run_file.hpp"
 
@@ -30,6 +31,8 @@ constexpr Option kOptions[] = {
     {"--every", "K",
      "steps from one frame of --out to the next (default: what keeps 600 frames or "
      "256 MB before compression)"},
+    kTraceOption,
+    kTraceStepsOption,
     {"--quiet", "", "no progress, warnings or summary"},
 };
 
@@ -92,7 +95,8 @@ private:
     std::optional<RunFile> writer_;
 };
 
-StepTimes run_steps(World& world, std::int64_t steps, Frames& frames, bool quiet)
+StepTimes
+run_steps(World& world, std::int64_t steps, Frames& frames, TraceOption& trace, bool quiet)
 {
     using Clock = std::chrono::steady_clock;
     StepTimes times;
@@ -100,9 +104,11 @@ StepTimes run_steps(World& world, std::int64_t steps, Frames& frames, bool quiet
     std::int64_t done = 0;
     frames.step_done(0, false);
     while (done < steps && !interrupted()) {
+        trace.begin_step(static_cast<std::uint64_t>(done) + 1);
         const auto begin = Clock::now();
         world.step();
         const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
+        trace.end_step();
         times.add(taken.count(), world.stages());
         frames.step_done(++done, false);
         progress.show(done, world.report().bodies_awake);
@@ -144,11 +150,17 @@ int run(const Options& options)
     OutputFile stats_file("--stats", options.text("--stats"));
     OutputFile final_file("--final", options.text("--final"));
     OutputFile run_file("--out", options.text("--out"));
+    TraceOption trace(options);
     for (const OutputFile* file : {&stats_file, &final_file, &run_file})
         refuse_same_file(*file, argument.file, "the scene");
+    refuse_same_file(trace.file(), argument.file, "the scene");
     refuse_same_file(final_file, stats_file.path(), "--stats");
     refuse_same_file(run_file, stats_file.path(), "--stats");
     refuse_same_file(run_file, final_file.path(), "--final");
+    refuse_same_file(trace.file(), stats_file.path(), "--stats");
+    refuse_same_file(trace.file(), final_file.path(), "--final");
+    refuse_same_file(trace.file(), run_file.path(), "--out");
+    trace.watch(world);
     if (!quiet) warn(argument, world);
 
     const std::int64_t every =
@@ -156,7 +168,7 @@ int run(const Options& options)
     StepTimes times = [&] {
         try {
             Frames frames(run_file, argument, world, every);
-            return run_steps(world, steps, frames, quiet);
+            return run_steps(world, steps, frames, trace, quiet);
         } catch (const RunFileError& error) {
             throw BadInput("--out: " + run_file.path() + ": " + error.what());
         }
@@ -168,8 +180,9 @@ int run(const Options& options)
     if (stats_file.asked_for()) write_stats_json(stats, stats_file.stream());
     if (final_file.asked_for()) write_final_csv(world, final_file.stream());
     for (OutputFile* file : {&stats_file, &final_file, &run_file}) file->keep();
+    trace.write(world, argument.label);
     // Whoever has a file sent to the standard output reads it from there.
-    if (!quiet && !stats_file.is_stdout() && !final_file.is_stdout())
+    if (!quiet && !stats_file.is_stdout() && !final_file.is_stdout() && !trace.file().is_stdout())
         write_summary(stats, std::cout);
     if (stats.bodies_quarantined > 0) name_quarantined(world);
     if (interrupted()) return kInterrupted;

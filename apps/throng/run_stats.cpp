@@ -1,6 +1,7 @@
 // Run stats: what a run has to tell, as JSON for programs and as lines for people.
 #include "apps/throng/run_stats.hpp"
 
+#include "apps/throng/json_lines.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/names.hpp"
 #include "scenes/json.hpp"
@@ -12,38 +13,6 @@
 
 namespace throng {
 namespace {
-
-/// A number as JSON has it; what is not finite has no number there.
-std::string json_number(double number)
-{
-    return std::isfinite(number) ? number_text(number) : "null";
-}
-
-/// Writes the members of an object, one a line.
-class JsonLines {
-public:
-    explicit JsonLines(std::ostream& out) : out_(out) { out_ << '{'; }
-    void add(std::string_view key, const std::string& json)
-    {
-        out_ << (first_ ? "\n  " : ",\n  ") << json_string(key) << ": " << json;
-        first_ = false;
-    }
-    void add(std::string_view key, double number) { add(key, json_number(number)); }
-    void add(std::string_view key, std::uint64_t number) { add(key, std::to_string(number)); }
-    void end() { out_ << "\n}\n"; }
-
-private:
-    std::ostream& out_;
-    bool first_ = true;
-};
-
-template <class List, class Text>
-std::string joined(const List& list, std::string_view between, const Text& text)
-{
-    std::string all;
-    for (const auto& item : list) all += (all.empty() ? "" : std::string(between)) + text(item);
-    return all;
-}
 
 /// Dials as a scene file states them: numbers as numbers, all else as text.
 std::string dials_json(const Settings& settings)

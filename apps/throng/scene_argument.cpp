@@ -51,15 +51,19 @@ SceneArgument read_scene_argument(const Options& options)
         argument.seed = seed_asked(options);
         argument.scene = parsed.entry->make(parsed.size, argument.seed);
     }
+    set_dials(argument.scene, options);
+    return argument;
+}
+
+void set_dials(Scene& scene, const Options& options)
+{
     for (const std::string_view setting : options.all("--set")) {
         const std::size_t equals = setting.find('=');
         if (equals == std::string_view::npos)
             throw BadInput("--set: wanted DIAL=VALUE, not " + in_quotes(setting));
-        set_from_line(argument.scene, "--set", setting.substr(0, equals),
-                      setting.substr(equals + 1));
+        set_from_line(scene, "--set", setting.substr(0, equals), setting.substr(equals + 1));
     }
-    if (options.has("--dt")) set_from_line(argument.scene, "--dt", "dt", options.text("--dt"));
-    return argument;
+    if (options.has("--dt")) set_from_line(scene, "--dt", "dt", options.text("--dt"));
 }
 
 World make_world(const SceneArgument& argument, int threads)

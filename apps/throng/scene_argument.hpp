@@ -31,6 +31,9 @@ inline constexpr Option kThreadsOption = {
 /// Throws SceneError and BadInput.
 SceneArgument read_scene_argument(const Options& options);
 
+/// Sets the dials that --set and --dt of the line name. Throws BadInput.
+void set_dials(Scene& scene, const Options& options);
+
 /// The world of the scene. Throws BadInput when it is impossible.
 World make_world(const SceneArgument& argument, int threads);
 

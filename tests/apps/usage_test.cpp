@@ -16,7 +16,7 @@ TEST(Usage, HelpAndVersionGoToStandardOutput)
     const Outcome help = run_throng({"--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_EQ(help.err, "");
-    for (const char* name : {"run", "explain", "scene"}) {
+    for (const char* name : {"run", "explain", "scene", "bench"}) {
         EXPECT_NE(help.out.find(std::string("\n  ") + name + ' '), std::string::npos) << name;
         const Outcome more = run_throng({name, "--help"});
         EXPECT_EQ(more.code, 0);
@@ -79,6 +79,25 @@ TEST(Usage, WrongWordsAreRefusedWithWhatWasWanted)
         {{"run", "pile:-1"}, "give a whole number from 1"},
         {{"run", "pilr:10"}, "did you mean \"pile\"?"},
         {{"run", folder / "none.json"}, "error:"},
+        {{"run", "pile:10", "--trace-steps", "3"}, "give --trace as well"},
+        {{"run", "pile:10", "--trace", folder / "no/t.json"}, "--trace: "},
+        {{"run", "pile:10", "--trace", folder / "t", "--trace-steps", "0"}, "from 1 to 1000"},
+        {{"run", "pile:10", "--trace", folder / "t", "--stats", folder / "t"}, "--trace: "},
+        {{"bench", "pile"}, "one word too many"},
+        {{"bench", "--scenes", "pilr"}, "did you mean \"pile\"?"},
+        {{"bench", "--scenes", "pile,,wall"}, "no empty part"},
+        {{"bench", "--scenes", "pile,pile"}, "given twice"},
+        {{"bench", "--scenes", "pile:10"}, "sizes go to --sizes"},
+        {{"bench", "--sizes", "many"}, "--sizes: wanted a whole number"},
+        {{"bench", "--scenes", "stacks", "--sizes", "5"}, "stacks has sizes from 10 to"},
+        {{"bench", "--threads", "1,0"}, "--threads: wanted a whole number from 1 to 1024"},
+        {{"bench", "--steps", "0"}, "wanted a whole number from 1 to"},
+        {{"bench", "--repeat", "0"}, "wanted a whole number from 1 to"},
+        {{"bench", "--max-seconds", "soon"}, "--max-seconds: wanted a time above 0"},
+        {{"bench", "--peers", "havok"}, "wanted bullet or ode"},
+        {{"bench", "--set", "substeps=0"}, "from 1 to 1000"},
+        {{"bench", "--json", folder / "no/b.json"}, "--json: "},
+        {{"bench", "--trace", folder / "t.json"}, "--trace: is of one run"},
         {{"scene", "pile", "many"}, "give a whole number"},
         {{"scene", "--seed", "3"}, "wanted the name of a scene"},
         {{"scene", "pile:3", "4"}, "given twice"},

@@ -1,0 +1,98 @@
+// Bench: times catalogue scenes of several sizes on several numbers of threads, beside other
+// engines.
+#include "apps/throng/bench/peers.hpp"
+#include "apps/throng/bench/report.hpp"
+#include "apps/throng/commands.hpp"
+#include "apps/throng/interrupt.hpp"
+#include "apps/throng/output_file.hpp"
+#include "apps/throng/scene_argument.hpp"
+#include "apps/throng/trace_option.hpp"
+
+#include <iostream>
+
+namespace throng {
+namespace {
+
+using bench::Case;
+using bench::EngineKind;
+using bench::Plan;
+
+std::vector<Option> all_options()
+{
+    std::vector<Option> options(bench::plan_options().begin(), bench::plan_options().end());
+    options.push_back({"--json", "FILE.json", "every figure, and the time of every step"});
+    options.push_back(kTraceOption);
+    options.push_back(kTraceStepsOption);
+    return options;
+}
+
+/// Throng on each number of threads, then the peers that are to be had; the plan's are those.
+std::vector<EngineKind> engines_of(Plan& plan, TraceOption* trace)
+{
+    std::vector<EngineKind> kinds;
+    for (const int threads : plan.threads) kinds.push_back(bench::throng_engine(threads, trace));
+    std::vector<EngineKind> peers = bench::peer_engines(plan.peers, plan.peers_asked_for);
+    plan.peers.clear();
+    for (EngineKind& peer : peers) {
+        plan.peers.push_back(peer.name);
+        kinds.push_back(std::move(peer));
+    }
+    return kinds;
+}
+
+int run_bench(const Options& options)
+{
+    Plan plan = bench::read_plan(options);
+    if (options.has("--trace") && plan.scenes.size() * plan.sizes.size() * plan.threads.size() != 1)
+        throw BadInput(
+            "--trace: is of one run; give one scene, one of --sizes and one of --threads");
+    Scene unused;
+    set_dials(unused, options);  // refused now rather than at the first scene
+    TraceOption trace(options);
+    const std::vector<EngineKind> kinds = engines_of(plan, trace.asked_for() ? &trace : nullptr);
+    note_interrupts();
+    OutputFile json("--json", options.text("--json"));
+    refuse_same_file(trace.file(), json.path(), "--json");
+    const bool tables = !json.is_stdout() && !trace.file().is_stdout();
+    if (tables) bench::print_heading(plan, std::cout);
+
+    const auto runs =
+        static_cast<std::int64_t>(plan.scenes.size() * plan.sizes.size() * kinds.size())
+        * plan.repeats;
+    Progress progress(runs * plan.steps, true);
+    std::int64_t steps_done = 0;
+    std::vector<Case> cases;
+    bool agree = true;
+    for (const CatalogEntry* entry : plan.scenes)
+        for (const int size : plan.sizes) {
+            if (interrupted()) break;
+            Scene scene = entry->make(size, plan.seed);
+            scene.settings.sleep = false;  // what has come to rest is to be timed, too
+            set_dials(scene, options);
+            cases.push_back(
+                bench::run_case(plan, *entry, size, scene, kinds, progress, steps_done));
+            progress.clear();
+            if (tables) bench::print_case(plan, cases.back(), std::cout);
+            agree = agree && bench::hashes_agree(cases.back());
+        }
+    if (tables) bench::print_growth(bench::growth_of(cases), std::cout);
+    if (json.asked_for()) bench::write_json(plan, cases, !interrupted(), json.stream());
+    json.keep();
+    if (interrupted()) return kInterrupted;
+    if (!agree) std::cerr << "error: runs of the same steps came to different states" << std::endl;
+    return agree ? kDone : kCaseFailed;
+}
+
+}  // namespace
+
+const Command kBench = {
+    {"bench", "", "Times scenes of the catalogue, and other engines on the same scenes.", 0, 0,
+     [] {
+         static const std::vector<Option> kOptions = all_options();
+         return std::span<const Option>(kOptions);
+     }()},
+    run_bench,
+    nullptr,
+};
+
+}  // namespace throng

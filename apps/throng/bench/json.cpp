@@ -1,0 +1,216 @@
+// JSON: a benchmark's figures for programs, the time of every step included.
+#include "scenes/json.hpp"
+
+#include "apps/throng/bench/report.hpp"
+#include "apps/throng/json_lines.hpp"
+#include "kernels/solve/sweep.hpp"
+#include "perf/budget.hpp"
+
+#include <fstream>
+#include <thread>
+
+namespace throng::bench {
+namespace {
+
+/// An object on one line.
+class Members {
+public:
+    Members& add(std::string_view key, const std::string& json)
+    {
+        text_ += (text_.empty() ? "{" : ", ") + json_string(key) + ": " + json;
+        return *this;
+    }
+    Members& add(std::string_view key, double number) { return add(key, json_number(number)); }
+    Members& add_text(std::string_view key, std::string_view text)
+    {
+        return add(key, json_string(text));
+    }
+    std::string text() const { return text_.empty() ? "{}" : text_ + '}'; }
+
+private:
+    std::string text_;
+};
+
+double number(std::size_t count) { return static_cast<double>(count); }
+
+template <class List, class Text>
+std::string array(const List& list, const Text& text, std::string_view between = ", ")
+{
+    return '[' + joined(list, between, text) + ']';
+}
+
+std::string numbers(const std::vector<double>& list) { return array(list, json_number); }
+
+std::string json_of(const Spread& spread)
+{
+    return Members()
+        .add("median", spread.median)
+        .add("least", spread.least)
+        .add("most", spread.most)
+        .text();
+}
+
+std::string json_of(const Quality& quality)
+{
+    return Members()
+        .add("mean_overlap_m", quality.mean_overlap)
+        .add("max_overlap_m", quality.greatest_overlap)
+        .add("overlapping_pairs", number(quality.overlapping_pairs))
+        .add("kinetic_energy_j_per_body", quality.kinetic_energy)
+        .add("mean_height_m", quality.mean_height)
+        .text();
+}
+
+std::string json_of(const Comparison& other)
+{
+    return Members()
+        .add_text("engine", other.engine)
+        .add("threads", other.threads)
+        .add("steps", number(other.steps))
+        .add("times_faster", json_of(other.times))
+        .add("times_faster_cpu", json_of(other.cpu_times))
+        .text();
+}
+
+std::string json_of(const Figure& figure)
+{
+    Members made;
+    made.add_text("engine", figure.engine)
+        .add_text("settings", figure.settings)
+        .add("threads", figure.threads)
+        .add("threads_used", figure.threads_met)
+        .add("steps", number(figure.steps))
+        .add("ms_mean", json_of(figure.ms_mean))
+        .add("spread", figure.ms_mean.relative())
+        .add("ms_median", figure.ms_median)
+        .add("ms_p99", figure.ms_p99)
+        .add("cpu_ms_mean", figure.cpu_ms)
+        .add("make_ms", figure.make_ms)
+        .add("ns_per_body", figure.ns_a_body)
+        .add("ns_per_contact", figure.ns_a_contact)
+        .add("contacts", figure.contacts)
+        .add("state_bytes_per_body", figure.state_bytes)
+        .add("heap_bytes_per_body", figure.heap_bytes)
+        .add("resident_bytes_per_body", figure.resident_bytes)
+        .add("quality", json_of(figure.quality))
+        .add_text("state_hash", figure.state_hash)
+        .add("against", array(figure.against, [](const Comparison& c) { return json_of(c); }));
+    if (!figure.stages.empty())
+        made.add("stages", array(figure.stages, [](const StageFigure& stage) {
+                     return Members()
+                         .add_text("name", stage.name)
+                         .add_text("part",
+                                   perf::kBudgetPartNames[static_cast<std::size_t>(
+                                       perf::part_of_stage(stage.name))])
+                         .add("ms_mean", stage.ms_mean)
+                         .add("ms_p99", stage.ms_p99)
+                         .text();
+                 }));
+    return made.text();
+}
+
+std::string json_of(const Run& run)
+{
+    Members made;
+    made.add_text("engine", run.engine)
+        .add("threads", run.threads)
+        .add("repeat", run.repeat)
+        .add_text("state_hash", run.state_hash)
+        .add("ms", numbers(run.ms))
+        .add("cpu_ms", numbers(run.cpu_ms))
+        .add("contacts",
+             array(run.contacts, [](std::size_t count) { return std::to_string(count); }));
+    return made.text();
+}
+
+std::string json_of(const Case& made)
+{
+    Members all;
+    all.add_text("scene", made.scene->name)
+        .add("size", made.size)
+        .add("bodies", number(made.bodies))
+        .add("bodies_dynamic", number(made.bodies_dynamic))
+        .add("complete", std::string(made.complete ? "true" : "false"))
+        .add("hashes_agree", std::string(hashes_agree(made) ? "true" : "false"));
+    const perf::Budget* const budget = perf::find_budget(made.scene->name);
+    if (budget != nullptr && made.size == perf::kBudgetSize) {
+        Members parts;
+        for (std::size_t i = 0; i < budget->ms.size(); ++i)
+            parts.add(perf::kBudgetPartNames[i], budget->ms[i]);
+        all.add("budget_ms", parts.add("sum", budget->sum_ms).text());
+    }
+    all.add("figures",
+            array(
+                figures_of(made), [](const Figure& figure) { return json_of(figure); }, ",\n    "))
+        .add("runs",
+             array(
+                 made.runs, [](const Run& run) { return json_of(run); }, ",\n    "));
+    return all.text();
+}
+
+std::string json_of(const Growth& growth)
+{
+    return Members()
+        .add_text("scene", growth.scene)
+        .add("threads", growth.threads)
+        .add("steps", number(growth.steps))
+        .add("bodies", array(growth.bodies, [](std::size_t n) { return std::to_string(n); }))
+        .add("ms_mean", numbers(growth.ms))
+        .add("exponent", growth.exponent)
+        .add("equal_state",
+             array(growth.steps_up,
+                   [](const Growth::EqualState& step) {
+                       return Members()
+                           .add("bodies_from", number(step.small))
+                           .add("bodies_to", number(step.large))
+                           .add_text("per", step.by_contact ? "contact" : "body")
+                           .add("ns_from", step.ns_small)
+                           .add("ns_to", step.ns_large)
+                           .add("ratio", step.ratio())
+                           .add("contacts_per_body_from", step.contacts_small)
+                           .add("contacts_per_body_to", step.contacts_large)
+                           .text();
+                   }))
+        .text();
+}
+
+std::string processor_name()
+{
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.starts_with("model name")) {
+            const std::size_t colon = line.find(": ");
+            if (colon != std::string::npos) return line.substr(colon + 2);
+        }
+    return "unknown";
+}
+
+}  // namespace
+
+void write_json(const Plan& plan, const std::vector<Case>& cases, bool complete, std::ostream& out)
+{
+    JsonLines json(out);
+    json.add("throng", json_string(THRONG_VERSION));
+    json.add("machine",
+             Members()
+                 .add_text("processor", processor_name())
+                 .add("cores", number(std::thread::hardware_concurrency()))
+                 .add_text("lanes", solve_kernels<float>().name)
+                 .text());
+    json.add("sleep", json_string("off"));
+    json.add("steps", static_cast<std::uint64_t>(plan.steps));
+    json.add("repeats", static_cast<std::uint64_t>(plan.repeats));
+    json.add("max_seconds", plan.max_seconds);
+    json.add("seed", plan.seed);
+    json.add("complete", std::string(complete ? "true" : "false"));
+    json.add("cases",
+             array(
+                 cases, [](const Case& made) { return "\n  " + json_of(made); }, ","));
+    json.add(
+        "growth",
+        array(
+            growth_of(cases), [](const Growth& growth) { return "\n  " + json_of(growth); }, ","));
+    json.end();
+}
+
+}  // namespace throng::bench

@@ -1,0 +1,17 @@
+// Peer scene: a world as numbers that another engine can take, and such an engine's state as a
+// world.
+#pragma once
+
+#include "apps/throng/bench/quality.hpp"
+#include "perf/peers/peer.hpp"
+
+namespace throng::bench {
+
+/// The bodies of a world as it is.
+perf::PeerScene peer_scene(const World& world, const Scene& scene);
+
+/// What a peer's state is worth: that of throng's world of the same scene with these poses and
+/// velocities. A state that is not finite counts as infinitely bad.
+Quality quality_of(const Scene& scene, const std::vector<perf::PeerState>& states);
+
+}  // namespace throng::bench

@@ -1,0 +1,74 @@
+// Peers: other engines, from the module beside the command.
+#include "apps/throng/bench/peers.hpp"
+
+#include "apps/throng/bench/peer_scene.hpp"
+#include "apps/throng/options.hpp"
+
+#include <dlfcn.h>
+#include <filesystem>
+#include <iostream>
+#include <string_view>
+
+namespace throng::bench {
+namespace {
+
+class PeerEngine final : public Engine {
+public:
+    PeerEngine(const perf::PeerEntry& entry, const Scene& scene) : scene_(scene)
+    {
+        const World world(scene);
+        dt_ = world.settings().dt;
+        peer_ = entry.make(peer_scene(world, scene));
+    }
+    void step() override { peer_->step(dt_); }
+    std::size_t contacts() const override { return peer_->contacts(); }
+    Quality judge() override { return quality_of(scene_, peer_->states()); }
+    std::string settings() const override { return peer_->settings(); }
+
+private:
+    const Scene& scene_;
+    double dt_ = 0;
+    std::unique_ptr<perf::Peer> peer_;
+};
+
+// What the module offers; null where there is none. It stays loaded for as long as the process.
+const perf::PeerEntry* load_peers()
+{
+    std::error_code trouble;
+    const auto self = std::filesystem::read_symlink("/proc/self/exe", trouble);
+    if (trouble) return nullptr;
+    const std::string path = (self.parent_path() / "throng_peers.so").string();
+    void* const module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (module == nullptr) return nullptr;
+    void* const door = ::dlsym(module, perf::kPeersSymbol);
+    return door == nullptr ? nullptr : reinterpret_cast<perf::PeersFunction>(door)();
+}
+
+}  // namespace
+
+std::vector<EngineKind> peer_engines(const std::vector<std::string>& names, bool asked_for)
+{
+    std::vector<EngineKind> kinds;
+    if (names.empty()) return kinds;
+    const perf::PeerEntry* const offered = load_peers();
+    for (const std::string& name : names) {
+        const perf::PeerEntry* entry = offered;
+        while (entry != nullptr && entry->name != nullptr && entry->name != name) ++entry;
+        if (entry == nullptr || entry->name == nullptr) {
+            if (!asked_for) {
+                std::cerr << "note: no " << name << " to compare with: lib" << name
+                          << "-dev was not there when throng was built\n";
+                continue;
+            }
+            throw BadInput("--peers: this build has no " + name
+                           + ", whose Debian package was not there; install it and build throng "
+                             "again, or leave it out");
+        }
+        kinds.push_back({name, 1, [entry](const Scene& scene) {
+                             return std::make_unique<PeerEngine>(*entry, scene);
+                         }});
+    }
+    return kinds;
+}
+
+}  // namespace throng::bench

@@ -1,0 +1,142 @@
+// Plan: what a benchmark is to run, as its options say.
+#include "apps/throng/bench/plan.hpp"
+
+#include "apps/throng/scene_argument.hpp"
+#include "pipeline/names.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace throng::bench {
+namespace {
+
+constexpr std::int64_t kStandardSteps = 200, kMostBenchSteps = 100'000;
+constexpr std::string_view kStandardScenes =
+    "pile,spheres,hulls,wall,pyramid,stacks,tumbler,crowd,sparse";
+constexpr std::string_view kStandardSizes = "1000,10000,100000";
+constexpr std::string_view kStandardSeconds = "20";
+constexpr std::string_view kKnownPeers[] = {"bullet", "ode"};
+
+constexpr Option kPlanOptions[] = {
+    {"--scenes", "A,B",
+     "scenes of the catalogue (default pile,spheres,hulls,wall,pyramid,stacks,tumbler,crowd,"
+     "sparse)"},
+    {"--sizes", "N,M", "sizes of each scene (default 1000,10000,100000)"},
+    {"--threads", "N,M", "numbers of threads, 1 to 1024 (default: 1 and all cores)"},
+    {"--steps", "N", "steps of each run, from 1; the same first steps for all (default 200)"},
+    {"--repeat", "K", "runs of each engine, from worlds made anew (default 2)"},
+    {"--max-seconds", "S",
+     "an engine stops a run after so long; what is compared is then the steps that both have done "
+     "(default 20)"},
+    {"--peers", "A,B",
+     "other engines to run in turn: bullet, ode, or none (default: those that were found when "
+     "throng was built)"},
+    kSeedOption,
+    kSetOption,
+};
+
+/// The parts of a list between commas. Throws BadInput for an empty one.
+std::vector<std::string_view> parts_of(std::string_view option, std::string_view text)
+{
+    std::vector<std::string_view> parts;
+    while (true) {
+        const std::size_t comma = text.find(',');
+        parts.push_back(text.substr(0, comma));
+        if (parts.back().empty())
+            throw BadInput(std::string(option) + ": wanted a list such as A,B, with no empty part");
+        if (comma == std::string_view::npos) return parts;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+std::string_view text_or(const Options& options, std::string_view name, std::string_view standard)
+{
+    return options.has(name) ? options.text(name) : standard;
+}
+
+std::vector<int> numbers_of(std::string_view option, std::string_view text, std::int64_t most)
+{
+    std::vector<int> numbers;
+    for (const std::string_view part : parts_of(option, text))
+        numbers.push_back(static_cast<int>(parse_whole(option, part, 1, most)));
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    return numbers;
+}
+
+std::vector<const CatalogEntry*> scenes_of(std::string_view text)
+{
+    std::vector<const CatalogEntry*> scenes;
+    for (const std::string_view part : parts_of("--scenes", text)) {
+        if (part.find(':') != std::string_view::npos)
+            throw BadInput("--scenes: wanted names alone, not " + in_quotes(part)
+                           + "; sizes go to --sizes");
+        const ParsedScene parsed = parse_scene(part);
+        if (parsed.entry == nullptr) throw BadInput("--scenes: " + parsed.error);
+        if (std::find(scenes.begin(), scenes.end(), parsed.entry) != scenes.end())
+            throw BadInput("--scenes: " + in_quotes(part) + " is given twice");
+        scenes.push_back(parsed.entry);
+    }
+    return scenes;
+}
+
+std::vector<std::string> peers_of(std::string_view text)
+{
+    std::vector<std::string> peers;
+    if (text == "none") return peers;
+    for (const std::string_view part : parts_of("--peers", text)) {
+        if (std::find(std::begin(kKnownPeers), std::end(kKnownPeers), part)
+            == std::end(kKnownPeers))
+            throw BadInput("--peers: wanted " + either_of(kKnownPeers)
+                           + ", some of them with commas between, or none; not " + in_quotes(part));
+        if (std::find(peers.begin(), peers.end(), part) == peers.end()) peers.emplace_back(part);
+    }
+    return peers;
+}
+
+std::string all_cores()
+{
+    const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+    return cores == 1 ? "1" : "1," + std::to_string(cores);
+}
+
+double seconds_of(std::string_view text)
+{
+    const double seconds = parse_number(text);
+    if (!(seconds > 0 && seconds <= 1e9))
+        throw BadInput("--max-seconds: wanted a time above 0, s, not " + in_quotes(text));
+    return seconds;
+}
+
+void check_sizes(const Plan& plan)
+{
+    for (const CatalogEntry* scene : plan.scenes)
+        for (const int size : plan.sizes)
+            if (size < scene->least || size > scene->most)
+                throw BadInput("--sizes: " + std::string(scene->name) + " has sizes from "
+                               + std::to_string(scene->least) + " to " + std::to_string(scene->most)
+                               + ", not " + std::to_string(size));
+}
+
+}  // namespace
+
+std::span<const Option> plan_options() { return kPlanOptions; }
+
+Plan read_plan(const Options& options)
+{
+    Plan plan;
+    plan.scenes = scenes_of(text_or(options, "--scenes", kStandardScenes));
+    plan.sizes = numbers_of("--sizes", text_or(options, "--sizes", kStandardSizes), 10'000'000);
+    plan.threads = numbers_of("--threads", text_or(options, "--threads", all_cores()), 1024);
+    plan.peers_asked_for = options.has("--peers");
+    plan.peers = peers_of(text_or(options, "--peers", "bullet,ode"));
+    plan.steps = options.whole("--steps", kStandardSteps, 1, kMostBenchSteps);
+    plan.repeats = static_cast<int>(options.whole("--repeat", 2, 1, 1000));
+    plan.max_seconds = seconds_of(text_or(options, "--max-seconds", kStandardSeconds));
+    plan.seed = seed_asked(options);
+    check_sizes(plan);
+    return plan;
+}
+
+}  // namespace throng::bench

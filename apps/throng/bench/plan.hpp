@@ -1,0 +1,29 @@
+// Plan: what a benchmark is to run, as its options say.
+#pragma once
+
+#include "apps/throng/options.hpp"
+#include "scenes/catalog.hpp"
+
+#include <string>
+#include <vector>
+
+namespace throng::bench {
+
+struct Plan {
+    std::vector<const CatalogEntry*> scenes;
+    std::vector<int> sizes, threads;  // ascending, each once
+    std::vector<std::string> peers;
+    bool peers_asked_for = false;  // by name; else those that are there
+    std::int64_t steps = 0;
+    int repeats = 0;
+    double max_seconds = 0;  // an engine may take in all for one scene of one size
+    std::uint64_t seed = 0;
+};
+
+/// The options that read_plan() reads.
+std::span<const Option> plan_options();
+
+/// Throws BadInput, which says what was wanted.
+Plan read_plan(const Options& options);
+
+}  // namespace throng::bench

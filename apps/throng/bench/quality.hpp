@@ -1,0 +1,18 @@
+// Quality: what a state is worth, whoever came to it.
+#pragma once
+
+#include "pipeline/world.hpp"
+
+namespace throng::bench {
+
+/// Measured from poses and velocities by the same geometry for everybody.
+struct Quality {
+    double mean_overlap = 0, greatest_overlap = 0;  // m, over pairs that overlap
+    std::size_t overlapping_pairs = 0;
+    double kinetic_energy = 0;  // J a dynamic body
+    double mean_height = 0;     // m, of dynamic bodies' centers of mass
+};
+
+Quality quality_of(const World& world);
+
+}  // namespace throng::bench

@@ -1,0 +1,33 @@
+// JSON lines: what the command writes for programs, put together from its members.
+#include "apps/throng/json_lines.hpp"
+
+#include "pipeline/names.hpp"
+#include "scenes/json.hpp"
+
+#include <cmath>
+
+namespace throng {
+
+std::string json_number(double number)
+{
+    return std::isfinite(number) ? number_text(number) : "null";
+}
+
+JsonLines::JsonLines(std::ostream& out) : out_(out) { out_ << '{'; }
+
+void JsonLines::add(std::string_view key, const std::string& json)
+{
+    out_ << (first_ ? "\n  " : ",\n  ") << json_string(key) << ": " << json;
+    first_ = false;
+}
+
+void JsonLines::add(std::string_view key, double number) { add(key, json_number(number)); }
+
+void JsonLines::add(std::string_view key, std::uint64_t number)
+{
+    add(key, std::to_string(number));
+}
+
+void JsonLines::end() { out_ << "\n}\n"; }
+
+}  // namespace throng
