@@ -86,7 +86,7 @@ Measures World::measure() const
         if (!states.dynamic(body)) continue;
         const Vec3& v = velocities.linear[body];
         const Vec3& w = velocities.angular[body];
-        const Vec3 spin = in_world_axes(masses.inertia[body], poses.orientation[body]) * w;
+        const Vec3 spin = in_world_axes(masses.inertia[body], poses.orientation[body]).matrix() * w;
         measures.kinetic_energy += 0.5 * (masses.mass[body] * v.squaredNorm() + w.dot(spin));
         measures.potential_energy -= masses.mass[body] * gravity().dot(poses.position[body]);
         measures.momentum += masses.mass[body] * v;
@@ -172,8 +172,8 @@ std::size_t World::memory_bytes() const
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             const auto& rows = std::get<Rows<Real>>(chosen.data);
             sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.merged, convex.of_pair,
-                         convex.before, convex.contacts, rows.blocks, rows.points, rows.bounces,
-                         rows.rollings, rows.bodies, rows.inertias);
+                         convex.before, convex.contacts, convex.moved, rows.blocks, rows.points,
+                         rows.bounces, rows.rollings, rows.bodies, rows.inertias);
         },
         state_->step);
     return sum;

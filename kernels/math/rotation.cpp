@@ -103,10 +103,21 @@ Quat turned(const Quat& orientation, const Vec3& angular_velocity, double time)
     return Quat(result.coeffs() / length);
 }
 
-Mat3 in_world_axes(const Sym3& local, const Quat& orientation)
+Sym3 in_world_axes(const Sym3& local, const Quat& orientation)
 {
-    const Mat3 axes = orientation.toRotationMatrix();
-    return axes * local.matrix() * axes.transpose();
+    const Mat3 r = orientation.toRotationMatrix();
+    const Sym3& s = local;
+    // Rows of r times s, then what each row of that has in common with rows of r.
+    double t[3][3];
+    for (int i = 0; i < 3; ++i) {
+        t[i][0] = r(i, 0) * s.xx + r(i, 1) * s.xy + r(i, 2) * s.xz;
+        t[i][1] = r(i, 0) * s.xy + r(i, 1) * s.yy + r(i, 2) * s.yz;
+        t[i][2] = r(i, 0) * s.xz + r(i, 1) * s.yz + r(i, 2) * s.zz;
+    }
+    const auto at = [&](int i, int k) {
+        return t[i][0] * r(k, 0) + t[i][1] * r(k, 1) + t[i][2] * r(k, 2);
+    };
+    return {at(0, 0), at(1, 1), at(2, 2), at(0, 1), at(0, 2), at(1, 2)};
 }
 
 Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,

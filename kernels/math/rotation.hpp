@@ -27,7 +27,7 @@ Quat exponential(const Vec3& turn);
 Quat turned(const Quat& orientation, const Vec3& angular_velocity, double time);
 
 /// An inertia tensor (or its inverse) given in body axes, in world axes.
-Mat3 in_world_axes(const Sym3& local, const Quat& orientation);
+Sym3 in_world_axes(const Sym3& local, const Quat& orientation);
 
 /// Angular velocity after the gyroscopic torque has acted for a time: one Newton step of implicit
 /// Euler in body axes. It never gains energy (what the step would gain is taken away again); it

@@ -509,10 +509,24 @@ void warm_start(const RowsView<Real>& rows,
     });
 }
 
+// Asks for the bodies of a block before it is its turn: they lie anywhere, so the machine cannot
+// foresee them as it does the rows.
+template <class Real>
+void fetch_bodies(const RowsView<Real>& rows, std::size_t place)
+{
+    const ContactBlock<Real>& block = rows.blocks[place];
+    for (const auto& side : {block.a, block.b})
+        for (int k = 0; k < kBlock; ++k) {
+            __builtin_prefetch(rows.bodies[side[k]].motion);
+            __builtin_prefetch(rows.bodies[side[k]].inertia);
+        }
+}
+
 template <class Real>
 void sweep(const RowsView<Real>& rows, std::size_t begin, std::size_t end, const Visit<Real>& visit)
 {
     for_lanes<Real>(begin, end, visit.turns, [&](auto turns, std::size_t place, int at) {
+        if (at == 0 && place + 1 < end) fetch_bodies(rows, place + 1);
         if (rows.blocks[place].points == 1 && !visit.rolls)
             sweep_lanes<Lanes<Real>, turns.kValue, 1>(rows, place, at, visit);
         else

@@ -9,11 +9,15 @@
 #include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages/collide.hpp"
 
+#include <numeric>
+
 namespace throng {
 
 namespace {
 
-constexpr std::size_t kGrain = 512;  // pairs a block: some 20 microseconds of work
+constexpr std::size_t kGrain = 512;        // pairs a block: some 20 microseconds of work
+constexpr std::size_t kOrderGrain = 8192;  // pairs a block
+constexpr std::size_t kStrays = 8;         // one contact in so many may be out of order
 
 // After the list of pairs has changed: what each pair knew, at its new place. Whoever is in the
 // list no more gives its contact back.
@@ -222,6 +226,7 @@ void move_in_and_out(std::size_t blocks, ConvexContacts<Real>& contacts)
         }
     for (std::size_t block = 0; block < blocks; ++block)
         for (const auto& made : contacts.made[block]) {
+            ++contacts.strayed;
             std::uint32_t& place = contacts.of_pair[made.pair].contact;
             if (contacts.free.empty()) {
                 place = static_cast<std::uint32_t>(contacts.contacts.size());
@@ -232,6 +237,38 @@ void move_in_and_out(std::size_t blocks, ConvexContacts<Real>& contacts)
             contacts.free.pop_back();
             contacts.contacts[place] = made.contact;
         }
+}
+
+// Contacts into the order of their pairs, once many have taken places anywhere: whoever goes
+// through them does so in that order, and would wait for memory at each.
+template <class Real>
+void put_in_order(ConvexContacts<Real>& contacts)
+{
+    const std::size_t used = contacts.contacts.size() - contacts.free.size();
+    if (contacts.strayed * kStrays <= used) return;
+    contacts.strayed = 0;
+    auto& states = contacts.of_pair;
+    const std::size_t blocks = block_count(states.size(), kOrderGrain);
+    std::vector<std::uint32_t>& begin = contacts.begin;
+    begin.assign(blocks + 1, 0);
+    for_each_block(states.size(), kOrderGrain,
+                   [&](std::size_t first, std::size_t end, std::size_t block) {
+                       for (std::size_t i = first; i < end; ++i)
+                           begin[block + 1] += states[i].contact != PairState::kApart ? 1 : 0;
+                   });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    contacts.moved.resize(used);
+    for_each_block(states.size(), kOrderGrain,
+                   [&](std::size_t first, std::size_t end, std::size_t block) {
+                       std::uint32_t next = begin[block];
+                       for (std::size_t i = first; i < end; ++i) {
+                           if (states[i].contact == PairState::kApart) continue;
+                           contacts.moved[next] = contacts.contacts[states[i].contact];
+                           states[i].contact = next++;
+                       }
+                   });
+    std::swap(contacts.contacts, contacts.moved);
+    contacts.free.clear();
 }
 
 }  // namespace
@@ -256,6 +293,7 @@ void collide_convex(const Conditions& conditions,
                 .look_at(begin, end, block);
         });
     move_in_and_out(blocks, contacts);
+    put_in_order(contacts);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \

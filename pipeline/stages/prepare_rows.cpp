@@ -39,8 +39,7 @@ void seat_body(std::uint32_t body,
         seat.motion[4 + k] = static_cast<Real>(velocities.angular[body][k]);
     }
     if (!states.dynamic(body)) return;
-    const Sym3 six =
-        Sym3::from(in_world_axes(masses.inverse_inertia[body], poses.orientation[body]));
+    const Sym3 six = in_world_axes(masses.inverse_inertia[body], poses.orientation[body]);
     const double numbers[7] = {
         masses.inverse_mass[body], six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
     for (int k = 0; k < 7; ++k) seat.inertia[k] = static_cast<Real>(numbers[k]);
@@ -55,7 +54,7 @@ void seat_inertia(std::uint32_t body,
 {
     seat = {};
     if (body == kNobody || !states.dynamic(body) || masses.spins_unevenly[body] == 0) return;
-    const Sym3 six = Sym3::from(in_world_axes(masses.inertia[body], poses.orientation[body]));
+    const Sym3 six = in_world_axes(masses.inertia[body], poses.orientation[body]);
     const double trace = six.xx + six.yy + six.zz;
     const double numbers[6] = {six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
     for (int k = 0; k < 6; ++k) seat.share[k] = static_cast<Real>(numbers[k] / trace);

@@ -32,7 +32,7 @@ struct Top {
         body.inertia[0] = 1;
         for (int k = 0; k < 4; ++k) body.drift[4 + k] = static_cast<Real>(turn.coeffs()[k]);
         for (int k = 0; k < 3; ++k) body.motion[4 + k] = static_cast<Real>(w[k]);
-        const Sym3 six = Sym3::from(in_world_axes(local, start));
+        const Sym3 six = in_world_axes(local, start);
         const double trace = six.xx + six.yy + six.zz;
         const double numbers[6] = {six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
         for (int k = 0; k < 6; ++k) inertia.share[k] = static_cast<Real>(numbers[k] / trace);

@@ -147,7 +147,7 @@ SolverBody<Real> random_body(std::mt19937& random)
                        0,
                        0,
                        0};
-    const Sym3 six = Sym3::from(in_world_axes(inverse, exponential(random_vector(random, 2))));
+    const Sym3 six = in_world_axes(inverse, exponential(random_vector(random, 2)));
     const double numbers[7] = {1 / mass, six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
     for (int k = 0; k < 7; ++k) body.inertia[k] = static_cast<Real>(numbers[k]);
     return body;

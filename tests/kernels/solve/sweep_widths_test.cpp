@@ -122,8 +122,8 @@ std::vector<SpinInertia<Real>> random_inertias(std::mt19937& random, std::size_t
     for (SpinInertia<Real>& inertia : inertias) {
         const double x = testing::random_number(random, 0.01, 1),
                      y = testing::random_number(random, 0.01, 1), z = x + y - 0.5 * std::min(x, y);
-        const Sym3 six = Sym3::from(
-            in_world_axes({x, y, z, 0, 0, 0}, exponential(testing::random_vector(random, 2))));
+        const Sym3 six =
+            in_world_axes({x, y, z, 0, 0, 0}, exponential(testing::random_vector(random, 2)));
         const double numbers[6] = {six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
         inertia = {};
         for (int k = 0; k < 6; ++k) inertia.share[k] = static_cast<Real>(numbers[k] / (x + y + z));
