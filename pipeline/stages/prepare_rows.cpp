@@ -19,7 +19,7 @@ constexpr double kDampingRatio = 20;
 // Points share a body's mass among them, so the more there are the less each bears.
 constexpr double kRate[4] = {0.5, 0.3, 0.25, 0.25};
 // Overlap from which a contact stops giving way, as a share of the smaller body's half extent.
-constexpr double kDeep = 0.01;
+constexpr double kDeep = 0.005;
 // Plain Gauss-Seidel: the share of the overlap taken away each substep.
 constexpr double kBaumgarte = 0.2;
 
