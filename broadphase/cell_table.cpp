@@ -39,7 +39,7 @@ float rounded_up(double x)
 
 std::int64_t cell_at(double place, double per_m)
 {
-    constexpr double kMost = 0x1p62;
+    constexpr double kMost = 0x1p61;  // so that the difference of two is still a number
     const double cell = std::clamp(place * per_m, -kMost, kMost);
     const auto whole = static_cast<std::int64_t>(cell);
     return whole - (cell < static_cast<double>(whole) ? 1 : 0);

@@ -25,24 +25,35 @@ template <class Real>
 void follow_pairs(const Pairs& pairs, ConvexContacts<Real>& contacts)
 {
     std::swap(contacts.of_pair, contacts.before);
-    contacts.of_pair.resize(pairs.keys.size());
-    const auto let_go = [&](std::size_t begin, std::size_t end) {
+    const std::size_t count = pairs.keys.size();
+    contacts.of_pair.resize(count);
+    const std::size_t blocks = block_count(count, kOrderGrain);
+    contacts.parted.start(blocks + 1);
+    const auto let_go = [&](std::size_t begin, std::size_t end, std::size_t block) {
         for (std::size_t i = begin; i < end; ++i)
             if (contacts.before[i].contact != PairState::kApart)
-                contacts.free.push_back(contacts.before[i].contact);
+                contacts.parted[block].push_back(contacts.before[i].contact);
     };
-    std::size_t next = 0;  // the first of the old pairs that has not been seen
-    for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
-        const std::uint32_t from = pairs.from[i];
-        if (from == Pairs::kNewPair) {
-            contacts.of_pair[i] = {};
-            continue;
+    // The first of the old pairs behind whatever pairs before this one knew.
+    const auto behind = [&](std::size_t place) {
+        while (place > 0 && pairs.from[place - 1] == Pairs::kNewPair) --place;
+        return place > 0 ? pairs.from[place - 1] + std::size_t{1} : std::size_t{0};
+    };
+    for_each_block(count, kOrderGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        std::size_t next = behind(begin);
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t from = pairs.from[i];
+            if (from == Pairs::kNewPair) {
+                contacts.of_pair[i] = {};
+                continue;
+            }
+            let_go(next, from, block);
+            next = from + std::size_t{1};
+            contacts.of_pair[i] = contacts.before[from];
         }
-        if (from != next) let_go(next, from);
-        next = from + std::size_t{1};
-        contacts.of_pair[i] = contacts.before[from];
-    }
-    let_go(next, contacts.before.size());
+    });
+    let_go(behind(count), contacts.before.size(), blocks);
+    contacts.parted.append_to(contacts.free);
 }
 
 // The pairs of boxes of a block, until there are enough of them to be collided side by side.
