@@ -16,7 +16,7 @@ namespace throng {
 
 namespace {
 
-constexpr std::size_t kBlocks = 16;   // of 16 contacts a task: some 10 microseconds
+constexpr std::size_t kBlocks = 16;   // of 16 contacts a task: some 3 microseconds
 constexpr std::size_t kBodies = 512;  // a task
 
 // Sweeps over the points of a contact in one visit: with two, contacts of four points bear half as
