@@ -2,8 +2,6 @@
 #include "broadphase/mover_bounds.hpp"
 #include "kernels/math/lane_width.hpp"
 
-#include <cstring>
-
 namespace throng {
 
 namespace scalar {
@@ -18,10 +16,7 @@ extern const MoverKernel kBoundMovers;
 
 MoverKernel mover_kernel_of(const char* width)
 {
-    if (!machine_has_lanes(width)) return nullptr;
-    if (std::strcmp(width, "avx512") == 0) return avx512::kBoundMovers;
-    if (std::strcmp(width, "avx2") == 0) return avx2::kBoundMovers;
-    return scalar::kBoundMovers;
+    return of_width(width, scalar::kBoundMovers, avx2::kBoundMovers, avx512::kBoundMovers);
 }
 
 MoverKernel mover_kernel()

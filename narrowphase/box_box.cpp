@@ -345,19 +345,6 @@ void box_box(const Shapes& shapes,
     if (has_edge && !kept && !agrees) edge_manifold(pair, edge, reach, out);
 }
 
-template void box_box<float>(const Shapes&,
-                             ShapeRef,
-                             ShapeRef,
-                             const PoseT<float>&,
-                             float,
-                             PairCache&,
-                             LocalManifold<float>&);
-template void box_box<double>(const Shapes&,
-                              ShapeRef,
-                              ShapeRef,
-                              const PoseT<double>&,
-                              double,
-                              PairCache&,
-                              LocalManifold<double>&);
+THRONG_PAIR_INSTANCES(box_box)
 
 }  // namespace throng

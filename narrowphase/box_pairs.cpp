@@ -1,10 +1,9 @@
 #include "narrowphase/box_pairs.hpp"
 
 #include "kernels/check.hpp"
-#include "kernels/solve/sweep.hpp"
+#include "kernels/math/lane_width.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace throng {
 
@@ -34,15 +33,12 @@ static_assert(offsetof(LocalManifold<float>, count) == 23 * sizeof(float));
 
 const BoxKernels* box_kernels_of(const char* width)
 {
-    if (solve_kernels_of<float>(width) == nullptr) return nullptr;
-    if (std::strcmp(width, "avx512") == 0) return &avx512::kBoxes;
-    if (std::strcmp(width, "avx2") == 0) return &avx2::kBoxes;
-    return &scalar::kBoxes;
+    return of_width(width, &scalar::kBoxes, &avx2::kBoxes, &avx512::kBoxes);
 }
 
 const BoxKernels& box_kernels()
 {
-    static const BoxKernels& chosen = *box_kernels_of(solve_kernels<float>().name);
+    static const BoxKernels& chosen = *box_kernels_of(lane_width());
     return chosen;
 }
 

@@ -267,19 +267,6 @@ void capsule_box(const Shapes& shapes,
     touch_at(seen.rod, axis, out);
 }
 
-template void capsule_box<float>(const Shapes&,
-                                 ShapeRef,
-                                 ShapeRef,
-                                 const PoseT<float>&,
-                                 float,
-                                 PairCache&,
-                                 LocalManifold<float>&);
-template void capsule_box<double>(const Shapes&,
-                                  ShapeRef,
-                                  ShapeRef,
-                                  const PoseT<double>&,
-                                  double,
-                                  PairCache&,
-                                  LocalManifold<double>&);
+THRONG_PAIR_INSTANCES(capsule_box)
 
 }  // namespace throng

@@ -147,19 +147,6 @@ void capsule_hull(const Shapes& shapes,
     }
 }
 
-template void capsule_hull<float>(const Shapes&,
-                                  ShapeRef,
-                                  ShapeRef,
-                                  const PoseT<float>&,
-                                  float,
-                                  PairCache&,
-                                  LocalManifold<float>&);
-template void capsule_hull<double>(const Shapes&,
-                                   ShapeRef,
-                                   ShapeRef,
-                                   const PoseT<double>&,
-                                   double,
-                                   PairCache&,
-                                   LocalManifold<double>&);
+THRONG_PAIR_INSTANCES(capsule_hull)
 
 }  // namespace throng

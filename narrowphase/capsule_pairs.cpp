@@ -135,19 +135,6 @@ void capsule_capsule(const Shapes& shapes,
     touch_at(axes.a, axis, out);
 }
 
-template void capsule_capsule<float>(const Shapes&,
-                                     ShapeRef,
-                                     ShapeRef,
-                                     const PoseT<float>&,
-                                     float,
-                                     PairCache&,
-                                     LocalManifold<float>&);
-template void capsule_capsule<double>(const Shapes&,
-                                      ShapeRef,
-                                      ShapeRef,
-                                      const PoseT<double>&,
-                                      double,
-                                      PairCache&,
-                                      LocalManifold<double>&);
+THRONG_PAIR_INSTANCES(capsule_capsule)
 
 }  // namespace throng

@@ -35,19 +35,6 @@ void convex_convex(const Shapes& shapes,
     }
 }
 
-template void convex_convex<float>(const Shapes&,
-                                   ShapeRef,
-                                   ShapeRef,
-                                   const PoseT<float>&,
-                                   float,
-                                   PairCache&,
-                                   LocalManifold<float>&);
-template void convex_convex<double>(const Shapes&,
-                                    ShapeRef,
-                                    ShapeRef,
-                                    const PoseT<double>&,
-                                    double,
-                                    PairCache&,
-                                    LocalManifold<double>&);
+THRONG_PAIR_INSTANCES(convex_convex)
 
 }  // namespace throng

@@ -2,8 +2,6 @@
 #include "kernels/math/lane_width.hpp"
 #include "narrowphase/hull_kernels.hpp"
 
-#include <cstring>
-
 namespace throng {
 
 namespace scalar {
@@ -18,10 +16,7 @@ extern const HullKernel kMeetHulls;
 
 HullKernel hull_kernel_of(const char* width)
 {
-    if (!machine_has_lanes(width)) return nullptr;
-    if (std::strcmp(width, "avx512") == 0) return avx512::kMeetHulls;
-    if (std::strcmp(width, "avx2") == 0) return avx2::kMeetHulls;
-    return scalar::kMeetHulls;
+    return of_width(width, scalar::kMeetHulls, avx2::kMeetHulls, avx512::kMeetHulls);
 }
 
 HullKernel hull_kernel()

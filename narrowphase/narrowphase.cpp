@@ -86,20 +86,7 @@ void collide(const Shapes& shapes,
     }
 }
 
-template void collide<float>(const Shapes&,
-                             ShapeRef,
-                             ShapeRef,
-                             const PoseT<float>&,
-                             float,
-                             PairCache&,
-                             LocalManifold<float>&);
-template void collide<double>(const Shapes&,
-                              ShapeRef,
-                              ShapeRef,
-                              const PoseT<double>&,
-                              double,
-                              PairCache&,
-                              LocalManifold<double>&);
+THRONG_PAIR_INSTANCES(collide)
 
 double overlap_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a)
 {

@@ -9,9 +9,10 @@ namespace throng {
 /// Finds where two convex shapes touch or come within reach of one another.
 ///
 ///   a, b     shapes, a's kind not after b's kind in ShapeKind (collide() sees to that)
-///   b_in_a   pose of b in a's frame; computed in double, so it is exact however far from the
-///   origin reach    m, points further apart than this are left out (at least 0) cache    what the
-///   pair remembers out      in a's frame; count 0 where nothing is within reach
+///   b_in_a   pose of b in a's frame; computed in double: exact however far from the origin
+///   reach    m, points further apart than this are left out (at least 0)
+///   cache    what the pair remembers
+///   out      in a's frame; count 0 where nothing is within reach
 ///
 /// Never throws; finite input gives finite output. Instantiated for float and double.
 template <class Real>
@@ -43,5 +44,12 @@ THRONG_PAIR_FUNCTION(convex_plane);     // plane_pairs.cpp: any convex shape a, 
 THRONG_PAIR_FUNCTION(convex_convex);    // convex_pairs.cpp: any two, by their cores
 
 #undef THRONG_PAIR_FUNCTION
+
+// For the file that defines one: its instances.
+#define THRONG_PAIR_INSTANCE(name, Real)                                                           \
+    template void name<Real>(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real,          \
+                             PairCache&, LocalManifold<Real>&);
+#define THRONG_PAIR_INSTANCES(name)                                                                \
+    THRONG_PAIR_INSTANCE(name, float) THRONG_PAIR_INSTANCE(name, double)
 
 }  // namespace throng

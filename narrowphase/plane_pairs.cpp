@@ -192,19 +192,6 @@ void convex_plane(const Shapes& shapes,
     }
 }
 
-template void convex_plane<float>(const Shapes&,
-                                  ShapeRef,
-                                  ShapeRef,
-                                  const PoseT<float>&,
-                                  float,
-                                  PairCache&,
-                                  LocalManifold<float>&);
-template void convex_plane<double>(const Shapes&,
-                                   ShapeRef,
-                                   ShapeRef,
-                                   const PoseT<double>&,
-                                   double,
-                                   PairCache&,
-                                   LocalManifold<double>&);
+THRONG_PAIR_INSTANCES(convex_plane)
 
 }  // namespace throng

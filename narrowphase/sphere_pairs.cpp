@@ -236,16 +236,10 @@ void sphere_hull(const Shapes& shapes,
                 b_in_a, reach, out);
 }
 
-#define THRONG_INSTANTIATE(name, Real)                                                             \
-    template void name<Real>(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real,          \
-                             PairCache&, LocalManifold<Real>&);
-#define THRONG_BOTH(name) THRONG_INSTANTIATE(name, float) THRONG_INSTANTIATE(name, double)
-THRONG_BOTH(sphere_sphere)
-THRONG_BOTH(sphere_capsule)
-THRONG_BOTH(sphere_cylinder)
-THRONG_BOTH(sphere_box)
-THRONG_BOTH(sphere_hull)
-#undef THRONG_BOTH
-#undef THRONG_INSTANTIATE
+THRONG_PAIR_INSTANCES(sphere_sphere)
+THRONG_PAIR_INSTANCES(sphere_capsule)
+THRONG_PAIR_INSTANCES(sphere_cylinder)
+THRONG_PAIR_INSTANCES(sphere_box)
+THRONG_PAIR_INSTANCES(sphere_hull)
 
 }  // namespace throng

@@ -208,8 +208,8 @@ template <class L>
     return fast;
 }
 
-// Calls body(first, writes) for each group of W bodies; what is over comes in ones, by the narrow
-// formula, which has the same bits.
+// Calls wide(first) for each group of as many bodies as a register holds, and one(first) for each
+// that is over: the narrow formula has the same bits.
 template <class Real, class Wide, class One>
 void for_bodies(std::size_t count, Wide wide, One one)
 {
@@ -218,8 +218,6 @@ void for_bodies(std::size_t count, Wide wide, One one)
     for (; i + kWidth <= count; i += kWidth) wide(i);
     for (; i < count; ++i) one(i);
 }
-
-using std::size_t;
 
 }  // namespace
 

@@ -2,8 +2,6 @@
 #include "kernels/math/lane_width.hpp"
 #include "kernels/motion/flight.hpp"
 
-#include <cstring>
-
 namespace throng {
 
 namespace scalar {
@@ -18,10 +16,7 @@ extern const FlyKernel kFly;
 
 FlyKernel fly_kernel_of(const char* width)
 {
-    if (!machine_has_lanes(width)) return nullptr;
-    if (std::strcmp(width, "avx512") == 0) return avx512::kFly;
-    if (std::strcmp(width, "avx2") == 0) return avx2::kFly;
-    return scalar::kFly;
+    return of_width(width, scalar::kFly, avx2::kFly, avx512::kFly);
 }
 
 FlyKernel fly_kernel()

@@ -1,10 +1,6 @@
-// The widths that sweep.cpp was compiled for, and which of them this machine takes.
+// The widths that the solver's kernels were compiled for.
+#include "kernels/math/lane_width.hpp"
 #include "kernels/solve/sweep.hpp"
-
-#include <cstdlib>
-#include <cstring>
-#include <stdexcept>
-#include <string>
 
 namespace throng {
 
@@ -21,63 +17,25 @@ extern const SolveKernels<float> kSolveFloat;
 extern const SolveKernels<double> kSolveDouble;
 }  // namespace avx512
 
-namespace {
-
-const SolveKernels<float>* kernels(const char* width, float)
+template <>
+const SolveKernels<float>* solve_kernels_of<float>(const char* width)
 {
-    if (std::strcmp(width, "avx512") == 0) return &avx512::kSolveFloat;
-    if (std::strcmp(width, "avx2") == 0) return &avx2::kSolveFloat;
-    return &scalar::kSolveFloat;
-}
-const SolveKernels<double>* kernels(const char* width, double)
-{
-    if (std::strcmp(width, "avx512") == 0) return &avx512::kSolveDouble;
-    if (std::strcmp(width, "avx2") == 0) return &avx2::kSolveDouble;
-    return &scalar::kSolveDouble;
+    return of_width(width, &scalar::kSolveFloat, &avx2::kSolveFloat, &avx512::kSolveFloat);
 }
 
-bool machine_has(const char* width)
+template <>
+const SolveKernels<double>* solve_kernels_of<double>(const char* width)
 {
-    if (std::strcmp(width, "scalar") == 0) return true;
-    if (std::strcmp(width, "avx2") == 0) return __builtin_cpu_supports("avx2") != 0;
-    if (std::strcmp(width, "avx512") == 0)
-        return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0
-            && __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512vl") != 0;
-    return false;
-}
-
-const char* widest()
-{
-    for (const char* width : {"avx512", "avx2"})
-        if (machine_has(width)) return width;
-    return "scalar";
-}
-
-}  // namespace
-
-template <class Real>
-const SolveKernels<Real>* solve_kernels_of(const char* width)
-{
-    return machine_has(width) ? kernels(width, Real{}) : nullptr;
+    return of_width(width, &scalar::kSolveDouble, &avx2::kSolveDouble, &avx512::kSolveDouble);
 }
 
 template <class Real>
 const SolveKernels<Real>& solve_kernels()
 {
-    // Read once: the width of a run never changes under it.
-    static const SolveKernels<Real>& chosen = []() -> const SolveKernels<Real>& {
-        const char* asked = std::getenv("THRONG_LANES");  // NOLINT(concurrency-mt-unsafe): once
-        if (asked == nullptr || *asked == 0) return *solve_kernels_of<Real>(widest());
-        if (const SolveKernels<Real>* found = solve_kernels_of<Real>(asked)) return *found;
-        throw std::runtime_error(std::string("THRONG_LANES: wanted scalar, avx2 or avx512, and one "
-                                             "that this machine has (it has up to ")
-                                 + widest() + "), not \"" + asked + "\"");
-    }();
+    static const SolveKernels<Real>& chosen = *solve_kernels_of<Real>(lane_width());
     return chosen;
 }
 
-template const SolveKernels<float>* solve_kernels_of<float>(const char*);
-template const SolveKernels<double>* solve_kernels_of<double>(const char*);
 template const SolveKernels<float>& solve_kernels<float>();
 template const SolveKernels<double>& solve_kernels<double>();
 
