@@ -22,6 +22,8 @@ namespace {
 // Visits between two restores. A step of four substeps makes twelve; left to themselves the rows
 // would come to rest and work on numbers that no longer change.
 constexpr int kVisits = 12;
+// Of a substep, which follow one another slice by slice where an island is cut.
+constexpr int kTogether = 3;
 
 // Half of a core's second cache: blocks, points and bodies together.
 constexpr std::size_t kCacheBytes = 512 << 10;
@@ -29,11 +31,11 @@ constexpr std::size_t kCacheBytes = 512 << 10;
 enum class Kernel : std::uint8_t { push, relax, warm_start };
 constexpr const char* kKernelNames[] = {"push", "relax", "warm_start"};
 
-/// Rows with the runs of blocks to visit, in order.
+/// Rows with the runs of blocks to visit, in order: slice by slice.
 template <class Real>
 struct Visited {
     Rows<Real> rows;
-    std::vector<Color> colors;
+    std::vector<std::vector<Color>> slices;
     std::size_t manifolds = 0;
 
     /// What a visit has to bring in.
@@ -63,6 +65,7 @@ template <class Real>
 Visited<Real> sample_of(const Rows<Real>& rows, const Layout& layout)
 {
     Visited<Real> sample;
+    sample.slices.resize(1);
     std::map<std::int32_t, std::int32_t> places;
     const auto seat = [&](std::int32_t body) {
         const auto [at, fresh] =
@@ -84,7 +87,7 @@ Visited<Real> sample_of(const Rows<Real>& rows, const Layout& layout)
         }
         sample.rows.blocks.push_back(block);
         sample.manifolds += manifolds_of(layout, place);
-        sample.colors.push_back({static_cast<std::uint32_t>(sample.rows.blocks.size() - 1), 1});
+        sample.slices[0].push_back({static_cast<std::uint32_t>(sample.rows.blocks.size() - 1), 1});
     }
     return sample;
 }
@@ -112,9 +115,10 @@ const Sampled<Real>& rows_of(const SceneSize& asked)
     const auto& data = std::get<Step<Real>>(world.state().step).data;
     const auto& layout = std::get<Layout>(data);
     made->whole.rows = std::get<Rows<Real>>(data);
-    for (const Batch& batch : layout.batches)
-        for (std::uint32_t i = 0; i < batch.colors; ++i)
-            made->whole.colors.push_back(layout.colors[batch.first_color + i]);
+    for (const Slice& slice : layout.slices) {
+        const auto first = layout.colors.begin() + slice.first_color;
+        made->whole.slices.emplace_back(first, first + slice.colors);
+    }
     for (std::size_t block = 0; block < made->whole.rows.blocks.size(); ++block)
         made->whole.manifolds += manifolds_of(layout, block);
     made->sample = sample_of(made->whole.rows, layout);
@@ -144,15 +148,18 @@ double time_visits(const SolveKernels<Real>& kernels,
     visit.inverse_substep = 240;
     visit.push_limit = 3;
     visit.push = kernel == Kernel::push;
-    const double begin = thread_seconds();
-    for (int i = 0; i < kVisits; ++i)
-        for (const Color& color : start.colors) {
+    const auto visit_slice = [&](std::size_t, std::size_t slice) {
+        for (const Color& color : start.slices[slice]) {
             const std::size_t first = color.first, end = first + color.count;
             if (kernel == Kernel::warm_start)
                 kernels.warm_start(view, first, end, visit);
             else
                 kernels.sweep(view, first, end, visit);
         }
+    };
+    const double begin = thread_seconds();
+    for (int i = 0; i < kVisits; i += kTogether)
+        rows.wave.run(kTogether, start.slices.size(), visit_slice);
     return (thread_seconds() - begin) / kVisits;
 }
 

@@ -66,29 +66,29 @@ void gather_contacts(const Pairs&,
                      ActiveContacts&);
 
 /// Contacts into islands.
-void split_islands(const ActiveContacts&, const BodyStates&, DisjointSets&, Islands&);
+void split_islands(const ActiveContacts&, const BodyStates&, IslandFinder&, Islands&);
 
-/// Islands into batches, colors and blocks.
-void color_rows(const Islands&, const ActiveContacts&, const BodyStates&, Layout&);
+/// Islands into batches, slices, colors and blocks.
+void color_rows(
+    const Islands&, const ActiveContacts&, const BodyStates&, const Poses&, Painter&, Layout&);
 
-/// Contacts and bodies into the rows that the solver walks.
+/// Bodies into solver bodies, and room for the rows of their contacts.
 template <class Real>
 void prepare_rows(const Conditions&,
                   const Layout&,
-                  const ActiveContacts&,
-                  const ConvexContacts<Real>&,
-                  const MeshContacts<Real>&,
                   const Poses&,
                   const Velocities&,
                   const Masses&,
                   const BodyStates&,
                   Rows<Real>&);
 
-/// Rows into impulses, velocities and poses. Substeps live here: see solve_table().
+/// Contacts into rows, rows into impulses, velocities and poses. Substeps live here: see
+/// solve_table().
 template <class Real>
 void solve_impulses(const Conditions&,
                     const Layout&,
                     const ActiveContacts&,
+                    const BodyStates&,
                     Rows<Real>&,
                     ConvexContacts<Real>&,
                     MeshContacts<Real>&,

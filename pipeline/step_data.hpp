@@ -9,6 +9,7 @@
 #include "kernels/data/islands.hpp"
 #include "kernels/data/pairs.hpp"
 #include "kernels/data/rows.hpp"
+#include "kernels/solve/coloring.hpp"
 #include "kernels/solve/islands.hpp"
 #include "pipeline/conditions.hpp"
 
@@ -21,7 +22,7 @@ struct Trouble {
     std::vector<std::uint32_t>
         quarantined;                     // bodies that turned non-finite in this step, ascending
     std::uint64_t contacts_dropped = 0;  // of this step
-    std::vector<std::vector<std::uint32_t>> of_block;  // scratch
+    BlockLists<std::uint32_t> of_block;  // scratch
 };
 
 /// Who awoke and who fell asleep in this step.
@@ -52,8 +53,9 @@ using StepData = std::tuple<Conditions,
                             ConvexContacts<Real>,
                             MeshContacts<Real>,
                             ActiveContacts,
-                            DisjointSets,
+                            IslandFinder,
                             Islands,
+                            Painter,
                             Layout,
                             Rows<Real>,
                             Trouble,

@@ -112,8 +112,8 @@ void World::State::report_state()
     for (const auto& entry : active) report.contacts += entry.points;
     report.islands = get<Islands>().size();
     report.colors = 0;
-    for (const Batch& batch : get<Layout>().batches)
-        report.colors = std::max<std::size_t>(report.colors, batch.colors);
+    for (const Slice& slice : get<Layout>().slices)
+        report.colors = std::max<std::size_t>(report.colors, slice.colors);
     report.bodies_awake = get<BodyStates>().movers.dynamic.size();
 }
 

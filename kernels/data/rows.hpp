@@ -2,8 +2,10 @@
 //
 // A block is an array of structs of arrays: each quantity holds 16 numbers, one a lane, so that the
 // same layout serves registers of any width. The lanes of a block share no movable body. A lane
-// that is not in use has slot 0 on both sides (the still body of its batch) and zero masses.
+// that is not in use has the still body on both sides and zero masses.
 #pragma once
+
+#include "kernels/parallel/wavefront.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -109,43 +111,55 @@ struct Color {
     bool serial = false;                 // its blocks do share bodies: one after another
 };
 
-/// What one task solves through all substeps: some small islands, or one big one.
-struct Batch {
-    std::uint32_t first_body = 0;  // solver bodies; the first is the still one
-    std::uint32_t dynamic = 0;     // how many follow it that can be moved
-    std::uint32_t kinematic =
-        0;  // and how many after those that move by themselves; then conveyors
+/// A part of a batch. Its contacts touch its own bodies and those of the next slice of the batch,
+/// and nobody else's.
+struct Slice {
+    std::uint32_t first_body = 0, dynamic = 0;       // solver bodies that can be moved
+    std::uint32_t first_visitor = 0, kinematic = 0;  // copies of those that move by themselves
     std::uint32_t first_color = 0, colors = 0;
-    std::uint32_t first_block = 0, blocks = 0;
-    std::uint32_t contacts = 0, on_faces = 0;  // how many, and how many of three points or four
-    bool wide = false;                         // big: its colors are shared among the threads
+    std::uint32_t first_contact = 0, contacts = 0;  // in Layout::contacts
 };
 
-/// Which contact goes into which lane, and which body is which solver body.
+/// What is solved together: some small islands, or one big one.
+struct Batch {
+    std::uint32_t first_slice = 0, slices = 0;
+    std::uint32_t contacts = 0, on_faces = 0;  // how many, and how many of three points or four
+    bool wide = false;                         // big: all threads share it
+};
+
+/// Which contact goes into which lane, and which body is which solver body: first the still one,
+/// which stands for all that never moves; then those that can be moved; then copies of others.
 struct Layout {
+    static constexpr std::uint32_t kNoSlot = 0xffffffffu;
+
     std::vector<Batch> batches;
+    std::vector<Slice> slices;
     std::vector<Color> colors;
     std::vector<LaneSource> lanes;             // [blocks * 16]
     std::vector<std::uint8_t> points;          // [blocks] greatest number of points of a lane
     std::vector<std::int32_t> slot_a, slot_b;  // [blocks * 16] places among the solver bodies
     std::vector<std::uint32_t> body_of_slot;   // [solver bodies] body, or none for the still one
-    std::vector<std::uint32_t> slot;           // scratch
-    std::vector<std::uint64_t> used;           // scratch
+    std::vector<std::uint32_t> slot;           // by body, of those that can be moved; else kNoSlot
+    std::uint32_t dynamic = 0;                 // solver bodies that can be moved
+    std::vector<std::uint32_t> contacts;       // places in ActiveContacts, slice by slice
 };
 
 /// The rows of a step. What an effect needs is there only where the effect is.
 ///
-///   bounces   [points] while restitution acts
-///   rollings  [blocks] while rolling friction acts
-///   inertias  [bodies] while the gyroscopic torque acts
+///   first_point  [blocks] place of the first among the points
+///   bounces      [points] while restitution acts
+///   rollings     [blocks] while rolling friction acts
+///   inertias     [bodies] while the gyroscopic torque acts
 template <class Real>
 struct Rows {
+    std::vector<std::uint32_t> first_point;
     std::vector<ContactBlock<Real>> blocks;
     std::vector<PointRows<Real>> points;
     std::vector<BounceRows<Real>> bounces;
     std::vector<RollingRows<Real>> rollings;
     std::vector<SolverBody<Real>> bodies;
     std::vector<SpinInertia<Real>> inertias;
+    Wavefront wave;  // scratch
 };
 
 }  // namespace throng

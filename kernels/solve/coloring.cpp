@@ -1,5 +1,7 @@
 #include "kernels/solve/coloring.hpp"
 
+#include "kernels/parallel/blocks.hpp"
+
 #include <algorithm>
 #include <bit>
 
@@ -7,193 +9,253 @@ namespace throng {
 
 namespace {
 
-// Colors are bits of a word. A body that has used them all (a plate under a hundred things) puts
-// its further contacts into a last color whose blocks go one after another.
-constexpr int kColors = 63;
-constexpr std::uint32_t kPoints = 4;  // a contact has at most
+// How many contacts ahead one is asked for: those of a slice are not side by side in memory.
+constexpr std::size_t kAhead = 16;
 
-constexpr std::uint32_t kStill = 0xffffffffu;
+constexpr std::size_t kSlots = 4096;  // a block
 
-struct Range {
-    std::size_t begin = 0, end = 0;  // islands
-};
-
-// Islands of one batch: as many in a row as fit.
-std::vector<Range> batches_of(const Islands& islands)
+template <class Body>
+void for_slices(const Layout& layout, Body body)
 {
-    std::vector<Range> ranges;
-    std::size_t held = 0;
-    for (std::size_t island = 0; island < islands.size(); ++island) {
-        const std::size_t size = islands.contact_begin[island + 1] - islands.contact_begin[island];
-        if (ranges.empty() || held + size > kBatchContacts) {
-            ranges.push_back({island, island});
-            held = 0;
-        }
-        ranges.back().end = island + 1;
-        held += size;
-    }
-    return ranges;
+    for_each_block(layout.slices.size(), 1, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+    });
 }
 
-class Painter {
-public:
-    Painter(const Islands& islands,
-            const ActiveContacts& contacts,
-            const BodyStates& states,
-            Layout& layout)
-        : islands_(islands), contacts_(contacts), states_(states), layout_(layout),
-          slot_(layout.slot), used_(layout.used)
-    {
-        slot_.resize(states.kind.size(), kStill);
-        used_.resize(states.kind.size());
-    }
+// Most contacts in a row touch the same one.
+void add(std::uint32_t body, std::vector<std::uint32_t>& bodies)
+{
+    if (bodies.empty() || bodies.back() != body) bodies.push_back(body);
+}
 
-    void paint(const Range& range)
-    {
-        Batch batch;
-        batch.first_body = static_cast<std::uint32_t>(layout_.body_of_slot.size());
-        batch.first_color = static_cast<std::uint32_t>(layout_.colors.size());
-        batch.first_block = static_cast<std::uint32_t>(layout_.lanes.size() / kBlock);
-        first_ = islands_.contact_begin[range.begin];
-        count_ = islands_.contact_begin[range.end] - first_;
-        seat_bodies(range, batch);
-        choose_colors();
-        place(batch);
-        batch.contacts = static_cast<std::uint32_t>(count_);
-        batch.wide = count_ > kBatchContacts;
-        layout_.batches.push_back(batch);
-        // Clean for the next batch, and for the next step.
-        for (std::size_t i = batch.first_body + 1u; i < layout_.body_of_slot.size(); ++i)
-            slot_[layout_.body_of_slot[i]] = kStill;
-    }
+void keep_each_once(std::vector<std::uint32_t>& bodies)
+{
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+}
 
-private:
-    const auto& contact(std::size_t i) const
-    {
-        return contacts_.entries[islands_.contacts[first_ + i]];
-    }
-    bool movable(std::uint32_t body) const { return states_.dynamic(body) && states_.moves(body); }
-
-    // The still one first, then the movable ones of the islands, then those they touch.
-    void seat_bodies(const Range& range, Batch& batch)
-    {
-        auto& seats = layout_.body_of_slot;
-        seats.push_back(kNobody);
-        for (std::size_t i = islands_.body_begin[range.begin]; i < islands_.body_begin[range.end];
-             ++i) {
-            slot_[islands_.bodies[i]] = static_cast<std::uint32_t>(seats.size());
-            used_[islands_.bodies[i]] = 0;
-            seats.push_back(islands_.bodies[i]);
-            ++batch.dynamic;
-        }
-        batch.kinematic = seat_visitors(
-            [&](std::uint32_t body) { return states_.kind[body] == BodyKind::kinematic; });
-        // Conveyors last: they have a velocity and go nowhere.
-        seat_visitors([&](std::uint32_t body) { return states_.carries(body); });
-    }
-
-    // Seats those that the batch touches and other batches may touch too: each has its own copy.
-    template <class Wanted>
-    std::uint32_t seat_visitors(Wanted wanted)
-    {
-        auto& seats = layout_.body_of_slot;
-        std::uint32_t seated = 0;
-        for (std::size_t i = 0; i < count_; ++i)
-            for (const std::uint32_t body : {contact(i).body_a, contact(i).body_b}) {
-                if (slot_[body] != kStill || !wanted(body)) continue;
-                slot_[body] = static_cast<std::uint32_t>(seats.size());
-                seats.push_back(body);
-                ++seated;
-            }
-        return seated;
-    }
-
-    void choose_colors()
-    {
-        color_.resize(count_);
-        for (std::size_t i = 0; i < count_; ++i) {
-            const auto& [a, b] = std::pair(contact(i).body_a, contact(i).body_b);
-            const std::uint64_t taken = (movable(a) ? used_[a] : 0) | (movable(b) ? used_[b] : 0);
-            const int color = std::min(std::countr_one(taken), kColors);
-            color_[i] = static_cast<std::uint8_t>(color);
-            if (color == kColors) continue;
-            if (movable(a)) used_[a] |= std::uint64_t{1} << color;
-            if (movable(b)) used_[b] |= std::uint64_t{1} << color;
-        }
-    }
-
-    // Counting sort by color, and by number of points within a color: the fewer points a block has
-    // at most, the less there is to do for it.
-    void place(Batch& batch)
-    {
-        std::array<std::uint32_t, kPoints*(kColors + 1)> size{};
-        for (std::size_t i = 0; i < count_; ++i) ++size[bin(i)];
-        std::array<std::uint32_t, kPoints*(kColors + 1)> next{};
-        std::uint32_t block = batch.first_block;
-        for (std::uint32_t color = 0; color <= kColors; ++color) {
-            const std::uint32_t per_block = color == kColors ? 1 : kBlock, first = block;
-            std::uint32_t held = 0;
-            for (std::uint32_t kind = 0; kind < kPoints; ++kind) {
-                next[kPoints * color + kind] = first * kBlock + held * (kBlock / per_block);
-                held += size[kPoints * color + kind];
-            }
-            block += (held + per_block - 1) / per_block;
-            if (held > 0) layout_.colors.push_back({first, block - first, color == kColors});
-        }
-        batch.colors = static_cast<std::uint32_t>(layout_.colors.size()) - batch.first_color;
-        batch.blocks = block - batch.first_block;
-        layout_.lanes.resize(std::size_t{block} * kBlock);
-        layout_.points.resize(block, 1);
-        layout_.slot_a.resize(layout_.lanes.size(), static_cast<std::int32_t>(batch.first_body));
-        layout_.slot_b.resize(layout_.lanes.size(), static_cast<std::int32_t>(batch.first_body));
-        for (std::size_t i = 0; i < count_; ++i) {
-            const std::uint32_t lane = next[bin(i)];
-            next[bin(i)] += color_[i] == kColors ? kBlock : 1;
-            layout_.lanes[lane].entry = islands_.contacts[first_ + i];
-            layout_.slot_a[lane] = seat(contact(i).body_a, batch);
-            layout_.slot_b[lane] = seat(contact(i).body_b, batch);
-            if (contact(i).points >= 3) ++batch.on_faces;
-            std::uint8_t& most = layout_.points[lane / kBlock];
-            most = std::max(most, contact(i).points);
-        }
-    }
-
-    std::size_t bin(std::size_t i) const
-    {
-        return kPoints * std::size_t{color_[i]} + (kPoints - contact(i).points);
-    }
-    std::int32_t seat(std::uint32_t body, const Batch& batch) const
-    {
-        const std::uint32_t slot = slot_[body];
-        return static_cast<std::int32_t>(slot == kStill ? batch.first_body : slot);
-    }
-
-    const Islands& islands_;
-    const ActiveContacts& contacts_;
-    const BodyStates& states_;
-    Layout& layout_;
-    std::vector<std::uint32_t>& slot_;
-    std::vector<std::uint64_t>& used_;
-    std::vector<std::uint8_t> color_;
-    std::size_t first_ = 0, count_ = 0;
-};
+// Where a body is in an ascending list, or its length.
+std::size_t place_in(const std::vector<std::uint32_t>& bodies, std::uint32_t body)
+{
+    const auto at = std::lower_bound(bodies.begin(), bodies.end(), body);
+    return at != bodies.end() && *at == body ? static_cast<std::size_t>(at - bodies.begin())
+                                             : bodies.size();
+}
 
 }  // namespace
 
-void lay_out(const Islands& islands,
-             const ActiveContacts& contacts,
-             const BodyStates& states,
-             Layout& layout)
+// Bodies and contacts of all slices, in order.
+void Painter::gather_slices(const Islands& islands,
+                            const ActiveContacts& active,
+                            const BodyStates& states,
+                            std::span<const Vec3> positions,
+                            Layout& layout)
 {
+    layout.contacts = islands.contacts;
+    layout.body_of_slot.assign(1, kNobody);
+    layout.body_of_slot.insert(layout.body_of_slot.end(), islands.bodies.begin(),
+                               islands.bodies.end());
+    for (std::size_t first = 0, last = 0; first < islands.size(); first = last) {
+        const std::uint32_t begin = islands.contact_begin[first];
+        const auto contacts_until = [&](std::size_t island) {
+            return islands.contact_begin[island] - begin;
+        };
+        for (last = first + 1; last < islands.size(); ++last)
+            if (contacts_until(last + 1) > kBatchContacts) break;
+
+        Batch batch;
+        batch.first_slice = static_cast<std::uint32_t>(layout.slices.size());
+        batch.contacts = contacts_until(last);
+        batch.wide = batch.contacts > kBatchContacts;
+        Slice slice;
+        slice.first_body = islands.body_begin[first] + 1;
+        slice.dynamic = islands.body_begin[last] - islands.body_begin[first];
+        slice.first_contact = begin;
+        slice.contacts = batch.contacts;
+        if (batch.wide)
+            slicer_.cut(std::span(layout.body_of_slot).subspan(slice.first_body, slice.dynamic),
+                        std::span(layout.contacts).subspan(begin, batch.contacts), active, states,
+                        positions, slice, cut, layout.slices);
+        else
+            layout.slices.push_back(slice);
+        batch.slices = static_cast<std::uint32_t>(layout.slices.size()) - batch.first_slice;
+        layout.batches.push_back(batch);
+    }
+}
+
+void Painter::seat_bodies(const Slice& slice, Layout& layout)
+{
+    for (std::uint32_t slot = slice.first_body; slot < slice.first_body + slice.dynamic; ++slot) {
+        const std::uint32_t body = layout.body_of_slot[slot];
+        layout.slot[body] = slot;
+        used_[body] = before_[body] = 0;
+    }
+}
+
+// Colors the contacts of a slice and counts them; lists whom else they touch.
+void Painter::paint(const ActiveContacts& active,
+                    const BodyStates& states,
+                    const Layout& layout,
+                    const Slice& slice,
+                    Plan& plan)
+{
+    plan.size.fill(0);
+    plan.kinematic.clear();
+    plan.conveyors.clear();
+    std::uint64_t nobody = 0;
+    const auto used_by = [&](std::uint32_t body) -> std::uint64_t& {
+        const std::uint32_t slot = layout.slot[body];
+        if (slot == Layout::kNoSlot) return nobody;
+        return slot - slice.first_body < slice.dynamic ? used_[body] : before_[body];
+    };
+    const std::size_t end = slice.first_contact + slice.contacts;
+    for (std::size_t i = slice.first_contact; i < end; ++i) {
+        if (i + kAhead < end) __builtin_prefetch(&active.entries[layout.contacts[i + kAhead]]);
+        const auto& contact = active.entries[layout.contacts[i]];
+        std::uint64_t& by_a = used_by(contact.body_a);
+        std::uint64_t& by_b = used_by(contact.body_b);
+        nobody = 0;
+        const int color = std::min(std::countr_one(by_a | by_b), kColors);
+        color_[i] = static_cast<std::uint8_t>(color);
+        ++plan.size[kPoints * color_[i] + (kPoints - contact.points)];
+        if (color < kColors) {
+            by_a |= std::uint64_t{1} << color;
+            by_b |= std::uint64_t{1} << color;
+        }
+        for (const std::uint32_t body : {contact.body_a, contact.body_b}) {
+            if (layout.slot[body] != Layout::kNoSlot) continue;
+            if (states.kind[body] == BodyKind::kinematic) add(body, plan.kinematic);
+            if (states.carries(body)) add(body, plan.conveyors);
+        }
+    }
+    keep_each_once(plan.kinematic);
+    keep_each_once(plan.conveyors);
+    plan.blocks = plan.colors = 0;
+    for (std::uint32_t color = 0; color <= kColors; ++color) {
+        std::uint32_t held = 0;
+        for (std::uint32_t kind = 0; kind < kPoints; ++kind)
+            held += plan.size[kPoints * color + kind];
+        plan.blocks += color == kColors ? held : (held + kBlock - 1) / kBlock;
+        plan.colors += held > 0 ? 1 : 0;
+    }
+}
+
+// Gives every slice its solver bodies, colors and blocks.
+void Painter::make_room(Layout& layout)
+{
+    std::uint32_t blocks = 0, colors = 0;
+    for (std::size_t i = 0; i < layout.slices.size(); ++i) {
+        Slice& slice = layout.slices[i];
+        Plan& plan = plans_[i];
+        auto& seats = layout.body_of_slot;
+        // Each slice has its own copy of a body that moves by itself: slices are not at the same
+        // time of the step. Conveyors have a velocity and go nowhere.
+        slice.first_visitor = static_cast<std::uint32_t>(seats.size());
+        slice.kinematic = static_cast<std::uint32_t>(plan.kinematic.size());
+        seats.insert(seats.end(), plan.kinematic.begin(), plan.kinematic.end());
+        seats.insert(seats.end(), plan.conveyors.begin(), plan.conveyors.end());
+        slice.first_color = colors;
+        slice.colors = plan.colors;
+        plan.first_block = blocks;
+        colors += plan.colors;
+        blocks += plan.blocks;
+    }
+    layout.colors.resize(colors);
+    layout.points.resize(blocks);
+    layout.lanes.resize(std::size_t{blocks} * kBlock);
+    layout.slot_a.resize(layout.lanes.size());
+    layout.slot_b.resize(layout.lanes.size());
+}
+
+// Counting sort by color, and by number of points within a color: the fewer points a block has at
+// most, the less there is to do for it.
+void Painter::place(const ActiveContacts& active,
+                    const BodyStates& states,
+                    const Plan& plan,
+                    const Slice& slice,
+                    Layout& layout)
+{
+    std::array<std::uint32_t, kPoints*(kColors + 1)> next;
+    std::uint32_t block = plan.first_block, color_at = slice.first_color;
+    for (std::uint32_t color = 0; color <= kColors; ++color) {
+        const std::uint32_t per_block = color == kColors ? 1 : kBlock, first = block;
+        std::uint32_t held = 0;
+        for (std::uint32_t kind = 0; kind < kPoints; ++kind) {
+            next[kPoints * color + kind] = first * kBlock + held * (kBlock / per_block);
+            held += plan.size[kPoints * color + kind];
+        }
+        block += (held + per_block - 1) / per_block;
+        if (held > 0) layout.colors[color_at++] = {first, block - first, color == kColors};
+    }
+    const std::size_t first_lane = std::size_t{plan.first_block} * kBlock;
+    const std::size_t lanes = std::size_t{plan.blocks} * kBlock;
+    std::fill_n(layout.points.begin() + plan.first_block, plan.blocks, std::uint8_t{1});
+    std::fill_n(layout.lanes.begin() + static_cast<std::ptrdiff_t>(first_lane), lanes,
+                LaneSource{});
+    std::fill_n(layout.slot_a.begin() + static_cast<std::ptrdiff_t>(first_lane), lanes, 0);
+    std::fill_n(layout.slot_b.begin() + static_cast<std::ptrdiff_t>(first_lane), lanes, 0);
+
+    const auto seat = [&](std::uint32_t body) {
+        if (layout.slot[body] != Layout::kNoSlot)
+            return static_cast<std::int32_t>(layout.slot[body]);
+        std::size_t place = 0;
+        if (states.kind[body] == BodyKind::kinematic)
+            place = place_in(plan.kinematic, body);
+        else if (states.carries(body))
+            place = plan.kinematic.size() + place_in(plan.conveyors, body);
+        else
+            return 0;
+        return static_cast<std::int32_t>(slice.first_visitor + place);
+    };
+    const std::size_t end = slice.first_contact + slice.contacts;
+    for (std::size_t i = slice.first_contact; i < end; ++i) {
+        if (i + kAhead < end) __builtin_prefetch(&active.entries[layout.contacts[i + kAhead]]);
+        const auto& contact = active.entries[layout.contacts[i]];
+        std::uint32_t& at = next[kPoints * color_[i] + (kPoints - contact.points)];
+        const std::uint32_t lane = at;
+        at += color_[i] == kColors ? kBlock : 1;
+        layout.lanes[lane].entry = layout.contacts[i];
+        layout.slot_a[lane] = seat(contact.body_a);
+        layout.slot_b[lane] = seat(contact.body_b);
+        std::uint8_t& most = layout.points[lane / kBlock];
+        most = std::max(most, contact.points);
+    }
+}
+
+void Painter::lay_out(const Islands& islands,
+                      const ActiveContacts& active,
+                      const BodyStates& states,
+                      std::span<const Vec3> positions,
+                      Layout& layout)
+{
+    // Whoever had a slot in the last step may have none in this one.
+    for_each_block(layout.dynamic, kSlots, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t slot = begin + 1; slot <= end; ++slot)
+            layout.slot[layout.body_of_slot[slot]] = Layout::kNoSlot;
+    });
     layout.batches.clear();
-    layout.colors.clear();
-    layout.lanes.clear();
-    layout.points.clear();
-    layout.slot_a.clear();
-    layout.slot_b.clear();
-    layout.body_of_slot.clear();
-    Painter painter(islands, contacts, states, layout);
-    for (const Range& range : batches_of(islands)) painter.paint(range);
+    layout.slices.clear();
+    gather_slices(islands, active, states, positions, layout);
+
+    layout.dynamic = static_cast<std::uint32_t>(islands.bodies.size());
+    layout.slot.resize(states.kind.size(), Layout::kNoSlot);
+    used_.resize(states.kind.size());
+    before_.resize(states.kind.size());
+    color_.resize(layout.contacts.size());
+    if (plans_.size() < layout.slices.size()) plans_.resize(layout.slices.size());
+    for_slices(layout, [&](std::size_t i) { seat_bodies(layout.slices[i], layout); });
+    for_slices(layout,
+               [&](std::size_t i) { paint(active, states, layout, layout.slices[i], plans_[i]); });
+    make_room(layout);
+    for_slices(layout,
+               [&](std::size_t i) { place(active, states, plans_[i], layout.slices[i], layout); });
+
+    for (Batch& batch : layout.batches) {
+        batch.on_faces = 0;
+        for (std::uint32_t i = batch.first_slice; i < batch.first_slice + batch.slices; ++i)
+            for (std::size_t k = 0; k < plans_[i].size.size(); ++k)
+                if (kPoints - k % kPoints >= 3) batch.on_faces += plans_[i].size[k];
+    }
 }
 
 }  // namespace throng

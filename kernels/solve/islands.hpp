@@ -4,26 +4,26 @@
 #include "kernels/data/bodies.hpp"
 #include "kernels/data/contacts.hpp"
 #include "kernels/data/islands.hpp"
+#include "kernels/parallel/bucket_sort.hpp"
+#include "kernels/parallel/compact.hpp"
+#include "kernels/parallel/disjoint_sets.hpp"
 
 namespace throng {
 
-/// Sets of numbers that were joined. The representative of a set is its smallest number, whatever
-/// the order of joining.
-class DisjointSets {
-public:
-    void reset(std::size_t count);
-    std::uint32_t find(std::uint32_t x);
-    void join(std::uint32_t a, std::uint32_t b);
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
-
 /// Splits the awake dynamic bodies into islands by the contacts between them. A contact belongs to
 /// the island of its movable side; still and kinematic bodies join nothing.
-void build_islands(const ActiveContacts& contacts,
-                   const BodyStates& states,
-                   DisjointSets& sets,
-                   Islands& islands);
+class IslandFinder {
+public:
+    void find(const ActiveContacts& contacts, const BodyStates& states, Islands& islands);
+
+private:
+    void join(const ActiveContacts& contacts, const BodyStates& states);
+    std::size_t number_islands(const BodyStates& states, Islands& islands);
+
+    DisjointSets sets_;  // of bodies that can move and that something touches
+    std::vector<std::uint32_t> roots_, of_body_, of_contact_;  // islands
+    BlockLists<std::uint32_t> roots_of_block_, lone_of_block_;
+    BucketSort sort_;
+};
 
 }  // namespace throng

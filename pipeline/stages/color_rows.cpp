@@ -1,5 +1,4 @@
-// Color rows: islands into batches, colors and blocks.
-#include "kernels/solve/coloring.hpp"
+// Color rows: islands into batches, slices, colors and blocks.
 #include "pipeline/stages.hpp"
 
 namespace throng {
@@ -7,9 +6,11 @@ namespace throng {
 void color_rows(const Islands& islands,
                 const ActiveContacts& contacts,
                 const BodyStates& states,
+                const Poses& poses,
+                Painter& painter,
                 Layout& layout)
 {
-    lay_out(islands, contacts, states, layout);
+    painter.lay_out(islands, contacts, states, poses.position, layout);
 }
 
 }  // namespace throng

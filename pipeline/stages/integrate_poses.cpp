@@ -94,7 +94,7 @@ void integrate_poses(const Conditions& conditions,
     const FlyKernel kernel = fly_kernel();
     const bool wide = !conditions.has(Effect::gyroscopic) || rule.gyroscopic;
     const auto fly = [&](const std::vector<std::uint32_t>& bodies) {
-        trouble.of_block.resize(block_count(bodies.size(), kGrain));
+        trouble.of_block.start(block_count(bodies.size(), kGrain));
         for_each_block(bodies.size(), kGrain, [&](auto begin, auto end, auto block) {
             std::array<std::uint32_t, kGrain> chosen, left;
             std::size_t count = 0;
@@ -102,13 +102,11 @@ void integrate_poses(const Conditions& conditions,
                 if (states.moves(bodies[i])) chosen[count++] = bodies[i];
             if (wide) count = kernel(rule, arrays, chosen.data(), count, left.data());
             auto& lost = trouble.of_block[block];
-            lost.clear();
             for (std::size_t i = 0; i < count; ++i)
                 if (!fly_one(conditions, masses, wide ? left[i] : chosen[i], poses, velocities))
                     lost.push_back(wide ? left[i] : chosen[i]);
         });
-        for (const auto& found : trouble.of_block)
-            trouble.quarantined.insert(trouble.quarantined.end(), found.begin(), found.end());
+        trouble.of_block.append_to(trouble.quarantined);
     };
     fly(alone ? states.movers.dynamic : islands.lone);
     fly(states.movers.kinematic);

@@ -1,27 +1,13 @@
-// Prepare rows: contacts and bodies into what the solver walks, in the order in which it walks.
+// Prepare rows: bodies into what the solver walks, and room for the rows of their contacts.
 #include "kernels/math/rotation.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "kernels/solve/contact_rows.hpp"
 #include "pipeline/stages.hpp"
-
-#include <algorithm>
 
 namespace throng {
 
 namespace {
 
 constexpr std::size_t kBodies = 256;  // a block: some 20 microseconds of work
-constexpr std::size_t kRows = 16;     // blocks of 16 rows
-
-// Contacts are damped far beyond critical: they give way slowly and do not ring.
-constexpr double kDampingRatio = 20;
-// Stiffness as a share of the substep's rate, by the number of points: the most that comes to rest.
-// Points share a body's mass among them, so the more there are the less each bears.
-constexpr double kRate[4] = {0.5, 0.3, 0.25, 0.25};
-// Overlap from which a contact stops giving way, as a share of the smaller body's half extent.
-constexpr double kDeep = 0.005;
-// Plain Gauss-Seidel: the share of the overlap taken away each substep.
-constexpr double kBaumgarte = 0.2;
 
 template <class Real>
 void seat_body(std::uint32_t body,
@@ -61,31 +47,11 @@ void seat_inertia(std::uint32_t body,
     seat.share[6] = 1;
 }
 
-// The softness of contacts by their number of points, less one.
-template <class Real>
-std::array<Softness<Real>, 4> softness_of(const Conditions& conditions)
-{
-    const Settings& settings = conditions.settings;
-    const double h = conditions.substep();
-    std::array<Softness<Real>, 4> terms;
-    for (std::size_t points = 0; points < terms.size(); ++points) {
-        const double share = settings.contact_rate > 0 ? settings.contact_rate : kRate[points];
-        const double rate = settings.contact_hertz > 0 ? settings.contact_hertz : share / h;
-        terms[points] = settings.solver == Solver::pgs
-            ? Softness<Real>{static_cast<Real>(kBaumgarte / h), Real(0)}
-            : softness<Real>(rate, kDampingRatio, h);
-    }
-    return terms;
-}
-
 }  // namespace
 
 template <class Real>
 void prepare_rows(const Conditions& conditions,
                   const Layout& layout,
-                  const ActiveContacts& active,
-                  const ConvexContacts<Real>& convex,
-                  const MeshContacts<Real>& meshes,
                   const Poses& poses,
                   const Velocities& velocities,
                   const Masses& masses,
@@ -95,71 +61,37 @@ void prepare_rows(const Conditions& conditions,
     const bool gyroscopic = conditions.has(Effect::gyroscopic);
     rows.bodies.resize(layout.body_of_slot.size());
     rows.inertias.resize(gyroscopic ? rows.bodies.size() : 0);
-    for_each_block(rows.bodies.size(), kBodies,
-                   [&](std::size_t begin, std::size_t end, std::size_t) {
-                       for (std::size_t i = begin; i < end; ++i) {
-                           const std::uint32_t body = layout.body_of_slot[i];
-                           seat_body(body, poses, velocities, masses, states, rows.bodies[i]);
-                           if (gyroscopic)
-                               seat_inertia(body, poses, masses, states, rows.inertias[i]);
-                       }
-                   });
+    const auto seat = [&](std::uint32_t body, std::size_t slot) {
+        seat_body(body, poses, velocities, masses, states, rows.bodies[slot]);
+        if (gyroscopic) seat_inertia(body, poses, masses, states, rows.inertias[slot]);
+    };
+    seat(kNobody, 0);
+    // In order of bodies, of which many arrays are read; that of slots may be any other.
+    const std::size_t bodies = layout.slot.size();
+    for_each_block(bodies, kBodies, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body)
+            if (layout.slot[body] != Layout::kNoSlot) seat(body, layout.slot[body]);
+    });
+    for (std::size_t slot = layout.dynamic + std::size_t{1}; slot < rows.bodies.size(); ++slot)
+        seat(layout.body_of_slot[slot], slot);
 
     const std::size_t blocks = layout.points.size();
     rows.blocks.resize(blocks);
+    rows.first_point.resize(blocks);
     std::uint32_t points = 0;
     for (std::size_t i = 0; i < blocks; ++i) {
-        rows.blocks[i].first_point = points;
+        rows.first_point[i] = points;
         points += layout.points[i];
     }
     rows.points.resize(points);
     rows.bounces.resize(conditions.has(Effect::restitution) ? points : 0);
     rows.rollings.resize(conditions.has(Effect::rolling_friction) ? blocks : 0);
-    const RowsView<Real> view = RowsView<Real>::of(rows);
-
-    const std::array<Softness<Real>, 4> softness = softness_of<Real>(conditions);
-    const SolveKernels<Real>& kernels = solve_kernels<Real>();
-    const bool turns = conditions.has(Effect::rotation);
-    const auto fill = [&](std::size_t at, LooseBlock<Real>& loose) {
-        ContactBlock<Real>& block = rows.blocks[at];
-        block.points = layout.points[at];
-        block.writes_a = block.writes_b = 0;
-        for (std::size_t lane = 0; lane < kBlock; ++lane) {
-            const std::size_t place = at * kBlock + lane;
-            const int lane_at = static_cast<int>(lane);
-            block.a[lane] = layout.slot_a[place];
-            block.b[lane] = layout.slot_b[place];
-            const std::uint32_t entry = layout.lanes[place].entry;
-            if (entry == LaneSource{}.entry) {
-                loosen_nothing(block.points, lane_at, loose);
-                continue;
-            }
-            const auto& source = active.entries[entry];
-            const auto writes = [&](std::uint32_t body) {
-                return states.dynamic(body) && states.moves(body) ? 1u << lane : 0u;
-            };
-            block.writes_a = static_cast<std::uint16_t>(block.writes_a | writes(source.body_a));
-            block.writes_b = static_cast<std::uint16_t>(block.writes_b | writes(source.body_b));
-            const Contact<Real>& contact =
-                source.on_mesh ? meshes.entries[source.slot].contact : convex.contacts[source.slot];
-            loosen(contact,
-                   {Real(source.friction), Real(source.restitution), Real(source.rolling_friction),
-                    softness[source.points - 1u], static_cast<Real>(kDeep * double{source.extent})},
-                   block.points, lane_at, loose);
-        }
-        kernels.prepare(loose, at, view, turns);
-    };
-    for_each_block(blocks, kRows, [&](std::size_t begin, std::size_t end, std::size_t) {
-        LooseBlock<Real> loose;
-        for (std::size_t i = begin; i < end; ++i) fill(i, loose);
-    });
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void prepare_rows<Real>(const Conditions&, const Layout&, const ActiveContacts&,      \
-                                     const ConvexContacts<Real>&, const MeshContacts<Real>&,       \
-                                     const Poses&, const Velocities&, const Masses&,               \
-                                     const BodyStates&, Rows<Real>&);
+    template void prepare_rows<Real>(const Conditions&, const Layout&, const Poses&,               \
+                                     const Velocities&, const Masses&, const BodyStates&,          \
+                                     Rows<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

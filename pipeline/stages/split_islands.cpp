@@ -5,10 +5,10 @@ namespace throng {
 
 void split_islands(const ActiveContacts& contacts,
                    const BodyStates& states,
-                   DisjointSets& sets,
+                   IslandFinder& finder,
                    Islands& islands)
 {
-    build_islands(contacts, states, sets, islands);
+    finder.find(contacts, states, islands);
 }
 
 }  // namespace throng

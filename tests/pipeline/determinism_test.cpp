@@ -1,10 +1,11 @@
 // Determinism: the same bits on any number of threads, in any order the graph takes, with any
 // finder of pairs and any width of lanes, on every run.
-#include "pipeline/world.hpp"
+#include "pipeline/world_state.hpp"
 #include "scenes/catalog.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -78,6 +79,32 @@ TEST_P(SameBits, NoFinderOfPairsChangesABit)
 INSTANTIATE_TEST_SUITE_P(Catalogue, SameBits, ::testing::ValuesIn(kScenes), [](const auto& test) {
     return std::string(test.param.name);
 });
+
+// As islands of some thousand bodies are: cut into slices, with passes one behind the other.
+std::string hash_when_cut(const char* name, int size, int threads, Precision precision)
+{
+    Scene scene = make_scene(name, size);
+    scene.settings.precision = precision;
+    scene.settings.sleep = false;
+    World world(scene, threads);
+    world.state().get<Painter>().cut = {.from = 550, .slice = 60};
+    world.step(kSteps);
+    std::size_t most = 0;
+    for (const Batch& batch : world.state().get<Layout>().batches)
+        most = std::max<std::size_t>(most, batch.slices);
+    EXPECT_GT(most, 3u) << name;
+    return world.state_hash();
+}
+
+TEST(Determinism, HoldsForIslandsThatAreCut)
+{
+    for (const auto& [name, size] : {std::pair("wall", 400), std::pair("spheres", 800)})
+        for (const Precision precision : {Precision::float_, Precision::double_}) {
+            const std::string wanted = hash_when_cut(name, size, 1, precision);
+            for (const int threads : {2, 3, 8})
+                EXPECT_EQ(hash_when_cut(name, size, threads, precision), wanted) << name;
+        }
+}
 
 TEST(Determinism, HoldsInDoubleToo)
 {

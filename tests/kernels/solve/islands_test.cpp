@@ -65,9 +65,8 @@ TEST(Islands, AreThoseOfASearchThroughTheGraph)
         std::mt19937 random(seed);
         const auto bodies = static_cast<std::uint32_t>(1 + random() % 120);
         const Graph graph = random_graph(bodies, random() % (2 * bodies), random);
-        DisjointSets sets;
         Islands got;
-        build_islands(graph.contacts, graph.states, sets, got);
+        IslandFinder().find(graph.contacts, graph.states, got);
         const Islands wanted = islands_by_search(graph);
         ASSERT_EQ(got.body_begin, wanted.body_begin) << "seed " << seed;
         ASSERT_EQ(got.bodies, wanted.bodies) << "seed " << seed;
@@ -82,12 +81,11 @@ TEST(Islands, HoldTheSameBodiesWhateverTheOrderOfContacts)
     for (unsigned seed = 0; seed < 50; ++seed) {
         std::mt19937 random(seed);
         Graph graph = random_graph(100, 90, random);
-        DisjointSets sets;
         Islands before, after;
-        build_islands(graph.contacts, graph.states, sets, before);
+        IslandFinder().find(graph.contacts, graph.states, before);
         std::shuffle(graph.contacts.entries.begin(), graph.contacts.entries.end(), random);
         for (auto& contact : graph.contacts.entries) std::swap(contact.body_a, contact.body_b);
-        build_islands(graph.contacts, graph.states, sets, after);
+        IslandFinder().find(graph.contacts, graph.states, after);
         ASSERT_EQ(before.body_begin, after.body_begin) << "seed " << seed;
         ASSERT_EQ(before.bodies, after.bodies) << "seed " << seed;
         ASSERT_EQ(before.contact_begin, after.contact_begin) << "seed " << seed;
@@ -96,25 +94,34 @@ TEST(Islands, HoldTheSameBodiesWhateverTheOrderOfContacts)
 
 TEST(Islands, OfNothingAreNone)
 {
-    DisjointSets sets;
     Islands islands;
-    build_islands({}, {}, sets, islands);
+    IslandFinder().find({}, {}, islands);
     EXPECT_EQ(islands.size(), 0u);
     EXPECT_TRUE(islands.lone.empty());
 }
 
-TEST(DisjointSets, AreNamedByTheirSmallestMember)
+// Enough for many blocks of the loop, in chains that only meet late.
+TEST(Islands, DoNotDependOnThreads)
 {
-    DisjointSets sets;
-    sets.reset(6);
-    sets.join(5, 3);
-    sets.join(4, 5);
-    EXPECT_EQ(sets.find(5), 3u);
-    sets.join(1, 4);
-    EXPECT_EQ(sets.find(3), 1u);
-    EXPECT_EQ(sets.find(0), 0u);
-    sets.reset(6);
-    EXPECT_EQ(sets.find(5), 5u);
+    std::mt19937 random(1);
+    const std::uint32_t bodies = 60'000;
+    const Graph graph = random_graph(bodies, bodies, random);
+    Islands wanted;
+    IslandFinder().find(graph.contacts, graph.states, wanted);
+    ASSERT_GT(wanted.size(), 1000u);
+    ThreadPool pool(4);
+    IslandFinder finder;
+    for (int again = 0; again < 5; ++again) {
+        Islands got;
+        pool.run([&](std::size_t, std::size_t, std::size_t) {
+            finder.find(graph.contacts, graph.states, got);
+        });
+        ASSERT_EQ(got.body_begin, wanted.body_begin);
+        ASSERT_EQ(got.bodies, wanted.bodies);
+        ASSERT_EQ(got.contact_begin, wanted.contact_begin);
+        ASSERT_EQ(got.contacts, wanted.contacts);
+        ASSERT_EQ(got.lone, wanted.lone);
+    }
 }
 
 }  // namespace

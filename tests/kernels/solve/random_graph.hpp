@@ -11,6 +11,7 @@ namespace throng::testing {
 struct Graph {
     BodyStates states;
     ActiveContacts contacts;
+    std::vector<Vec3> positions;
 
     bool movable(std::uint32_t body) const { return states.dynamic(body) && states.moves(body); }
 };
@@ -19,6 +20,7 @@ inline void add_body(Graph& graph, BodyKind kind, bool awake)
 {
     graph.states.kind.push_back(kind);
     graph.states.awake.push_back(awake ? 1 : 0);
+    graph.positions.push_back(Vec3::Zero());
 }
 
 /// Some bodies still (every second one a conveyor), kinematic, asleep or gone; every contact has a

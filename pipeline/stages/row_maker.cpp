@@ -1,0 +1,107 @@
+#include "pipeline/stages/row_maker.hpp"
+
+namespace throng {
+
+namespace {
+
+// Contacts are damped far beyond critical: they give way slowly and do not ring.
+constexpr double kDampingRatio = 20;
+// Stiffness as a share of the substep's rate, by the number of points: the most that comes to rest.
+// Points share a body's mass among them, so the more there are the less each bears.
+constexpr double kRate[4] = {0.5, 0.3, 0.25, 0.25};
+// Overlap from which a contact stops giving way, as a share of the smaller body's half extent.
+constexpr double kDeep = 0.005;
+// Plain Gauss-Seidel: the share of the overlap taken away each substep.
+constexpr double kBaumgarte = 0.2;
+
+template <class Real>
+std::array<Softness<Real>, 4> softness_of(const Conditions& conditions)
+{
+    const Settings& settings = conditions.settings;
+    const double h = conditions.substep();
+    std::array<Softness<Real>, 4> terms;
+    for (std::size_t points = 0; points < terms.size(); ++points) {
+        const double share = settings.contact_rate > 0 ? settings.contact_rate : kRate[points];
+        const double rate = settings.contact_hertz > 0 ? settings.contact_hertz : share / h;
+        terms[points] = settings.solver == Solver::pgs
+            ? Softness<Real>{static_cast<Real>(kBaumgarte / h), Real(0)}
+            : softness<Real>(rate, kDampingRatio, h);
+    }
+    return terms;
+}
+
+}  // namespace
+
+template <class Real>
+RowMaker<Real>::RowMaker(const Conditions& conditions,
+                         const Layout& layout,
+                         const ActiveContacts& active,
+                         const BodyStates& states,
+                         ConvexContacts<Real>& convex,
+                         MeshContacts<Real>& meshes,
+                         Rows<Real>& rows)
+    : layout_(layout), active_(active), states_(states), convex_(convex), meshes_(meshes),
+      rows_(rows), view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
+      turns_(conditions.has(Effect::rotation)), softness_(softness_of<Real>(conditions))
+{ }
+
+template <class Real>
+Contact<Real>& RowMaker<Real>::contact_of(const ActiveContacts::Entry& source) const
+{
+    return source.on_mesh ? meshes_.entries[source.slot].contact : convex_.contacts[source.slot];
+}
+
+template <class Real>
+void RowMaker<Real>::fill(std::size_t at, LooseBlock<Real>& loose) const
+{
+    ContactBlock<Real>& block = rows_.blocks[at];
+    block.points = layout_.points[at];
+    block.first_point = rows_.first_point[at];
+    block.writes_a = block.writes_b = 0;
+    for (std::size_t lane = 0; lane < kBlock; ++lane) {
+        const std::size_t place = at * kBlock + lane;
+        const int lane_at = static_cast<int>(lane);
+        block.a[lane] = layout_.slot_a[place];
+        block.b[lane] = layout_.slot_b[place];
+        const std::uint32_t entry = layout_.lanes[place].entry;
+        if (entry == LaneSource{}.entry) {
+            loosen_nothing(block.points, lane_at, loose);
+            continue;
+        }
+        const auto& source = active_.entries[entry];
+        const auto writes = [&](std::uint32_t body) {
+            return states_.dynamic(body) && states_.moves(body) ? 1u << lane : 0u;
+        };
+        block.writes_a = static_cast<std::uint16_t>(block.writes_a | writes(source.body_a));
+        block.writes_b = static_cast<std::uint16_t>(block.writes_b | writes(source.body_b));
+        loosen(contact_of(source),
+               {Real(source.friction), Real(source.restitution), Real(source.rolling_friction),
+                softness_[source.points - 1u], static_cast<Real>(kDeep * double{source.extent})},
+               block.points, lane_at, loose);
+    }
+    kernels_.prepare(loose, at, view_, turns_);
+}
+
+template <class Real>
+void RowMaker<Real>::make(std::size_t begin, std::size_t end) const
+{
+    LooseBlock<Real> loose;
+    for (std::size_t block = begin; block < end; ++block) fill(block, loose);
+}
+
+template <class Real>
+void RowMaker<Real>::store(std::size_t begin, std::size_t end) const
+{
+    for (std::size_t block = begin; block < end; ++block)
+        for (int lane = 0; lane < kBlock; ++lane) {
+            const std::uint32_t entry =
+                layout_.lanes[block * kBlock + static_cast<std::size_t>(lane)].entry;
+            if (entry != LaneSource{}.entry)
+                store_impulses(view_, block, lane, contact_of(active_.entries[entry]));
+        }
+}
+
+template class RowMaker<float>;
+template class RowMaker<double>;
+
+}  // namespace throng

@@ -1,0 +1,45 @@
+// Row maker: contacts into the rows of the solver, and impulses back into contacts.
+//
+// The solver does both itself, slice by slice, so that rows are in cache when they are first and
+// last needed.
+#pragma once
+
+#include "kernels/solve/contact_rows.hpp"
+#include "pipeline/step_data.hpp"
+
+namespace throng {
+
+template <class Real>
+class RowMaker {
+public:
+    /// Of rows that have their places (see prepare_rows).
+    RowMaker(const Conditions& conditions,
+             const Layout& layout,
+             const ActiveContacts& active,
+             const BodyStates& states,
+             ConvexContacts<Real>& convex,
+             MeshContacts<Real>& meshes,
+             Rows<Real>& rows);
+
+    /// Makes the rows of blocks from `begin` to before `end`. Bodies have not moved yet.
+    void make(std::size_t begin, std::size_t end) const;
+    /// Gives the impulses of these blocks back to their contacts.
+    void store(std::size_t begin, std::size_t end) const;
+
+private:
+    Contact<Real>& contact_of(const ActiveContacts::Entry& source) const;
+    void fill(std::size_t block, LooseBlock<Real>& loose) const;
+
+    const Layout& layout_;
+    const ActiveContacts& active_;
+    const BodyStates& states_;
+    ConvexContacts<Real>& convex_;
+    MeshContacts<Real>& meshes_;
+    Rows<Real>& rows_;
+    RowsView<Real> view_;
+    const SolveKernels<Real>& kernels_;
+    bool turns_;
+    std::array<Softness<Real>, 4> softness_;  // by the number of points, less one
+};
+
+}  // namespace throng
