@@ -3,6 +3,7 @@
 #include "pipeline/stages.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace throng {
 
@@ -23,31 +24,60 @@ void gather_contacts(const Pairs& pairs,
 {
     const auto extent_of = [&](std::uint32_t collider) { return colliders.inner_extent[collider]; };
     const auto take = [&](std::size_t pair, const Contact<Real>& contact, std::size_t slot,
-                          bool on_mesh, std::vector<ActiveContacts::Entry>& entries) {
+                          bool on_mesh, ActiveContacts::Entry& entry) {
         const std::uint32_t a = first_of(pairs.keys[pair]), b = second_of(pairs.keys[pair]);
         const std::uint32_t body_a = colliders.body[a], body_b = colliders.body[b];
         const bool pushes_a = states.dynamic(body_a) && states.moves(body_a);
         const bool pushes_b = states.dynamic(body_b) && states.moves(body_b);
-        if (!pushes_a && !pushes_b) return;
+        if (!pushes_a && !pushes_b) return false;
         const auto meeting = surfaces.between(colliders.material[a], colliders.material[b]);
-        entries.push_back(
-            {body_a, body_b, static_cast<std::uint32_t>(slot), on_mesh,
-             static_cast<std::uint8_t>(contact.count), static_cast<float>(meeting.friction),
-             static_cast<float>(meeting.restitution), static_cast<float>(meeting.rolling_friction),
-             static_cast<float>(std::min(extent_of(a), extent_of(b)))});
+        entry = {body_a,
+                 body_b,
+                 static_cast<std::uint32_t>(slot),
+                 on_mesh,
+                 static_cast<std::uint8_t>(contact.count),
+                 static_cast<float>(meeting.friction),
+                 static_cast<float>(meeting.restitution),
+                 static_cast<float>(meeting.rolling_friction),
+                 static_cast<float>(std::min(extent_of(a), extent_of(b)))};
+        return true;
     };
-    active.entries.clear();
-    const std::size_t count = convex.of_pair.size();
-    active.of_block.start(block_count(count, kGrain));
+    // Each block of pairs has room for all its contacts, wherever that begins.
+    const std::size_t count = convex.of_pair.size(), blocks = block_count(count, kGrain);
+    std::vector<std::size_t>& begins = active.begin;
+    begins.assign(blocks + 1, 0);
     for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        std::size_t touching = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            touching += convex.of_pair[i].contact != PairState::kApart ? 1 : 0;
+        begins[block + 1] = touching;
+    });
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    resize_closely(active.entries, begins.back());
+    std::vector<std::size_t>& ends = active.end;
+    ends.resize(blocks);
+    for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        std::size_t at = begins[block];
         for (std::size_t i = begin; i < end; ++i)
             if (const Contact<Real>* contact = convex.at(i))
-                take(i, *contact, convex.of_pair[i].contact, false, active.of_block[block]);
+                at += take(i, *contact, convex.of_pair[i].contact, false, active.entries[at]);
+        ends[block] = at;
     });
-    active.of_block.append_to(active.entries);
-    for (std::size_t i = 0; i < meshes.entries.size(); ++i)
-        if (meshes.entries[i].contact.count > 0)
-            take(meshes.entries[i].pair, meshes.entries[i].contact, i, true, active.entries);
+    // Contacts of sleepers left some of it free.
+    const auto place = [&](std::size_t at) {
+        return active.entries.begin() + static_cast<std::ptrdiff_t>(at);
+    };
+    std::size_t size = 0;
+    for (std::size_t block = 0; block < blocks; ++block) {
+        if (begins[block] != size) std::copy(place(begins[block]), place(ends[block]), place(size));
+        size += ends[block] - begins[block];
+    }
+    active.entries.resize(size);
+    for (std::size_t i = 0; i < meshes.entries.size(); ++i) {
+        const auto& [pair, triangle, contact] = meshes.entries[i];
+        if (ActiveContacts::Entry entry; contact.count > 0 && take(pair, contact, i, true, entry))
+            active.entries.push_back(entry);
+    }
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
