@@ -28,14 +28,28 @@ struct Contact {
     Real round_a = 0,
          round_b = 0;  // m, radius about the normal: round sides do not turn with the body
     Real twist = 0;    // N m s on b about the normal
+    int count = 0;     // of points; next to what is always read, as most have one or two
     std::array<Point, 4> points;
-    int count = 0;
 
     /// The same point on the surface of b, from its center of mass.
     Vec3T<Real> from_b(int point) const
     {
         const Point& at = points[static_cast<std::size_t>(point)];
         return at.from_a + normal * at.separation + between;
+    }
+    /// The other without what lies behind its points, which need not be brought into the cache.
+    void take(const Contact& other)
+    {
+        normal = other.normal;
+        between = other.between;
+        friction = other.friction;
+        rolling = other.rolling;
+        round_a = other.round_a;
+        round_b = other.round_b;
+        twist = other.twist;
+        count = other.count;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+            points[k] = other.points[k];
     }
 };
 

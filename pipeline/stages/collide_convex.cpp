@@ -227,7 +227,7 @@ private:
             return;
         }
         carry_impulses(contacts_.contacts[place], scale_, contact);
-        contacts_.contacts[place] = contact;
+        contacts_.contacts[place].take(contact);
     }
 
     const Pairs& pairs_;

@@ -1,5 +1,6 @@
 #include "pipeline/stages/contact_places.hpp"
 
+#include "kernels/parallel/blocks.hpp"
 #include "kernels/parallel/follow.hpp"
 
 #include <algorithm>
@@ -60,13 +61,11 @@ bool sum_up(std::vector<Count>& counts)
 template <class Real>
 void follow_pairs(const Pairs& pairs, ConvexContacts<Real>& contacts)
 {
-    contacts.parted.start(follow_blocks(pairs.from.size()));
     follow(
         pairs.from, contacts.of_pair, [](std::size_t) { return PairState{}; },
-        [&](const PairState& gone, std::size_t block) {
-            if (gone.contact != PairState::kApart) contacts.parted[block].push_back(gone.contact);
+        [&](const PairState& gone) {
+            if (gone.contact != PairState::kApart) contacts.free.push_back(gone.contact);
         });
-    contacts.parted.append_to(contacts.free);
 }
 
 template <class Real>
@@ -95,7 +94,7 @@ void move_in_and_out(ConvexContacts<Real>& contacts)
                 contacts.free.pop_back();
             }
             contacts.of_pair[made.pair].contact = place;
-            contacts.contacts[place] = made.contact;
+            contacts.contacts[place].take(made.contact);
             contacts.astray[place] = 1;
         }
         // Kept, they would hold in each block the most that ever began there.
@@ -132,7 +131,7 @@ void put_in_order(ConvexContacts<Real>& contacts)
         });
         follow(
             contacts.order, contacts.contacts, [&](std::size_t n) { return contacts.gathered[n]; },
-            [](const Contact<Real>&, std::size_t) {});
+            [](const Contact<Real>&) {});
         contacts.free.clear();
     }
     contacts.astray.assign(contacts.contacts.size(), 0);

@@ -73,7 +73,7 @@ public:
         pairs_.from.resize(size);
         follow(
             pairs_.from, pairs_.keys, [&](std::size_t n) { return pairs_.found[n]; },
-            [](PairKey, std::size_t) {});
+            [](PairKey) {});
         return true;
     }
 
