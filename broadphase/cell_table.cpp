@@ -1,6 +1,7 @@
 #include "broadphase/cell_table.hpp"
 
 #include "kernels/check.hpp"
+#include "kernels/parallel/room.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -113,21 +114,43 @@ void CellTable::take_out(std::uint32_t id)
     const Entry& last = entries_[bucket.begin + --bucket.count];
     entries_[seats_[id].at] = last;
     seats_[last.id].at = seats_[id].at;
+    if (bucket.count > 0) return;
+    leave_room(bucket);
+    bucket.room = 0;
+}
+
+// Somebody else may have the room of a bucket.
+void CellTable::leave_room(const Bucket& bucket)
+{
+    if (bucket.room > 0) rooms_[std::countr_zero(bucket.room)].push_back(bucket.begin);
+}
+
+// Where there is room for so many, a power of two.
+std::uint32_t CellTable::find_room(std::uint32_t room)
+{
+    std::vector<std::uint32_t>& free = rooms_[std::countr_zero(room)];
+    if (free.empty()) {
+        resize_closely(entries_, entries_.size() + room);
+        return static_cast<std::uint32_t>(entries_.size() - room);
+    }
+    const std::uint32_t begin = free.back();
+    free.pop_back();
+    return begin;
 }
 
 void CellTable::seat(const Entry& entry, std::uint32_t at)
 {
     Bucket& bucket = buckets_[at];
     if (bucket.count == bucket.room) {
-        // Moves to the end, where there is room for twice as many.
-        const auto begin = static_cast<std::uint32_t>(entries_.size());
-        bucket.room = std::max(kFirstRoom, 2 * bucket.room);
-        entries_.resize(entries_.size() + bucket.room);
+        // Moves to where there is room for twice as many.
+        const std::uint32_t room = std::max(kFirstRoom, 2 * bucket.room), begin = find_room(room);
         for (std::uint32_t i = 0; i < bucket.count; ++i) {
             entries_[begin + i] = entries_[bucket.begin + i];
             seats_[entries_[begin + i].id].at = begin + i;
         }
+        leave_room(bucket);
         bucket.begin = begin;
+        bucket.room = room;
     }
     seats_[entry.id] = {at, bucket.begin + bucket.count};
     entries_[bucket.begin + bucket.count++] = entry;
@@ -172,6 +195,7 @@ void CellTable::rebuild(const OverlapQuery& query)
     const std::size_t count = query.boxes.size();
     buckets_.assign(std::bit_ceil(2 * count + 1), {});
     entries_.clear();
+    for (std::vector<std::uint32_t>& free : rooms_) free.clear();
     seats_.assign(count, {});
     level_.assign(count, kNowhere);
     aside_.clear();
@@ -195,7 +219,7 @@ void CellTable::update(const OverlapQuery& query)
     for (const std::uint32_t id : named_) asked_[id] = 1;
 
     // Once in a while a world outgrows its table, or all change at once.
-    const bool grown = 2 * count > buckets_.size() || entries_.size() > 16 * count + 1024;
+    const bool grown = 2 * count > buckets_.size();
     if (before == 0 || count < before || grown || 2 * named_.size() > count) {
         rebuild(query);
         return;

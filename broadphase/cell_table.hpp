@@ -52,17 +52,20 @@ private:
     void put(std::uint32_t id, const Box3& box);
     void take_out(std::uint32_t id);
     void seat(const Entry& entry, std::uint32_t bucket);
+    void leave_room(const Bucket& bucket);
+    std::uint32_t find_room(std::uint32_t room);
     static Entry entry_of(std::uint32_t id, const Box3& box);
     std::uint8_t level_of(const Box3& box) const;
     Cells cells_round(const Box3& box, const Level& level) const;
     std::uint64_t row_of(std::uint8_t level, std::int64_t y, std::int64_t z) const;
 
-    std::vector<Entry> entries_;        // of all buckets
-    std::vector<Bucket> buckets_;       // a power of two of them
-    std::vector<Seat> seats_;           // [colliders]
-    std::vector<std::uint8_t> level_;   // [colliders]
-    std::vector<std::uint8_t> asked_;   // [colliders] 1 for those of the last query
-    std::vector<std::uint32_t> named_;  // whose flag is up
+    std::vector<Entry> entries_;                        // of all buckets
+    std::array<std::vector<std::uint32_t>, 32> rooms_;  // among them, free; by the power of two
+    std::vector<Bucket> buckets_;                       // a power of two of them
+    std::vector<Seat> seats_;                           // [colliders]
+    std::vector<std::uint8_t> level_;                   // [colliders]
+    std::vector<std::uint8_t> asked_;                   // [colliders] 1 for those of the last query
+    std::vector<std::uint32_t> named_;                  // whose flag is up
     std::vector<std::uint32_t> aside_;
     std::array<Level, 256> levels_;
     std::vector<std::uint8_t> active_;  // levels that ever held a box

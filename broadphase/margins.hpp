@@ -15,11 +15,24 @@ struct MarginRule {
     double base = 0.08;  // of the size, on every side: room for jitter, turning and rest
     double steps = 8;    // ahead along the velocity, on the sides that it points to
     double longest = 2;  // of the size: most that looking further ahead than one step may add
+    // Of the size. A box that on some side is wider by this than it would be made now is made anew:
+    // what has come to rest would keep the pairs of its fall, a third of all in a heap. Half as
+    // much asks a tumbling heap too often, twice as much keeps most of those pairs.
+    double loose = 0.75;
 };
 
 /// How many times further margins may look ahead in a scene with so many pairs for so many
 /// colliders that move: where these are far apart, wide margins bring next to no pairs.
 double stretch_for(std::size_t pairs, std::size_t movers);
+
+/// True for a box that holds `tight` but is loose, see MarginRule. One of fattened() is not, as
+/// long as the velocity stays the same.
+bool loose(const Box3& box,
+           const Box3& tight,
+           const Vec3& velocity,
+           double size,
+           double dt,
+           const MarginRule& rule = MarginRule());
 
 /// The box of a moving collider with its margin.
 ///

@@ -14,6 +14,7 @@ struct MoverRule {
     double resting = 0;  // share of the smallest half extent that the reach is at least
     double falls = 0;    // m, that it is at least besides
     double base = 0, steps = 0, longest = 0;  // see MarginRule
+    double loose = 1e300;                     // see MarginRule
 };
 
 /// How the kernel can place a shape: all that lie at the center of their body, and are a box

@@ -135,15 +135,26 @@ void store_placed(const Mover& mover, const MoverArrays& arrays)
     }
 }
 
-// Bit a lane: those that are no longer within their box.
-unsigned outside(const Mover& mover, const double* boxes)
+// How far a box reaches ahead along an axis, of some speed.
+L ahead_of(const MoverRule& rule, L way, L size)
+{
+    return max(way, min(L(rule.steps) * way, L(rule.longest) * size));
+}
+
+// Bit a lane: those that are no longer within their box, or whose box has become loose.
+unsigned misfits(const MoverRule& rule, const MoverArrays& arrays, const Mover& mover)
 {
     L box[6];
-    load_6(boxes, mover.collider, box);
+    load_6(arrays.boxes, mover.collider, box);
+    const L size = load_one(arrays.inner, mover.collider);
     L out = 0.0;
     for (int k = 0; k < 3; ++k) {
-        out = select(mover.lower[k] < box[k], L(1.0), out);
-        out = select(mover.upper[k] > box[3 + k], L(1.0), out);
+        const L below = mover.lower[k] - box[k], above = box[3 + k] - mover.upper[k];
+        out = select(below < L(0.0), L(1.0), out);
+        out = select(above < L(0.0), L(1.0), out);
+        const L ahead = ahead_of(rule, absolute(mover.linear[k] * L(rule.dt)), size);
+        const L most = ahead + L(rule.base + rule.loose) * size;
+        out = select(max(below, above) > most, L(1.0), out);
     }
     double numbers[kWidth];
     out.store(numbers);
@@ -160,11 +171,11 @@ void store_fattened(const MoverRule& rule,
 {
     constexpr double kSlack = 4 * 0x1p-52;
     const L size = load_one(arrays.inner, mover.collider);
-    const L base = L(rule.base) * size, longest = L(rule.longest) * size, zero = 0.0;
+    const L base = L(rule.base) * size, zero = 0.0;
     L box[6];
     for (int k = 0; k < 3; ++k) {
         const L step = mover.linear[k] * L(rule.dt), way = absolute(step);
-        const L ahead = max(way, min(L(rule.steps) * way, longest));
+        const L ahead = ahead_of(rule, way, size);
         const L rounding =
             L(kSlack) * (max(absolute(mover.lower[k]), absolute(mover.upper[k])) + ahead);
         const L room = base + rounding;
@@ -193,7 +204,7 @@ unsigned update(const MoverRule& rule, const MoverArrays& arrays, Mover& mover)
         store_rows(reach, arrays.reach, 1, mover.collider, (1u << mover.valid) - 1);
     store_near(mover, arrays.near);
     store_placed(mover, arrays);
-    const unsigned left = outside(mover, arrays.boxes);
+    const unsigned left = misfits(rule, arrays, mover);
     if (left != 0) store_fattened(rule, arrays, mover, left);
     return left;
 }

@@ -36,6 +36,7 @@ void UniformGrid::find(const OverlapQuery& query, std::vector<PairKey>& pairs)
     });
     lists.append_to(pairs);
     sort_keys(pairs, inside_->scratch);
+    clear_closely(inside_->scratch);
     // Two cells of one search may share a bucket.
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }

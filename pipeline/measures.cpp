@@ -171,8 +171,9 @@ std::size_t World::memory_bytes() const
             const Pairs& pairs = std::get<Pairs>(chosen.data);
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             const auto& rows = std::get<Rows<Real>>(chosen.data);
-            sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.merged, convex.of_pair,
-                         convex.before, convex.contacts, convex.moved, rows.blocks, rows.points,
+            sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.asked, convex.of_pair,
+                         convex.contacts, convex.free, convex.astray, convex.gathered, convex.order,
+                         std::get<ActiveContacts>(chosen.data).entries, rows.blocks, rows.points,
                          rows.bounces, rows.rollings, rows.bodies, rows.inertias);
         },
         state_->step);

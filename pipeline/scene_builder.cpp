@@ -315,6 +315,16 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     return {body, state_.generation[body]};
 }
 
+void SceneBuilder::make_room_for(ShapeKind kind, std::size_t count)
+{
+    Shapes& shapes = state_.get<Shapes>();
+    const auto reserve = [&](auto& list) { list.reserve(list.size() + count); };
+    if (kind == ShapeKind::sphere) reserve(shapes.spheres);
+    if (kind == ShapeKind::capsule) reserve(shapes.capsules);
+    if (kind == ShapeKind::cylinder) reserve(shapes.cylinders);
+    if (kind == ShapeKind::box) reserve(shapes.boxes);
+}
+
 ShapeRef SceneBuilder::sized(ShapeKind kind, const double* sizes)
 {
     Shapes& shapes = state_.get<Shapes>();
@@ -332,8 +342,34 @@ ShapeRef SceneBuilder::sized(ShapeKind kind, const double* sizes)
     }
 }
 
+// Room for what a scene adds, and not for half as much again. A world that is added to again and
+// again doubles it as any list does.
+void SceneBuilder::make_room(std::size_t bodies)
+{
+    const auto reserve = [](std::size_t count, auto&... lists) {
+        const auto one = [&](auto& list) {
+            if (list.empty()) list.reserve(count);
+        };
+        (one(lists), ...);
+    };
+    Poses& p = state_.get<Poses>();
+    Velocities& v = state_.get<Velocities>();
+    Masses& m = state_.get<Masses>();
+    BodyStates& s = state_.get<BodyStates>();
+    reserve(bodies, p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass,
+            m.inertia, m.inverse_inertia, m.spins_unevenly, s.kind, s.awake, s.quarantined,
+            s.quiet_time, s.bed, s.radius, s.conveys, s.movers.dynamic, state_.center,
+            state_.generation, state_.motion);
+    // Most bodies have one collider.
+    Colliders& c = state_.get<Colliders>();
+    PairFilter& filter = state_.get<PairFilter>();
+    reserve(bodies, c.body, c.shape, c.local, c.material, c.inner_extent, c.outer_radius, c.begin,
+            c.count, filter.body, filter.group, filter.mask);
+}
+
 std::vector<BodyId> SceneBuilder::add(const Scene& scene)
 {
+    make_room(scene.body_count());
     add_materials(scene);
     shapes_.reserve(scene.shapes.size());
     for (const ShapeDescription& shape : scene.shapes) shapes_.push_back(add_shape(scene, shape));
@@ -346,6 +382,7 @@ std::vector<BodyId> SceneBuilder::add(const Scene& scene)
     for (const Instances& group : scene.instances) {
         BodyDescription body = group.common;
         const PlacedShape* const shared = shape_of(body);
+        if (group.own_sizes) make_room_for(shared->parts[0].kind, group.count());
         for (std::size_t i = 0; i < group.count(); ++i) {
             const double* r = group.records.data() + i * group.stride();
             body.position = Vec3(r[0], r[1], r[2]);

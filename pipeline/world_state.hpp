@@ -98,6 +98,8 @@ public:
     std::vector<BodyId> add(const Scene& scene);
 
 private:
+    void make_room(std::size_t bodies);
+    void make_room_for(ShapeKind kind, std::size_t count);
     void add_materials(const Scene& scene);
     PlacedShape add_shape(const Scene& scene, const ShapeDescription& description);
     ShapeRef sized(ShapeKind kind, const double* sizes);

@@ -28,8 +28,8 @@ struct Contact {
     Real round_a = 0,
          round_b = 0;  // m, radius about the normal: round sides do not turn with the body
     Real twist = 0;    // N m s on b about the normal
+    int count = 0;     // of points; next to what is always read, as most have one or two
     std::array<Point, 4> points;
-    int count = 0;
 
     /// The same point on the surface of b, from its center of mass.
     Vec3T<Real> from_b(int point) const
@@ -37,12 +37,45 @@ struct Contact {
         const Point& at = points[static_cast<std::size_t>(point)];
         return at.from_a + normal * at.separation + between;
     }
+    /// The other without what lies behind its points, which need not be brought into the cache.
+    void take(const Contact& other)
+    {
+        normal = other.normal;
+        between = other.between;
+        friction = other.friction;
+        rolling = other.rolling;
+        round_a = other.round_a;
+        round_b = other.round_b;
+        twist = other.twist;
+        count = other.count;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+            points[k] = other.points[k];
+    }
+};
+
+/// What a pair remembers, in four bytes: there are many pairs. What does not fit is forgotten.
+class PackedCache {
+public:
+    PackedCache() = default;
+    PackedCache(const PairCache& cache)  // NOLINT(google-explicit-constructor): the same, smaller
+    {
+        if ((cache.feature_a | cache.feature_b) >= kFeatures || cache.kind >= kKinds) return;
+        bits_ = (cache.kind * kFeatures + cache.feature_a) * kFeatures + cache.feature_b;
+    }
+    operator PairCache() const  // NOLINT(google-explicit-constructor): the same, larger
+    {
+        return {bits_ / kFeatures % kFeatures, bits_ % kFeatures, bits_ / kFeatures / kFeatures};
+    }
+
+private:
+    static constexpr std::uint32_t kFeatures = 1u << 15, kKinds = 1u << 2;
+    std::uint32_t bits_ = 0;
 };
 
 /// What is kept of a pair of convex colliders, touching or not.
 struct PairState {
     static constexpr std::uint32_t kApart = 0xffffffffu;
-    PairCache cache;
+    PackedCache cache;
     std::uint32_t contact = kApart;  // place among the contacts
 };
 
@@ -56,13 +89,13 @@ struct ConvexContacts {
     };
     std::vector<PairState> of_pair;  // in the order of the pairs
     std::vector<Contact<Real>> contacts;
-    std::vector<std::uint32_t> free;   // places
-    std::size_t strayed = 0;           // contacts that began since all were last put in order
-    std::vector<PairState> before;     // scratch: of_pair of the last step
-    std::vector<Contact<Real>> moved;  // scratch: contacts in order
-    std::vector<std::uint32_t> begin;  // scratch
-    BlockLists<Made> made;             // scratch: contacts that began in this step
-    BlockLists<std::uint32_t> parted;  // scratch: pairs whose contacts ended
+    std::vector<std::uint32_t> free;      // places
+    std::size_t strayed = 0;              // contacts that began since all were last put in order
+    std::vector<std::uint8_t> astray;     // [contacts] 1 for those
+    std::vector<Contact<Real>> gathered;  // scratch: those, while they are put in order
+    std::vector<std::uint32_t> order;     // scratch: places that contacts come from
+    std::vector<std::vector<Made>> made;  // scratch: contacts that began in this step
+    BlockLists<std::uint32_t> parted;     // scratch: pairs whose contacts ended
 
     /// The contact of a pair, or none.
     const Contact<Real>* at(std::size_t pair) const
@@ -95,7 +128,7 @@ struct ActiveContacts {
         float extent = 0;  // m, the lesser of the smallest half extents of the two shapes
     };
     std::vector<Entry> entries;
-    BlockLists<Entry> of_block;  // scratch
+    std::vector<std::size_t> begin, end;  // scratch: of the entries of each block of pairs
 };
 
 }  // namespace throng

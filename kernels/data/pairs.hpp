@@ -1,6 +1,8 @@
 // Pairs: two colliders that may touch, as one number so that order and equality are cheap.
 #pragma once
 
+#include "kernels/parallel/follow.hpp"
+
 #include <cstdint>
 #include <vector>
 
@@ -22,13 +24,12 @@ constexpr std::uint32_t second_of(PairKey key) { return static_cast<std::uint32_
 ///   from     [pairs] where each was in the last step's list, or kNewPair; filled when changed
 ///   on_mesh  places of the pairs with a mesh on one side, ascending
 struct Pairs {
-    static constexpr std::uint32_t kNewPair = 0xffffffffu;
+    static constexpr std::uint32_t kNewPair = kNewItem;
     std::vector<PairKey> keys;
     std::vector<std::uint32_t> from;
     std::vector<std::uint32_t> on_mesh;
     bool changed = false;
-    std::vector<PairKey> found, merged;  // scratch
-    std::vector<std::uint32_t> merged_from;
+    std::vector<PairKey> found;       // scratch
     std::vector<std::uint8_t> asked;  // [colliders] all 0 between stages
 };
 

@@ -5,13 +5,15 @@
 #pragma once
 
 #include "kernels/parallel/blocks.hpp"
+#include "kernels/parallel/room.hpp"
 
 #include <algorithm>
 #include <vector>
 
 namespace throng {
 
-/// One list per block. Lists keep their capacity from call to call.
+/// One list per block. Lists keep their capacity from call to call, but for what they have no use
+/// for.
 template <class T>
 class BlockLists {
 public:
@@ -20,7 +22,7 @@ public:
     {
         if (lists_.size() < blocks) lists_.resize(blocks);
         used_ = blocks;
-        for (std::size_t block = 0; block < used_; ++block) lists_[block].clear();
+        for (std::size_t block = 0; block < used_; ++block) clear_closely(lists_[block]);
     }
     std::vector<T>& operator[](std::size_t block) { return lists_[block]; }
     std::size_t bytes() const

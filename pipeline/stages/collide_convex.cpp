@@ -8,53 +8,14 @@
 #include "narrowphase/box_pairs.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages/collide.hpp"
-
-#include <numeric>
+#include "pipeline/stages/contact_places.hpp"
 
 namespace throng {
 
 namespace {
 
-constexpr std::size_t kGrain = 512;        // pairs a block: some 20 microseconds of work
-constexpr std::size_t kOrderGrain = 8192;  // pairs a block
-constexpr std::size_t kStrays = 8;         // one contact in so many may be out of order
-
-// After the list of pairs has changed: what each pair knew, at its new place. Whoever is in the
-// list no more gives its contact back.
-template <class Real>
-void follow_pairs(const Pairs& pairs, ConvexContacts<Real>& contacts)
-{
-    std::swap(contacts.of_pair, contacts.before);
-    const std::size_t count = pairs.keys.size();
-    contacts.of_pair.resize(count);
-    const std::size_t blocks = block_count(count, kOrderGrain);
-    contacts.parted.start(blocks + 1);
-    const auto let_go = [&](std::size_t begin, std::size_t end, std::size_t block) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (contacts.before[i].contact != PairState::kApart)
-                contacts.parted[block].push_back(contacts.before[i].contact);
-    };
-    // The first of the old pairs behind whatever pairs before this one knew.
-    const auto behind = [&](std::size_t place) {
-        while (place > 0 && pairs.from[place - 1] == Pairs::kNewPair) --place;
-        return place > 0 ? pairs.from[place - 1] + std::size_t{1} : std::size_t{0};
-    };
-    for_each_block(count, kOrderGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        std::size_t next = behind(begin);
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t from = pairs.from[i];
-            if (from == Pairs::kNewPair) {
-                contacts.of_pair[i] = {};
-                continue;
-            }
-            let_go(next, from, block);
-            next = from + std::size_t{1};
-            contacts.of_pair[i] = contacts.before[from];
-        }
-    });
-    let_go(behind(count), contacts.before.size(), blocks);
-    contacts.parted.append_to(contacts.free);
-}
+constexpr std::size_t kGrain = 512;  // pairs a block: some 20 microseconds of work
+constexpr std::size_t kAhead = 16, kFar = 6, kNext = 4;  // pairs: how early memory is asked for
 
 // The pairs of boxes of a block, until there are enough of them to be collided side by side.
 struct BoxBatch {
@@ -84,13 +45,13 @@ public:
         static thread_local BoxBatch boxes;  // keeps its room from block to block
         boxes.places.clear();
         boxes.pairs.clear();
-        for (std::size_t i = begin; i < end; ++i) {
-            const PairKey key = pairs_.keys[i];
-            if (!bounds_.near[first_of(key)].overlaps(bounds_.near[second_of(key)])) {
-                part(i, block);
-                continue;
-            }
-            const PairPlace pair = place_of(key, colliders_, bounds_);
+        begun_.clear();
+        std::array<std::uint32_t, kGrain> near;
+        const std::size_t count = find_near(begin, end, block, near);
+        for (std::size_t k = 0; k < count; ++k) {
+            if (k + kFar < count) ask_for(pairs_.keys[near[k + kFar]]);
+            const std::uint32_t i = near[k];
+            const PairPlace pair = place_of(pairs_.keys[i], colliders_, bounds_);
             if (wants_contact(pair, states_))
                 collide_one(i, pair, boxes, block);
             else if (const std::uint32_t place = contacts_.of_pair[i].contact;
@@ -98,9 +59,50 @@ public:
                 scale_impulses(contacts_.contacts[place], scale_);
         }
         if (!boxes.pairs.empty()) collide_batch(boxes, block);
+        contacts_.made[block].assign(begun_.begin(), begun_.end());
     }
 
 private:
+    // The contacts that began in a block; on each thread, as the blocks of a world would keep room
+    // for far more together than any step needs.
+    static std::vector<typename ConvexContacts<Real>::Made>& begun()
+    {
+        static thread_local std::vector<typename ConvexContacts<Real>::Made> list;
+        return list;
+    }
+
+    // Most pairs are apart and most of those are seen to be so at once: in a loop of its own,
+    // without a branch for each. In a large world both loops would wait for the memory of whoever
+    // is second in a pair, so it is asked for ahead.
+    std::size_t find_near(std::size_t begin,
+                          std::size_t end,
+                          std::size_t block,
+                          std::array<std::uint32_t, kGrain>& near)
+    {
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + kAhead < pairs_.keys.size())
+                __builtin_prefetch(&bounds_.near[second_of(pairs_.keys[i + kAhead])]);
+            const PairKey key = pairs_.keys[i];
+            const bool meet = bounds_.near[first_of(key)].overlaps(bounds_.near[second_of(key)]);
+            near[count] = static_cast<std::uint32_t>(i);
+            count += meet ? 1 : 0;
+            if (!meet & (contacts_.of_pair[i].contact != PairState::kApart))
+                contacts_.parted[block].push_back(static_cast<std::uint32_t>(i));
+        }
+        return count;
+    }
+
+    void ask_for(PairKey key) const
+    {
+        const std::uint32_t b = second_of(key);
+        __builtin_prefetch(&bounds_.placed[b]);
+        __builtin_prefetch(&bounds_.placed[b].orientation.w());
+        __builtin_prefetch(&bounds_.reach[b]);
+        __builtin_prefetch(&colliders_.shape[b]);
+        __builtin_prefetch(&colliders_.body[b]);
+    }
+
     void part(std::size_t i, std::size_t block)
     {
         if (contacts_.of_pair[i].contact != PairState::kApart)
@@ -139,7 +141,7 @@ private:
         contact.points[0].separation = static_cast<Real>(distance - radii);
         contact.round_a = static_cast<Real>(radius_a);
         contact.round_b = static_cast<Real>(radius_b);
-        keep(i, contact, block);
+        keep(i, contact);
     }
 
     // Turning, in float: only where b is has to be told in double.
@@ -165,11 +167,21 @@ private:
             const auto manifolds = std::span(boxes.manifolds).first(boxes.pairs.size());
             collide_boxes(boxes.pairs, manifolds);
             for (std::size_t k = 0; k < manifolds.size(); ++k) {
+                if (k + kNext < manifolds.size()) ask_for_contact(boxes.places[k + kNext]);
                 const std::size_t i = boxes.places[k];
                 const PairPlace pair = place_of(pairs_.keys[i], colliders_, bounds_);
                 take(i, pair, false, manifolds[k], block);
             }
         }
+    }
+
+    void ask_for_contact(std::size_t i) const
+    {
+        const std::uint32_t place = contacts_.of_pair[i].contact;
+        if (place == PairState::kApart) return;
+        const auto* const contact = reinterpret_cast<const char*>(&contacts_.contacts[place]);
+        for (std::size_t byte = 0; byte < sizeof(Contact<Real>); byte += 64)
+            __builtin_prefetch(contact + byte, 1);
     }
 
     void collide_pair(std::size_t i, const PairPlace& pair, std::size_t block)
@@ -180,8 +192,10 @@ private:
         const Pose seen = pose_seen_from_a(shapes_, colliders_.shape[second], bounds_.placed[first],
                                            bounds_.placed[second]);
         LocalManifold<Real> manifold;
+        PairCache cache = contacts_.of_pair[i].cache;
         collide(shapes_, colliders_.shape[first], colliders_.shape[second], rounded<Real>(seen),
-                static_cast<Real>(pair.reach), contacts_.of_pair[i].cache, manifold);
+                static_cast<Real>(pair.reach), cache, manifold);
+        contacts_.of_pair[i].cache = cache;
         take(i, pair, turned, manifold, block);
     }
 
@@ -201,19 +215,19 @@ private:
         note_round_sides(shapes_, colliders_.shape[first], colliders_.shape[second], placed,
                          bounds_.placed[second], contact);
         if (turned) turn_round(contact);
-        keep(i, contact, block);
+        keep(i, contact);
     }
 
     // In the place of the contact that the pair had, with its impulses; or as a new one.
-    void keep(std::size_t i, Contact<Real>& contact, std::size_t block)
+    void keep(std::size_t i, Contact<Real>& contact)
     {
         const std::uint32_t place = contacts_.of_pair[i].contact;
         if (place == PairState::kApart) {
-            contacts_.made[block].push_back({static_cast<std::uint32_t>(i), contact});
+            begun_.push_back({static_cast<std::uint32_t>(i), contact});
             return;
         }
         carry_impulses(contacts_.contacts[place], scale_, contact);
-        contacts_.contacts[place] = contact;
+        contacts_.contacts[place].take(contact);
     }
 
     const Pairs& pairs_;
@@ -224,63 +238,8 @@ private:
     const BodyStates& states_;
     ConvexContacts<Real>& contacts_;
     Real scale_;
+    std::vector<typename ConvexContacts<Real>::Made>& begun_ = begun();
 };
-
-// Takes back the places of contacts that ended, then gives places to new ones, in order of pairs.
-template <class Real>
-void move_in_and_out(std::size_t blocks, ConvexContacts<Real>& contacts)
-{
-    for (std::size_t block = 0; block < blocks; ++block)
-        for (const std::uint32_t pair : contacts.parted[block]) {
-            contacts.free.push_back(contacts.of_pair[pair].contact);
-            contacts.of_pair[pair].contact = PairState::kApart;
-        }
-    for (std::size_t block = 0; block < blocks; ++block)
-        for (const auto& made : contacts.made[block]) {
-            ++contacts.strayed;
-            std::uint32_t& place = contacts.of_pair[made.pair].contact;
-            if (contacts.free.empty()) {
-                place = static_cast<std::uint32_t>(contacts.contacts.size());
-                contacts.contacts.push_back(made.contact);
-                continue;
-            }
-            place = contacts.free.back();
-            contacts.free.pop_back();
-            contacts.contacts[place] = made.contact;
-        }
-}
-
-// Contacts into the order of their pairs, once many have taken places anywhere: whoever goes
-// through them does so in that order, and would wait for memory at each.
-template <class Real>
-void put_in_order(ConvexContacts<Real>& contacts)
-{
-    const std::size_t used = contacts.contacts.size() - contacts.free.size();
-    if (contacts.strayed * kStrays <= used) return;
-    contacts.strayed = 0;
-    auto& states = contacts.of_pair;
-    const std::size_t blocks = block_count(states.size(), kOrderGrain);
-    std::vector<std::uint32_t>& begin = contacts.begin;
-    begin.assign(blocks + 1, 0);
-    for_each_block(states.size(), kOrderGrain,
-                   [&](std::size_t first, std::size_t end, std::size_t block) {
-                       for (std::size_t i = first; i < end; ++i)
-                           begin[block + 1] += states[i].contact != PairState::kApart ? 1 : 0;
-                   });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    contacts.moved.resize(used);
-    for_each_block(states.size(), kOrderGrain,
-                   [&](std::size_t first, std::size_t end, std::size_t block) {
-                       std::uint32_t next = begin[block];
-                       for (std::size_t i = first; i < end; ++i) {
-                           if (states[i].contact == PairState::kApart) continue;
-                           contacts.moved[next] = contacts.contacts[states[i].contact];
-                           states[i].contact = next++;
-                       }
-                   });
-    std::swap(contacts.contacts, contacts.moved);
-    contacts.free.clear();
-}
 
 }  // namespace
 
@@ -296,14 +255,14 @@ void collide_convex(const Conditions& conditions,
 {
     if (pairs.changed) follow_pairs(pairs, contacts);
     const std::size_t blocks = block_count(pairs.keys.size(), kGrain);
-    contacts.made.start(blocks);
+    contacts.made.resize(blocks);
     contacts.parted.start(blocks);
     for_each_block(
         pairs.keys.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
             Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, contacts)
                 .look_at(begin, end, block);
         });
-    move_in_and_out(blocks, contacts);
+    move_in_and_out(contacts);
     put_in_order(contacts);
 }
 

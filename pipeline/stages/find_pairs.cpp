@@ -33,9 +33,11 @@ bool may_touch(PairKey key, const Bounds& bounds, const Shapes& shapes, const Co
     return true;
 }
 
-// What became of a block of the old list: where its part of the new one lies, and how long it is.
+// What became of a block of the old list: where its part of `from` lies, and of what was found; how
+// long the first is, and how much of the second was not in the list.
 struct Merged {
     std::size_t begin = 0, size = 0;
+    std::size_t found = 0, fresh = 0;
     bool changed = false;
 };
 
@@ -48,47 +50,55 @@ public:
     // True if the list is another one now.
     bool run()
     {
-        const std::size_t most = pairs_.keys.size() + pairs_.found.size();
-        pairs_.merged.resize(most);
-        pairs_.merged_from.resize(most);
-        // At least one block, so that an empty list takes in what was found.
-        const std::size_t count = std::max<std::size_t>(1, pairs_.keys.size());
-        std::vector<Merged> parts(block_count(count, kMergeGrain));
+        if (pairs_.keys.empty()) return begin_with_found();
+        const std::size_t count = pairs_.keys.size();
+        resize_closely(pairs_.from, count + pairs_.found.size());
+        std::vector<Merged> parts(block_count(count, kMergeGrain) + 1);
+        for (std::size_t i = 1; i + 1 < parts.size(); ++i)
+            parts[i].found = first_found(pairs_.keys[i * kMergeGrain]);
+        parts.back().found = pairs_.found.size();
         for_each_block(count, kMergeGrain, [&](auto begin, auto end, auto block) {
-            parts[block] = merge(begin, std::min(end, pairs_.keys.size()));
+            merge(begin, end, parts[block + 1].found, parts[block]);
         });
+        parts.pop_back();
         if (std::none_of(parts.begin(), parts.end(), [](const auto& part) { return part.changed; }))
             return false;
-        std::size_t size = 0;
+        std::size_t size = 0, fresh = 0;
         for (const Merged& part : parts) {
-            move_down(pairs_.merged, part, size);
-            move_down(pairs_.merged_from, part, size);
+            move_down(pairs_.from, part.begin, part.size, size);
+            move_down(pairs_.found, part.found, part.fresh, fresh);
             size += part.size;
+            fresh += part.fresh;
         }
-        pairs_.merged.resize(size);
-        pairs_.merged_from.resize(size);
-        std::swap(pairs_.keys, pairs_.merged);
-        std::swap(pairs_.from, pairs_.merged_from);
+        pairs_.from.resize(size);
+        follow(
+            pairs_.from, pairs_.keys, [&](std::size_t n) { return pairs_.found[n]; },
+            [](PairKey) {});
         return true;
     }
 
 private:
-    // Each block writes where its part would begin if nothing before it were lost.
-    Merged merge(std::size_t begin, std::size_t end)
+    bool begin_with_found()
     {
-        const std::vector<PairKey>&old = pairs_.keys, &found = pairs_.found;
-        std::size_t next = begin == 0 ? 0 : first_found(old[begin]);
-        const std::size_t last = end == old.size() ? found.size() : first_found(old[end]);
-        Merged part{begin + next, 0, false};
-        PairKey* keys = pairs_.merged.data() + part.begin;
-        std::uint32_t* from = pairs_.merged_from.data() + part.begin;
+        pairs_.keys.swap(pairs_.found);
+        pairs_.from.assign(pairs_.keys.size(), Pairs::kNewPair);
+        return !pairs_.keys.empty();
+    }
+
+    // Each block writes where its part would begin if nothing before it were lost.
+    void merge(std::size_t begin, std::size_t end, std::size_t last, Merged& part)
+    {
+        const std::vector<PairKey>& old = pairs_.keys;
+        std::vector<PairKey>& found = pairs_.found;
+        std::size_t next = part.found;
+        PairKey* fresh = found.data() + next;
+        part.begin = begin + next;
+        std::uint32_t* from = pairs_.from.data() + part.begin;
         for (std::size_t i = begin; i < end || next < last;) {
             const PairKey limit = next < last ? found[next] : ~PairKey{0};
             // A run that nothing happens to.
-            for (; i < end && old[i] < limit && !asked(old[i]); ++i) {
-                *keys++ = old[i];
+            for (; i < end && old[i] < limit && !asked(old[i]); ++i)
                 *from++ = static_cast<std::uint32_t>(i);
-            }
             if (i < end && old[i] < limit) {
                 part.changed = true;  // asked about and not found again
                 ++i;
@@ -96,13 +106,13 @@ private:
             }
             if (next >= last) continue;
             const bool known = i < end && old[i] == limit;
-            *keys++ = limit;
             *from++ = known ? static_cast<std::uint32_t>(i++) : Pairs::kNewPair;
+            if (!known) *fresh++ = limit;
             part.changed |= !known;
             ++next;
         }
-        part.size = static_cast<std::size_t>(keys - (pairs_.merged.data() + part.begin));
-        return part;
+        part.size = static_cast<std::size_t>(from - (pairs_.from.data() + part.begin));
+        part.fresh = static_cast<std::size_t>(fresh - (found.data() + part.found));
     }
 
     std::size_t first_found(PairKey key) const
@@ -115,11 +125,11 @@ private:
         return (pairs_.asked[first_of(key)] | pairs_.asked[second_of(key)]) != 0;
     }
     template <class T>
-    static void move_down(std::vector<T>& list, const Merged& part, std::size_t to)
+    static void move_down(std::vector<T>& list, std::size_t begin, std::size_t size, std::size_t to)
     {
-        if (part.begin == to) return;
-        const auto from = list.begin() + static_cast<std::ptrdiff_t>(part.begin);
-        std::copy(from, from + static_cast<std::ptrdiff_t>(part.size),
+        if (begin == to) return;
+        const auto from = list.begin() + static_cast<std::ptrdiff_t>(begin);
+        std::copy(from, from + static_cast<std::ptrdiff_t>(size),
                   list.begin() + static_cast<std::ptrdiff_t>(to));
     }
 
@@ -149,7 +159,7 @@ void find_pairs(const Bounds& bounds,
 {
     pairs.changed = false;
     if (bounds.asked.empty()) return;
-    pairs.found.clear();
+    clear_closely(pairs.found);
     find_overlaps({bounds.boxes, bounds.moving, bounds.asked, bounds.still_changed, &filter},
                   finder.finder, pairs.found);
     if (!shapes.planes.empty())

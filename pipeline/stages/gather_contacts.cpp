@@ -3,12 +3,137 @@
 #include "pipeline/stages.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace throng {
 
 namespace {
 
 constexpr std::size_t kGrain = 2048;  // pairs a block: some 10 microseconds of work
+
+// What two materials do to one another. Most contacts of a scene are of the same two.
+class Meetings {
+public:
+    explicit Meetings(const Surfaces& surfaces) : surfaces_(surfaces) { }
+
+    const Surfaces::Meeting& of(std::uint32_t a, std::uint32_t b)
+    {
+        if (a != a_ || b != b_) last_ = surfaces_.between(a_ = a, b_ = b);
+        return last_;
+    }
+
+private:
+    const Surfaces& surfaces_;
+    std::uint32_t a_ = kNobody, b_ = kNobody;
+    Surfaces::Meeting last_;
+};
+
+// One call of the stage.
+template <class Real>
+class Gathering {
+public:
+    Gathering(const Pairs& pairs,
+              const Colliders& colliders,
+              const Surfaces& surfaces,
+              const BodyStates& states,
+              ActiveContacts& active)
+        : pairs_(pairs), colliders_(colliders), surfaces_(surfaces), states_(states),
+          active_(active)
+    { }
+
+    void gather(const ConvexContacts<Real>& convex)
+    {
+        make_places(convex.of_pair);
+        for_each_block(convex.of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
+            Meetings meetings(surfaces_);
+            std::size_t at = active_.begin[block];
+            for (std::size_t i = begin; i < end; ++i)
+                if (const Contact<Real>* contact = convex.at(i))
+                    at += take(i, *contact, convex.of_pair[i].contact, false, meetings,
+                               active_.entries[at])
+                        ? 1
+                        : 0;
+            active_.end[block] = at;
+        });
+        join_places();
+    }
+
+    void gather(const MeshContacts<Real>& meshes)
+    {
+        Meetings meetings(surfaces_);
+        for (std::size_t i = 0; i < meshes.entries.size(); ++i) {
+            const auto& [pair, triangle, contact] = meshes.entries[i];
+            ActiveContacts::Entry entry;
+            if (contact.count > 0 && take(pair, contact, i, true, meetings, entry))
+                active_.entries.push_back(entry);
+        }
+    }
+
+private:
+    // Each block of pairs gets places for all its contacts.
+    void make_places(const std::vector<PairState>& of_pair)
+    {
+        const std::size_t blocks = block_count(of_pair.size(), kGrain);
+        active_.begin.assign(blocks + 1, 0);
+        active_.end.resize(blocks);
+        for_each_block(of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
+            std::size_t touching = 0;
+            for (std::size_t i = begin; i < end; ++i)
+                touching += of_pair[i].contact != PairState::kApart ? 1 : 0;
+            active_.begin[block + 1] = touching;
+        });
+        std::partial_sum(active_.begin.begin(), active_.begin.end(), active_.begin.begin());
+        resize_closely(active_.entries, active_.begin.back());
+    }
+
+    // Contacts of sleepers left some places free.
+    void join_places()
+    {
+        const auto place = [&](std::size_t at) {
+            return active_.entries.begin() + static_cast<std::ptrdiff_t>(at);
+        };
+        std::size_t size = 0;
+        for (std::size_t block = 0; block < active_.end.size(); ++block) {
+            const std::size_t begin = active_.begin[block], end = active_.end[block];
+            if (begin != size) std::copy(place(begin), place(end), place(size));
+            size += end - begin;
+        }
+        active_.entries.resize(size);
+    }
+
+    // False where nobody can be pushed.
+    bool take(std::size_t pair,
+              const Contact<Real>& contact,
+              std::size_t slot,
+              bool on_mesh,
+              Meetings& meetings,
+              ActiveContacts::Entry& entry) const
+    {
+        const std::uint32_t a = first_of(pairs_.keys[pair]), b = second_of(pairs_.keys[pair]);
+        const std::uint32_t body_a = colliders_.body[a], body_b = colliders_.body[b];
+        const bool pushes_a = states_.dynamic(body_a) && states_.moves(body_a);
+        const bool pushes_b = states_.dynamic(body_b) && states_.moves(body_b);
+        if (!pushes_a && !pushes_b) return false;
+        const auto& meeting = meetings.of(colliders_.material[a], colliders_.material[b]);
+        const double extent = std::min(colliders_.inner_extent[a], colliders_.inner_extent[b]);
+        entry = {body_a,
+                 body_b,
+                 static_cast<std::uint32_t>(slot),
+                 on_mesh,
+                 static_cast<std::uint8_t>(contact.count),
+                 static_cast<float>(meeting.friction),
+                 static_cast<float>(meeting.restitution),
+                 static_cast<float>(meeting.rolling_friction),
+                 static_cast<float>(extent)};
+        return true;
+    }
+
+    const Pairs& pairs_;
+    const Colliders& colliders_;
+    const Surfaces& surfaces_;
+    const BodyStates& states_;
+    ActiveContacts& active_;
+};
 
 }  // namespace
 
@@ -21,33 +146,9 @@ void gather_contacts(const Pairs& pairs,
                      const MeshContacts<Real>& meshes,
                      ActiveContacts& active)
 {
-    const auto extent_of = [&](std::uint32_t collider) { return colliders.inner_extent[collider]; };
-    const auto take = [&](std::size_t pair, const Contact<Real>& contact, std::size_t slot,
-                          bool on_mesh, std::vector<ActiveContacts::Entry>& entries) {
-        const std::uint32_t a = first_of(pairs.keys[pair]), b = second_of(pairs.keys[pair]);
-        const std::uint32_t body_a = colliders.body[a], body_b = colliders.body[b];
-        const bool pushes_a = states.dynamic(body_a) && states.moves(body_a);
-        const bool pushes_b = states.dynamic(body_b) && states.moves(body_b);
-        if (!pushes_a && !pushes_b) return;
-        const auto meeting = surfaces.between(colliders.material[a], colliders.material[b]);
-        entries.push_back(
-            {body_a, body_b, static_cast<std::uint32_t>(slot), on_mesh,
-             static_cast<std::uint8_t>(contact.count), static_cast<float>(meeting.friction),
-             static_cast<float>(meeting.restitution), static_cast<float>(meeting.rolling_friction),
-             static_cast<float>(std::min(extent_of(a), extent_of(b)))});
-    };
-    active.entries.clear();
-    const std::size_t count = convex.of_pair.size();
-    active.of_block.start(block_count(count, kGrain));
-    for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (const Contact<Real>* contact = convex.at(i))
-                take(i, *contact, convex.of_pair[i].contact, false, active.of_block[block]);
-    });
-    active.of_block.append_to(active.entries);
-    for (std::size_t i = 0; i < meshes.entries.size(); ++i)
-        if (meshes.entries[i].contact.count > 0)
-            take(meshes.entries[i].pair, meshes.entries[i].contact, i, true, active.entries);
+    Gathering<Real> gathering(pairs, colliders, surfaces, states, active);
+    gathering.gather(convex);
+    gathering.gather(meshes);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \

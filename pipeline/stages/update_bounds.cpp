@@ -176,7 +176,8 @@ private:
     {
         const MoverArrays arrays = arrays_of();
         const MarginRule margin = margin_of();
-        const MoverRule rule{dt_, kRestingReach, falls, margin.base, margin.steps, margin.longest};
+        const MoverRule rule{dt_,          kRestingReach,  falls,       margin.base,
+                             margin.steps, margin.longest, margin.loose};
         in_blocks(bodies.size(), [&](std::size_t begin, std::size_t end, auto& asked) {
             std::array<std::uint32_t, kGrain> colliders, owners, found;
             std::size_t count = 0;
@@ -220,6 +221,8 @@ private:
         MarginRule rule;
         rule.steps *= bounds_.stretch;
         rule.longest *= bounds_.stretch;
+        // Where bodies are far apart, wide boxes bring no pairs to be rid of.
+        if (bounds_.stretch > 1) rule.loose = std::numeric_limits<double>::infinity();
         return rule;
     }
 
@@ -306,9 +309,13 @@ private:
             return;
         }
         const Box3 wanted = grown(tight, reach);
-        if (!touched && bounds_.boxes[collider].contains(wanted)) return;
-        bounds_.boxes[collider] =
-            fattened(wanted, mover.velocity, colliders_.inner_extent[collider], dt_, margin_of());
+        const double size = colliders_.inner_extent[collider];
+        const MarginRule rule = margin_of();
+        Box3& box = bounds_.boxes[collider];
+        if (!touched && box.contains(wanted)
+            && !loose(box, wanted, mover.velocity, size, dt_, rule))
+            return;
+        box = fattened(wanted, mover.velocity, size, dt_, rule);
         asked.push_back(collider);
     }
 

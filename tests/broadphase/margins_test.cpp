@@ -62,6 +62,21 @@ TEST(Margins, StretchWherePairsAreFew)
     EXPECT_EQ(stretch_for(1000, 1000), 1);
 }
 
+TEST(Margins, AreLooseOnceTheBodyHasSlowedDownAndNotWhenJustMade)
+{
+    const double dt = 1.0 / 60;
+    const Box3 tight = box_around(Vec3(7, -3, 2), Vec3::Ones());
+    for (const double speed : {0.0, 1.0, 10.0, 1000.0}) {
+        const Vec3 velocity(speed, 0, -speed);
+        const Box3 fat = fattened(tight, velocity, 1, dt);
+        EXPECT_FALSE(loose(fat, tight, velocity, 1, dt)) << speed;
+        EXPECT_FALSE(loose(fat, tight, -velocity, 1, dt)) << speed;
+        EXPECT_EQ(loose(fat, tight, Vec3::Zero(), 1, dt), speed > 6) << speed;
+    }
+    const Box3 everywhere = box_around(Vec3::Zero(), Vec3::Constant(HUGE_VAL));
+    EXPECT_TRUE(loose(everywhere, tight, Vec3::Zero(), 1, dt));
+}
+
 TEST(Margins, BadVelocityLeavesTheBase)
 {
     const Box3 tight = box_around(Vec3::Zero(), Vec3::Ones());

@@ -27,6 +27,7 @@ struct Movers {
     std::vector<Box3> boxes;
     std::vector<NearBox> near;
     std::vector<std::uint32_t> colliders, bodies;  // asked about
+    double loose = MoverRule().loose;
 
     explicit Movers(std::uint32_t count, std::uint64_t seed)
     {
@@ -87,7 +88,7 @@ struct Movers {
     MoverRule rule() const
     {
         const MarginRule margin;
-        return {kDt, 0.04, 0.001, margin.base, margin.steps, margin.longest};
+        return {kDt, 0.04, 0.001, margin.base, margin.steps, margin.longest, loose};
     }
     std::vector<std::uint32_t> run(const char* width)
     {
@@ -145,6 +146,32 @@ TEST(MoverBounds, AgreeWithOneColliderAtATime)
         EXPECT_LE((movers.boxes[i].upper - fat.upper).cwiseAbs().maxCoeff(), 1e-12) << i;
     }
     EXPECT_EQ(asked, wanted_asked);
+}
+
+TEST(MoverBounds, MakeALooseBoxAnew)
+{
+    for (const char* width : {"scalar", "avx2", "avx512"}) {
+        if (mover_kernel_of(width) == nullptr) continue;
+        Movers movers(300, 5);
+        MarginRule margin;
+        movers.loose = margin.loose;
+        movers.run(width);
+        EXPECT_TRUE(movers.run(width).empty()) << width;
+        const std::vector<Box3> before = movers.boxes;
+        for (Vec3& velocity : movers.velocities.linear) velocity *= 0.1;
+        const std::vector<std::uint32_t> asked = movers.run(width);
+        std::vector<std::uint32_t> wanted;
+        for (std::uint32_t i = 0; i < 300; ++i) {
+            Box3 box = shape_bounds(movers.shapes, movers.shape[i], movers.placed[i]);
+            box.lower.array() -= movers.reach[i];
+            box.upper.array() += movers.reach[i];
+            if (loose(before[i], box, movers.velocities.linear[i], movers.inner[i], kDt))
+                wanted.push_back(i);
+        }
+        EXPECT_EQ(asked, wanted) << width;
+        EXPECT_GT(asked.size(), 10u);
+        EXPECT_LT(asked.size(), 290u);
+    }
 }
 
 template <class T>

@@ -72,6 +72,21 @@ TEST(UpdateBounds, AsksAboutWhatLeftItsMarginAlone)
     EXPECT_EQ(b.bounds.asked, (std::vector<std::uint32_t>{2}));
 }
 
+TEST(UpdateBounds, WhoComesToRestGetsATighterBoxOnce)
+{
+    Bodies b(2, 10);
+    for (Vec3& velocity : b.velocities.linear) velocity = Vec3(0, 0, -10);
+    b.colliders.local[1].position = Vec3(0.1, 0, 0);  // goes the long way
+    b.update();
+    const double deep = b.bounds.boxes[0].lower.z();
+    for (Vec3& velocity : b.velocities.linear) velocity.setZero();
+    b.update();
+    EXPECT_EQ(b.bounds.asked, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_GT(b.bounds.boxes[0].lower.z(), deep + 0.4);
+    b.update();
+    EXPECT_TRUE(b.bounds.asked.empty());
+}
+
 TEST(UpdateBounds, ABoxHoldsAllThatTheBodyMayReachInTheStep)
 {
     Bodies b(1);
