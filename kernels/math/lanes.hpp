@@ -183,24 +183,24 @@ void turn_two_8x8(V (&r)[8])
 
 }  // namespace detail
 
-/// out[k] lane i = k-th number at base + stride * index[i].
-template <class T, int W>
-void gather_8(const T* base, int stride, const std::int32_t* index, Wide<T, W> (&out)[8])
+/// out[k] lane i = k-th number at row(i).
+template <class T, int W, class Row>
+void gather_8(Row row, Wide<T, W> (&out)[8])
 {
     if constexpr (W == 8 || W == 16) {
         typedef T V8 __attribute__((vector_size(8 * sizeof(T))));
         typedef typename Wide<T, W>::V V;
         V rows[8];
         for (int i = 0; i < 8; ++i) {
-            V8 row;
-            __builtin_memcpy(&row, base + std::int64_t{stride} * index[i], sizeof(V8));
+            V8 lower;
+            __builtin_memcpy(&lower, row(i), sizeof(V8));
             if constexpr (W == 16) {
                 V8 upper;
-                __builtin_memcpy(&upper, base + std::int64_t{stride} * index[i + 8], sizeof(V8));
-                rows[i] = __builtin_shufflevector(row, upper, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11,
-                                                  12, 13, 14, 15);
+                __builtin_memcpy(&upper, row(i + 8), sizeof(V8));
+                rows[i] = __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10,
+                                                  11, 12, 13, 14, 15);
             } else {
-                rows[i] = row;
+                rows[i] = lower;
             }
         }
         if constexpr (W == 16)
@@ -209,9 +209,18 @@ void gather_8(const T* base, int stride, const std::int32_t* index, Wide<T, W> (
             detail::turn_8x8(rows);
         for (int k = 0; k < 8; ++k) out[k].v = rows[k];
     } else {
-        for (int i = 0; i < W; ++i)
-            for (int k = 0; k < 8; ++k) out[k].set(i, base[std::int64_t{stride} * index[i] + k]);
+        for (int i = 0; i < W; ++i) {
+            const T* const from = row(i);
+            for (int k = 0; k < 8; ++k) out[k].set(i, from[k]);
+        }
     }
+}
+
+/// out[k] lane i = k-th number at base + stride * index[i].
+template <class T, int W>
+void gather_8(const T* base, int stride, const std::int32_t* index, Wide<T, W> (&out)[8])
+{
+    gather_8<T, W>([=](int i) { return base + std::int64_t{stride} * index[i]; }, out);
 }
 
 /// The reverse of gather_8, for the lanes whose bit in `writes` is set.

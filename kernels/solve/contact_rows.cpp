@@ -1,14 +1,10 @@
 #include "kernels/solve/contact_rows.hpp"
 
+#include <cstddef>
+
 namespace throng {
 
 namespace {
-
-template <class Real>
-void put3(const Vec3T<Real>& v, std::size_t lane, Lane16<Real> (&to)[3])
-{
-    for (int k = 0; k < 3; ++k) to[k].at[lane] = v[k];
-}
 
 template <class Real>
 Vec3T<Real> get3(const Lane16<Real> (&from)[3], std::size_t lane)
@@ -31,42 +27,45 @@ Softness<Real> softness(double rate, double damping_ratio, double substep)
 template <class Real>
 void loosen(const Contact<Real>& contact,
             const ContactTerms<Real>& terms,
-            int points,
             int lane_at,
             LooseBlock<Real>& loose)
 {
+    using Of = Contact<Real>;
+    using Point = typename Of::Point;
+    constexpr std::size_t kNumber = sizeof(Real);
+    static_assert(offsetof(Of, normal) == contact_numbers::kNormal * kNumber
+                  && offsetof(Of, between) == contact_numbers::kBetween * kNumber
+                  && offsetof(Of, friction) == contact_numbers::kFriction * kNumber
+                  && offsetof(Of, rolling) == contact_numbers::kRolling * kNumber
+                  && offsetof(Of, round_a) == contact_numbers::kRoundA * kNumber
+                  && offsetof(Of, round_b) == contact_numbers::kRoundB * kNumber
+                  && offsetof(Of, twist) == contact_numbers::kTwist * kNumber
+                  && offsetof(Of, points) == contact_numbers::kPoints * kNumber
+                  && sizeof(Point) == contact_numbers::kPoint * kNumber
+                  && offsetof(Point, from_a) == contact_numbers::kFromA * kNumber
+                  && offsetof(Point, separation) == contact_numbers::kSeparation * kNumber
+                  && offsetof(Point, impulse) == contact_numbers::kImpulse * kNumber
+                  && sizeof(Of) == contact_numbers::kAll * kNumber);
     const auto lane = static_cast<std::size_t>(lane_at);
-    put3(contact.normal, lane, loose.normal);
-    put3(contact.between, lane, loose.between);
-    put3(contact.friction, lane, loose.held);
-    put3(contact.rolling, lane, loose.rolling);
-    loose.twist.at[lane] = contact.twist;
-    loose.round_a.at[lane] = contact.round_a;
-    loose.round_b.at[lane] = contact.round_b;
+    loose.contact[lane] = contact.normal.data();
+    loose.count.at[lane] = static_cast<Real>(contact.count);
     loose.friction.at[lane] = terms.friction;
     loose.restitution.at[lane] = terms.restitution;
     loose.rolling_friction.at[lane] = terms.rolling_friction;
     loose.bias_rate.at[lane] = terms.softness.bias_rate;
     loose.impulse_scale.at[lane] = terms.softness.impulse_scale;
     loose.deep.at[lane] = terms.deep;
-    static const typename Contact<Real>::Point kNone;
-    for (int k = 0; k < points; ++k) {
-        const bool there = k < contact.count;
-        const auto& from = there ? contact.points[static_cast<std::size_t>(k)] : kNone;
-        auto& to = loose.point[k];
-        to.there.at[lane] = there ? 1 : 0;
-        put3(from.from_a, lane, to.from_a);
-        to.separation.at[lane] = from.separation;
-        to.impulse.at[lane] = from.impulse;
-    }
 }
 
 template <class Real>
-void loosen_nothing(int points, int lane, LooseBlock<Real>& loose)
+void loosen_nothing(int lane, LooseBlock<Real>& loose)
 {
-    Contact<Real> nothing;
-    nothing.count = 1;
-    loosen(nothing, {}, points, lane, loose);
+    static const Contact<Real> kNothing = [] {
+        Contact<Real> nothing;
+        nothing.count = 1;
+        return nothing;
+    }();
+    loosen(kNothing, {}, lane, loose);
 }
 
 template <class Real>
@@ -116,9 +115,9 @@ void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& cont
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template Softness<Real> softness<Real>(double, double, double);                                \
-    template void loosen<Real>(const Contact<Real>&, const ContactTerms<Real>&, int, int,          \
+    template void loosen<Real>(const Contact<Real>&, const ContactTerms<Real>&, int,               \
                                LooseBlock<Real>&);                                                 \
-    template void loosen_nothing<Real>(int, int, LooseBlock<Real>&);                               \
+    template void loosen_nothing<Real>(int, LooseBlock<Real>&);                                    \
     template void store_impulses<Real>(const RowsView<Real>&, std::size_t, int, Contact<Real>&);   \
     template void carry_impulses<Real>(const Contact<Real>&, Real, Contact<Real>&);
 THRONG_INSTANTIATE(float)

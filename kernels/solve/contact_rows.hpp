@@ -32,17 +32,16 @@ struct ContactTerms {
     Real deep = 0;  // m, overlap from which the contact no longer gives way; 0: it always does
 };
 
-/// Writes a contact into one lane of a loose block, whose contacts have up to `points` points.
+/// Puts a contact into one lane of a loose block, which refers to it.
 template <class Real>
 void loosen(const Contact<Real>& contact,
             const ContactTerms<Real>& terms,
-            int points,
             int lane,
             LooseBlock<Real>& loose);
 
 /// Makes a lane of a loose block do nothing.
 template <class Real>
-void loosen_nothing(int points, int lane, LooseBlock<Real>& loose);
+void loosen_nothing(int lane, LooseBlock<Real>& loose);
 
 /// Gives the impulses of a lane of the block at `place` back to its contact, to start the next step
 /// from.

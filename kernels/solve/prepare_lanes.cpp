@@ -26,19 +26,67 @@ V3<L> across(const V3<L>& n)
     return t * (L(Real(1)) / sqrt(dot(t, t)));
 }
 
+// Loose contacts, their numbers side by side.
+template <class L>
+struct Loose {
+    struct Point {
+        L there;  // 1 where the lane has this point, else 0, and so is all the rest
+        V3<L> from_a;
+        L separation, impulse;
+    };
+    V3<L> normal, between, held, rolling;
+    L round_a, round_b, twist;
+    Point point[4];
+
+    Loose(const LooseBlock<typename L::Number>& block, int at, int points)
+    {
+        namespace of = contact_numbers;
+        using Real = typename L::Number;
+        const auto line = [&](int first, L(&out)[8]) {
+            gather_8<Real, L::kWidth>([&](int i) { return block.contact[at + i] + first; }, out);
+        };
+        L x[8], y[8];
+        line(0, x);
+        line(8, y);
+        const auto number = [&](int place) { return place < 8 ? x[place] : y[place - 8]; };
+        const auto three = [&](int place) -> V3<L> {
+            return {number(place), number(place + 1), number(place + 2)};
+        };
+        normal = three(of::kNormal);
+        between = three(of::kBetween);
+        held = three(of::kFriction);
+        rolling = three(of::kRolling);
+        round_a = number(of::kRoundA);
+        round_b = number(of::kRoundB);
+        twist = number(of::kTwist);
+        const L count = lane<L>(block.count, at), zero = Real(0);
+        for (int k = 0; k < points; ++k) {
+            // The last line ends where the contact does.
+            const int place = of::kPoints + of::kPoint * k, first = place < 32 ? place : 32;
+            line(first, x);
+            const auto has = count > L(Real(k));
+            const auto its = [&](int k_th) { return select(has, x[place - first + k_th], zero); };
+            point[k] = {select(has, L(Real(1)), zero),
+                        {its(of::kFromA), its(of::kFromA + 1), its(of::kFromA + 2)},
+                        its(of::kSeparation),
+                        its(of::kImpulse)};
+        }
+    }
+};
+
 // A tangent along the longest way between points, where there are several: on needles and plates
 // that keeps what turns easily apart from what does not.
 template <class L>
-V3<L> along_points(const LooseBlock<typename L::Number>& loose, int at, int count, const V3<L>& n)
+V3<L> along_points(const Loose<L>& loose, int count, const V3<L>& n)
 {
     using Real = typename L::Number;
-    const V3<L> first = lane3<L>(loose.point[0].from_a, at);
+    const V3<L> first = loose.point[0].from_a;
     const L zero = Real(0), one = Real(1);
     V3<L> way{zero, zero, zero};
     L longest = zero;
     for (int k = 1; k < count; ++k) {
-        const V3<L> between = lane3<L>(loose.point[k].from_a, at) - first;
-        const V3<L> flat = (between - n * dot(n, between)) * lane<L>(loose.point[k].there, at);
+        const V3<L> between = loose.point[k].from_a - first;
+        const V3<L> flat = (between - n * dot(n, between)) * loose.point[k].there;
         const L length = dot(flat, flat);
         const auto longer = length > longest;
         way = {select(longer, flat.x, way.x), select(longer, flat.y, way.y),
@@ -167,12 +215,11 @@ L normal_mass(const Mobility<L, turns>& a,
 template <class L, bool turns>
 void fill_held(ContactBlock<typename L::Number>& block,
                int at,
-               const LooseBlock<typename L::Number>& loose,
+               const V3<L>& held,
                const Frame<L, turns>& frame,
                L load)
 {
     using Real = typename L::Number;
-    const V3<L> held = lane3<L>(loose.held, at);
     const L one = Real(1);
     // Measured in units of the greatest that may be held: squares leave float where bodies are
     // huge.
@@ -209,23 +256,23 @@ void fill_bounce(BounceRows<typename L::Number>& bounce,
 template <class L, bool turns>
 void fill_rolling(RollingRows<typename L::Number>& rolling,
                   int at,
-                  const LooseBlock<typename L::Number>& loose,
+                  const LooseBlock<typename L::Number>& block,
+                  const V3<L>& impulse,
                   const Frame<L, turns>& frame,
                   const Mobility<L, turns>& a,
                   const Mobility<L, turns>& b)
 {
-    lane<L>(loose.rolling_friction, at).store(rolling.rolling.at + at);
+    lane<L>(block.rolling_friction, at).store(rolling.rolling.at + at);
     // The trace is at least the greatest eigenvalue: one number that never overshoots.
     if constexpr (turns)
         inverse_or_zero(a.xx + b.xx + a.yy + b.yy + a.zz + b.zz).store(rolling.mass.at + at);
-    const V3<L> impulse = lane3<L>(loose.rolling, at);
     store3(
         V3<L>{dot(frame.tangent, impulse), dot(frame.other, impulse), dot(frame.normal, impulse)},
         rolling.impulse, at);
 }
 
 template <class L, bool turns>
-[[gnu::flatten]] void prepare_lanes(const LooseBlock<typename L::Number>& loose,
+[[gnu::flatten]] void prepare_lanes(const LooseBlock<typename L::Number>& from,
                                     std::size_t place,
                                     int at,
                                     const RowsView<typename L::Number>& rows)
@@ -236,51 +283,48 @@ template <class L, bool turns>
     const L zero = Real(0);
     const Mobility<L, turns> a(rows.bodies, block.a + at), b(rows.bodies, block.b + at);
 
-    const V3<L> normal = lane3<L>(loose.normal, at);
+    const Loose<L> loose(from, at, block.points);
+    const V3<L> normal = loose.normal;
     store3(normal, block.normal, at);
-    store3(along_points(loose, at, block.points, normal), block.tangent, at);
-    const auto copy = [at](const Lane16<Real>& from, Lane16<Real>& to) {
-        lane<L>(from, at).store(to.at + at);
+    store3(along_points(loose, block.points, normal), block.tangent, at);
+    const auto copy = [at](const Lane16<Real>& number, Lane16<Real>& to) {
+        lane<L>(number, at).store(to.at + at);
     };
-    copy(loose.round_a, block.round_a);
-    copy(loose.round_b, block.round_b);
-    copy(loose.friction, block.friction);
-    copy(loose.bias_rate, block.bias_rate);
-    copy(loose.impulse_scale, block.impulse_scale);
-    copy(loose.twist, block.twist_impulse);
-    inverse_or_zero(lane<L>(loose.deep, at)).store(block.inverse_deep.at + at);
+    copy(from.friction, block.friction);
+    copy(from.bias_rate, block.bias_rate);
+    copy(from.impulse_scale, block.impulse_scale);
+    inverse_or_zero(lane<L>(from.deep, at)).store(block.inverse_deep.at + at);
+    loose.round_a.store(block.round_a.at + at);
+    loose.round_b.store(block.round_b.at + at);
+    loose.twist.store(block.twist_impulse.at + at);
 
     // The middle of the points, on either surface.
     V3<L> middle{zero, zero, zero};
     L gap = zero, count = zero, load = zero;
     for (int k = 0; k < block.points; ++k) {
         const auto& point = loose.point[k];
-        const L there = lane<L>(point.there, at);
-        middle = middle + lane3<L>(point.from_a, at) * there;
-        gap += lane<L>(point.separation, at) * there;
-        count += there;
-        load += lane<L>(point.impulse, at);
+        middle = middle + point.from_a;
+        gap += point.separation;
+        count += point.there;
+        load += point.impulse;
     }
     const L share = L(Real(1)) / count;
     const V3<L> center_a = middle * share;
-    const V3<L> between = lane3<L>(loose.between, at);
+    const V3<L> between = loose.between;
     store3(center_a, block.center_a, at);
     store3(center_a + normal * (gap * share) + between, block.center_b, at);
 
     const Frame<L, turns> frame(block, at);
     for (int k = 0; k < block.points; ++k) {
-        const auto& from = loose.point[k];
+        const auto& [there, arm, separation, impulse] = loose.point[k];
         PointRows<Real>& to = points[k];
-        const L there = lane<L>(from.there, at);
-        const V3<L> arm = lane3<L>(from.from_a, at);
-        const L separation = lane<L>(from.separation, at);
         const V3<L> off = (arm - center_a) * there;
         const L along = dot(off, frame.tangent), other = dot(off, frame.other);
         other.store(to.lever[0].at + at);
         (-along).store(to.lever[1].at + at);
         sqrt(along * along + other * other).store(to.reach.at + at);
-        (separation * there).store(to.gap.at + at);
-        copy(from.impulse, to.impulse);
+        separation.store(to.gap.at + at);
+        impulse.store(to.impulse.at + at);
         const L mass = normal_mass(a, b, normal, arm, arm + normal * separation + between);
         (mass * there).store(to.mass.at + at);
     }
@@ -290,13 +334,14 @@ template <class L, bool turns>
         inverse_or_zero(dot(normal, a.turned_by(normal)) + dot(normal, b.turned_by(normal)))
             .store(block.twist_mass.at + at);
     fill_friction<L>(block, at);
-    fill_held(block, at, loose, frame, load);
+    fill_held(block, at, loose.held, frame, load);
 
-    if (rows.rollings != nullptr) fill_rolling(rows.rollings[place], at, loose, frame, a, b);
+    if (rows.rollings != nullptr)
+        fill_rolling(rows.rollings[place], at, from, loose.rolling, frame, a, b);
     if (rows.bounces == nullptr) return;
     const Motion<L, turns> motion_a(rows.bodies, block.a + at), motion_b(rows.bodies, block.b + at);
     for (int k = 0; k < block.points; ++k)
-        fill_bounce(rows.bounces[block.first_point + std::uint32_t(k)], at, loose, frame, points[k],
+        fill_bounce(rows.bounces[block.first_point + std::uint32_t(k)], at, from, frame, points[k],
                     motion_a, motion_b);
 }
 

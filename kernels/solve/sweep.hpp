@@ -26,18 +26,22 @@ struct Visit {
     int normal_sweeps = 2;     // times the points are gone through; the last one after friction
 };
 
+/// Where the numbers of a contact are, counted in numbers of its kind (see Contact): the kernels
+/// turn whole lines of them.
+namespace contact_numbers {
+inline constexpr int kNormal = 0, kBetween = 3, kFriction = 6, kRolling = 9, kRoundA = 12,
+                     kRoundB = 13, kTwist = 14;
+inline constexpr int kPoints = 16, kPoint = 6;                   // the first; of each
+inline constexpr int kFromA = 0, kSeparation = 3, kImpulse = 4;  // of a point
+inline constexpr int kAll = 40;
+}  // namespace contact_numbers
+
 /// Sixteen contacts as they are kept, before the solver's own numbers are made of them.
 template <class Real>
 struct LooseBlock {
-    struct Point {
-        Lane16<Real> there;  // 1 where the lane has this point, else 0
-        Lane16<Real> from_a[3], separation, impulse;
-    };
-    Lane16<Real> normal[3], between[3];
-    Lane16<Real> held[3], twist, rolling[3];  // N s, N m s, N m s
-    Lane16<Real> round_a, round_b;
+    const Real* contact[kBlock];  // kAll numbers of each
+    Lane16<Real> count;           // points
     Lane16<Real> friction, restitution, rolling_friction, bias_rate, impulse_scale, deep;
-    Point point[4];
 };
 
 /// The rows and bodies that the kernels work on. Null where an effect does not act.

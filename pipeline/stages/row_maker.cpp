@@ -65,7 +65,7 @@ void RowMaker<Real>::fill(std::size_t at, LooseBlock<Real>& loose) const
         block.b[lane] = layout_.slot_b[place];
         const std::uint32_t entry = layout_.lanes[place].entry;
         if (entry == LaneSource{}.entry) {
-            loosen_nothing(block.points, lane_at, loose);
+            loosen_nothing(lane_at, loose);
             continue;
         }
         const auto& source = active_.entries[entry];
@@ -77,7 +77,7 @@ void RowMaker<Real>::fill(std::size_t at, LooseBlock<Real>& loose) const
         loosen(contact_of(source),
                {Real(source.friction), Real(source.restitution), Real(source.rolling_friction),
                 softness_[source.points - 1u], static_cast<Real>(kDeep * double{source.extent})},
-               block.points, lane_at, loose);
+               lane_at, loose);
     }
     kernels_.prepare(loose, at, view_, turns_);
 }

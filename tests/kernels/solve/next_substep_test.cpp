@@ -66,15 +66,18 @@ struct Heap {
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
         std::shuffle(order.begin(), order.end(), random);
         LooseBlock<Real> loose;
+        std::array<Contact<Real>, kBlock> contacts;
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const std::int32_t a = block.a[lane] = order[2 * lane];
             const std::int32_t b = block.b[lane] = order[2 * lane + 1];
             const auto bit = static_cast<std::uint16_t>(1u << lane);
             if (a > 1) block.writes_a |= bit;
             if (b > 1) block.writes_b |= bit;
-            loosen(testing::random_contact<Real>(random, positions[static_cast<std::size_t>(a)],
-                                                 positions[static_cast<std::size_t>(b)], wish),
-                   testing::random_terms<Real>(random), points, static_cast<int>(lane), loose);
+            contacts[lane] =
+                testing::random_contact<Real>(random, positions[static_cast<std::size_t>(a)],
+                                              positions[static_cast<std::size_t>(b)], wish);
+            loosen(contacts[lane], testing::random_terms<Real>(random), static_cast<int>(lane),
+                   loose);
         }
         solve_kernels<Real>().prepare(loose, place, RowsView<Real>::of(rows), wish.turns);
     }

@@ -68,9 +68,9 @@ struct BlockCase {
         for (int lane = 0; lane < kBlock; ++lane) {
             const auto at = static_cast<std::size_t>(lane);
             if (at < contacts.size())
-                loosen(contacts[at], terms[at], block().points, lane, loose);
+                loosen(contacts[at], terms[at], lane, loose);
             else
-                loosen_nothing(block().points, lane, loose);
+                loosen_nothing(lane, loose);
         }
         kernels.prepare(loose, kPlace, view(), turns);
     }
