@@ -12,7 +12,7 @@ namespace {
 // How many contacts ahead one is asked for: those of a slice are not side by side in memory.
 constexpr std::size_t kAhead = 16;
 
-constexpr std::size_t kSlots = 4096;  // a block
+constexpr std::size_t kGrain = 4096;  // bodies or contacts a block
 
 template <class Body>
 void for_slices(const Layout& layout, Body body)
@@ -32,6 +32,18 @@ void keep_each_once(std::vector<std::uint32_t>& bodies)
 {
     std::sort(bodies.begin(), bodies.end());
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+}
+
+// Those behind the contacts of a color; or behind each, where they are to go one after another.
+void clear_idle_lanes(const Color& color, std::size_t held, Layout& layout)
+{
+    const std::size_t begin = std::size_t{color.first} * kBlock;
+    const std::size_t end = begin + std::size_t{color.count} * kBlock;
+    for (std::size_t lane = color.serial ? begin : begin + held; lane < end; ++lane) {
+        if (color.serial && lane % kBlock == 0) continue;
+        layout.lanes[lane] = {};
+        layout.slot_a[lane] = layout.slot_b[lane] = 0;
+    }
 }
 
 // Where a body is in an ascending list, or its length.
@@ -85,11 +97,14 @@ void Painter::gather_slices(const Islands& islands,
 
 void Painter::seat_bodies(const Slice& slice, Layout& layout)
 {
-    for (std::uint32_t slot = slice.first_body; slot < slice.first_body + slice.dynamic; ++slot) {
-        const std::uint32_t body = layout.body_of_slot[slot];
-        layout.slot[body] = slot;
-        used_[body] = before_[body] = 0;
-    }
+    for_each_block(slice.dynamic, kGrain, [&](std::size_t from, std::size_t to, std::size_t) {
+        for (std::size_t k = from; k < to; ++k) {
+            const auto slot = static_cast<std::uint32_t>(slice.first_body + k);
+            const std::uint32_t body = layout.body_of_slot[slot];
+            layout.slot[body] = slot;
+            used_[body] = before_[body] = 0;
+        }
+    });
 }
 
 // Colors the contacts of a slice and counts them; lists whom else they touch.
@@ -116,8 +131,10 @@ void Painter::paint(const ActiveContacts& active,
         std::uint64_t& by_b = used_by(contact.body_b);
         nobody = 0;
         const int color = std::min(std::countr_one(by_a | by_b), kColors);
-        color_[i] = static_cast<std::uint8_t>(color);
-        ++plan.size[kPoints * color_[i] + (kPoints - contact.points)];
+        const std::uint32_t bin =
+            kPoints * static_cast<std::uint32_t>(color) + (kPoints - contact.points);
+        bin_[i] = static_cast<std::uint8_t>(bin);
+        rank_[i] = plan.size[bin]++;
         if (color < kColors) {
             by_a |= std::uint64_t{1} << color;
             by_b |= std::uint64_t{1} << color;
@@ -175,25 +192,20 @@ void Painter::place(const ActiveContacts& active,
                     const Slice& slice,
                     Layout& layout)
 {
-    std::array<std::uint32_t, kPoints*(kColors + 1)> next;
+    std::array<std::uint32_t, kBins> first_lane;
     std::uint32_t block = plan.first_block, color_at = slice.first_color;
     for (std::uint32_t color = 0; color <= kColors; ++color) {
-        const std::uint32_t per_block = color == kColors ? 1 : kBlock, first = block;
+        const std::uint32_t first = block, per_block = color == kColors ? 1 : kBlock;
         std::uint32_t held = 0;
         for (std::uint32_t kind = 0; kind < kPoints; ++kind) {
-            next[kPoints * color + kind] = first * kBlock + held * (kBlock / per_block);
+            first_lane[kPoints * color + kind] = first * kBlock + held * (kBlock / per_block);
             held += plan.size[kPoints * color + kind];
         }
+        if (held == 0) continue;
         block += (held + per_block - 1) / per_block;
-        if (held > 0) layout.colors[color_at++] = {first, block - first, color == kColors};
+        layout.colors[color_at] = {first, block - first, color == kColors};
+        clear_idle_lanes(layout.colors[color_at++], held, layout);
     }
-    const std::size_t first_lane = std::size_t{plan.first_block} * kBlock;
-    const std::size_t lanes = std::size_t{plan.blocks} * kBlock;
-    std::fill_n(layout.points.begin() + plan.first_block, plan.blocks, std::uint8_t{1});
-    std::fill_n(layout.lanes.begin() + static_cast<std::ptrdiff_t>(first_lane), lanes,
-                LaneSource{});
-    std::fill_n(layout.slot_a.begin() + static_cast<std::ptrdiff_t>(first_lane), lanes, 0);
-    std::fill_n(layout.slot_b.begin() + static_cast<std::ptrdiff_t>(first_lane), lanes, 0);
 
     const auto seat = [&](std::uint32_t body) {
         if (layout.slot[body] != Layout::kNoSlot)
@@ -207,19 +219,19 @@ void Painter::place(const ActiveContacts& active,
             return 0;
         return static_cast<std::int32_t>(slice.first_visitor + place);
     };
-    const std::size_t end = slice.first_contact + slice.contacts;
-    for (std::size_t i = slice.first_contact; i < end; ++i) {
-        if (i + kAhead < end) __builtin_prefetch(&active.entries[layout.contacts[i + kAhead]]);
-        const auto& contact = active.entries[layout.contacts[i]];
-        std::uint32_t& at = next[kPoints * color_[i] + (kPoints - contact.points)];
-        const std::uint32_t lane = at;
-        at += color_[i] == kColors ? kBlock : 1;
-        layout.lanes[lane].entry = layout.contacts[i];
-        layout.slot_a[lane] = seat(contact.body_a);
-        layout.slot_b[lane] = seat(contact.body_b);
-        std::uint8_t& most = layout.points[lane / kBlock];
-        most = std::max(most, contact.points);
-    }
+    for_each_block(slice.contacts, kGrain, [&](std::size_t from, std::size_t to, std::size_t) {
+        for (std::size_t i = slice.first_contact + from; i < slice.first_contact + to; ++i) {
+            if (i + kAhead < slice.first_contact + to)
+                __builtin_prefetch(&active.entries[layout.contacts[i + kAhead]]);
+            const auto& contact = active.entries[layout.contacts[i]];
+            const bool serial = bin_[i] >= kPoints * kColors;
+            const std::size_t lane = first_lane[bin_[i]] + rank_[i] * (serial ? kBlock : 1u);
+            layout.lanes[lane].entry = layout.contacts[i];
+            layout.slot_a[lane] = seat(contact.body_a);
+            layout.slot_b[lane] = seat(contact.body_b);
+            if (lane % kBlock == 0) layout.points[lane / kBlock] = contact.points;
+        }
+    });
 }
 
 void Painter::lay_out(const Islands& islands,
@@ -229,7 +241,7 @@ void Painter::lay_out(const Islands& islands,
                       Layout& layout)
 {
     // Whoever had a slot in the last step may have none in this one.
-    for_each_block(layout.dynamic, kSlots, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_each_block(layout.dynamic, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t slot = begin + 1; slot <= end; ++slot)
             layout.slot[layout.body_of_slot[slot]] = Layout::kNoSlot;
     });
@@ -241,7 +253,8 @@ void Painter::lay_out(const Islands& islands,
     layout.slot.resize(states.kind.size(), Layout::kNoSlot);
     used_.resize(states.kind.size());
     before_.resize(states.kind.size());
-    color_.resize(layout.contacts.size());
+    bin_.resize(layout.contacts.size());
+    rank_.resize(layout.contacts.size());
     if (plans_.size() < layout.slices.size()) plans_.resize(layout.slices.size());
     for_slices(layout, [&](std::size_t i) { seat_bodies(layout.slices[i], layout); });
     for_slices(layout,

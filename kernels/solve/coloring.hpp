@@ -30,10 +30,11 @@ private:
     // puts its further contacts into a last color whose blocks go one after another.
     static constexpr int kColors = 63;
     static constexpr std::uint32_t kPoints = 4;  // a contact has at most
+    static constexpr std::size_t kBins = kPoints * (kColors + 1);
 
     // What is known of a slice before all are painted.
     struct Plan {
-        std::array<std::uint32_t, kPoints*(kColors + 1)> size;  // contacts by color and points
+        std::array<std::uint32_t, kBins> size;  // contacts by color and points
         std::uint32_t blocks, colors, first_block;
         std::vector<std::uint32_t> kinematic, conveyors;  // that it touches, ascending
     };
@@ -60,7 +61,8 @@ private:
     std::vector<Plan> plans_;            // [slices]
     std::vector<std::uint64_t> used_;    // by body: colors of the contacts of its slice
     std::vector<std::uint64_t> before_;  // by body: of the contacts of the slice before
-    std::vector<std::uint8_t> color_;    // [contacts]
+    std::vector<std::uint8_t> bin_;      // [contacts] color and points
+    std::vector<std::uint32_t> rank_;    // [contacts] among those of its bin
 };
 
 }  // namespace throng
