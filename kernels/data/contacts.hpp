@@ -53,16 +53,19 @@ struct ConvexContacts {
     struct Made {
         std::uint32_t pair = 0;
         Contact<Real> contact;
+        FoundManifold<Real> found;
     };
     std::vector<PairState> of_pair;  // in the order of the pairs
     std::vector<Contact<Real>> contacts;
-    std::vector<std::uint32_t> free;   // places
-    std::size_t strayed = 0;           // contacts that began since all were last put in order
-    std::vector<PairState> before;     // scratch: of_pair of the last step
-    std::vector<Contact<Real>> moved;  // scratch: contacts in order
-    std::vector<std::uint32_t> begin;  // scratch
-    BlockLists<Made> made;             // scratch: contacts that began in this step
-    BlockLists<std::uint32_t> parted;  // scratch: pairs whose contacts ended
+    std::vector<FoundManifold<Real>> found;  // of each contact, if its kind of pair has it kept
+    std::vector<std::uint32_t> free;         // places
+    std::size_t strayed = 0;                 // contacts that began since all were last put in order
+    std::vector<PairState> before;           // scratch: of_pair of the last step
+    std::vector<Contact<Real>> moved;        // scratch: contacts in order
+    std::vector<FoundManifold<Real>> found_moved;  // scratch
+    std::vector<std::uint32_t> begin;              // scratch
+    BlockLists<Made> made;                         // scratch: contacts that began in this step
+    BlockLists<std::uint32_t> parted;              // scratch: pairs whose contacts ended
 
     /// The contact of a pair, or none.
     const Contact<Real>* at(std::size_t pair) const

@@ -32,6 +32,18 @@ struct LocalManifold {
     }
 };
 
+/// A manifold as it was found, and what for: while the two have hardly moved against one another
+/// since, where its points are now says as much as a new one (see recycle()).
+///
+///   b_in_a  the pose that it was found at
+///   reach   m, points further apart were left out
+template <class Real>
+struct FoundManifold {
+    LocalManifold<Real> manifold;
+    PoseT<Real> b_in_a;
+    Real reach = 0;
+};
+
 /// What a pair remembers from step to step so that the next answer comes sooner. It never changes
 /// the answer. The meaning is the pair function's own; all zero is a cold start.
 struct PairCache {

@@ -2,13 +2,16 @@
 //
 // Pairs that sleep, or that nothing can push, keep what they have. Impulses carry over from the
 // contact that the pair had before. Kinds of pairs that crowds are made of take a way of their own:
-// boxes go side by side through the wide kernels, and two spheres need no frame.
+// boxes go side by side through the wide kernels, and two spheres need no frame. Hulls that touch
+// and have hardly moved against one another since are not collided anew: most of a heap at rest.
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solve/contact_rows.hpp"
 #include "narrowphase/box_pairs.hpp"
 #include "narrowphase/narrowphase.hpp"
+#include "narrowphase/recycling.hpp"
 #include "pipeline/stages/collide.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace throng {
@@ -18,6 +21,17 @@ namespace {
 constexpr std::size_t kGrain = 512;        // pairs a block: some 20 microseconds of work
 constexpr std::size_t kOrderGrain = 8192;  // pairs a block
 constexpr std::size_t kStrays = 8;         // one contact in so many may be out of order
+
+// A manifold is recycled until a point has moved by this share of the smaller shape's smallest half
+// extent: a twentieth of the reach of bodies at rest, and as deep as bodies at rest overlap.
+constexpr double kRecycled = 4e-3;
+
+// Whether a pair is worth it: its manifold costs far more than what it was found from.
+bool is_recycled(ShapeKind a, ShapeKind b)
+{
+    using enum ShapeKind;
+    return (a == hull && (b == hull || b == box)) || (a == box && b == hull);
+}
 
 // After the list of pairs has changed: what each pair knew, at its new place. Whoever is in the
 // list no more gives its contact back.
@@ -115,6 +129,7 @@ private:
         if (a == sphere && b == sphere) return collide_spheres(i, pair, block);
         if constexpr (std::is_same_v<Real, float>)
             if (a == box && b == box) return put_aside(i, pair, boxes);
+        if (is_recycled(a, b)) return collide_or_recycle(i, pair, block);
         collide_pair(i, pair, block);
     }
 
@@ -185,6 +200,39 @@ private:
         take(i, pair, turned, manifold, block);
     }
 
+    // The same for pairs without planes, but what was found is recycled as long as it will do.
+    void collide_or_recycle(std::size_t i, const PairPlace& pair, std::size_t block)
+    {
+        const ShapeRef a = colliders_.shape[pair.a], b = colliders_.shape[pair.b];
+        FoundManifold<Real> found;
+        found.b_in_a = rounded<Real>(
+            pose_seen_from_a(shapes_, b, bounds_.placed[pair.a], bounds_.placed[pair.b]));
+        found.reach = static_cast<Real>(pair.reach);
+        PairState& state = contacts_.of_pair[i];
+        const bool touched = state.contact != PairState::kApart;
+        if (touched
+            && recycle(contacts_.found[state.contact], found.b_in_a, found.reach,
+                       radius_about_origin(pair), recycled_up_to(pair), found.manifold))
+            return take(i, pair, false, found.manifold, block);
+        collide(shapes_, a, b, found.b_in_a, found.reach, state.cache, found.manifold);
+        take(i, pair, false, found.manifold, block);
+        if (found.manifold.count == 0) return;
+        (touched ? contacts_.found[state.contact] : contacts_.made[block].back().found) = found;
+    }
+
+    Real recycled_up_to(const PairPlace& pair) const
+    {
+        const double least =
+            std::min(colliders_.inner_extent[pair.a], colliders_.inner_extent[pair.b]);
+        return static_cast<Real>(kRecycled * least);
+    }
+    // No point of b is further from where its frame is.
+    Real radius_about_origin(const PairPlace& pair) const
+    {
+        const Vec3 arm = bounds_.placed[pair.b].position - poses_.position[pair.body_b];
+        return static_cast<Real>(colliders_.outer_radius[pair.b] + arm.norm());
+    }
+
     void take(std::size_t i,
               const PairPlace& pair,
               bool turned,
@@ -209,7 +257,7 @@ private:
     {
         const std::uint32_t place = contacts_.of_pair[i].contact;
         if (place == PairState::kApart) {
-            contacts_.made[block].push_back({static_cast<std::uint32_t>(i), contact});
+            contacts_.made[block].push_back({static_cast<std::uint32_t>(i), contact, {}});
             return;
         }
         carry_impulses(contacts_.contacts[place], scale_, contact);
@@ -228,7 +276,7 @@ private:
 
 // Takes back the places of contacts that ended, then gives places to new ones, in order of pairs.
 template <class Real>
-void move_in_and_out(std::size_t blocks, ConvexContacts<Real>& contacts)
+void move_in_and_out(std::size_t blocks, bool finds, ConvexContacts<Real>& contacts)
 {
     for (std::size_t block = 0; block < blocks; ++block)
         for (const std::uint32_t pair : contacts.parted[block]) {
@@ -242,11 +290,13 @@ void move_in_and_out(std::size_t blocks, ConvexContacts<Real>& contacts)
             if (contacts.free.empty()) {
                 place = static_cast<std::uint32_t>(contacts.contacts.size());
                 contacts.contacts.push_back(made.contact);
+                if (finds) contacts.found.push_back(made.found);
                 continue;
             }
             place = contacts.free.back();
             contacts.free.pop_back();
             contacts.contacts[place] = made.contact;
+            if (finds) contacts.found[place] = made.found;
         }
 }
 
@@ -268,17 +318,22 @@ void put_in_order(ConvexContacts<Real>& contacts)
                            begin[block + 1] += states[i].contact != PairState::kApart ? 1 : 0;
                    });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    const bool finds = !contacts.found.empty();
     contacts.moved.resize(used);
+    contacts.found_moved.resize(finds ? used : 0);
     for_each_block(states.size(), kOrderGrain,
                    [&](std::size_t first, std::size_t end, std::size_t block) {
                        std::uint32_t next = begin[block];
                        for (std::size_t i = first; i < end; ++i) {
                            if (states[i].contact == PairState::kApart) continue;
                            contacts.moved[next] = contacts.contacts[states[i].contact];
+                           if (finds)
+                               contacts.found_moved[next] = contacts.found[states[i].contact];
                            states[i].contact = next++;
                        }
                    });
     std::swap(contacts.contacts, contacts.moved);
+    std::swap(contacts.found, contacts.found_moved);
     contacts.free.clear();
 }
 
@@ -298,12 +353,15 @@ void collide_convex(const Conditions& conditions,
     const std::size_t blocks = block_count(pairs.keys.size(), kGrain);
     contacts.made.start(blocks);
     contacts.parted.start(blocks);
+    // Scenes without hulls have nothing to recycle.
+    const bool finds = !shapes.hulls.empty();
+    contacts.found.resize(finds ? contacts.contacts.size() : 0);
     for_each_block(
         pairs.keys.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
             Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, contacts)
                 .look_at(begin, end, block);
         });
-    move_in_and_out(blocks, contacts);
+    move_in_and_out(blocks, finds, contacts);
     put_in_order(contacts);
 }
 
