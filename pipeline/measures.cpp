@@ -173,8 +173,9 @@ std::size_t World::memory_bytes() const
             const auto& rows = std::get<Rows<Real>>(chosen.data);
             sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.merged, convex.of_pair,
                          convex.before, convex.contacts, convex.moved, convex.found,
-                         convex.found_moved, rows.blocks, rows.points, rows.bounces, rows.rollings,
-                         rows.bodies, rows.inertias);
+                         convex.found_moved, convex.travels.placed, convex.travels.traveled,
+                         convex.travels.approach, rows.blocks, rows.points, rows.bounces,
+                         rows.rollings, rows.bodies, rows.inertias);
         },
         state_->step);
     return sum;

@@ -44,6 +44,18 @@ struct PairState {
     static constexpr std::uint32_t kApart = 0xffffffffu;
     PairCache cache;
     std::uint32_t contact = kApart;  // place among the contacts
+    float apart_until = 0;  // m, nowhere near before their approaches come to this: see Travels
+};
+
+/// How far each collider has come, so that pairs that are apart need not be looked at until the two
+/// could have met.
+///
+///   placed    [colliders] where it was in the last step
+///   traveled  [colliders] m, no point of it has come further since the first step
+///   approach  [colliders] m, the same and its reach
+struct Travels {
+    std::vector<Pose> placed;
+    std::vector<double> traveled, approach;
 };
 
 /// The contacts of pairs of convex colliders. A contact keeps its place as long as its pair
@@ -59,6 +71,7 @@ struct ConvexContacts {
     std::vector<Contact<Real>> contacts;
     std::vector<FoundManifold<Real>> found;  // of each contact, if its kind of pair has it kept
     std::vector<std::uint32_t> free;         // places
+    Travels travels;                         // none where no kind of pair asks
     std::size_t strayed = 0;                 // contacts that began since all were last put in order
     std::vector<PairState> before;           // scratch: of_pair of the last step
     std::vector<Contact<Real>> moved;        // scratch: contacts in order

@@ -49,6 +49,7 @@ struct FoundManifold {
 struct PairCache {
     std::uint32_t feature_a = 0, feature_b = 0;
     std::uint32_t kind = 0;
+    float apart = 0;  // m, where nothing was within reach: some axis parts them by so much
     bool operator==(const PairCache&) const = default;
 };
 

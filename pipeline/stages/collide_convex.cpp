@@ -12,6 +12,7 @@
 #include "pipeline/stages/collide.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace throng {
@@ -23,14 +24,54 @@ constexpr std::size_t kOrderGrain = 8192;  // pairs a block
 constexpr std::size_t kStrays = 8;         // one contact in so many may be out of order
 
 // A manifold is recycled until a point has moved by this share of the smaller shape's smallest half
-// extent: a twentieth of the reach of bodies at rest, and as deep as bodies at rest overlap.
-constexpr double kRecycled = 4e-3;
+// extent, a sixth of the reach of bodies at rest. A third more overlaps no deeper, but saves
+// little.
+constexpr double kRecycled = 12e-3;
+
+constexpr double kRounding = 1e-7;  // of float, and more
 
 // Whether a pair is worth it: its manifold costs far more than what it was found from.
 bool is_recycled(ShapeKind a, ShapeKind b)
 {
     using enum ShapeKind;
     return (a == hull && (b == hull || b == box)) || (a == box && b == hull);
+}
+
+// Along the axis that they are furthest apart on.
+double gap_between(const NearBox& a, const NearBox& b)
+{
+    float most = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        most = std::max({most, a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis]});
+    return double{most};
+}
+
+// How far each collider has come since the last step, at most. Planes reach everywhere: theirs is
+// no number, once they move, and whatever is compared with that is looked at.
+void follow_colliders(const Colliders& colliders, const Bounds& bounds, Travels& travels)
+{
+    const std::size_t count = bounds.placed.size();
+    if (travels.placed.size() != count) {
+        // Whoever is new has been nowhere.
+        for (std::size_t i = travels.placed.size(); i < count; ++i)
+            travels.placed.push_back(bounds.placed[i]);
+        travels.placed.resize(count);
+        travels.traveled.resize(count, 0.0);
+        travels.approach.resize(count, 0.0);
+    }
+    for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Pose &now = bounds.placed[i], &last = travels.placed[i];
+            const Vec3 shift = now.position - last.position;
+            const Quat turn = now.orientation * last.orientation.conjugate();
+            if (!shift.isZero(0) || !turn.vec().isZero(0)) {
+                travels.traveled[i] +=
+                    shift.norm() + 2 * turn.vec().norm() * colliders.outer_radius[i];
+                travels.placed[i] = now;
+            }
+            travels.approach[i] = travels.traveled[i] + bounds.reach[i];
+        }
+    });
 }
 
 // After the list of pairs has changed: what each pair knew, at its new place. Whoever is in the
@@ -90,7 +131,8 @@ public:
               const BodyStates& states,
               ConvexContacts<Real>& contacts)
         : pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds), poses_(poses),
-          states_(states), contacts_(contacts), scale_(static_cast<Real>(impulse_scale(conditions)))
+          states_(states), contacts_(contacts), travels_(!shapes.hulls.empty()),
+          scale_(static_cast<Real>(impulse_scale(conditions)))
     { }
 
     void look_at(std::size_t begin, std::size_t end, std::size_t block)
@@ -100,7 +142,14 @@ public:
         boxes.pairs.clear();
         for (std::size_t i = begin; i < end; ++i) {
             const PairKey key = pairs_.keys[i];
-            if (!bounds_.near[first_of(key)].overlaps(bounds_.near[second_of(key)])) {
+            if (known_apart(key, contacts_.of_pair[i])) {
+                part(i, block);
+                continue;
+            }
+            const NearBox &near_a = bounds_.near[first_of(key)],
+                          &near_b = bounds_.near[second_of(key)];
+            if (!near_a.overlaps(near_b)) {
+                if (travels_) note_apart(i, gap_between(near_a, near_b));
                 part(i, block);
                 continue;
             }
@@ -115,6 +164,24 @@ public:
     }
 
 private:
+    // Not even what they have come since they were last looked at brings them within reach.
+    bool known_apart(PairKey key, const PairState& state) const
+    {
+        return travels_ && approach(key) < double{state.apart_until};
+    }
+    double approach(PairKey key) const
+    {
+        return contacts_.travels.approach[first_of(key)]
+            + contacts_.travels.approach[second_of(key)];
+    }
+
+    // The two are further apart than their reach by so much.
+    void note_apart(std::size_t i, double beyond_reach)
+    {
+        const double until = approach(pairs_.keys[i]) + beyond_reach;
+        contacts_.of_pair[i].apart_until = static_cast<float>(until - kRounding * std::abs(until));
+    }
+
     void part(std::size_t i, std::size_t block)
     {
         if (contacts_.of_pair[i].contact != PairState::kApart)
@@ -212,11 +279,15 @@ private:
         const bool touched = state.contact != PairState::kApart;
         if (touched
             && recycle(contacts_.found[state.contact], found.b_in_a, found.reach,
-                       radius_about_origin(pair), recycled_up_to(pair), found.manifold))
+                       static_cast<Real>(colliders_.outer_radius[pair.b]), recycled_up_to(pair),
+                       found.manifold))
             return take(i, pair, false, found.manifold, block);
         collide(shapes_, a, b, found.b_in_a, found.reach, state.cache, found.manifold);
         take(i, pair, false, found.manifold, block);
-        if (found.manifold.count == 0) return;
+        if (found.manifold.count == 0) {
+            note_apart(i, double{state.cache.apart} - pair.reach);
+            return;
+        }
         (touched ? contacts_.found[state.contact] : contacts_.made[block].back().found) = found;
     }
 
@@ -225,12 +296,6 @@ private:
         const double least =
             std::min(colliders_.inner_extent[pair.a], colliders_.inner_extent[pair.b]);
         return static_cast<Real>(kRecycled * least);
-    }
-    // No point of b is further from where its frame is.
-    Real radius_about_origin(const PairPlace& pair) const
-    {
-        const Vec3 arm = bounds_.placed[pair.b].position - poses_.position[pair.body_b];
-        return static_cast<Real>(colliders_.outer_radius[pair.b] + arm.norm());
     }
 
     void take(std::size_t i,
@@ -271,6 +336,7 @@ private:
     const Poses& poses_;
     const BodyStates& states_;
     ConvexContacts<Real>& contacts_;
+    bool travels_;  // known how far they have come
     Real scale_;
 };
 
@@ -356,6 +422,7 @@ void collide_convex(const Conditions& conditions,
     // Scenes without hulls have nothing to recycle.
     const bool finds = !shapes.hulls.empty();
     contacts.found.resize(finds ? contacts.contacts.size() : 0);
+    if (finds) follow_colliders(colliders, bounds, contacts.travels);
     for_each_block(
         pairs.keys.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
             Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, contacts)
