@@ -6,6 +6,7 @@
 
 #include "kernels/data/manifolds.hpp"
 #include "kernels/data/pairs.hpp"
+#include "kernels/data/travels.hpp"
 #include "kernels/parallel/compact.hpp"
 
 #include <vector>
@@ -45,17 +46,6 @@ struct PairState {
     PairCache cache;
     std::uint32_t contact = kApart;  // place among the contacts
     float apart_until = 0;  // m, nowhere near before their approaches come to this: see Travels
-};
-
-/// How far each collider has come, so that pairs that are apart need not be looked at until the two
-/// could have met.
-///
-///   placed    [colliders] where it was in the last step
-///   traveled  [colliders] m, no point of it has come further since the first step
-///   approach  [colliders] m, the same and its reach
-struct Travels {
-    std::vector<Pose> placed;
-    std::vector<double> traveled, approach;
 };
 
 /// The contacts of pairs of convex colliders. A contact keeps its place as long as its pair

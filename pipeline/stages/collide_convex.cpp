@@ -4,6 +4,7 @@
 // contact that the pair had before. Kinds of pairs that crowds are made of take a way of their own:
 // boxes go side by side through the wide kernels, and two spheres need no frame. Hulls that touch
 // and have hardly moved against one another since are not collided anew: most of a heap at rest.
+#include "kernels/motion/travels.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solve/contact_rows.hpp"
 #include "narrowphase/box_pairs.hpp"
@@ -35,43 +36,6 @@ bool is_recycled(ShapeKind a, ShapeKind b)
 {
     using enum ShapeKind;
     return (a == hull && (b == hull || b == box)) || (a == box && b == hull);
-}
-
-// Along the axis that they are furthest apart on.
-double gap_between(const NearBox& a, const NearBox& b)
-{
-    float most = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        most = std::max({most, a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis]});
-    return double{most};
-}
-
-// How far each collider has come since the last step, at most. Planes reach everywhere: theirs is
-// no number, once they move, and whatever is compared with that is looked at.
-void follow_colliders(const Colliders& colliders, const Bounds& bounds, Travels& travels)
-{
-    const std::size_t count = bounds.placed.size();
-    if (travels.placed.size() != count) {
-        // Whoever is new has been nowhere.
-        for (std::size_t i = travels.placed.size(); i < count; ++i)
-            travels.placed.push_back(bounds.placed[i]);
-        travels.placed.resize(count);
-        travels.traveled.resize(count, 0.0);
-        travels.approach.resize(count, 0.0);
-    }
-    for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Pose &now = bounds.placed[i], &last = travels.placed[i];
-            const Vec3 shift = now.position - last.position;
-            const Quat turn = now.orientation * last.orientation.conjugate();
-            if (!shift.isZero(0) || !turn.vec().isZero(0)) {
-                travels.traveled[i] +=
-                    shift.norm() + 2 * turn.vec().norm() * colliders.outer_radius[i];
-                travels.placed[i] = now;
-            }
-            travels.approach[i] = travels.traveled[i] + bounds.reach[i];
-        }
-    });
 }
 
 // After the list of pairs has changed: what each pair knew, at its new place. Whoever is in the
@@ -422,7 +386,8 @@ void collide_convex(const Conditions& conditions,
     // Scenes without hulls have nothing to recycle.
     const bool finds = !shapes.hulls.empty();
     contacts.found.resize(finds ? contacts.contacts.size() : 0);
-    if (finds) follow_colliders(colliders, bounds, contacts.travels);
+    if (finds)
+        follow_colliders(bounds.placed, colliders.outer_radius, bounds.reach, contacts.travels);
     for_each_block(
         pairs.keys.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
             Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, contacts)
