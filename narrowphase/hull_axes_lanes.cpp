@@ -43,6 +43,8 @@ public:
 
     /// Whether the balls round them, or the axis that was guessed, show them to be out of reach.
     bool parted_at_once(const HullGuess& guess);
+    /// How far the axes that were looked at part them, out of reach or not.
+    float apart() const;
     /// False where an axis shows them to be out of reach. Either way the best is remembered.
     bool find_axes(HullGuess& guess);
     void touch(HullTouch& out);
@@ -304,12 +306,23 @@ void Search::touch(HullTouch& out)
     if (edge_.a >= 0 && !(agrees && alike())) cross_edges(out);
 }
 
+float Search::apart() const
+{
+    const float by_balls = distance_ - pair_.a.outer - pair_.b.outer;
+    const float by_faces = most(best_a_.separation, best_b_.separation);
+    const float best = most(most(by_balls, by_faces), edge_.a >= 0 ? edge_.separation : kNever);
+    return most(0, best - noise_);
+}
+
 void meet_hulls(const HullPair& pair, HullGuess& guess, HullTouch& out)
 {
     out.count = 0;
     Search search(pair);
-    if (search.parted_at_once(guess)) return;
-    if (search.find_axes(guess)) search.touch(out);
+    if (!search.parted_at_once(guess) && search.find_axes(guess)) {
+        search.touch(out);
+        if (out.count > 0) return;
+    }
+    out.apart = search.apart();
 }
 
 }  // namespace

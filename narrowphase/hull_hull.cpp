@@ -52,7 +52,8 @@ FaceAxis first_guess(const PolytopePair& pair, const PairCache& cache)
 
 PairCache remember(Remembered kind, const FaceAxis& axis)
 {
-    return {axis.face, axis.vertex, static_cast<std::uint32_t>(kind)};
+    const auto apart = static_cast<float>(std::max(0.0, axis.separation));
+    return {axis.face, axis.vertex, static_cast<std::uint32_t>(kind), apart};
 }
 
 void collide_polytopes(const PolytopePair& pair,
@@ -64,6 +65,7 @@ void collide_polytopes(const PolytopePair& pair,
     const PolytopePair turned = pair.mirrored();
     const bool by_b = cache.kind == static_cast<std::uint32_t>(Remembered::face_b);
     const FaceAxis guess = first_guess(by_b ? turned : pair, cache);
+    cache.apart = static_cast<float>(std::max(0.0, guess.separation));
     if (guess.separation > reach) return;
 
     // What a guess has shown saves looking at faces that cannot lead any more.
@@ -136,7 +138,7 @@ bool meet_wide(const Shapes& shapes,
     HullTouch touch;
     static const HullKernel meet = hull_kernel();
     meet(pair, guess, touch);
-    cache = {guess.a, guess.b, guess.kind};
+    cache = {guess.a, guess.b, guess.kind, touch.count == 0 ? touch.apart : 0};
     out.count = 0;
     if (touch.count == 0) return true;
     out.normal = {touch.normal[0], touch.normal[1], touch.normal[2]};

@@ -37,6 +37,7 @@ struct HullTouch {
     };
     float normal[3];  // from a to b
     int count;
+    float apart;  // m, how far the best axis parts them where there is no point; 0 for not at all
     Point points[kMost];
 };
 

@@ -173,6 +173,8 @@ std::size_t World::memory_bytes() const
             const auto& rows = std::get<Rows<Real>>(chosen.data);
             sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.asked, convex.of_pair,
                          convex.contacts, convex.free, convex.astray, convex.gathered, convex.order,
+                         convex.found, convex.found_gathered, convex.apart_until,
+                         convex.travels.placed, convex.travels.traveled, convex.travels.approach,
                          std::get<ActiveContacts>(chosen.data).entries, rows.blocks, rows.points,
                          rows.bounces, rows.rollings, rows.bodies, rows.inertias);
         },

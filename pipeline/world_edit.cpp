@@ -75,6 +75,10 @@ void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
                 else if (states[i].contact != PairState::kApart)
                     contacts.free.push_back(states[i].contact);
             states.resize(std::min<std::size_t>(states.size(), kept));
+            auto& until = contacts.apart_until;
+            for (std::size_t i = 0; i < until.size(); ++i)
+                if (kept_as[i] != Pairs::kNewPair) until[kept_as[i]] = until[i];
+            until.resize(std::min<std::size_t>(until.size(), kept));
             auto& entries = std::get<MeshContacts<Real>>(chosen.data).entries;
             std::erase_if(entries, [&](const auto& entry) { return gone(entry.pair); });
             for (auto& entry : entries) entry.pair = kept_as[entry.pair];

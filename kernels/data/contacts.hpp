@@ -6,6 +6,7 @@
 
 #include "kernels/data/manifolds.hpp"
 #include "kernels/data/pairs.hpp"
+#include "kernels/data/travels.hpp"
 #include "kernels/parallel/compact.hpp"
 
 #include <vector>
@@ -53,7 +54,7 @@ struct Contact {
     }
 };
 
-/// What a pair remembers, in four bytes: there are many pairs. What does not fit is forgotten.
+/// What a pair remembers, in four bytes as there are many. `apart` and what does not fit are lost.
 class PackedCache {
 public:
     PackedCache() = default;
@@ -87,6 +88,15 @@ struct ConvexContacts {
         std::uint32_t pair = 0;
         Contact<Real> contact;
     };
+    struct Found {
+        std::uint32_t pair = 0;
+        FoundManifold<Real> found;
+    };
+    /// Contacts that began, and of those whose pair is recycled, what was found.
+    struct Begun {
+        std::vector<Made> made;
+        std::vector<Found> found;
+    };
     std::vector<PairState> of_pair;  // in the order of the pairs
     std::vector<Contact<Real>> contacts;
     std::vector<std::uint32_t> free;      // places
@@ -94,8 +104,15 @@ struct ConvexContacts {
     std::vector<std::uint8_t> astray;     // [contacts] 1 for those
     std::vector<Contact<Real>> gathered;  // scratch: those, while they are put in order
     std::vector<std::uint32_t> order;     // scratch: places that contacts come from
-    std::vector<std::vector<Made>> made;  // scratch: contacts that began in this step
+    std::vector<Begun> begun;             // scratch: in this step
     BlockLists<std::uint32_t> parted;     // scratch: pairs whose contacts ended
+
+    // Empty in scenes where no kind of pair asks for it.
+    bool recycles = false;                            // some kind does
+    std::vector<FoundManifold<Real>> found;           // [contacts] of pairs of such a kind
+    std::vector<FoundManifold<Real>> found_gathered;  // scratch, like `gathered`
+    std::vector<float> apart_until;  // [pairs] m, no contact before their approaches come to this
+    Travels travels;
 
     /// The contact of a pair, or none.
     const Contact<Real>* at(std::size_t pair) const

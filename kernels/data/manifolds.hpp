@@ -32,11 +32,24 @@ struct LocalManifold {
     }
 };
 
+/// A manifold as it was found, and what for: while the two have hardly moved against one another
+/// since, where its points are now says as much as a new one (see recycle()).
+///
+///   b_in_a  the pose that it was found at
+///   reach   m, points further apart were left out
+template <class Real>
+struct FoundManifold {
+    LocalManifold<Real> manifold;
+    PoseT<Real> b_in_a;
+    Real reach = 0;
+};
+
 /// What a pair remembers from step to step so that the next answer comes sooner. It never changes
 /// the answer. The meaning is the pair function's own; all zero is a cold start.
 struct PairCache {
     std::uint32_t feature_a = 0, feature_b = 0;
     std::uint32_t kind = 0;
+    float apart = 0;  // m, of this call alone: out of reach, some axis parts them by so much
     bool operator==(const PairCache&) const = default;
 };
 

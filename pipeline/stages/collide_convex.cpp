@@ -2,20 +2,24 @@
 //
 // Pairs that sleep, or that nothing can push, keep what they have. Impulses carry over from the
 // contact that the pair had before. Kinds of pairs that crowds are made of take a way of their own:
-// boxes go side by side through the wide kernels, and two spheres need no frame.
+// boxes go side by side through the wide kernels, and two spheres need no frame. Hulls that touch
+// and have hardly moved against one another since are not collided anew: most of a heap at rest.
+#include "kernels/motion/travels.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solve/contact_rows.hpp"
 #include "narrowphase/box_pairs.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages/collide.hpp"
 #include "pipeline/stages/contact_places.hpp"
+#include "pipeline/stages/known_apart.hpp"
+#include "pipeline/stages/recycled_manifolds.hpp"
 
 namespace throng {
 
 namespace {
 
-constexpr std::size_t kGrain = 512;  // pairs a block: some 20 microseconds of work
-constexpr std::size_t kAhead = 16, kFar = 6, kNext = 4;  // pairs: how early memory is asked for
+constexpr std::size_t kGrain = 512;         // pairs a block: some 20 microseconds of work
+constexpr std::size_t kFar = 6, kNext = 4;  // pairs: how early memory is asked for
 
 // The pairs of boxes of a block, until there are enough of them to be collided side by side.
 struct BoxBatch {
@@ -45,9 +49,11 @@ public:
         static thread_local BoxBatch boxes;  // keeps its room from block to block
         boxes.places.clear();
         boxes.pairs.clear();
-        begun_.clear();
+        begun_.made.clear();
+        begun_.found.clear();
         std::array<std::uint32_t, kGrain> near;
-        const std::size_t count = find_near(begin, end, block, near);
+        const std::size_t count =
+            find_near(pairs_, bounds_, begin, end, contacts_, contacts_.parted[block], near);
         for (std::size_t k = 0; k < count; ++k) {
             if (k + kFar < count) ask_for(pairs_.keys[near[k + kFar]]);
             const std::uint32_t i = near[k];
@@ -59,38 +65,17 @@ public:
                 scale_impulses(contacts_.contacts[place], scale_);
         }
         if (!boxes.pairs.empty()) collide_batch(boxes, block);
-        contacts_.made[block].assign(begun_.begin(), begun_.end());
+        contacts_.begun[block].made.assign(begun_.made.begin(), begun_.made.end());
+        contacts_.begun[block].found.assign(begun_.found.begin(), begun_.found.end());
     }
 
 private:
     // The contacts that began in a block; on each thread, as the blocks of a world would keep room
     // for far more together than any step needs.
-    static std::vector<typename ConvexContacts<Real>::Made>& begun()
+    static typename ConvexContacts<Real>::Begun& begun()
     {
-        static thread_local std::vector<typename ConvexContacts<Real>::Made> list;
-        return list;
-    }
-
-    // Most pairs are apart and most of those are seen to be so at once: in a loop of its own,
-    // without a branch for each. In a large world both loops would wait for the memory of whoever
-    // is second in a pair, so it is asked for ahead.
-    std::size_t find_near(std::size_t begin,
-                          std::size_t end,
-                          std::size_t block,
-                          std::array<std::uint32_t, kGrain>& near)
-    {
-        std::size_t count = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (i + kAhead < pairs_.keys.size())
-                __builtin_prefetch(&bounds_.near[second_of(pairs_.keys[i + kAhead])]);
-            const PairKey key = pairs_.keys[i];
-            const bool meet = bounds_.near[first_of(key)].overlaps(bounds_.near[second_of(key)]);
-            near[count] = static_cast<std::uint32_t>(i);
-            count += meet ? 1 : 0;
-            if (!meet & (contacts_.of_pair[i].contact != PairState::kApart))
-                contacts_.parted[block].push_back(static_cast<std::uint32_t>(i));
-        }
-        return count;
+        static thread_local typename ConvexContacts<Real>::Begun lists;
+        return lists;
     }
 
     void ask_for(PairKey key) const
@@ -117,6 +102,7 @@ private:
         if (a == sphere && b == sphere) return collide_spheres(i, pair, block);
         if constexpr (std::is_same_v<Real, float>)
             if (a == box && b == box) return put_aside(i, pair, boxes);
+        if (is_recycled(a, b)) return collide_or_recycle(i, pair, block);
         collide_pair(i, pair, block);
     }
 
@@ -199,6 +185,27 @@ private:
         take(i, pair, turned, manifold, block);
     }
 
+    void collide_or_recycle(std::size_t i, const PairPlace& pair, std::size_t block)
+    {
+        PairState& state = contacts_.of_pair[i];
+        const bool touched = state.contact != PairState::kApart;
+        PairCache cache = state.cache;
+        FoundManifold<Real> found;
+        const bool anew =
+            find_or_recycle(shapes_, colliders_, bounds_, pair,
+                            touched ? &contacts_.found[state.contact] : nullptr, cache, found);
+        state.cache = cache;
+        take(i, pair, false, found.manifold, block);
+        if (!anew) return;
+        if (found.manifold.count == 0)
+            note_apart(pairs_.keys[i], double{cache.apart} - pair.reach, contacts_.travels,
+                       contacts_.apart_until[i]);
+        else if (touched)
+            contacts_.found[state.contact] = found;
+        else
+            begun_.found.push_back({static_cast<std::uint32_t>(i), found});
+    }
+
     void take(std::size_t i,
               const PairPlace& pair,
               bool turned,
@@ -223,7 +230,7 @@ private:
     {
         const std::uint32_t place = contacts_.of_pair[i].contact;
         if (place == PairState::kApart) {
-            begun_.push_back({static_cast<std::uint32_t>(i), contact});
+            begun_.made.push_back({static_cast<std::uint32_t>(i), contact});
             return;
         }
         carry_impulses(contacts_.contacts[place], scale_, contact);
@@ -238,7 +245,7 @@ private:
     const BodyStates& states_;
     ConvexContacts<Real>& contacts_;
     Real scale_;
-    std::vector<typename ConvexContacts<Real>::Made>& begun_ = begun();
+    typename ConvexContacts<Real>::Begun& begun_ = begun();
 };
 
 }  // namespace
@@ -255,8 +262,13 @@ void collide_convex(const Conditions& conditions,
 {
     if (pairs.changed) follow_pairs(pairs, contacts);
     const std::size_t blocks = block_count(pairs.keys.size(), kGrain);
-    contacts.made.resize(blocks);
+    contacts.begun.resize(blocks);
     contacts.parted.start(blocks);
+    contacts.recycles = !shapes.hulls.empty();
+    if (contacts.recycles) {
+        resize_closely(contacts.apart_until, pairs.keys.size());
+        follow_colliders(bounds.placed, colliders.outer_radius, bounds.reach, contacts.travels);
+    }
     for_each_block(
         pairs.keys.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
             Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, contacts)

@@ -66,26 +66,30 @@ void follow_pairs(const Pairs& pairs, ConvexContacts<Real>& contacts)
         [&](const PairState& gone) {
             if (gone.contact != PairState::kApart) contacts.free.push_back(gone.contact);
         });
+    if (!contacts.apart_until.empty())
+        follow(
+            pairs.from, contacts.apart_until, [](std::size_t) { return 0.0F; }, [](float) {});
 }
 
 template <class Real>
 void move_in_and_out(ConvexContacts<Real>& contacts)
 {
-    const std::size_t blocks = contacts.made.size();
+    const std::size_t blocks = contacts.begun.size();
     for (std::size_t block = 0; block < blocks; ++block)
         for (const std::uint32_t pair : contacts.parted[block]) {
             contacts.free.push_back(contacts.of_pair[pair].contact);
             contacts.of_pair[pair].contact = PairState::kApart;
         }
     std::size_t begun = 0;
-    for (const auto& of_block : contacts.made) begun += of_block.size();
+    for (const auto& of_block : contacts.begun) begun += of_block.made.size();
     contacts.strayed += begun;
     std::uint32_t next = static_cast<std::uint32_t>(contacts.contacts.size());
     if (begun > contacts.free.size())
         resize_closely(contacts.contacts, next + begun - contacts.free.size());
     resize_closely(contacts.astray, contacts.contacts.size());
-    for (auto& of_block : contacts.made) {
-        for (const auto& made : of_block) {
+    if (contacts.recycles) resize_closely(contacts.found, contacts.contacts.size());
+    for (auto& of_block : contacts.begun) {
+        for (const auto& made : of_block.made) {
             std::uint32_t place = next;
             if (contacts.free.empty()) {
                 ++next;
@@ -97,8 +101,10 @@ void move_in_and_out(ConvexContacts<Real>& contacts)
             contacts.contacts[place].take(made.contact);
             contacts.astray[place] = 1;
         }
+        for (const auto& [pair, found] : of_block.found)
+            contacts.found[contacts.of_pair[pair].contact] = found;
         // Kept, they would hold in each block the most that ever began there.
-        std::vector<typename ConvexContacts<Real>::Made>().swap(of_block);
+        of_block = {};
     }
 }
 
@@ -117,6 +123,7 @@ void put_in_order(ConvexContacts<Real>& contacts)
     if (!in_order) {
         // Those that stray are set aside; the others keep their order and make room for them.
         resize_closely(contacts.gathered, counts.back().strays);
+        resize_closely(contacts.found_gathered, contacts.recycles ? counts.back().strays : 0);
         resize_closely(contacts.order, used);
         for_each_block(states.size(), kOrderGrain, [&](auto begin, auto end, auto block) {
             auto [next, strays, ascending, first, last] = counts[block];
@@ -124,7 +131,10 @@ void put_in_order(ConvexContacts<Real>& contacts)
                 const std::uint32_t place = states[i].contact;
                 if (place == PairState::kApart) continue;
                 const bool stray = contacts.astray[place] != 0;
-                if (stray) contacts.gathered[strays++] = contacts.contacts[place];
+                if (stray) {
+                    if (contacts.recycles) contacts.found_gathered[strays] = contacts.found[place];
+                    contacts.gathered[strays++] = contacts.contacts[place];
+                }
                 contacts.order[next] = stray ? kNewItem : place;
                 states[i].contact = next++;
             }
@@ -132,6 +142,11 @@ void put_in_order(ConvexContacts<Real>& contacts)
         follow(
             contacts.order, contacts.contacts, [&](std::size_t n) { return contacts.gathered[n]; },
             [](const Contact<Real>&) {});
+        if (contacts.recycles)
+            follow(
+                contacts.order, contacts.found,
+                [&](std::size_t n) { return contacts.found_gathered[n]; },
+                [](const FoundManifold<Real>&) {});
         contacts.free.clear();
     }
     contacts.astray.assign(contacts.contacts.size(), 0);

@@ -191,6 +191,42 @@ TEST(WideHull, EveryWidthGivesTheSameBits)
     }
 }
 
+TEST(WideHull, WhatIsKnownToBeApartIsSoAtEveryWidthAlike)
+{
+    RandomShapes random(36);
+    int apart = 0;
+    for (int i = 0; i < 300; ++i) {
+        SCOPED_TRACE("seed 36, pair " + std::to_string(i));
+        Shapes shapes;
+        shapes.hulls = {random_stone(random, 1), random_stone(random, 1)};
+        const WideShape a(shapes, kHullA), b(shapes, kHullB);
+        const Pose pose = random.pose(1.2);
+        const Mat3 turn = pose.orientation.toRotationMatrix();
+        const Vec3 offset = turn * b.center() + pose.position - a.center();
+        HullPair pair{a.view(), b.view(), {}, {}, 0.02F, 1e-3F * (a.view().inner + b.view().inner)};
+        for (int k = 0; k < 9; ++k) pair.turn[k] = static_cast<float>(turn(k / 3, k % 3));
+        for (int k = 0; k < 3; ++k) pair.offset[k] = static_cast<float>(offset[k]);
+        HullGuess first_guess;
+        HullTouch plain;
+        hull_kernel_of("scalar")(pair, first_guess, plain);
+        if (plain.count > 0) continue;
+        const double exact =
+            polytope_separation(view_of(shapes.hulls[0]), view_of(shapes.hulls[1]), pose, nullptr);
+        ASSERT_LE(double{plain.apart}, exact + 1e-6);
+        apart += plain.apart > pair.reach ? 1 : 0;
+        for (const char* width : {"avx2", "avx512"}) {
+            const HullKernel kernel = hull_kernel_of(width);
+            if (!kernel) continue;
+            HullGuess guess;
+            HullTouch wide;
+            kernel(pair, guess, wide);
+            ASSERT_EQ(wide.count, 0) << width;
+            ASSERT_EQ(wide.apart, plain.apart) << width;
+        }
+    }
+    EXPECT_GT(apart, 100);
+}
+
 TEST(WideHull, FourCornersOfEqualBoxesLyingOnOneAnother)
 {
     RandomShapes random(35);

@@ -1,6 +1,7 @@
 // Contact places: a contact stays where it is while its pair touches; no place is lost or had
 // twice.
 #include "pipeline/stages.hpp"
+#include "pipeline/stages/recycled_manifolds.hpp"
 #include "pipeline/world_state.hpp"
 #include "scenes/catalog.hpp"
 #include "tests/pipeline/small_scenes.hpp"
@@ -115,6 +116,72 @@ TEST(ContactPlaces, NoneLeaksWhenBodiesAreTakenAwayOrFallAsleep)
     }
     EXPECT_LT(world.body_count(), 90u);
     EXPECT_GT(places.ended, 50u);
+}
+
+// How many contacts of hulls say what was found of their own pair.
+template <class Real>
+std::size_t count_found(World& world)
+{
+    const auto& contacts = contacts_of<Real>(world);
+    const auto& keys = world.state().get<Pairs>().keys;
+    const Shapes& shapes = world.state().get<Shapes>();
+    const Colliders& colliders = world.state().get<Colliders>();
+    const Bounds& bounds = world.state().get<Bounds>();
+    std::size_t count = 0;
+    EXPECT_EQ(contacts.found.size(), contacts.contacts.size());
+    EXPECT_EQ(contacts.apart_until.size(), keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const PairPlace pair = place_of(keys[i], colliders, bounds);
+        const Contact<Real>* const contact = contacts.at(i);
+        if (!contact || !is_recycled(colliders.shape[pair.a].kind, colliders.shape[pair.b].kind))
+            continue;
+        PairCache cache;
+        FoundManifold<Real> told;
+        const FoundManifold<Real>& kept = contacts.found[contacts.of_pair[i].contact];
+        EXPECT_FALSE(find_or_recycle(shapes, colliders, bounds, pair, &kept, cache, told));
+        EXPECT_EQ(told.manifold.count, contact->count);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(contact->count); ++k)
+            EXPECT_EQ(told.manifold.points[k].feature, contact->points[k].feature);
+        ++count;
+    }
+    return count;
+}
+
+template <class Real>
+void check_what_was_found(int threads)
+{
+    Scene scene = make_scene("hulls", 150);
+    scene.settings.sleep = false;
+    scene.settings.precision =
+        std::is_same_v<Real, double> ? Precision::double_ : Precision::float_;
+    World world(scene, threads);
+    Places<Real> places(world);
+    std::size_t count = 0;
+    for (int step = 0; step < 150; ++step) {
+        if (step % 30 == 29) {
+            const std::vector<BodyId> bodies = world.bodies();
+            world.remove(std::span(bodies).subspan(bodies.size() / 2, 1));
+        }
+        world.step();
+        ASSERT_NO_FATAL_FAILURE(places.check()) << "step " << step;
+        count += count_found<Real>(world);
+        ASSERT_FALSE(::testing::Test::HasFailure()) << "step " << step;
+    }
+    EXPECT_GT(places.orders, 5u);
+    EXPECT_GT(count, 5000u);
+}
+
+TEST(ContactPlaces, WhatWasFoundFollowsItsContactInFloat) { check_what_was_found<float>(2); }
+TEST(ContactPlaces, WhatWasFoundFollowsItsContactInDouble) { check_what_was_found<double>(1); }
+
+TEST(ContactPlaces, ScenesWithoutHullsKeepNothingOfWhatWasFound)
+{
+    World world(make_scene("pile", 100));
+    for (int step = 0; step < 30; ++step) world.step();
+    const auto& contacts = contacts_of<float>(world);
+    EXPECT_GT(contacts.contacts.size(), 0u);
+    EXPECT_EQ(contacts.found.capacity() + contacts.found_gathered.capacity(), 0u);
+    EXPECT_EQ(contacts.apart_until.capacity() + contacts.travels.approach.capacity(), 0u);
 }
 
 // Balls of radius a half in a row.

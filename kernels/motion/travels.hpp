@@ -1,0 +1,26 @@
+// Travels: adds up how far colliders have come, from step to step.
+#pragma once
+
+#include "kernels/data/bounds.hpp"
+#include "kernels/data/travels.hpp"
+
+#include <span>
+
+namespace throng {
+
+/// Adds what each has come since the last call, by any of its points at most. Who is new has been
+/// nowhere yet. A plane reaches everywhere: once it moves, its travel is no number or infinite, and
+/// no pair of it can be told to be apart.
+///
+///   placed        [colliders] where they are now
+///   outer_radius  [colliders] m, no point is further from where its frame is
+///   reach         [colliders] m
+void follow_colliders(std::span<const Pose> placed,
+                      std::span<const double> outer_radius,
+                      std::span<const double> reach,
+                      Travels& travels);
+
+/// How far two boxes are apart along the axis that parts them most; 0 where none does.
+double gap_between(const NearBox& a, const NearBox& b);
+
+}  // namespace throng

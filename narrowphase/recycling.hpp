@@ -1,0 +1,30 @@
+// Recycling: the manifold of a pair that has hardly moved since it was found, told from where its
+// points are now.
+//
+// Each point is held as two, one on either body, and its separation is how far they are from one
+// another along the normal: exact for a corner over a face, and for the rest as near as the square
+// of what they moved. What was found is never changed, so nothing adds up from step to step.
+#pragma once
+
+#include "kernels/data/manifolds.hpp"
+
+namespace throng {
+
+/// The manifold at another pose; false where it has to be found anew.
+///
+///   b_in_a    as for PairFunction
+///   reach     m, points further apart than this are left out
+///   radius_b  m, b has no point further than this from its origin
+///   bound     m, no point of b may have moved further than this since, seen from a. What was left
+///             out then may be deeper by so much than it was
+///
+/// At the pose that it was found at it is what was found, to the bit.
+template <class Real>
+bool recycle(const FoundManifold<Real>& found,
+             const PoseT<Real>& b_in_a,
+             Real reach,
+             Real radius_b,
+             Real bound,
+             LocalManifold<Real>& out);
+
+}  // namespace throng
