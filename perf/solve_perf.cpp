@@ -149,6 +149,7 @@ double time_visits(const SolveKernels<Real>& kernels,
     visit.inverse_substep = 240;
     visit.push_limit = 3;
     visit.push = kernel == Kernel::push;
+    visit.normal_sweeps = visit.push ? 2 : 1;
     const auto visit_slice = [&](std::size_t, std::size_t slice) {
         for (const Color& color : start.slices[slice]) {
             const std::size_t first = color.first, end = first + color.count;

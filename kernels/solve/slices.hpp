@@ -2,7 +2,7 @@
 // between it and the next.
 //
 // Slices that are not neighbours share no body. Threads work on different ones at a time, and one
-// thread takes a slice through several visits while its rows are in cache (see solve_impulses).
+// thread takes a slice through several visits while its rows are in cache (see solve_batch).
 #pragma once
 
 #include "kernels/data/bodies.hpp"

@@ -1,17 +1,18 @@
 // Known apart: a pair that is not looked at, because the two cannot have met since, is apart
 // indeed.
-#include "narrowphase/methods/separating_axes.hpp"
+#include "narrowphase/methods/gjk.hpp"
 #include "narrowphase/narrowphase.hpp"
-#include "narrowphase/polytope.hpp"
 #include "pipeline/world_state.hpp"
 #include "scenes/catalog.hpp"
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace throng {
 namespace {
 
-// How many pairs of polytopes are known to be apart; each is asked in double.
+// How many pairs of polytopes are known to be apart; each is measured in double.
 template <class Real>
 std::size_t count_known_apart(World& world)
 {
@@ -28,14 +29,16 @@ std::size_t count_known_apart(World& world)
         if (!(approach[a] + approach[b] < double{contacts.apart_until[i]})) continue;
         ++known;
         EXPECT_EQ(contacts.of_pair[i].contact, PairState::kApart);
-        const PolytopeShape shape_a(shapes, colliders.shape[a]);
-        const PolytopeShape shape_b(shapes, colliders.shape[b]);
+        // Not the separation along an axis: where corners are nearest that is less than how far
+        // the two are apart.
         const Pose seen =
             pose_seen_from_a(shapes, colliders.shape[b], bounds.placed[a], bounds.placed[b]);
-        const double separation =
-            polytope_separation(shape_a.view(), shape_b.view(), seen, nullptr);
+        const Distance distance =
+            gjk(CorePair(shapes, colliders.shape[a], colliders.shape[b], seen),
+                std::numeric_limits<double>::infinity());
+        EXPECT_TRUE(distance.apart) << "pair " << i;
         const double near = 1e-5 * (colliders.outer_radius[a] + colliders.outer_radius[b]);
-        EXPECT_GT(separation, bounds.reach[a] + bounds.reach[b] - near) << "pair " << i;
+        EXPECT_GT(distance.distance, bounds.reach[a] + bounds.reach[b] - near) << "pair " << i;
     }
     return known;
 }

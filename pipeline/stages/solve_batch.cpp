@@ -1,0 +1,260 @@
+#include "pipeline/stages/solve_batch.hpp"
+
+#include "kernels/motion/solver_bodies.hpp"
+#include "kernels/parallel/blocks.hpp"
+#include "kernels/solve/sweep.hpp"
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kBlocks = 16;   // of 16 contacts a task: some 3 microseconds
+constexpr std::size_t kBodies = 512;  // a task
+
+// Sweeps over the points of a contact in one visit. With two, contacts of four points bear half as
+// much again before they stop coming to rest; to relax, one does as well.
+constexpr int kPushSweeps = 2, kRelaxSweeps = 1;
+
+// Relaxing visits a substep, by what there is to hold up. One quietens a heap. Where most bodies
+// lie on one another by their faces, as in towers and walls, a second one leaves a hundredth of the
+// energy.
+constexpr int kInHeaps = 1, kInStructures = 2;
+
+// One pass over the contacts or the bodies of a slice.
+struct Pass {
+    enum class Kind : std::uint8_t {
+        prepare,
+        begin,
+        warm_start,
+        push,
+        advance,
+        relax,
+        bounce,
+        store
+    } kind;
+    bool first = false;     // of the step
+    bool backward = false;  // from the last slice and color to the first
+};
+
+template <class Real>
+class Task {
+public:
+    Task(const Conditions& conditions,
+         const Layout& layout,
+         const Batch& batch,
+         const RowMaker<Real>& maker,
+         Rows<Real>& rows)
+        : conditions_(conditions), layout_(layout), batch_(batch), maker_(maker), rows_(rows),
+          view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
+          time_(static_cast<Real>(conditions.substep()))
+    {
+        visit_.inverse_substep = static_cast<Real>(1 / conditions.substep());
+        visit_.push_limit = static_cast<Real>(conditions.settings.push_limit);
+        visit_.turns = conditions.has(Effect::rotation);
+        visit_.rolls = conditions.has(Effect::rolling_friction);
+        visit_.grips = conditions.has(Effect::friction) || visit_.rolls;
+        on_faces_ = 2 * batch.on_faces > batch.contacts;
+    }
+
+    void run()
+    {
+        using enum Pass::Kind;
+        const bool pgs = conditions_.settings.solver == Solver::pgs;
+        const int pushes = conditions_.settings.iterations > 0 ? conditions_.settings.iterations
+            : pgs                                              ? 20
+                                                               : 1;
+        const int relaxes = pgs ? 0 : on_faces_ ? kInStructures : kInHeaps;
+        add_pass({prepare});
+        for (int step = 0; step < conditions_.settings.substeps; ++step) {
+            // In towers and structures there in one substep and back in the next: who comes first
+            // takes a little more of a load than its share, which would lean a whole wall to one
+            // side. Heaps and crowds, which have no side, come to rest sooner in one order.
+            const bool backward = on_faces_ && step % 2 == 1;
+            const auto add = [&](Pass::Kind kind) { add_pass({kind, step == 0, backward}); };
+            add(begin);
+            if (step == 0) add(warm_start);
+            for (int i = 0; i < pushes; ++i) add(push);
+            add(advance);
+            for (int i = 0; i < relaxes; ++i) add(relax);
+            if (on_faces_ || !window_fits()) run_passes();
+        }
+        if (conditions_.has(Effect::restitution)) add_pass({bounce});
+        add_pass({store});
+        run_passes();
+    }
+
+private:
+    // A single slice needs no waiting, so it has its passes at once.
+    void add_pass(const Pass& pass)
+    {
+        if (batch_.slices > 1)
+            passes_.push_back(pass);
+        else
+            run_pass(pass, layout_.slices[batch_.first_slice], batch_.wide);
+    }
+
+    void run_passes()
+    {
+        if (passes_.empty()) return;
+        rows_.wave.run(passes_.size(), batch_.slices, [&](std::size_t pass, std::size_t place) {
+            const std::size_t at = passes_[pass].backward ? batch_.slices - 1 - place : place;
+            run_pass(passes_[pass], layout_.slices[batch_.first_slice + at], false);
+        });
+        passes_.clear();
+    }
+
+    // As many slices as there are passes are at work: their rows should fit into the cache.
+    bool window_fits() const
+    {
+        constexpr std::size_t kWindow = 8 << 20, kContact = 75 * sizeof(Real);  // bytes
+        return passes_.size() * (batch_.contacts / batch_.slices) * kContact < kWindow;
+    }
+
+    void run_pass(const Pass& pass, const Slice& slice, bool shared)
+    {
+        switch (pass.kind) {
+        case Pass::Kind::prepare:
+            return for_blocks(slice, shared,
+                              [&](std::size_t from, std::size_t end) { maker_.make(from, end); });
+        case Pass::Kind::store:
+            return for_blocks(slice, shared,
+                              [&](std::size_t from, std::size_t end) { maker_.store(from, end); });
+        case Pass::Kind::begin:
+            return begin_substep(slice, shared, pass.first);
+        case Pass::Kind::advance:
+            return advance(slice, shared);
+        case Pass::Kind::warm_start:
+            return for_colors(slice, shared, pass.backward, [&](std::size_t from, std::size_t end) {
+                kernels_.warm_start(view_, from, end, visit_);
+            });
+        case Pass::Kind::bounce:
+            return bounce(slice, shared);
+        default:
+            Visit<Real> visit = visit_;
+            visit.push = pass.kind == Pass::Kind::push;
+            visit.normal_sweeps = visit.push ? kPushSweeps : kRelaxSweeps;
+            for_colors(slice, shared, pass.backward, [&](std::size_t from, std::size_t end) {
+                kernels_.sweep(view_, from, end, visit);
+            });
+        }
+    }
+
+    // Calls body(first, count) for what moves: dynamic and kinematic bodies.
+    template <class Body>
+    void for_bodies(const Slice& slice, bool shared, Body body)
+    {
+        if (shared)
+            for_each_block(slice.dynamic, kBodies,
+                           [&](std::size_t begin, std::size_t end, std::size_t) {
+                               body(slice.first_body + begin, end - begin);
+                           });
+        else
+            body(slice.first_body, slice.dynamic);
+        if (slice.kinematic > 0) body(slice.first_visitor, slice.kinematic);
+    }
+
+    // Calls body(begin, end) for all blocks.
+    template <class Body>
+    void for_blocks(const Slice& slice, bool shared, Body body)
+    {
+        const Color& last = layout_.colors[slice.first_color + slice.colors - 1];
+        const std::size_t first = layout_.colors[slice.first_color].first;
+        const std::size_t count = last.first + last.count - first;
+        if (shared)
+            for_each_block(count, kBlocks, [&](std::size_t begin, std::size_t end, std::size_t) {
+                body(first + begin, first + end);
+            });
+        else
+            body(first, first + count);
+    }
+
+    // Calls body(begin, end) for the blocks of one color after another.
+    template <class Body>
+    void for_colors(const Slice& slice, bool shared, bool backward, Body body)
+    {
+        for (std::uint32_t i = 0; i < slice.colors; ++i) {
+            const std::uint32_t place = backward ? slice.colors - 1 - i : i;
+            const Color& color = layout_.colors[slice.first_color + place];
+            if (!shared || color.serial || color.count <= 2 * kBlocks) {
+                body(color.first, color.first + color.count);
+                continue;
+            }
+            for_each_block(color.count, kBlocks,
+                           [&](std::size_t begin, std::size_t end, std::size_t) {
+                               body(color.first + begin, color.first + end);
+                           });
+        }
+    }
+
+    void begin_substep(const Slice& slice, bool shared, bool first)
+    {
+        Substep<Real> substep;
+        substep.time = time_;
+        substep.first = first;
+        if (conditions_.has(Effect::gravity)) {
+            const Vec3 change = conditions_.gravity * conditions_.substep();
+            for (int k = 0; k < 3; ++k) substep.gravity[k] = static_cast<Real>(change[k]);
+        }
+        if (conditions_.has(Effect::gyroscopic))
+            substep.gyroscopic = conditions_.settings.gyroscopic == Gyroscopic::implicit
+                ? Substep<Real>::Gyroscopic::implicit
+                : Substep<Real>::Gyroscopic::direct;
+        for_bodies(slice, shared, [&](std::size_t at, std::size_t count) {
+            kernels_.begin_substep(rows_.bodies.data() + at,
+                                   rows_.inertias.empty() ? nullptr : rows_.inertias.data() + at,
+                                   count, substep);
+        });
+    }
+
+    void advance(const Slice& slice, bool shared)
+    {
+        for_bodies(slice, shared, [&](std::size_t at, std::size_t count) {
+            const auto bodies = std::span(rows_.bodies).subspan(at, count);
+            if (kernels_.advance(bodies.data(), count, time_, visit_.turns) > 0)
+                turn_fast(bodies, time_);
+        });
+    }
+
+    // Slower than what gravity gives in two steps is resting, not bouncing.
+    void bounce(const Slice& slice, bool shared)
+    {
+        const auto threshold =
+            static_cast<Real>(2 * conditions_.gravity.norm() * conditions_.settings.dt);
+        for_colors(slice, shared, false, [&](std::size_t begin, std::size_t end) {
+            kernels_.restitute(view_, begin, end, threshold, visit_);
+        });
+    }
+
+    const Conditions& conditions_;
+    const Layout& layout_;
+    const Batch& batch_;
+    const RowMaker<Real>& maker_;
+    Rows<Real>& rows_;
+    RowsView<Real> view_;
+    const SolveKernels<Real>& kernels_;
+    Real time_;  // s, of a substep
+    Visit<Real> visit_;
+    bool on_faces_ = false;
+    std::vector<Pass> passes_;  // that wait to be run
+};
+
+}  // namespace
+
+template <class Real>
+void solve_batch(const Conditions& conditions,
+                 const Layout& layout,
+                 const Batch& batch,
+                 const RowMaker<Real>& maker,
+                 Rows<Real>& rows)
+{
+    Task<Real>(conditions, layout, batch, maker, rows).run();
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void solve_batch<Real>(const Conditions&, const Layout&, const Batch&,                \
+                                    const RowMaker<Real>&, Rows<Real>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng
