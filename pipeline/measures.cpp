@@ -5,6 +5,7 @@
 #include "kernels/math/hash.hpp"
 #include "kernels/math/rotation.hpp"
 #include "narrowphase/narrowphase.hpp"
+#include "pipeline/stages/recycled_manifolds.hpp"
 #include "pipeline/world_state.hpp"
 
 #include <algorithm>
@@ -126,6 +127,22 @@ std::string World::state_hash() const
         hash.add(contact.twist);
         add3(contact.rolling);
     };
+    const auto kind_of = [&](std::uint32_t collider) {
+        return state_->get<Colliders>().shape[collider].kind;
+    };
+    // What a contact will be told from as long as its pair hardly moves.
+    const auto add_found = [&](const auto& found) {
+        hash.add(found.reach);
+        add3(found.b_in_a.position);
+        for (int k = 0; k < 4; ++k) hash.add(found.b_in_a.orientation.coeffs()[k]);
+        add3(found.manifold.normal);
+        for (int k = 0; k < found.manifold.count; ++k) {
+            const auto& point = found.manifold.points[static_cast<std::size_t>(k)];
+            add3(point.position);
+            hash.add(point.separation);
+            hash.add(std::uint64_t{point.feature});
+        }
+    };
     std::visit(
         [&](const auto& chosen) {
             using Real =
@@ -133,9 +150,14 @@ std::string World::state_hash() const
                                    float, double>;
             const Pairs& pairs = std::get<Pairs>(chosen.data);
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
-            for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
-                if (const Contact<Real>* contact = convex.at(i))
-                    add_contact(pairs.keys[i], *contact);
+            for (std::size_t i = 0; i < convex.of_pair.size(); ++i) {
+                const Contact<Real>* const contact = convex.at(i);
+                if (contact == nullptr) continue;
+                add_contact(pairs.keys[i], *contact);
+                if (is_recycled(kind_of(first_of(pairs.keys[i])),
+                                kind_of(second_of(pairs.keys[i]))))
+                    add_found(convex.found[convex.of_pair[i].contact]);
+            }
             for (const auto& entry : std::get<MeshContacts<Real>>(chosen.data).entries) {
                 hash.add(std::uint64_t{entry.triangle});
                 add_contact(pairs.keys[entry.pair], entry.contact);
