@@ -124,8 +124,7 @@ void EmbreeRays::build(std::span<const Box3> boxes)
         for (const std::uint32_t id : ids_) {
             in_tree_.push_back(boxes[id]);
             radius_ = std::max(radius_, farthest(boxes[id], origin_));
-            bounds_.lower = bounds_.lower.cwiseMin(boxes[id].lower);
-            bounds_.upper = bounds_.upper.cwiseMax(boxes[id].upper);
+            bounds_ = joined(bounds_, boxes[id]);
         }
     }
     const double margin = kMargin * radius_;

@@ -1,5 +1,7 @@
 #include "narrowphase/recycling.hpp"
 
+#include "kernels/math/rotation.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,8 +18,7 @@ bool recycle(const FoundManifold<Real>& found,
     const QuatT<Real> turn = b_in_a.orientation * found.b_in_a.orientation.conjugate();
     const Vec3T<Real> shift = b_in_a.position - found.b_in_a.position;
     const Vec3T<Real> half_turn = turn.vec();
-    // A point at radius r moves by 2 r sin(angle / 2) about the origin.
-    const Real moved = shift.norm() + 2 * half_turn.norm() * radius_b;
+    const Real moved = furthest_moved(shift, turn, radius_b);
     // What was out of reach then may be within a greater reach now.
     if (!(moved + std::max(Real(0), reach - found.reach) <= bound)) return false;
 

@@ -88,7 +88,6 @@ template <class Real>
 void solve_impulses(const Conditions&,
                     const Layout&,
                     const ActiveContacts&,
-                    const BodyStates&,
                     Rows<Real>&,
                     ConvexContacts<Real>&,
                     MeshContacts<Real>&,

@@ -84,6 +84,8 @@ struct BodyStates {
         return body < conveys.size() && conveys[body] != 0 && kind[body] == BodyKind::still;
     }
     bool dynamic(std::size_t body) const { return kind[body] == BodyKind::dynamic; }
+    /// Whether a contact can push it.
+    bool movable(std::size_t body) const { return dynamic(body) && moves(body); }
 };
 
 /// Lists all movers afresh.

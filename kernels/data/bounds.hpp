@@ -28,6 +28,12 @@ struct Box3 {
     bool empty() const { return !(lower.x() <= upper.x()); }
 };
 
+/// The smallest box round two.
+inline Box3 joined(const Box3& a, const Box3& b)
+{
+    return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
 /// Whether two boxes of float meet; four numbers a corner, of which the fourth is not looked at.
 /// Whole registers and no branch for each side: which of them parts two boxes is anybody's guess.
 inline bool

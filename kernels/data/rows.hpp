@@ -142,6 +142,12 @@ struct Layout {
     std::vector<std::uint32_t> slot;           // by body, of those that can be moved; else kNoSlot
     std::uint32_t dynamic = 0;                 // solver bodies that can be moved
     std::vector<std::uint32_t> contacts;       // places in ActiveContacts, slice by slice
+
+    /// Of a place among the solver bodies.
+    bool movable(std::int32_t place) const
+    {
+        return place > 0 && static_cast<std::uint32_t>(place) <= dynamic;
+    }
 };
 
 /// The rows of a step. What an effect needs is there only where the effect is.

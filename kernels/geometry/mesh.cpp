@@ -148,11 +148,6 @@ void mark_convex_edges(Mesh& mesh)
                 mesh.convex_edges[t] = static_cast<std::uint8_t>(mesh.convex_edges[t] | 1U << e);
 }
 
-Box3 joined(const Box3& a, const Box3& b)
-{
-    return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
-}
-
 double surface(const Box3& box)
 {
     const Vec3 size = box.upper - box.lower;

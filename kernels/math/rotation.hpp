@@ -26,6 +26,14 @@ Quat exponential(const Vec3& turn);
 /// Exact for a constant velocity, however fast; the result is of unit length.
 Quat turned(const Quat& orientation, const Vec3& angular_velocity, double time);
 
+/// The furthest that a shift and a turn about the origin can take a point within a radius of it:
+/// one at radius r is turned by 2 r sin(angle / 2).
+template <class Real>
+Real furthest_moved(const Vec3T<Real>& shift, const QuatT<Real>& turn, Real radius)
+{
+    return shift.norm() + 2 * turn.vec().norm() * radius;
+}
+
 /// An inertia tensor (or its inverse) given in body axes, in world axes.
 Sym3 in_world_axes(const Sym3& local, const Quat& orientation);
 

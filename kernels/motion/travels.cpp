@@ -1,6 +1,7 @@
 #include "kernels/motion/travels.hpp"
 
 #include "kernels/check.hpp"
+#include "kernels/math/rotation.hpp"
 #include "kernels/parallel/blocks.hpp"
 
 #include <algorithm>
@@ -31,8 +32,7 @@ void follow_colliders(std::span<const Pose> placed,
             const Vec3 shift = now.position - last.position;
             const Quat turn = now.orientation * last.orientation.conjugate();
             if (!shift.isZero(0) || !turn.vec().isZero(0)) {
-                // A point at radius r moves by 2 r sin(angle / 2) about the origin.
-                travels.traveled[i] += shift.norm() + 2 * turn.vec().norm() * outer_radius[i];
+                travels.traveled[i] += furthest_moved(shift, turn, outer_radius[i]);
                 travels.placed[i] = now;
             }
             travels.approach[i] = travels.traveled[i] + reach[i];

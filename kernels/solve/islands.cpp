@@ -12,7 +12,7 @@ void IslandFinder::join(const ActiveContacts& contacts, const BodyStates& states
 {
     sets_.reset(states.kind.size());
     const auto touch = [&](std::uint32_t body) {
-        const bool movable = states.dynamic(body) && states.moves(body);
+        const bool movable = states.movable(body);
         if (movable) sets_.add(body);
         return movable;
     };
@@ -37,7 +37,7 @@ std::size_t IslandFinder::number_islands(const BodyStates& states, Islands& isla
         for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body)
             if (sets_.holds(body)) {
                 if (sets_.find(body) == body) roots_of_block_[block].push_back(body);
-            } else if (states.dynamic(body) && states.moves(body)) {
+            } else if (states.movable(body)) {
                 lone_of_block_[block].push_back(body);
             }
     });

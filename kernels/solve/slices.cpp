@@ -11,24 +11,19 @@ namespace {
 constexpr std::size_t kBins = 1024;
 constexpr std::size_t kGrain = 4096;
 
-Box3 around(const Box3& box, const Vec3& point)
-{
-    return {box.lower.cwiseMin(point), box.upper.cwiseMax(point)};
-}
-
 }  // namespace
 
 // False where all bodies stand at one spot.
 bool Slicer::bin_bodies(std::span<const std::uint32_t> bodies, std::span<const Vec3> positions)
 {
     boxes_.assign(block_count(bodies.size(), kGrain), Box3());
-    for_each_block(bodies.size(), kGrain,
-                   [&](std::size_t begin, std::size_t end, std::size_t block) {
-                       for (std::size_t i = begin; i < end; ++i)
-                           boxes_[block] = around(boxes_[block], positions[bodies[i]]);
-                   });
+    for_each_block(
+        bodies.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+            for (std::size_t i = begin; i < end; ++i)
+                boxes_[block] = joined(boxes_[block], {positions[bodies[i]], positions[bodies[i]]});
+        });
     Box3 all;
-    for (const Box3& box : boxes_) all = around(around(all, box.lower), box.upper);
+    for (const Box3& box : boxes_) all = joined(all, box);
     Eigen::Index axis = 0;
     const double length = (all.upper - all.lower).maxCoeff(&axis);
     if (!(length > 0)) return false;
@@ -50,9 +45,6 @@ void Slicer::bin_contacts(std::span<const std::uint32_t> contacts,
                           const ActiveContacts& active,
                           const BodyStates& states)
 {
-    const auto movable = [&](std::uint32_t body) {
-        return states.dynamic(body) && states.moves(body);
-    };
     of_contact_.resize(contacts.size());
     of_block_.resize(block_count(contacts.size(), kGrain));
     for_each_block(contacts.size(), kGrain,
@@ -62,8 +54,8 @@ void Slicer::bin_contacts(std::span<const std::uint32_t> contacts,
                        for (std::size_t i = begin; i < end; ++i) {
                            const auto& contact = active.entries[contacts[i]];
                            const std::uint32_t a = contact.body_a, b = contact.body_b;
-                           const std::uint32_t at_a = bin_of_[movable(a) ? a : b];
-                           const std::uint32_t at_b = bin_of_[movable(b) ? b : a];
+                           const std::uint32_t at_a = bin_of_[states.movable(a) ? a : b];
+                           const std::uint32_t at_b = bin_of_[states.movable(b) ? b : a];
                            const auto [near, far] = std::minmax(at_a, at_b);
                            of_contact_[i] = near;
                            ++bins[near].contacts;

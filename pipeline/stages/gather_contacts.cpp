@@ -111,9 +111,7 @@ private:
     {
         const std::uint32_t a = first_of(pairs_.keys[pair]), b = second_of(pairs_.keys[pair]);
         const std::uint32_t body_a = colliders_.body[a], body_b = colliders_.body[b];
-        const bool pushes_a = states_.dynamic(body_a) && states_.moves(body_a);
-        const bool pushes_b = states_.dynamic(body_b) && states_.moves(body_b);
-        if (!pushes_a && !pushes_b) return false;
+        if (!states_.movable(body_a) && !states_.movable(body_b)) return false;
         const auto& meeting = meetings.of(colliders_.material[a], colliders_.material[b]);
         const double extent = std::min(colliders_.inner_extent[a], colliders_.inner_extent[b]);
         entry = {body_a,

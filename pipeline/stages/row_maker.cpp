@@ -36,12 +36,11 @@ template <class Real>
 RowMaker<Real>::RowMaker(const Conditions& conditions,
                          const Layout& layout,
                          const ActiveContacts& active,
-                         const BodyStates& states,
                          ConvexContacts<Real>& convex,
                          MeshContacts<Real>& meshes,
                          Rows<Real>& rows)
-    : layout_(layout), active_(active), states_(states), convex_(convex), meshes_(meshes),
-      rows_(rows), view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
+    : layout_(layout), active_(active), convex_(convex), meshes_(meshes), rows_(rows),
+      view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
       turns_(conditions.has(Effect::rotation)), softness_(softness_of<Real>(conditions))
 { }
 
@@ -69,11 +68,11 @@ void RowMaker<Real>::fill(std::size_t at, LooseBlock<Real>& loose) const
             continue;
         }
         const auto& source = active_.entries[entry];
-        const auto writes = [&](std::uint32_t body) {
-            return states_.dynamic(body) && states_.moves(body) ? 1u << lane : 0u;
+        const auto writes = [&](std::int32_t slot) {
+            return layout_.movable(slot) ? 1u << lane : 0u;
         };
-        block.writes_a = static_cast<std::uint16_t>(block.writes_a | writes(source.body_a));
-        block.writes_b = static_cast<std::uint16_t>(block.writes_b | writes(source.body_b));
+        block.writes_a = static_cast<std::uint16_t>(block.writes_a | writes(block.a[lane]));
+        block.writes_b = static_cast<std::uint16_t>(block.writes_b | writes(block.b[lane]));
         loosen(contact_of(source),
                {Real(source.friction), Real(source.restitution), Real(source.rolling_friction),
                 softness_[source.points - 1u], static_cast<Real>(kDeep * double{source.extent})},

@@ -16,7 +16,6 @@ public:
     RowMaker(const Conditions& conditions,
              const Layout& layout,
              const ActiveContacts& active,
-             const BodyStates& states,
              ConvexContacts<Real>& convex,
              MeshContacts<Real>& meshes,
              Rows<Real>& rows);
@@ -32,7 +31,6 @@ private:
 
     const Layout& layout_;
     const ActiveContacts& active_;
-    const BodyStates& states_;
     ConvexContacts<Real>& convex_;
     MeshContacts<Real>& meshes_;
     Rows<Real>& rows_;

@@ -58,7 +58,6 @@ template <class Real>
 void solve_impulses(const Conditions& conditions,
                     const Layout& layout,
                     const ActiveContacts& active,
-                    const BodyStates& states,
                     Rows<Real>& rows,
                     ConvexContacts<Real>& convex,
                     MeshContacts<Real>& meshes,
@@ -67,7 +66,7 @@ void solve_impulses(const Conditions& conditions,
                     Trouble& trouble)
 {
     trouble.quarantined.clear();
-    const RowMaker<Real> maker(conditions, layout, active, states, convex, meshes, rows);
+    const RowMaker<Real> maker(conditions, layout, active, convex, meshes, rows);
     const auto solve = [&](const Batch& batch) {
         solve_batch(conditions, layout, batch, maker, rows);
     };
@@ -95,8 +94,8 @@ void solve_impulses(const Conditions& conditions,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(const Conditions&, const Layout&, const ActiveContacts&,    \
-                                       const BodyStates&, Rows<Real>&, ConvexContacts<Real>&,      \
-                                       MeshContacts<Real>&, Poses&, Velocities&, Trouble&);
+                                       Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,    \
+                                       Poses&, Velocities&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -157,6 +157,16 @@ TEST(WideHull, RememberingNeverChangesABit)
     }
 }
 
+HullPair pair_of(const WideShape& a, const WideShape& b, const Pose& b_in_a)
+{
+    const Mat3 turn = b_in_a.orientation.toRotationMatrix();
+    const Vec3 offset = turn * b.center() + b_in_a.position - a.center();
+    HullPair pair{a.view(), b.view(), {}, {}, 0.02F, 1e-3F * (a.view().inner + b.view().inner)};
+    for (int k = 0; k < 9; ++k) pair.turn[k] = static_cast<float>(turn(k / 3, k % 3));
+    for (int k = 0; k < 3; ++k) pair.offset[k] = static_cast<float>(offset[k]);
+    return pair;
+}
+
 TEST(WideHull, EveryWidthGivesTheSameBits)
 {
     RandomShapes random(34);
@@ -167,11 +177,7 @@ TEST(WideHull, EveryWidthGivesTheSameBits)
         shapes.boxes = {{random.vector(0.1, 1)}};
         const WideShape a(shapes, i % 3 == 0 ? kBox : kHullA), b(shapes, kHullB);
         const Pose pose = random.pose(0.8);
-        const Mat3 turn = pose.orientation.toRotationMatrix();
-        const Vec3 offset = turn * b.center() + pose.position - a.center();
-        HullPair pair{a.view(), b.view(), {}, {}, 0.02F, 1e-3F * (a.view().inner + b.view().inner)};
-        for (int k = 0; k < 9; ++k) pair.turn[k] = static_cast<float>(turn(k / 3, k % 3));
-        for (int k = 0; k < 3; ++k) pair.offset[k] = static_cast<float>(offset[k]);
+        const HullPair pair = pair_of(a, b, pose);
         HullGuess plain_guess;
         HullTouch plain;
         hull_kernel_of("scalar")(pair, plain_guess, plain);
@@ -201,11 +207,7 @@ TEST(WideHull, WhatIsKnownToBeApartIsSoAtEveryWidthAlike)
         shapes.hulls = {random_stone(random, 1), random_stone(random, 1)};
         const WideShape a(shapes, kHullA), b(shapes, kHullB);
         const Pose pose = random.pose(1.2);
-        const Mat3 turn = pose.orientation.toRotationMatrix();
-        const Vec3 offset = turn * b.center() + pose.position - a.center();
-        HullPair pair{a.view(), b.view(), {}, {}, 0.02F, 1e-3F * (a.view().inner + b.view().inner)};
-        for (int k = 0; k < 9; ++k) pair.turn[k] = static_cast<float>(turn(k / 3, k % 3));
-        for (int k = 0; k < 3; ++k) pair.offset[k] = static_cast<float>(offset[k]);
+        const HullPair pair = pair_of(a, b, pose);
         HullGuess first_guess;
         HullTouch plain;
         hull_kernel_of("scalar")(pair, first_guess, plain);

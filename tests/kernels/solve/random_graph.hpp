@@ -13,7 +13,7 @@ struct Graph {
     ActiveContacts contacts;
     std::vector<Vec3> positions;
 
-    bool movable(std::uint32_t body) const { return states.dynamic(body) && states.moves(body); }
+    bool movable(std::uint32_t body) const { return states.movable(body); }
 };
 
 inline void add_body(Graph& graph, BodyKind kind, bool awake)
