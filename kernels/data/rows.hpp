@@ -142,6 +142,7 @@ struct Layout {
     std::vector<std::uint32_t> slot;           // by body, of those that can be moved; else kNoSlot
     std::uint32_t dynamic = 0;                 // solver bodies that can be moved
     std::vector<std::uint32_t> contacts;       // places in ActiveContacts, slice by slice
+    std::vector<std::uint32_t> lane;           // [contacts] where among the lanes each is
 
     /// Of a place among the solver bodies.
     bool movable(std::int32_t place) const

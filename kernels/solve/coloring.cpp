@@ -227,6 +227,7 @@ void Painter::place(const ActiveContacts& active,
             const bool serial = bin_[i] >= kPoints * kColors;
             const std::size_t lane = first_lane[bin_[i]] + rank_[i] * (serial ? kBlock : 1u);
             layout.lanes[lane].entry = layout.contacts[i];
+            layout.lane[i] = static_cast<std::uint32_t>(lane);
             layout.slot_a[lane] = seat(contact.body_a);
             layout.slot_b[lane] = seat(contact.body_b);
             if (lane % kBlock == 0) layout.points[lane / kBlock] = contact.points;
@@ -253,6 +254,7 @@ void Painter::lay_out(const Islands& islands,
     layout.slot.resize(states.kind.size(), Layout::kNoSlot);
     used_.resize(states.kind.size());
     before_.resize(states.kind.size());
+    layout.lane.resize(layout.contacts.size());
     bin_.resize(layout.contacts.size());
     rank_.resize(layout.contacts.size());
     if (plans_.size() < layout.slices.size()) plans_.resize(layout.slices.size());

@@ -91,13 +91,11 @@ void RowMaker<Real>::make(std::size_t begin, std::size_t end) const
 template <class Real>
 void RowMaker<Real>::store(std::size_t begin, std::size_t end) const
 {
-    for (std::size_t block = begin; block < end; ++block)
-        for (int lane = 0; lane < kBlock; ++lane) {
-            const std::uint32_t entry =
-                layout_.lanes[block * kBlock + static_cast<std::size_t>(lane)].entry;
-            if (entry != LaneSource{}.entry)
-                store_impulses(view_, block, lane, contact_of(active_.entries[entry]));
-        }
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t lane = layout_.lane[i];
+        store_impulses(view_, lane / kBlock, static_cast<int>(lane % kBlock),
+                       contact_of(active_.entries[layout_.contacts[i]]));
+    }
 }
 
 template class RowMaker<float>;

@@ -22,7 +22,8 @@ public:
 
     /// Makes the rows of blocks from `begin` to before `end`. Bodies have not moved yet.
     void make(std::size_t begin, std::size_t end) const;
-    /// Gives the impulses of these blocks back to their contacts.
+    /// Gives their impulses back to the contacts of these places in Layout::contacts: in the order
+    /// in which they lie in memory, as there are more of them than of the rows that they lie in.
     void store(std::size_t begin, std::size_t end) const;
 
 private:

@@ -117,8 +117,7 @@ private:
             return for_blocks(slice, shared,
                               [&](std::size_t from, std::size_t end) { maker_.make(from, end); });
         case Pass::Kind::store:
-            return for_blocks(slice, shared,
-                              [&](std::size_t from, std::size_t end) { maker_.store(from, end); });
+            return store(slice, shared);
         case Pass::Kind::begin:
             return begin_substep(slice, shared, pass.first);
         case Pass::Kind::advance:
@@ -184,6 +183,16 @@ private:
                                body(color.first + begin, color.first + end);
                            });
         }
+    }
+
+    void store(const Slice& slice, bool shared)
+    {
+        const std::size_t first = slice.first_contact;
+        if (!shared) return maker_.store(first, first + slice.contacts);
+        for_each_block(slice.contacts, kBlocks * kBlock,
+                       [&](std::size_t begin, std::size_t end, std::size_t) {
+                           maker_.store(first + begin, first + end);
+                       });
     }
 
     void begin_substep(const Slice& slice, bool shared, bool first)

@@ -154,6 +154,9 @@ void check_layout(const Graph& graph, const Layout& layout)
     ASSERT_EQ(layout.lanes.size() % kBlock, 0u);
     ASSERT_EQ(layout.points.size(), layout.lanes.size() / kBlock);
     ASSERT_EQ(layout.body_of_slot[0], kNobody);
+    ASSERT_EQ(layout.lane.size(), layout.contacts.size());
+    for (std::size_t i = 0; i < layout.contacts.size(); ++i)
+        ASSERT_EQ(layout.lanes[layout.lane[i]].entry, layout.contacts[i]);
     std::vector<int> times(graph.contacts.entries.size(), 0);
     std::size_t block = 0, slot = 1, color = 0, contact = 0, slices = 0;
     for (const Batch& batch : layout.batches) {
@@ -270,6 +273,7 @@ bool same_layout(const Layout& x, const Layout& y)
                           [&](const auto& i, const auto& k) { return numbers(i) == numbers(k); });
     };
     return x.points == y.points && x.slot_a == y.slot_a && x.slot_b == y.slot_b
+        && x.contacts == y.contacts && x.lane == y.lane
         && x.body_of_slot == y.body_of_slot
         && equal(x.lanes, y.lanes, [](const LaneSource& lane) { return lane.entry; })
         && equal(x.colors, y.colors,
