@@ -55,7 +55,7 @@ TEST_P(Golden, SceneDoesWhatItDid)
         return;
     }
     std::ifstream in(file);
-    if (!in) GTEST_SKIP() << "no golden file yet; tools/update_golden.sh writes it";
+    ASSERT_TRUE(in) << "no golden file " << file << "; tools/update_golden.sh writes it";
     std::stringstream before;
     before << in.rdbuf();
     EXPECT_EQ(now, before.str()) << "tools/update_golden.sh takes this for the new truth";
