@@ -1,0 +1,122 @@
+// Convex methods: every way to ask whether two convex shapes touch, behind one signature.
+//
+// Each answers for itself and says what it cannot tell; none answers through another. To add one:
+// write it in a file of its own, list it in convex_methods.cpp, and every test and table of methods
+// runs on it.
+#pragma once
+
+#include "kernels/data/shapes.hpp"
+#include "narrowphase/methods/gjk.hpp"
+#include "narrowphase/polytope_contacts.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace throng {
+
+/// Two convex shapes, b placed in a's frame, as all methods look at them. Keep the shapes while it
+/// lives.
+class ConvexPair {
+public:
+    /// Needs: a sphere, capsule, cylinder, box or hull each.
+    ConvexPair(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a);
+    ConvexPair(const ConvexPair&) = delete;
+    ConvexPair& operator=(const ConvexPair&) = delete;
+
+    void place(const Pose& b_in_a);
+
+    const CorePair& cores() const { return cores_; }
+    /// Null where one of the two is round.
+    const PolytopePair* polytopes() const { return polytopes_ ? &*polytopes_ : nullptr; }
+    /// m, greatest distance of a point of either from its own origin, within a factor of two: what
+    /// tolerances are relative to.
+    double size() const { return cores_.size; }
+
+private:
+    const Shapes& shapes_;
+    ShapeRef a_, b_;
+    std::optional<PolytopeShape> shape_a_, shape_b_;
+    CorePair cores_;
+    std::optional<PolytopePair> polytopes_;
+};
+
+enum class Touch : std::uint8_t {
+    apart,
+    touching,   // they share a point
+    undecided,  // the method has come to the end of what it can tell
+};
+
+/// What a method tells of a pair, in a's frame; of that only what its `tells` names.
+///
+///   separation  m: apart, their distance; touching, minus the least distance by which one must be
+///               moved for them to part
+///   normal      unit, from a to b: apart, of a plane that parts them; touching, the direction of
+///               that least move
+///   on_a, on_b  apart, the points of the two that are nearest; touching, points of the two
+///               surfaces `separation` apart along the normal
+///   volume, surface, center   m3, m2, m, of what the two share
+///   rounds      of its loop: support points asked for, planes cut by, axes looked at
+///   cut_short   the loop came to its bound; the answer is the best so far
+struct MethodAnswer {
+    Touch touch = Touch::undecided;
+    double separation = 0;
+    Vec3 normal = Vec3::UnitZ();
+    Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
+    double volume = 0, surface = 0;
+    Vec3 center = Vec3::Zero();
+    int rounds = 0;
+    bool cut_short = false;
+};
+
+/// What a pair remembers from one question to the next. It changes the time and never the answer
+/// beyond rounding; the meaning is the method's own, and a fresh one is a cold start.
+struct MethodMemory {
+    Vec3 axis = Vec3::Zero();
+    std::uint32_t a[4] = {}, b[4] = {};
+    std::uint32_t count = 0, kind = 0;
+};
+
+/// With how much of its speed a method runs.
+enum class MethodStart : std::uint8_t {
+    cached,  // from what the pair remembers
+    cold,    // as if it remembered nothing
+    plain,   // without its accelerations: the answer sheet
+};
+
+/// What a method can tell, to be added up.
+enum Tells : std::uint8_t {
+    kTellsTouch = 1,
+    kTellsDistance = 2,  // of those that are apart, with points and normal
+    kTellsDepth = 4,     // of those that touch, with normal
+    kTellsVolume = 8,    // of those that touch, with surface and center
+};
+
+struct ConvexMethod {
+    std::string_view name;
+    std::string_view about;
+    std::uint8_t tells = 0;
+    /// Whether it serves pairs of polytopes (boxes and hulls) alone.
+    bool polytopes_only = false;
+    /// Never throws, allocates only where its file says so, ends for every input.
+    ///
+    ///   reach   m, pairs known to be further apart need no better answer than `apart`
+    MethodAnswer (*ask)(const ConvexPair& pair,
+                        double reach,
+                        MethodStart start,
+                        MethodMemory& memory) = nullptr;
+
+    bool serves(const ConvexPair& pair) const
+    {
+        return !polytopes_only || pair.polytopes() != nullptr;
+    }
+};
+
+/// All methods, the plainest first.
+std::span<const ConvexMethod> convex_methods();
+
+/// The method of that name, or null.
+const ConvexMethod* find_convex_method(std::string_view name);
+
+}  // namespace throng
