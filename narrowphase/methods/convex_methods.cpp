@@ -1,5 +1,6 @@
 #include "narrowphase/methods/convex_methods.hpp"
 
+#include "narrowphase/methods/clip_volume.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
 
 namespace throng {
@@ -13,6 +14,8 @@ bool is_polytope(ShapeRef shape)
 
 constexpr ConvexMethod kMethods[] = {
     {"sat", "every axis that could part two polytopes", kTellsTouch | kTellsDepth, true, ask_sat},
+    {"clip_volume", "one polytope cut by the planes of the other, and what is left measured",
+     kTellsTouch | kTellsVolume, true, ask_clip_volume},
 };
 
 }  // namespace
