@@ -1,6 +1,8 @@
 #include "narrowphase/methods/convex_methods.hpp"
 
+#include "narrowphase/methods/bounding_ball.hpp"
 #include "narrowphase/methods/clip_volume.hpp"
+#include "narrowphase/methods/k_dop.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
 
 namespace throng {
@@ -16,6 +18,11 @@ constexpr ConvexMethod kMethods[] = {
     {"sat", "every axis that could part two polytopes", kTellsTouch | kTellsDepth, true, ask_sat},
     {"clip_volume", "one polytope cut by the planes of the other, and what is left measured",
      kTellsTouch | kTellsVolume, true, ask_clip_volume},
+    {"sphere", "filter: balls round the two", kTellsTouch, false, ask_bounding_ball},
+    {"k_dop:6", "filter: slabs along the axes", kTellsTouch, false, ask_k_dop<6>},
+    {"k_dop:14", "filter: slabs along axes and cube's corners", kTellsTouch, false, ask_k_dop<14>},
+    {"k_dop:18", "filter: slabs along axes and cube's edges", kTellsTouch, false, ask_k_dop<18>},
+    {"k_dop:26", "filter: slabs along axes, corners and edges", kTellsTouch, false, ask_k_dop<26>},
 };
 
 }  // namespace

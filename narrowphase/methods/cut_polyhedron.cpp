@@ -91,8 +91,8 @@ void CutPolyhedron::split_face(const PolytopeView& shape, std::size_t face)
     for (const FaceTriangle& triangle : triangles_) {
         const auto [first, middle, last] = triangle;
         const auto known =
-            std::find_if(long_sides_.begin(), long_sides_.end(), [&](const LongSide& side) {
-                return side.first == triangle.first && side.last == triangle.last;
+            std::find_if(long_sides_.begin(), long_sides_.end(), [&](const LongSide& long_side) {
+                return long_side.first == triangle.first && long_side.last == triangle.last;
             });
         const std::uint32_t back = known->half;
         const std::uint32_t up = side(first, middle), down = side(middle, last);
