@@ -21,6 +21,10 @@ constexpr std::array<Hull::Edge, 12> kBoxEdges = {{
     {0, 4, 0, 2}, {4, 6, 0, 5}, {6, 2, 0, 3}, {2, 0, 0, 4},
     {1, 3, 1, 4}, {3, 7, 1, 3}, {7, 5, 1, 5}, {5, 1, 1, 2},
     {0, 1, 2, 4}, {5, 4, 2, 5}, {6, 7, 3, 5}, {3, 2, 3, 4}}};
+constexpr std::array<std::uint32_t, 9> kBoxNeighborBegin = {0, 3, 6, 9, 12, 15, 18, 21, 24};
+constexpr std::array<std::uint16_t, 24> kBoxNeighbors = {
+    1, 2, 4,  0, 3, 5,  0, 3, 6,  1, 2, 7,
+    0, 5, 6,  1, 4, 7,  2, 4, 7,  3, 5, 6};
 // clang-format on
 
 const std::array<Vec3, 6>& box_normals()
@@ -34,20 +38,6 @@ constexpr std::array<std::uint32_t, 6> kTriangleFaceBegin = {0, 3, 6, 6, 6, 6};
 constexpr std::array<std::uint16_t, 6> kTriangleFaceVertices = {0, 1, 2, 0, 2, 1};
 constexpr std::array<Hull::Edge, 6> kTriangleEdges = {
     {{0, 1, 0, 2}, {0, 1, 2, 1}, {1, 2, 0, 3}, {1, 2, 3, 1}, {2, 0, 0, 4}, {2, 0, 4, 1}}};
-
-std::uint16_t support_by_looking(const PolytopeView& shape, const Vec3& direction)
-{
-    std::size_t best = 0;
-    double best_reach = direction.dot(shape.vertices[0]);
-    for (std::size_t i = 1; i < shape.vertices.size(); ++i) {
-        const double reach = direction.dot(shape.vertices[i]);
-        if (reach > best_reach) {
-            best_reach = reach;
-            best = i;
-        }
-    }
-    return static_cast<std::uint16_t>(best);
-}
 
 }  // namespace
 
@@ -71,8 +61,9 @@ BoxPolytope::BoxPolytope(const Vec3& half_extents)
 
 PolytopeView BoxPolytope::view() const
 {
-    return {vertices, box_normals(), offsets,      kBoxFaceBegin, kBoxFaceVertices, kBoxEdges, {},
-            {},       Vec3::Zero(),  inner_radius, outer_radius};
+    return {vertices,         box_normals(), offsets,           kBoxFaceBegin,
+            kBoxFaceVertices, kBoxEdges,     kBoxNeighborBegin, kBoxNeighbors,
+            Vec3::Zero(),     inner_radius,  outer_radius};
 }
 
 TrianglePolytope::TrianglePolytope(const Vec3& v0,
@@ -102,17 +93,39 @@ PolytopeView TrianglePolytope::view() const
 std::uint16_t support_vertex(const PolytopeView& shape, const Vec3& direction, std::uint16_t start)
 {
     if (shape.vertices.size() < kClimbFrom || shape.neighbor_begin.empty()) {
-        return support_by_looking(shape, direction);
+        return look_for_vertex(shape, direction);
     }
+    return climb_to_vertex(shape, direction, start);
+}
+
+std::uint16_t look_for_vertex(const PolytopeView& shape, const Vec3& direction)
+{
+    std::size_t best = 0;
+    double best_reach = direction.dot(shape.vertices[0]);
+    for (std::size_t i = 1; i < shape.vertices.size(); ++i) {
+        const double reach = direction.dot(shape.vertices[i]);
+        if (reach > best_reach) {
+            best_reach = reach;
+            best = i;
+        }
+    }
+    return static_cast<std::uint16_t>(best);
+}
+
+std::uint16_t
+climb_to_vertex(const PolytopeView& shape, const Vec3& direction, std::uint16_t start, int* looked)
+{
     THRONG_CHECK(start < shape.vertices.size(), "climbing starts at a vertex");
     // On a convex polyhedron a vertex with no higher neighbor is a highest one.
     std::uint16_t best = start;
     double best_reach = direction.dot(shape.vertices[best]);
+    if (looked) ++*looked;
     for (bool climbed = true; climbed;) {
         climbed = false;
         const std::uint16_t here = best;
-        for (std::uint32_t i = shape.neighbor_begin[here]; i < shape.neighbor_begin[here + 1u];
-             ++i) {
+        const std::uint32_t end = shape.neighbor_begin[here + 1u];
+        if (looked) *looked += static_cast<int>(end - shape.neighbor_begin[here]);
+        for (std::uint32_t i = shape.neighbor_begin[here]; i < end; ++i) {
             const std::uint16_t next = shape.neighbors[i];
             const double reach = direction.dot(shape.vertices[next]);
             if (reach > best_reach) {
