@@ -3,6 +3,7 @@
 #include "narrowphase/methods/bounding_ball.hpp"
 #include "narrowphase/methods/clip_volume.hpp"
 #include "narrowphase/methods/k_dop.hpp"
+#include "narrowphase/methods/containment.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
 
 namespace throng {
@@ -23,6 +24,8 @@ constexpr ConvexMethod kMethods[] = {
     {"k_dop:14", "filter: slabs along axes and cube's corners", kTellsTouch, false, ask_k_dop<14>},
     {"k_dop:18", "filter: slabs along axes and cube's edges", kTellsTouch, false, ask_k_dop<18>},
     {"k_dop:26", "filter: slabs along axes, corners and edges", kTellsTouch, false, ask_k_dop<26>},
+    {"containment", "vertices inside and edges through faces, as in the first textbooks",
+     kTellsTouch, true, ask_containment},
 };
 
 }  // namespace
