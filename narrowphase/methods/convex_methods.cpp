@@ -3,6 +3,7 @@
 #include "narrowphase/methods/bounding_ball.hpp"
 #include "narrowphase/methods/clip_volume.hpp"
 #include "narrowphase/methods/k_dop.hpp"
+#include "narrowphase/methods/chung_wang.hpp"
 #include "narrowphase/methods/containment.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
 
@@ -26,6 +27,8 @@ constexpr ConvexMethod kMethods[] = {
     {"k_dop:26", "filter: slabs along axes, corners and edges", kTellsTouch, false, ask_k_dop<26>},
     {"containment", "vertices inside and edges through faces, as in the first textbooks",
      kTellsTouch, true, ask_containment},
+    {"chung_wang", "the search for a direction that parts the two", kTellsTouch, false,
+     ask_chung_wang},
 };
 
 }  // namespace

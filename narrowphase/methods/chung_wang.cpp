@@ -1,0 +1,192 @@
+#include "narrowphase/methods/chung_wang.hpp"
+
+#include "narrowphase/methods/direction_cone.hpp"
+
+#include <cmath>
+
+namespace throng {
+namespace {
+
+constexpr int kRounds = DirectionCone::kRoom;
+constexpr double kTolerance = 1e-14;  // of the size; some fifty times double's spacing
+
+// What the memory's numbers are: a direction with the vertices furthest along it, or besides that
+// the pairs of vertices that show that the two touch.
+enum class Remembered : std::uint32_t { nothing, direction, witness };
+
+// The differences of any two shapes, by looking at every point of theirs.
+struct FurthestPoints {
+    const CorePair& pair;
+
+    Vec3 difference(const Vec3& s) const
+    {
+        return -furthest_difference(pair, s).point - s * (pair.a.radius + pair.b.radius);
+    }
+    void begin_at(const MethodMemory&) { }
+    bool still_touch(const MethodMemory&) const { return false; }
+    void note(int) { }
+    void remember_direction(MethodMemory&) const { }
+    void remember_witness(const DirectionCone::Witness&, MethodMemory&) const { }
+};
+
+// The differences of two polytopes, by climbing from the vertices of the round before.
+struct FurthestVertices {
+    FurthestVertices(const PolytopePair& polytopes, const CorePair& cores)
+        : pair(polytopes), box_a(cores.a.kind == ShapeKind::box),
+          box_b(cores.b.kind == ShapeKind::box)
+    { }
+
+    const PolytopePair& pair;
+    bool box_a, box_b;
+    std::uint16_t a = 0, b = 0;
+    // By round, so that a witness can be told by its vertices.
+    std::array<std::uint16_t, kRounds> seen_a, seen_b;
+
+    static std::uint16_t
+    furthest(const PolytopeView& shape, bool box, const Vec3& s, std::uint16_t start)
+    {
+        // A box's corner is known by the signs alone.
+        if (box)
+            return static_cast<std::uint16_t>((s.x() > 0) | (s.y() > 0) << 1 | (s.z() > 0) << 2);
+        return climb_to_vertex(shape, s, start);
+    }
+    Vec3 between(std::uint16_t vertex_a, std::uint16_t vertex_b) const
+    {
+        return pair.turn * pair.b.vertices[vertex_b] + pair.shift - pair.a.vertices[vertex_a];
+    }
+    Vec3 difference(const Vec3& s)
+    {
+        const Vec3 against = -(pair.turn.transpose() * s);
+        a = furthest(pair.a, box_a, s, a);
+        b = furthest(pair.b, box_b, against, b);
+        const Vec3 r = between(a, b);
+        const double along = s.dot(r);
+        if (!(along > 0) || along > kClimbError * (pair.a.outer_radius + pair.b.outer_radius))
+            return r;
+        // Only who has looked at every vertex may say that the two are apart by so little.
+        if (!box_a) a = look_for_vertex(pair.a, s);
+        if (!box_b) b = look_for_vertex(pair.b, against);
+        return between(a, b);
+    }
+    bool has(std::uint32_t vertex_a, std::uint32_t vertex_b) const
+    {
+        return vertex_a < pair.a.vertices.size() && vertex_b < pair.b.vertices.size();
+    }
+    void begin_at(const MethodMemory& memory)
+    {
+        if (!has(memory.a[0], memory.b[0])) return;
+        a = static_cast<std::uint16_t>(memory.a[0]);
+        b = static_cast<std::uint16_t>(memory.b[0]);
+    }
+    bool still_touch(const MethodMemory& memory) const
+    {
+        DirectionCone cone;
+        for (std::uint32_t i = 0; i < memory.count && i < 4; ++i) {
+            if (!has(memory.a[i], memory.b[i])) return false;
+            const Vec3 r = between(static_cast<std::uint16_t>(memory.a[i]),
+                                   static_cast<std::uint16_t>(memory.b[i]));
+            const double length = std::sqrt(r.squaredNorm());
+            if (!(length > 0) || !cone.add(r / length)) return true;
+        }
+        return false;
+    }
+    void note(int round)
+    {
+        seen_a[static_cast<std::size_t>(round)] = a;
+        seen_b[static_cast<std::size_t>(round)] = b;
+    }
+    void remember_direction(MethodMemory& memory) const
+    {
+        memory.a[0] = a;
+        memory.b[0] = b;
+    }
+    void remember_witness(const DirectionCone::Witness& witness, MethodMemory& memory) const
+    {
+        memory.kind = static_cast<std::uint32_t>(Remembered::witness);
+        memory.count = static_cast<std::uint32_t>(witness.count);
+        for (std::size_t i = 0; i < memory.count; ++i) {
+            const auto round = static_cast<std::size_t>(witness.differences[i]);
+            memory.a[i] = seen_a[round];
+            memory.b[i] = seen_b[round];
+        }
+    }
+};
+
+// Letters as in the header.
+template <class Points>
+void search(Points& points, Vec3 s, double slack, MethodMemory& memory, MethodAnswer& answer)
+{
+    DirectionCone cone;
+    memory.kind = static_cast<std::uint32_t>(Remembered::direction);
+    while (answer.rounds < kRounds) {
+        const Vec3 r = points.difference(s);
+        points.note(answer.rounds++);
+        memory.axis = s;
+        const double along = s.dot(r);
+        if (along > slack) {
+            answer.touch = Touch::apart;
+            answer.normal = s;
+            points.remember_direction(memory);
+            return;
+        }
+        const double length = std::sqrt(r.squaredNorm());
+        if (!(length > slack)) {
+            answer.touch = Touch::touching;
+            points.remember_direction(memory);
+            return;
+        }
+        const Vec3 unit = r / length;
+        if (!cone.add(unit)) {
+            answer.touch = Touch::touching;
+            points.remember_witness(cone.witness(), memory);
+            return;
+        }
+        const Vec3 mirrored = s - unit * (2 * unit.dot(s));
+        s = cone.holds(mirrored) ? unit_or(mirrored, unit) : cone.middle();
+    }
+    answer.cut_short = true;
+    points.remember_direction(memory);
+}
+
+template <class Points>
+void ask(Points& points,
+         const CorePair& cores,
+         MethodStart start,
+         MethodMemory& memory,
+         MethodAnswer& answer)
+{
+    Vec3 s = memory.axis;
+    const auto kind = static_cast<Remembered>(memory.kind);
+    const bool known = start == MethodStart::cached && kind != Remembered::nothing;
+    if (known) {
+        if (kind == Remembered::witness && points.still_touch(memory)) {
+            answer.rounds = 1;
+            answer.touch = Touch::touching;
+            return;
+        }
+        points.begin_at(memory);
+    } else {
+        s = unit_or<double>(cores.b_turn * cores.b.middle + cores.b_position - cores.a.middle,
+                            Vec3::UnitX());
+    }
+    const double slack = kTolerance * (cores.size + std::sqrt(cores.b_position.squaredNorm()));
+    search(points, s, slack, memory, answer);
+}
+
+}  // namespace
+
+MethodAnswer ask_chung_wang(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
+{
+    MethodAnswer answer;
+    const CorePair& cores = pair.cores();
+    if (pair.polytopes() && start != MethodStart::plain) {
+        FurthestVertices points(*pair.polytopes(), cores);
+        ask(points, cores, start, memory, answer);
+    } else {
+        FurthestPoints points{cores};
+        ask(points, cores, start, memory, answer);
+    }
+    return answer;
+}
+
+}  // namespace throng
