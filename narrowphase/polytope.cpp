@@ -1,14 +1,12 @@
 #include "narrowphase/polytope.hpp"
 
 #include "kernels/check.hpp"
+#include "narrowphase/methods/climbing_support.hpp"
 
 #include <algorithm>
 
 namespace throng {
 namespace {
-
-// Below this many vertices it is quicker to look at all than to climb.
-constexpr std::size_t kClimbFrom = 40;
 
 // Faces -x +x -y +y -z +z, each counter-clockwise seen from outside.
 constexpr std::array<std::uint32_t, 7> kBoxFaceBegin = {0, 4, 8, 12, 16, 20, 24};
@@ -45,7 +43,7 @@ PolytopeView view_of(const Hull& hull)
 {
     return {hull.vertices,      hull.normals,      hull.offsets,        hull.face_begin,
             hull.face_vertices, hull.edges,        hull.neighbor_begin, hull.neighbors,
-            hull.center,        hull.inner_radius, hull.outer_radius};
+            hull.center,        hull.inner_radius, hull.outer_radius,   &hull.guide};
 }
 
 BoxPolytope::BoxPolytope(const Vec3& half_extents)
@@ -92,10 +90,8 @@ PolytopeView TrianglePolytope::view() const
 
 std::uint16_t support_vertex(const PolytopeView& shape, const Vec3& direction, std::uint16_t start)
 {
-    if (shape.vertices.size() < kClimbFrom || shape.neighbor_begin.empty()) {
-        return look_for_vertex(shape, direction);
-    }
-    return climb_to_vertex(shape, direction, start);
+    ClimbCount count;
+    return furthest_vertex_near(ClimbingShape(shape), direction, start, count);
 }
 
 std::uint16_t look_for_vertex(const PolytopeView& shape, const Vec3& direction)

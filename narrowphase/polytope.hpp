@@ -23,6 +23,7 @@ struct PolytopeView {
     Vec3 center = Vec3::Zero();
     double inner_radius = 0;
     double outer_radius = 0;
+    const HullGuide* guide = nullptr;  // of a hull
 
     std::span<const std::uint16_t> face(std::size_t index) const
     {

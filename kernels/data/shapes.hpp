@@ -4,6 +4,7 @@
 // sizes cost 24 bytes each. Hulls and meshes are shared by all bodies that use them.
 #pragma once
 
+#include "kernels/data/hull_guide.hpp"
 #include "kernels/data/wide_hull.hpp"
 #include "kernels/math/types.hpp"
 
@@ -69,6 +70,7 @@ struct Hull {
     double inner_radius = 0;     // of a ball about center inside the hull
     double outer_radius = 0;     // of a ball about center round the hull
     WideHull wide;               // the same in float; made by widen()
+    HullGuide guide;             // to where its furthest vertices are; made by make_guide()
 };
 
 /// Static triangles, solid on neither side but one-sided in contact: pushes come out along the

@@ -2,6 +2,7 @@
 
 #include "kernels/geometry/hull_cloud.hpp"
 #include "kernels/geometry/hull_faces.hpp"
+#include "kernels/geometry/hull_guide.hpp"
 #include "kernels/geometry/mass.hpp"
 #include "kernels/geometry/wide_hull.hpp"
 
@@ -261,6 +262,7 @@ HullResult build_hull(std::span<const Vec3> points)
     fill_edges(result.hull);
     fill_balls(result.hull);
     widen(result.hull);
+    make_guide(result.hull);
     return result;
 }
 

@@ -6,6 +6,8 @@
 #include "narrowphase/methods/chung_wang.hpp"
 #include "narrowphase/methods/containment.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
+#include "narrowphase/methods/ask_gjk.hpp"
+#include "narrowphase/methods/ask_sat.hpp"
 
 namespace throng {
 
@@ -29,6 +31,8 @@ constexpr ConvexMethod kMethods[] = {
      kTellsTouch, true, ask_containment},
     {"chung_wang", "the search for a direction that parts the two", kTellsTouch, false,
      ask_chung_wang},
+    {"gjk", "the distance by GJK, the depth by EPA", kTellsTouch | kTellsDistance | kTellsDepth,
+     false, ask_gjk},
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "narrowphase/methods/epa.hpp"
 
+#include "narrowphase/methods/climbing_support.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,9 +11,8 @@ namespace throng {
 namespace {
 
 constexpr double kTolerance = 1e-14;  // of the size
-constexpr std::size_t kMaxCorners = 128;
-constexpr std::size_t kMaxFaces = 2 * kMaxCorners;  // a closed polytope has 2 corners - 4
-constexpr std::size_t kMaxRim = kMaxCorners;
+constexpr std::size_t kRoom = 128;    // corners
+constexpr std::size_t kMuchRoom = 512;
 
 struct Face {
     std::array<std::uint16_t, 3> corners;  // counter-clockwise seen from outside
@@ -26,8 +27,13 @@ struct RimEdge {
     std::uint16_t from, to, beyond;
 };
 
+// Of so many corners at most.
+template <std::size_t kMaxCorners>
 class Polytope {
 public:
+    static constexpr std::size_t kMaxFaces = 2 * kMaxCorners;  // a closed one has 2 corners - 4
+    static constexpr std::size_t kMaxRim = kMaxCorners;
+
     explicit Polytope(double tolerance) : tolerance_(tolerance) { }
 
     void start(const std::array<Difference, 4>& corners);
@@ -53,7 +59,11 @@ private:
     std::size_t corner_count_ = 0, face_count_ = 0, rim_count_ = 0, torn_count_ = 0;
 };
 
-bool Polytope::make_face(std::size_t slot, std::uint16_t a, std::uint16_t b, std::uint16_t c)
+template <std::size_t kMaxCorners>
+bool Polytope<kMaxCorners>::make_face(std::size_t slot,
+                                      std::uint16_t a,
+                                      std::uint16_t b,
+                                      std::uint16_t c)
 {
     const Vec3& pa = corners_[a].point;
     const Vec3& pb = corners_[b].point;
@@ -75,7 +85,8 @@ bool Polytope::make_face(std::size_t slot, std::uint16_t a, std::uint16_t b, std
     return true;
 }
 
-void Polytope::start(const std::array<Difference, 4>& corners)
+template <std::size_t kMaxCorners>
+void Polytope<kMaxCorners>::start(const std::array<Difference, 4>& corners)
 {
     std::copy(corners.begin(), corners.end(), corners_.begin());
     corner_count_ = 4;
@@ -93,7 +104,8 @@ void Polytope::start(const std::array<Difference, 4>& corners)
     faces_[3].beyond = {2, 1, 0};
 }
 
-int Polytope::nearest_face() const
+template <std::size_t kMaxCorners>
+int Polytope<kMaxCorners>::nearest_face() const
 {
     int best = -1;
     for (std::size_t i = 0; i < face_count_; ++i) {
@@ -105,7 +117,8 @@ int Polytope::nearest_face() const
 
 // Walks from face to face over what the point sees, faces in its plane included, so that no sliver
 // is left between them and it.
-bool Polytope::collect_rim(std::uint16_t seen, const Vec3& point)
+template <std::size_t kMaxCorners>
+bool Polytope<kMaxCorners>::collect_rim(std::uint16_t seen, const Vec3& point)
 {
     rim_count_ = 0;
     torn_count_ = 0;
@@ -134,7 +147,8 @@ bool Polytope::collect_rim(std::uint16_t seen, const Vec3& point)
 }
 
 // Puts the rim's edges head to tail; false unless they make one loop.
-bool Polytope::order_rim()
+template <std::size_t kMaxCorners>
+bool Polytope<kMaxCorners>::order_rim()
 {
     for (std::size_t i = 0; i + 1 < rim_count_; ++i) {
         std::size_t next = i + 1;
@@ -145,7 +159,8 @@ bool Polytope::order_rim()
     return rim_[rim_count_ - 1].to == rim_[0].from;
 }
 
-bool Polytope::grow(int seen, const Difference& corner)
+template <std::size_t kMaxCorners>
+bool Polytope<kMaxCorners>::grow(int seen, const Difference& corner)
 {
     const bool whole = collect_rim(static_cast<std::uint16_t>(seen), corner.point) && order_rim();
     if (!whole) return false;
@@ -184,7 +199,8 @@ double distance_from_line(const Vec3& point, const Vec3& from, const Vec3& along
 
 // Four differences that span as much as the main directions show; false when they lie in a plane,
 // whose normal is then the answer.
-bool spread_start(const CorePair& pair,
+template <class Furthest>
+bool spread_start(Furthest& furthest,
                   double tolerance,
                   std::array<Difference, 4>& start,
                   Vec3& flat_normal)
@@ -194,8 +210,8 @@ bool spread_start(const CorePair& pair,
     double width = -1;
     for (int i = 0; i < 3; ++i) {
         const auto at = static_cast<std::size_t>(2 * i);
-        tried[at] = furthest_difference(pair, Vec3::Unit(i));
-        tried[at + 1] = furthest_difference(pair, -Vec3::Unit(i));
+        tried[at] = furthest(Vec3::Unit(i));
+        tried[at + 1] = furthest(-Vec3::Unit(i));
         const double now = (tried[at].point - tried[at + 1].point).squaredNorm();
         if (now > width) {
             width = now;
@@ -207,10 +223,10 @@ bool spread_start(const CorePair& pair,
     const Vec3 line = unit_or<double>(start[1].point - start[0].point, Vec3::UnitX());
     const Vec3 side = any_perpendicular(line);
     const Vec3 other = line.cross(side);
-    tried[6] = furthest_difference(pair, side);
-    tried[7] = furthest_difference(pair, -side);
-    tried[8] = furthest_difference(pair, other);
-    tried[9] = furthest_difference(pair, -other);
+    tried[6] = furthest(side);
+    tried[7] = furthest(-side);
+    tried[8] = furthest(other);
+    tried[9] = furthest(-other);
 
     start[2] = tried[0];
     double most = -1;
@@ -223,8 +239,8 @@ bool spread_start(const CorePair& pair,
     flat_normal = unit_or<double>(line.cross(start[2].point - start[0].point), side);
     if (!(most > tolerance)) flat_normal = side;
 
-    start[3] = furthest_difference(pair, flat_normal);
-    const Difference below = furthest_difference(pair, -flat_normal);
+    start[3] = furthest(flat_normal);
+    const Difference below = furthest(-flat_normal);
     const double above = flat_normal.dot(start[3].point - start[0].point);
     const double under = flat_normal.dot(start[0].point - below.point);
     if (under > above) start[3] = below;
@@ -232,7 +248,8 @@ bool spread_start(const CorePair& pair,
 }
 
 // Points of both surfaces below 0's shadow on a face.
-void place_witness(const Polytope& polytope, const Face& face, Depth& result)
+template <class Grown>
+void place_witness(const Grown& polytope, const Face& face, Depth& result)
 {
     const Difference& a = polytope.corner(face.corners[0]);
     const Difference& b = polytope.corner(face.corners[1]);
@@ -250,16 +267,16 @@ void place_witness(const Polytope& polytope, const Face& face, Depth& result)
     result.on_b = (a.on_b * of_a + b.on_b * of_b + c.on_b * of_c) / sum;
 }
 
-bool is_corner_of(const Polytope& polytope, const Face& face, const Vec3& point)
+template <class Grown>
+bool is_corner_of(const Grown& polytope, const Face& face, const Vec3& point)
 {
     return std::any_of(face.corners.begin(), face.corners.end(), [&](std::uint16_t corner) {
         return polytope.corner(corner).point == point;
     });
 }
 
-}  // namespace
-
-Depth epa(const CorePair& pair)
+template <std::size_t kMaxCorners, class Furthest>
+Depth search(const CorePair& pair, Furthest& furthest)
 {
     const double tolerance = kTolerance * (pair.size + pair.b_position.norm());
     Depth result;
@@ -276,27 +293,43 @@ Depth epa(const CorePair& pair)
 
     std::array<Difference, 4> start;
     Vec3 flat_normal = Vec3::UnitZ();
-    if (!spread_start(pair, tolerance, start, flat_normal)) {
-        keep(flat_normal, furthest_difference(pair, flat_normal));
-        keep(-flat_normal, furthest_difference(pair, -flat_normal));
+    if (!spread_start(furthest, tolerance, start, flat_normal)) {
+        keep(flat_normal, furthest(flat_normal));
+        keep(-flat_normal, furthest(-flat_normal));
         return result;
     }
-    Polytope polytope(tolerance);
+    Polytope<kMaxCorners> polytope(tolerance);
     polytope.start(start);
     while (true) {
         ++result.iterations;
         const int nearest = polytope.nearest_face();
         if (nearest < 0) break;
         const Face face = polytope.face(nearest);
-        const Difference further = furthest_difference(pair, face.normal);
+        const Difference further = furthest(face.normal);
         if (keep(face.normal, further)) place_witness(polytope, face, result);
         // No direction parts the cores by less than the nearest face's offset.
         if (result.depth - face.offset <= tolerance) break;
         if (face.normal.dot(further.point) - face.offset <= tolerance) break;
-        if (polytope.full() || is_corner_of(polytope, face, further.point)) break;
-        if (!polytope.grow(nearest, further)) break;
+        if (is_corner_of(polytope, face, further.point)) break;
+        result.cut_short = polytope.full();
+        if (result.cut_short || !polytope.grow(nearest, further)) break;
     }
     return result;
+}
+
+}  // namespace
+
+Depth epa(const CorePair& pair)
+{
+    const auto furthest = [&](const Vec3& direction) {
+        return furthest_difference(pair, direction);
+    };
+    return search<kRoom>(pair, furthest);
+}
+
+Depth epa(const CorePair& pair, ClimbingSupports& supports)
+{
+    return search<kMuchRoom>(pair, supports);
 }
 
 }  // namespace throng

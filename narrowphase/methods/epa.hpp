@@ -19,6 +19,7 @@ struct Depth {
     Vec3 normal = Vec3::UnitZ();
     Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
     int iterations = 0;
+    bool cut_short = false;  // out of room: the best so far
 };
 
 /// Depth of two cores that overlap or touch.
@@ -30,5 +31,9 @@ struct Depth {
 /// Source: van den Bergen, Proximity Queries and Penetration Depth Computation on 3D Game Objects
 ///         (2001).
 Depth epa(const CorePair& pair);
+
+/// The same with supports of one's own, and room for four times as many corners: round shapes one
+/// within the other have as many directions that are nearly the best.
+Depth epa(const CorePair& pair, ClimbingSupports& supports);
 
 }  // namespace throng

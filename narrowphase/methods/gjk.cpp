@@ -1,5 +1,7 @@
 #include "narrowphase/methods/gjk.hpp"
 
+#include "narrowphase/methods/climbing_support.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +10,6 @@ namespace throng {
 
 namespace {
 
-constexpr int kRounds = 128;
 constexpr double kTolerance = 1e-14;  // of the size; some fifty times double's spacing
 
 // A candidate for the point of a simplex nearest to 0, as weights of the corners it uses.
@@ -144,45 +145,41 @@ void finish(Distance& result, const Vec3& nearest)
     }
 }
 
-}  // namespace
-
-CorePair::CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a)
-    : a(core_of<double>(shapes, shape_a)), b(core_of<double>(shapes, shape_b)),
-      b_position(b_in_a.position), b_turn(b_in_a.orientation.toRotationMatrix()),
-      size(a.size + b.size)
-{ }
-
-Difference furthest_difference(const CorePair& pair, const Vec3& direction)
+// The first simplex and its point nearest to 0; false where it contains 0.
+template <class Furthest>
+bool begin_walk(const CorePair& pair, Furthest& furthest, Simplex& simplex, Vec3& nearest)
 {
-    Difference difference;
-    difference.on_a = support(pair.a, direction).position;
-    const Vec3 against = pair.b_turn.transpose() * -direction;
-    difference.on_b = pair.b_turn * support(pair.b, against).position + pair.b_position;
-    difference.point = difference.on_a - difference.on_b;
-    return difference;
+    if (simplex.count == 0) {
+        Vec3 start = pair.a.middle - (pair.b_turn * pair.b.middle + pair.b_position);
+        if (!(start.squaredNorm() > 0)) start = Vec3::UnitX();
+        simplex.corners[0] = furthest(-start);
+        simplex.weights[0] = 1;
+        simplex.count = 1;
+        nearest = simplex.corners[0].point;
+        return true;
+    }
+    if (simplex.count == 4 && tetrahedron_has_zero(simplex)) return false;
+    Nearest next = nearest_of(simplex);
+    if (simplex.count == 4) keep_nearer(next, nearest_of_triangle(simplex, 0, 1, 2));
+    reduce(simplex, next);
+    nearest = next.point;
+    return true;
 }
 
-double separation_along(const CorePair& pair, const Vec3& direction)
-{
-    return -direction.dot(furthest_difference(pair, direction).point);
-}
-
-Distance gjk(const CorePair& pair, double limit)
+template <class Furthest>
+Distance walk(const CorePair& pair, double limit, Furthest& furthest, const Simplex& beginning)
 {
     Distance result;
     Simplex& simplex = result.simplex;
-    Vec3 start = pair.a.middle - (pair.b_turn * pair.b.middle + pair.b_position);
-    if (!(start.squaredNorm() > 0)) start = Vec3::UnitX();
-    simplex.corners[0] = furthest_difference(pair, -start);
-    simplex.weights[0] = 1;
-    simplex.count = 1;
-    Vec3 nearest = simplex.corners[0].point;
+    simplex = beginning;
+    Vec3 nearest;
+    if (!begin_walk(pair, furthest, simplex, nearest)) return result;
 
     const double slack = kTolerance * (pair.size + pair.b_position.norm());
-    while (result.iterations++ < kRounds) {
+    while (result.iterations++ < kMostRounds) {
         const double length = nearest.norm();
         if (!(length > slack)) return result;
-        const Difference further = furthest_difference(pair, -nearest);
+        const Difference further = furthest(-nearest);
         const double bound = nearest.dot(further.point) / length;
         if (bound > limit) {
             finish(result, nearest);
@@ -206,6 +203,47 @@ Distance gjk(const CorePair& pair, double limit)
     }
     if (nearest.norm() > slack) finish(result, nearest);
     return result;
+}
+
+}  // namespace
+
+CorePair::CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a)
+    : a(core_of<double>(shapes, shape_a)), b(core_of<double>(shapes, shape_b)),
+      b_position(b_in_a.position), b_turn(b_in_a.orientation.toRotationMatrix()),
+      size(a.size + b.size)
+{ }
+
+Difference furthest_difference(const CorePair& pair, const Vec3& direction)
+{
+    Difference difference;
+    const Vec3 against = pair.b_turn.transpose() * -direction;
+    const SupportPoint<double> of_a = support(pair.a, direction);
+    const SupportPoint<double> of_b = support(pair.b, against);
+    difference.on_a = of_a.position;
+    difference.on_b = pair.b_turn * of_b.position + pair.b_position;
+    difference.point = difference.on_a - difference.on_b;
+    difference.feature_a = of_a.feature;
+    difference.feature_b = of_b.feature;
+    return difference;
+}
+
+double separation_along(const CorePair& pair, const Vec3& direction)
+{
+    return -direction.dot(furthest_difference(pair, direction).point);
+}
+
+Distance gjk(const CorePair& pair, double limit)
+{
+    const auto furthest = [&](const Vec3& direction) {
+        return furthest_difference(pair, direction);
+    };
+    return walk(pair, limit, furthest, Simplex{});
+}
+
+Distance
+gjk(const CorePair& pair, double limit, ClimbingSupports& supports, const Simplex& beginning)
+{
+    return walk(pair, limit, supports, beginning);
 }
 
 }  // namespace throng

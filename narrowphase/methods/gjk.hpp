@@ -9,6 +9,8 @@
 
 namespace throng {
 
+class ClimbingSupports;
+
 /// Two cores, b placed in a's frame.
 struct CorePair {
     Core<double> a, b;
@@ -19,9 +21,11 @@ struct CorePair {
     CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a);
 };
 
-/// A point of a minus a point of b, in a's frame.
+/// A point of a minus a point of b, in a's frame, and the features that these are of
+/// (SupportPoint).
 struct Difference {
     Vec3 point, on_a, on_b;
+    std::uint32_t feature_a, feature_b;
 };
 
 /// The furthest difference along a direction of any length.
@@ -37,6 +41,9 @@ struct Simplex {
     std::array<double, 4> weights = {};
     int count = 0;
 };
+
+/// GJK's bound; only where it comes to that are its iterations more.
+inline constexpr int kMostRounds = 128;
 
 /// What GJK found.
 ///
@@ -57,7 +64,7 @@ struct Distance {
 /// Distance of two cores.
 ///
 /// Ends on a repeated support point (exact for polytopes), once the bounds from both sides agree to
-/// 1e-14 of the size, when nothing improves any more, or after 128 rounds. The nearest point of a
+/// 1e-14 of the size, when nothing improves any more, or after kMostRounds. The nearest point of a
 /// simplex is sought by region, from its newest corner, and degenerate simplices fall back to their
 /// edges.
 ///
@@ -66,5 +73,10 @@ struct Distance {
 /// Source: Gilbert, Johnson, Keerthi (1988); van den Bergen, Collision Detection in Interactive 3D
 ///         Environments (2003), section 4.3.
 Distance gjk(const CorePair& pair, double limit);
+
+/// The same with supports of one's own, begun with a simplex of differences that need not be the
+/// furthest along anything; of count 0 for the usual beginning.
+Distance
+gjk(const CorePair& pair, double limit, ClimbingSupports& supports, const Simplex& beginning);
 
 }  // namespace throng

@@ -96,14 +96,4 @@ polytope_separation(const PolytopeView& a, const PolytopeView& b, const Pose& b_
     return best.separation;
 }
 
-MethodAnswer ask_sat(const ConvexPair& pair, double, MethodStart, MethodMemory&)
-{
-    const PolytopePair& shapes = *pair.polytopes();
-    MethodAnswer answer;
-    answer.separation = polytope_separation(shapes.a, shapes.b, {shapes.shift, Quat(shapes.turn)},
-                                            &answer.normal);
-    answer.touch = answer.separation > 0 ? Touch::apart : Touch::touching;
-    return answer;
-}
-
 }  // namespace throng

@@ -1,7 +1,6 @@
 // Separating axes: every axis that could part two polytopes, looked at one by one.
 #pragma once
 
-#include "narrowphase/methods/convex_methods.hpp"
 #include "narrowphase/polytope.hpp"
 
 namespace throng {
@@ -16,8 +15,5 @@ namespace throng {
 /// Gauss map: the others are no face of the Minkowski difference.
 double
 polytope_separation(const PolytopeView& a, const PolytopeView& b, const Pose& b_in_a, Vec3* normal);
-
-/// The same as a method: touch, depth and its normal.
-MethodAnswer ask_sat(const ConvexPair& pair, double reach, MethodStart start, MethodMemory& memory);
 
 }  // namespace throng

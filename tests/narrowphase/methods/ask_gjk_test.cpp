@@ -1,0 +1,270 @@
+#include "narrowphase/methods/ask_gjk.hpp"
+
+#include "narrowphase/methods/climbing_support.hpp"
+#include "narrowphase/methods/separating_axes.hpp"
+#include "tests/narrowphase/methods/method_pairs.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+constexpr double kFar = 1e300;
+
+MethodAnswer ask(const ConvexPair& pair, MethodStart start, double reach = kFar)
+{
+    MethodMemory memory;
+    return ask_gjk(pair, reach, start, memory);
+}
+
+// How far a point of a's frame lies outside a polytope of a frame placed there.
+double outside(const PolytopeView& shape, const Vec3& local)
+{
+    double most = -kFar;
+    for (std::size_t i = 0; i < shape.normals.size(); ++i)
+        most = std::max(most, shape.normals[i].dot(local) - shape.offsets[i]);
+    return most;
+}
+
+// Two points on the shapes as far apart as a plane between them shows room: no less, no more.
+void expect_proven_distance(const ConvexPair& pair, const MethodAnswer& answer)
+{
+    const double small = 1e-9 * (pair.size() + pair.cores().b_position.norm());
+    const PolytopePair& shapes = *pair.polytopes();
+    EXPECT_NEAR(separation_along(pair.cores(), answer.normal), answer.separation, small);
+    EXPECT_NEAR((answer.on_b - answer.on_a).norm(), answer.separation, small);
+    EXPECT_LE(outside(shapes.a, answer.on_a), small);
+    EXPECT_LE(outside(shapes.b, shapes.turn.transpose() * (answer.on_b - shapes.shift)), small);
+}
+
+void expect_agree(const MethodAnswer& one, const MethodAnswer& other, double small)
+{
+    EXPECT_EQ(one.touch, other.touch);
+    EXPECT_NEAR(one.separation, other.separation, small);
+}
+
+void expect_right_on(const PolytopeCases& cases, const ConvexPair& pair)
+{
+    const double size = pair.size() + cases.b_in_a.position.norm();
+    const MethodAnswer answer = ask(pair, MethodStart::cold);
+    const PolytopePair& shapes = *pair.polytopes();
+    const double room = polytope_separation(shapes.a, shapes.b, cases.b_in_a, nullptr);
+    ASSERT_NEAR(answer.normal.norm(), 1, 1e-12);
+    ASSERT_FALSE(answer.cut_short);
+    if (std::abs(room) > 1e-9 * size) {
+        ASSERT_EQ(answer.touch, room > 0 ? Touch::apart : Touch::touching);
+    }
+    if (answer.touch == Touch::apart) {
+        expect_proven_distance(pair, answer);
+        EXPECT_LE(answer.rounds, 128);
+    } else {
+        EXPECT_NEAR(answer.separation, room, 1e-9 * size);
+        EXPECT_NEAR(separation_along(pair.cores(), answer.normal), room, 1e-9 * size);
+    }
+    expect_agree(ask(pair, MethodStart::plain), answer, 1e-12 * size);
+}
+
+// Twenty thousand pairs, a quarter of them at each of two other scales.
+TEST(AskGjk, RightOnPolytopesHoweverTheyMeet)
+{
+    for (const double scale : {1e-6, 1.0, 1e6}) {
+        PolytopeCases cases(81, scale);
+        const int pairs = scale == 1 ? 10000 : 5000;
+        for (int i = 0; i < pairs && !testing::Test::HasFailure(); ++i) {
+            SCOPED_TRACE("seed 81, scale " + std::to_string(scale) + ", pair " + std::to_string(i));
+            cases.next();
+            const ConvexPair pair(cases.shapes(), cases.a, cases.b, cases.b_in_a);
+            expect_right_on(cases, pair);
+        }
+    }
+}
+
+TEST(AskGjk, SwappedTheySayTheSame)
+{
+    PolytopeCases cases(82, 1);
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 82, pair " + std::to_string(i));
+        cases.next();
+        const ConvexPair pair(cases.shapes(), cases.a, cases.b, cases.b_in_a);
+        const ConvexPair turned(cases.shapes(), cases.b, cases.a, inverse(cases.b_in_a));
+        const double size = pair.size() + cases.b_in_a.position.norm();
+        const MethodAnswer one = ask(pair, MethodStart::cold);
+        const MethodAnswer other = ask(turned, MethodStart::cold);
+        if (std::abs(one.separation) > 1e-12 * size) {
+            ASSERT_EQ(one.touch, other.touch);
+        }
+        ASSERT_NEAR(one.separation, other.separation, 1e-12 * size);
+        // Of a distance there is one direction, told the better the longer it is.
+        if (one.separation > 1e-3 * size) {
+            const Vec3 back = -(cases.b_in_a.orientation * other.normal);
+            ASSERT_LT((one.normal - back).norm(), 1e-10);
+        }
+    }
+}
+
+// b as it drifts and turns past a, touching it on the way.
+Pose passing(int step, double speed)
+{
+    const double t = speed * step;
+    const Quat turn(Eigen::AngleAxisd(3 * t, Vec3(1, 2, 3).normalized()));
+    return {Vec3(1.2 - t, 0.3 * std::sin(2 * t), 0.5 - 0.4 * t), turn};
+}
+
+TEST(AskGjk, WhatIsRememberedChangesNothing)
+{
+    RandomShapes random(83);
+    Shapes shapes;
+    shapes.boxes = {{{0.4, 0.3, 0.5}}};
+    shapes.spheres = {{0.4}};
+    shapes.capsules = {{0.2, 0.4}};
+    shapes.cylinders = {{0.3, 0.4}};
+    shapes.hulls = {random.hull(10, 0.5), random.hull(60, 0.5), random.hull(1000, 0.5)};
+    const std::vector<ShapeRef> all = {{ShapeKind::box, 0},     {ShapeKind::sphere, 0},
+                                       {ShapeKind::capsule, 0}, {ShapeKind::cylinder, 0},
+                                       {ShapeKind::hull, 0},    {ShapeKind::hull, 1},
+                                       {ShapeKind::hull, 2}};
+    for (const ShapeRef a : all) {
+        for (const ShapeRef b : all) {
+            SCOPED_TRACE(std::to_string(static_cast<int>(a.kind)) + " "
+                         + std::to_string(static_cast<int>(b.kind)));
+            const bool curved = a.kind == ShapeKind::cylinder || b.kind == ShapeKind::cylinder;
+            MethodMemory memory;
+            ConvexPair pair(shapes, a, b, passing(0, 0.02));
+            for (int step = 0; step < 120; ++step) {
+                pair.place(passing(step, 0.02));
+                const MethodAnswer warm = ask_gjk(pair, kFar, MethodStart::cached, memory);
+                const MethodAnswer cold = ask(pair, MethodStart::cold);
+                expect_agree(warm, cold, (curved ? 2e-6 : 1e-12) * pair.size());
+                EXPECT_NEAR(cold.normal.norm(), 1, 1e-12);
+                expect_agree(ask(pair, MethodStart::plain), cold, 1e-12 * pair.size());
+            }
+        }
+    }
+}
+
+// Memory of another pair, or of a pose long past, is a bad start and no more.
+TEST(AskGjk, AWrongMemoryDoesNoHarm)
+{
+    PolytopeCases cases(84, 1);
+    MethodMemory memory;
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 84, pair " + std::to_string(i));
+        cases.next();
+        const ConvexPair pair(cases.shapes(), cases.a, cases.b, cases.b_in_a);
+        const double size = pair.size() + cases.b_in_a.position.norm();
+        const MethodAnswer warm = ask_gjk(pair, kFar, MethodStart::cached, memory);
+        const MethodAnswer cold = ask(pair, MethodStart::cold);
+        if (std::abs(cold.separation) > 1e-12 * size) {
+            ASSERT_EQ(warm.touch, cold.touch);
+        }
+        ASSERT_NEAR(warm.separation, cold.separation, 1e-12 * size);
+        ASSERT_LE(warm.rounds, 128);
+    }
+}
+
+TEST(AskGjk, BeyondTheReachOneDirectionIsEnough)
+{
+    RandomShapes random(85);
+    Shapes shapes;
+    shapes.hulls = {random.hull(32, 0.5), random.hull(32, 0.5)};
+    const ShapeRef a{ShapeKind::hull, 0}, b{ShapeKind::hull, 1};
+    MethodMemory memory;
+    ConvexPair pair(shapes, a, b, Pose{});
+    int asked = 0;
+    for (int step = 0; step < 200; ++step) {
+        const double angle = 0.01 * step;
+        pair.place({Vec3(1.3 * std::cos(angle), 1.3 * std::sin(angle), 0), random.turn()});
+        const MethodAnswer exact = ask(pair, MethodStart::cold);
+        const double reach = 0.5 * exact.separation;
+        const MethodAnswer warm = ask_gjk(pair, reach, MethodStart::cached, memory);
+        ASSERT_EQ(warm.touch, Touch::apart) << "seed 85, step " << step;
+        ASSERT_GT(warm.separation, reach);
+        ASSERT_LE(warm.separation, exact.separation + 1e-12);
+        ASSERT_NEAR(separation_along(pair.cores(), warm.normal), warm.separation, 0.3);
+        if (step > 0) asked += warm.rounds;
+    }
+    EXPECT_LE(asked, 2 * 199);
+}
+
+// Radii are taken off exactly: balls and rods against their own formulas.
+TEST(AskGjk, RoundShapesAreExact)
+{
+    RandomShapes random(86);
+    for (const double scale : {1e-6, 1.0, 1e6}) {
+        Shapes shapes;
+        shapes.spheres = {{0.4 * scale}, {0.3 * scale}};
+        shapes.boxes = {{Vec3(0.5, 0.4, 0.3) * scale}};
+        const ShapeRef ball{ShapeKind::sphere, 0}, other{ShapeKind::sphere, 1};
+        const ShapeRef box{ShapeKind::box, 0};
+        for (int i = 0; i < 300; ++i) {
+            SCOPED_TRACE("seed 86, pair " + std::to_string(i));
+            Pose pose = random.pose(0.8);
+            pose.position *= scale;
+            const ConvexPair balls(shapes, ball, other, pose);
+            const MethodAnswer of_balls = ask(balls, MethodStart::cold);
+            ASSERT_NEAR(of_balls.separation, pose.position.norm() - 0.7 * scale, 1e-14 * scale);
+            ASSERT_LT(
+                (of_balls.on_b - of_balls.on_a - of_balls.normal * of_balls.separation).norm(),
+                1e-14 * scale);
+
+            // A ball against a box: outside by the box's nearest point, inside by the nearest face.
+            const ConvexPair pair(shapes, box, ball, pose);
+            const Vec3 half = shapes.boxes[0].half_extents;
+            const Vec3 beyond = pose.position.cwiseAbs() - half;
+            const double truth =
+                beyond.maxCoeff() > 0 ? beyond.cwiseMax(0.0).norm() : beyond.maxCoeff();
+            ASSERT_NEAR(ask(pair, MethodStart::cold).separation, truth - 0.4 * scale,
+                        1e-13 * scale);
+        }
+    }
+}
+
+// Cores that have no volume, one on the other: the radii are the depth, whatever the direction.
+TEST(AskGjk, CoresThatCrossAreAsDeepAsTheirRadii)
+{
+    Shapes shapes;
+    shapes.spheres = {{0.3}};
+    shapes.capsules = {{0.2, 0.5}};
+    const ShapeRef ball{ShapeKind::sphere, 0}, rod{ShapeKind::capsule, 0};
+    for (const double angle : {0.0, 1e-9, 0.3, 1.5}) {
+        const Pose pose{Vec3::Zero(), Quat(Eigen::AngleAxisd(angle, Vec3::UnitX()))};
+        for (const auto& [a, b, depth] :
+             {std::tuple(ball, ball, 0.6), std::tuple(ball, rod, 0.5), std::tuple(rod, rod, 0.4)}) {
+            const ConvexPair pair(shapes, a, b, pose);
+            const MethodAnswer answer = ask(pair, MethodStart::cold);
+            EXPECT_EQ(answer.touch, Touch::touching);
+            EXPECT_NEAR(answer.separation, -depth, 1e-12);
+            EXPECT_NEAR(answer.normal.norm(), 1, 1e-12);
+        }
+    }
+}
+
+// Drums against boxes, swept by brute force over directions.
+TEST(AskGjk, CylindersAgreeWithDirectionSweep)
+{
+    RandomShapes random(87);
+    Shapes shapes;
+    shapes.cylinders = {{0.4, 0.3}};
+    shapes.boxes = {{{0.3, 0.5, 0.2}}};
+    const ShapeRef drum{ShapeKind::cylinder, 0}, box{ShapeKind::box, 0};
+    for (int i = 0; i < 60; ++i) {
+        SCOPED_TRACE("seed 87, pair " + std::to_string(i));
+        const ConvexPair pair(shapes, drum, box, random.pose(0.8));
+        const CorePair& cores = pair.cores();
+        const double swept = sweep_directions(
+            [&](const Vec3& n) { return n.dot(support<double>(cores.a, n).position); },
+            [&](const Vec3& n) {
+                return n.dot(cores.b_position)
+                    + n.dot(cores.b_turn
+                            * support<double>(cores.b, cores.b_turn.transpose() * n).position);
+            },
+            24, nullptr);
+        const MethodAnswer answer = ask(pair, MethodStart::cold);
+        EXPECT_GE(answer.separation, swept - 2e-6);
+        EXPECT_LE(answer.separation, swept + 2e-3);
+        EXPECT_NEAR(separation_along(cores, answer.normal), answer.separation, 2e-6);
+    }
+}
+
+}  // namespace
+}  // namespace throng
