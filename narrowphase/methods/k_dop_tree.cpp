@@ -97,29 +97,43 @@ Cone cone_of(const Vec3& direction, int k)
     return cone;
 }
 
-// A frame seen from another: what takes k-DOPs of the one to k-DOPs round them in the other.
-struct Turn {
+// A shape and its tree in the frame of another.
+struct PlacedTree {
+    const KDopTree& tree;
+    const PolytopeView& shape;
+    const Mat3& turn;
+    const Vec3& shift;
+    Slabs slabs;
     std::array<Cone, kMaxSlabs> cones;
     std::array<double, kMaxSlabs> shifts;
-    Slabs slabs;
 
-    Turn(const Mat3& turn, const Vec3& shift, int k) : slabs(slabs_of(k))
+    /// pair   the shape is its b
+    PlacedTree(const PolytopePair& pair, const KDopTree& its_tree)
+        : tree(its_tree), shape(pair.b), turn(pair.turn), shift(pair.shift),
+          slabs(slabs_of(its_tree.k()))
     {
         for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
-            cones[slab] = cone_of(turn.transpose() * slab_direction(slab), k);
+            cones[slab] = cone_of(turn.transpose() * slab_direction(slab), tree.k());
             shifts[slab] = slab_direction(slab).dot(shift);
         }
     }
 
-    KDop operator()(const KDop& dop) const
+    // Round what the node holds: of a face the least, of more what the slabs tell.
+    KDop dop(const KDopTree::Node& node) const
     {
+        if (node.left == 0) {
+            KDop face = empty_k_dop(slabs);
+            for (const std::uint16_t corner : shape.face(node.face))
+                add(turn * shape.vertices[corner] + shift, slabs, face);
+            return face;
+        }
         KDop turned;
         for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
             turned.lower[slab] = turned.upper[slab] = shifts[slab];
             for (std::size_t i = 0; i < 3; ++i) {
                 const double weight = cones[slab].weights[i];
-                const double lower = weight * dop.lower[cones[slab].slabs[i]];
-                const double upper = weight * dop.upper[cones[slab].slabs[i]];
+                const double lower = weight * node.dop.lower[cones[slab].slabs[i]];
+                const double upper = weight * node.dop.upper[cones[slab].slabs[i]];
                 turned.lower[slab] += std::min(lower, upper);
                 turned.upper[slab] += std::max(lower, upper);
             }
@@ -150,6 +164,7 @@ KDopTree::KDopTree(const PolytopeView& shape, int k) : k_(k)
     struct Face {
         KDop dop;
         Vec3 middle;
+        std::uint32_t index;
     };
     struct Task {
         std::uint32_t node;
@@ -158,7 +173,7 @@ KDopTree::KDopTree(const PolytopeView& shape, int k) : k_(k)
     const Slabs slabs = slabs_of(k);
     std::vector<Face> faces;
     for (std::size_t i = 0; i < shape.normals.size(); ++i) {
-        Face face = {empty_k_dop(slabs), Vec3::Zero()};
+        Face face = {empty_k_dop(slabs), Vec3::Zero(), static_cast<std::uint32_t>(i)};
         for (const std::uint16_t corner : shape.face(i))
             add(shape.vertices[corner], slabs, face.dop);
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -181,6 +196,7 @@ KDopTree::KDopTree(const PolytopeView& shape, int k) : k_(k)
             upper = upper.cwiseMax(faces[i].middle);
         }
         nodes_[task.node].dop = dop;
+        nodes_[task.node].face = faces[task.begin].index;
         if (task.end - task.begin == 1) continue;
         // Halves along the side on which the faces lie furthest apart.
         Eigen::Index axis = 0;
@@ -205,22 +221,22 @@ MethodAnswer ask_k_dop_trees(const PolytopePair& pair, const KDopTree& a, const 
     THRONG_CHECK(a.k() == b.k(), "two trees are compared slab by slab");
     const Slabs slabs = slabs_of(a.k());
     const PolytopePair mirrored = pair.mirrored();
-    const Turn to_a(pair.turn, pair.shift, a.k()), to_b(mirrored.turn, mirrored.shift, a.k());
+    const PlacedTree a_in_b(mirrored, a), b_in_a(pair, b);
     const double slack = pair.noise();
     thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> open;
     open.assign(1, {0, 0});
     MethodAnswer answer;
     const auto most = static_cast<int>(kRoundsOfNode * (a.count() + b.count()));
     while (!open.empty()) {
-        const KDopTree::Node &of_a = a.node(open.back().first), &of_b = b.node(open.back().second);
         const auto [in_a, in_b] = open.back();
+        const KDopTree::Node &of_a = a.node(in_a), &of_b = b.node(in_b);
         open.pop_back();
         if (answer.rounds++ == most) {
             answer.cut_short = true;
             return answer;
         }
-        if (parting_slab(of_a.dop, to_a(of_b.dop), slabs, slack) != slabs.end) continue;
-        if (parting_slab(of_b.dop, to_b(of_a.dop), slabs, slack) != slabs.end) continue;
+        if (parting_slab(of_a.dop, b_in_a.dop(of_b), slabs, slack) != slabs.end) continue;
+        if (parting_slab(of_b.dop, a_in_b.dop(of_a), slabs, slack) != slabs.end) continue;
         if (of_a.left == 0 && of_b.left == 0) return answer;
         // The larger of the two is looked at more closely.
         const bool split_a =

@@ -2,7 +2,8 @@
 //
 // Built once, in the shape's own frame. In another frame a k-DOP is no k-DOP, but each direction
 // there is a sum of three directions here, with weights at least 0, and the slabs' bounds summed
-// alike hold for it. The weights are the same for all nodes of a pair.
+// alike hold for it. The weights are the same for all nodes of a pair. Single faces are placed
+// corner by corner.
 //
 // Source: Klosowski, Held, Mitchell, Sowizral, Zikan, Efficient Collision Detection Using Bounding
 //         Volume Hierarchies of k-DOPs (1998), sections 3 and 4.
@@ -19,7 +20,7 @@ public:
     /// left   the first of two nodes that follow one another; 0: a leaf, of one face
     struct Node {
         KDop dop;
-        std::uint32_t left = 0;
+        std::uint32_t left = 0, face = 0;
     };
 
     /// Needs: k of 6, 14, 18 or 26; a shape that has faces.

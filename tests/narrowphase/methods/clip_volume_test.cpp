@@ -413,9 +413,9 @@ TEST(ClipVolume, NeedlesKeepTheirThickness)
 
 TEST(ClipVolume, ASmallShapeKeepsItsOwnAccuracyBesideALargeOne)
 {
-    // The corner of the small cube that pokes into a face a million times its size.
+    // A small cube half sunk into a face a million times its size, away from anything round.
     const Shapes shapes = two_boxes(Vec3::Constant(0x1p20), Vec3::Constant(0.5));
-    const Pose pose = at(0x1p20 + 0.25, 12345, -0x1p19);
+    const Pose pose = at(0x1p20 + 0.25, 12345.678, -0x1p19 / 3);
     for (const bool swapped : {false, true}) {
         const ConvexPair pair(shapes, swapped ? kBoxB : kBoxA, swapped ? kBoxA : kBoxB,
                               swapped ? inverse(pose) : pose);

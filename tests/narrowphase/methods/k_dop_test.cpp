@@ -268,7 +268,7 @@ TEST(KDopTree, NeverPartsWhatTouches)
     EXPECT_GT(apart[2], apart[0]);
     EXPECT_GT(apart[3], apart[1]);
     EXPECT_GT(apart[3], apart[2]);
-    EXPECT_GT(apart[3], 3 * all / 4);
+    EXPECT_GT(apart[3], 9 * all / 10);
 }
 
 TEST(KDopTree, OneInsideTheOtherIsNotApart)
