@@ -130,7 +130,7 @@ void search(Points& points, Vec3 s, double slack, MethodMemory& memory, MethodAn
             return;
         }
         const double length = std::sqrt(r.squaredNorm());
-        if (!(length > slack)) {
+        if (length <= slack) {
             answer.touch = Touch::touching;
             points.remember_direction(memory);
             return;
@@ -145,7 +145,7 @@ void search(Points& points, Vec3 s, double slack, MethodMemory& memory, MethodAn
         s = cone.holds(mirrored) ? unit_or(mirrored, unit) : cone.middle();
     }
     answer.cut_short = true;
-    points.remember_direction(memory);
+    memory.kind = static_cast<std::uint32_t>(Remembered::nothing);
 }
 
 template <class Points>

@@ -7,9 +7,9 @@ namespace throng {
 
 /// Whether two shapes touch, and the normal of a plane that parts them where they do not.
 ///
-/// Takes a direction s and the points of the two that are furthest along it and against it. If these
-/// lie apart along s, so do the shapes; if not, s is mirrored in the plane across their difference r,
-/// which turns it towards every direction that parts the two:
+/// Takes a direction s and the points of the two that are furthest along it and against it. If
+/// these lie apart along s, so do the shapes; if not, s is mirrored in the plane across their
+/// difference r, which turns it towards every direction that parts the two:
 ///
 ///     s' = s - 2 (r . s) r
 ///
@@ -18,7 +18,7 @@ namespace throng {
 /// them: the middle of the cone is. So each round leaves a good part of the directions behind, and
 /// the search cannot go round in circles as it does by mirroring alone. Within rounding (1e-14 of
 /// the size) of just touching, shapes count as touching. After 96 rounds the search is cut short,
-/// undecided: shapes with a gap or depth of 1e-9 of their size have not been seen to need 30.
+/// undecided: shapes with a gap or depth of 1e-9 of their size have not been seen to need 40.
 ///
 /// Round shapes are points of their core pushed outwards along s. The first direction leads from
 /// center to center. Vertices of boxes and hulls are climbed to from those of the round before;

@@ -10,27 +10,26 @@
 
 namespace throng {
 
-/// Whether two polytopes touch; within PolytopePair::noise() of just touching they do. A face is
-/// its plane: where corners of a hull's face stray beneath that (build_hull() allows for 1e-5 of
-/// its extent), shapes touch from as much further on.
+/// Whether two polytopes touch; within PolytopePair::noise() of just touching they do.
 ///
-/// Plain looks at every vertex and edge of each against every face of the other. Otherwise:
+/// A face is its plane: where corners of a hull's face stray beneath that (build_hull() allows for
+/// 1e-5 of its extent), shapes as near as that may be said to touch by one start and not by
+/// another.
 ///
-///   - balls round and inside the two answer for what is far apart or deep inside;
-///   - beginning with the face nearest the other's center, one goes from face to the vertex
-///   furthest
-///     beneath it, and from vertex to the face furthest beneath that vertex: it ends at a face with
-///     the whole of the other outside, at a vertex inside, or where neither is to be had;
-///   - of those faces the one that most of the other lies outside of says which edges may meet:
-///   those
-///     with an end beneath it, gathered from the lowest vertex outwards, each cut by all faces for
-///     as long as something is left of it.
+/// Plain looks at every vertex and edge of each against every face of the other. Otherwise balls
+/// round and inside the two answer for what is far apart or deep inside. Next, beginning with the
+/// face nearest the other's center, one goes from face to the vertex furthest beneath it, and from
+/// vertex to the face furthest beneath that: it ends at a face with the whole of the other outside,
+/// at a vertex inside, or at neither. Of those faces the one that most of the other lies outside of
+/// says which edges may meet: those with an end beneath it, gathered from the lowest vertex
+/// outwards, each cut by all faces for as long as something is left of it.
 ///
 /// Remembered: the faces last looked at, and the vertex or edge found; these are asked first.
 /// `rounds` counts looks: a vertex or an edge against a face or a ball, or a step of a climb.
 ///
-/// Allocates scratch that the thread keeps. Source: Moore, Wilhelms, Collision Detection and
-/// Response for Computer Animation (1988); the cutting of edges: Cyrus, Beck (1978).
+/// Allocates scratch that the thread keeps.
+///
+/// Source: Moore, Wilhelms, Collision Detection and Response for Computer Animation (1988).
 MethodAnswer
 ask_containment(const ConvexPair& pair, double reach, MethodStart start, MethodMemory& memory);
 

@@ -1,5 +1,7 @@
 #include "narrowphase/methods/chung_wang.hpp"
 
+#include "narrowphase/methods/epa.hpp"
+#include "tests/narrowphase/broken_pairs.hpp"
 #include "tests/narrowphase/methods/polytope_pairs.hpp"
 
 #include <gtest/gtest.h>
@@ -7,10 +9,12 @@
 namespace throng {
 namespace {
 
+using testing::face_to_face;
 using testing::is_clear;
 using testing::PolytopeCase;
 using testing::pool_of_polytopes;
 using testing::RandomPairs;
+using testing::uneven_prisms;
 
 constexpr MethodStart kStarts[] = {MethodStart::plain, MethodStart::cold, MethodStart::cached};
 
@@ -89,6 +93,47 @@ TEST(ChungWang, AnswersAlikeAtEveryScale)
         }
         EXPECT_LE(tally.undecided, 1);
     }
+}
+
+TEST(ChungWang, HardBoxesAtEveryScaleAndBothWaysRound)
+{
+    int asked = 0;
+    for (const BrokenPair& hard : broken_pairs()) {
+        SCOPED_TRACE(hard.name);
+        // Some poses are given to 1e-8 only.
+        const double size = hard.a.size.norm() + hard.b.size.norm();
+        if (std::abs(hard.separation) < 1e-8 * size) continue;
+        for (const double scale : {1e-6, 1.0, 1e6}) {
+            const Shapes shapes = two_boxes(hard.a.size * (scale / 2), hard.b.size * (scale / 2));
+            Pose pose = inverse(hard.a.pose) * hard.b.pose;
+            pose.position *= scale;
+            Tally tally;
+            ASSERT_NO_FATAL_FAILURE(
+                expect_truth_both_ways(shapes, {kBoxA, kBoxB, pose, hard.separation}, tally));
+            EXPECT_EQ(tally.undecided, 0);
+            asked += tally.asked;
+        }
+    }
+    EXPECT_GT(asked, 0);
+}
+
+TEST(ChungWang, ClimbingIsNotFooledByFacesThatAreNotQuiteFlat)
+{
+    // By the axes of the planes alone they may seem to touch; climbing may stop short of a vertex.
+    const Shapes shapes = uneven_prisms(79);
+    RandomShapes random(79);
+    Tally tally;
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 79, pair " + std::to_string(i));
+        const PolytopeCase pair = face_to_face(shapes, random);
+        const ConvexPair shown(shapes, pair.a, pair.b, pair.b_in_a);
+        const Distance cores = gjk(shown.cores(), 1);
+        if (cores.apart ? cores.distance < 1e-10 : epa(shown.cores()).depth < 1e-10) continue;
+        const Touch truth = cores.apart ? Touch::apart : Touch::touching;
+        ASSERT_NO_FATAL_FAILURE(expect_truth(shown, truth, tally));
+    }
+    EXPECT_GT(tally.asked, 5000);
+    EXPECT_EQ(tally.undecided, 0);
 }
 
 TEST(ChungWang, RoundShapesAgreeWithGjk)

@@ -21,11 +21,55 @@ inline Shapes pool_of_polytopes(std::uint64_t seed, double scale)
     return shapes;
 }
 
+/// Prisms whose ends have many corners, none quite in the plane of the end.
+inline Shapes uneven_prisms(std::uint64_t seed)
+{
+    RandomShapes random(seed);
+    Shapes shapes;
+    for (int corners = 6; corners < 60; corners += 9) {
+        std::vector<Vec3> cloud;
+        for (int i = 0; i < 2 * corners; ++i) {
+            const double turn = 6.283185307179586 * (i / 2 + random.number(-0.3, 0.3)) / corners;
+            const double height = (i % 2 == 0 ? 0.3 : -0.3) + random.number(-4e-6, 4e-6);
+            cloud.emplace_back(0.5 * std::cos(turn), 0.5 * std::sin(turn), height);
+        }
+        shapes.hulls.push_back(build_hull(cloud).hull);
+    }
+    return shapes;
+}
+
 struct PolytopeCase {
     ShapeRef a, b;
     Pose b_in_a;
     double gap = 0;  // m, below 0 minus the depth
 };
+
+/// Two of the prisms, near one another: a face of each against the other.
+inline PolytopeCase face_to_face(const Shapes& prisms, RandomShapes& random)
+{
+    const auto most = static_cast<double>(prisms.hulls.size());
+    PolytopeCase pair;
+    pair.a = {ShapeKind::hull, static_cast<std::uint32_t>(random.number(0, most))};
+    pair.b = {ShapeKind::hull, static_cast<std::uint32_t>(random.number(0, most))};
+    const auto any_normal = [&](const Hull& hull) {
+        const auto faces = static_cast<double>(hull.normals.size());
+        return hull.normals[static_cast<std::size_t>(random.number(0, faces))];
+    };
+    const PolytopeView a = view_of(prisms.hulls[pair.a.index]);
+    const PolytopeView b = view_of(prisms.hulls[pair.b.index]);
+    const Vec3 face_a = any_normal(prisms.hulls[pair.a.index]);
+    const Vec3 face_b = any_normal(prisms.hulls[pair.b.index]);
+    pair.b_in_a = {face_a * 0.3 + random.vector(-0.2, 0.2), Quat::FromTwoVectors(face_b, -face_a)};
+    Vec3 normal;
+    pair.gap = polytope_separation(a, b, pair.b_in_a, &normal);
+    if (pair.gap < 0) {
+        const double wanted =
+            std::pow(10, random.number(-9, -3)) * (random.number(0, 3) < 1 ? 1 : -1);
+        pair.b_in_a.position += normal * (wanted - pair.gap);
+        pair.gap = wanted;
+    }
+    return pair;
+}
 
 /// Places shapes of a pool against one another: as they come, concentric, one inside the other,
 /// face to face, and moved to gaps and depths down to 1e-9 of the scale.
