@@ -59,7 +59,7 @@ struct FurthestVertices {
         const Vec3 against = -(pair.turn.transpose() * s);
         a = furthest(pair.a, box_a, s, a);
         b = furthest(pair.b, box_b, against, b);
-        const Vec3 r = between(a, b);
+        Vec3 r = between(a, b);
         const double along = s.dot(r);
         if (!(along > 0) || along > kClimbError * (pair.a.outer_radius + pair.b.outer_radius))
             return r;

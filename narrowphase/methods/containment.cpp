@@ -11,7 +11,7 @@ namespace {
 enum class Remembered : std::uint32_t { nothing, parted, vertex, edge, between };
 
 // What is remembered of a body: its face, its vertex beneath the other's face, and its edge's ends.
-enum Slot : std::size_t { kFace, kVertex, kFrom, kTo };
+constexpr std::size_t kFace = 0, kVertex = 1, kFrom = 2, kTo = 3;
 
 struct Side : PolytopeSide {
     bool mirrored = false;
