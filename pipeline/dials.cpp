@@ -30,18 +30,14 @@ constexpr Choice kRotation[] = {{"quaternion"},
 constexpr Choice kGyroscopic[] = {{"implicit"}, {"explicit"}, {"off"}};
 constexpr Choice kBroadPhase[] = {{"auto"}, {"embree"}, {"grid"}, {"sweep"}, {"all_pairs"}};
 constexpr Choice kNarrowPhase[] = {{"auto"},
-                                   {"gjk", kNotYet},
-                                   {"sat", kNotYet},
-                                   {"chung_wang", kNotYet},
-                                   {"clip_volume", kNotYet},
-                                   {"containment", kNotYet}};
-constexpr Choice kMethodStart[] = {{"cached"}, {"cold", kNotYet}, {"plain", kNotYet}};
-constexpr Choice kBoundsFilter[] = {{"none"},
-                                    {"sphere", kNotYet},
-                                    {"k_dop:14", kNotYet},
-                                    {"k_dop:6", kNotYet},
-                                    {"k_dop:18", kNotYet},
-                                    {"k_dop:26", kNotYet}};
+                                   {"gjk"},
+                                   {"sat"},
+                                   {"chung_wang"},
+                                   {"clip_volume"},
+                                   {"containment"}};
+constexpr Choice kMethodStart[] = {{"cached"}, {"cold"}, {"plain"}};
+constexpr Choice kBoundsFilter[] = {
+    {"none"}, {"sphere"}, {"k_dop:14"}, {"k_dop:6"}, {"k_dop:18"}, {"k_dop:26"}};
 constexpr Choice kNonconvex[] = {{"voxels"},
                                  {"parts", kNotYet},
                                  {"spheres", kNotYet},
@@ -290,9 +286,9 @@ std::vector<Dial> make_dials()
             "time alone: all find the same pairs"),
         choice_dial<&S::narrowphase, kNarrowPhase>("narrowphase",
             "how contacts are found: methods differ in time, depth and the points they give"),
-        fixed_dial<kMethodStart>("method_start",
+        choice_dial<&S::method_start, kMethodStart>("method_start",
             "time alone: what a pair remembers from the step before saves work"),
-        fixed_dial<kBoundsFilter>("bounds_filter",
+        choice_dial<&S::bounds_filter, kBoundsFilter>("bounds_filter",
             "time alone: tighter bounds leave fewer pairs to look at, and cost a test each"),
         fixed_dial<kNonconvex>("nonconvex",
             "finer stand-ins for a moving non-convex shape fit better, and cost more points"),

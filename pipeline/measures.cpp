@@ -143,6 +143,13 @@ std::string World::state_hash() const
             hash.add(std::uint64_t{point.feature});
         }
     };
+    // Where a method of choice will begin, which may show in the last bits of what it finds.
+    for (const MethodMemory& memory : state_->get<MethodPairs>().of_pair) {
+        add3(memory.axis);
+        for (std::size_t i = 0; i < 4; ++i)
+            hash.add(std::uint64_t{memory.a[i]} << 32 | memory.b[i]);
+        hash.add(std::uint64_t{memory.count} << 32 | memory.kind);
+    }
     std::visit(
         [&](const auto& chosen) {
             using Real =
@@ -154,8 +161,9 @@ std::string World::state_hash() const
                 const Contact<Real>* const contact = convex.at(i);
                 if (contact == nullptr) continue;
                 add_contact(pairs.keys[i], *contact);
-                if (is_recycled(kind_of(first_of(pairs.keys[i])),
-                                kind_of(second_of(pairs.keys[i]))))
+                if (convex.recycles
+                    && is_recycled(kind_of(first_of(pairs.keys[i])),
+                                   kind_of(second_of(pairs.keys[i]))))
                     add_found(convex.found[convex.of_pair[i].contact]);
             }
             for (const auto& entry : std::get<MeshContacts<Real>>(chosen.data).entries) {
@@ -193,10 +201,12 @@ std::size_t World::memory_bytes() const
             const Pairs& pairs = std::get<Pairs>(chosen.data);
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             const auto& rows = std::get<Rows<Real>>(chosen.data);
+            const auto& methods = std::get<MethodPairs>(chosen.data);
             sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.asked, convex.of_pair,
                          convex.contacts, convex.free, convex.astray, convex.gathered, convex.order,
                          convex.found, convex.found_gathered, convex.apart_until,
                          convex.travels.placed, convex.travels.traveled, convex.travels.approach,
+                         methods.of_pair, methods.bounds, methods.fallbacks,
                          std::get<ActiveContacts>(chosen.data).entries, rows.blocks, rows.points,
                          rows.bounces, rows.rollings, rows.bodies, rows.inertias);
         },

@@ -4,6 +4,8 @@
 // the command line.
 #pragma once
 
+#include "narrowphase/methods/method_start.hpp"
+
 #include <cstdint>
 
 namespace throng {
@@ -21,6 +23,7 @@ enum class Rotation : std::uint8_t {
 enum class Gyroscopic : std::uint8_t { implicit, explicit_, off };
 enum class BroadPhase : std::uint8_t { auto_, embree, grid, sweep, all_pairs };
 enum class NarrowPhase : std::uint8_t { auto_, gjk, sat, chung_wang, clip_volume, containment };
+enum class BoundsFilter : std::uint8_t { none, sphere, k_dop_14, k_dop_6, k_dop_18, k_dop_26 };
 enum class Response : std::uint8_t { impulse, penalty, kinematic };
 enum class Solver : std::uint8_t { soft_step, pgs, direct };
 enum class FrictionAt : std::uint8_t { manifold, points };
@@ -44,6 +47,8 @@ struct Settings {
     Gyroscopic gyroscopic = Gyroscopic::implicit;
     BroadPhase broadphase = BroadPhase::auto_;
     NarrowPhase narrowphase = NarrowPhase::auto_;
+    MethodStart method_start = MethodStart::cached;
+    BoundsFilter bounds_filter = BoundsFilter::none;
     Response response = Response::impulse;
     Solver solver = Solver::soft_step;
     FrictionAt friction_at = FrictionAt::manifold;

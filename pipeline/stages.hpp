@@ -32,7 +32,8 @@ void collide_convex(const Conditions&,
                     const Bounds&,
                     const Poses&,
                     const BodyStates&,
-                    ConvexContacts<Real>&);
+                    ConvexContacts<Real>&,
+                    MethodPairs&);
 
 /// The same against triangle meshes.
 template <class Real>

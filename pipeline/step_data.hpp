@@ -11,6 +11,7 @@
 #include "kernels/data/rows.hpp"
 #include "kernels/solve/coloring.hpp"
 #include "kernels/solve/islands.hpp"
+#include "narrowphase/methods/method_contacts.hpp"
 #include "pipeline/conditions.hpp"
 
 #include <tuple>
@@ -51,6 +52,7 @@ using StepData = std::tuple<Conditions,
                             Finder,
                             Pairs,
                             ConvexContacts<Real>,
+                            MethodPairs,
                             MeshContacts<Real>,
                             ActiveContacts,
                             IslandFinder,

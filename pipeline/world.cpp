@@ -195,6 +195,7 @@ void World::step(int steps)
             Conditions& conditions = state.get<Conditions>();
             conditions.last_substep = conditions.substep();
             state.report.contacts_dropped += state.get<Trouble>().contacts_dropped;
+            state.report.fallbacks += state.get<MethodPairs>().fell_back;
             state.follow_step();
         }
         ++state.report.step;

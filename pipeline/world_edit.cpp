@@ -79,6 +79,10 @@ void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
             for (std::size_t i = 0; i < until.size(); ++i)
                 if (kept_as[i] != Pairs::kNewPair) until[kept_as[i]] = until[i];
             until.resize(std::min<std::size_t>(until.size(), kept));
+            auto& memories = std::get<MethodPairs>(chosen.data).of_pair;
+            for (std::size_t i = 0; i < memories.size(); ++i)
+                if (kept_as[i] != Pairs::kNewPair) memories[kept_as[i]] = memories[i];
+            memories.resize(std::min<std::size_t>(memories.size(), kept));
             auto& entries = std::get<MeshContacts<Real>>(chosen.data).entries;
             std::erase_if(entries, [&](const auto& entry) { return gone(entry.pair); });
             for (auto& entry : entries) entry.pair = kept_as[entry.pair];
@@ -125,8 +129,8 @@ void World::State::empty_unused()
             };
             if (!on.has(Effect::mesh_contact)) empty(MeshContacts<Real>{});
             if (on.has(Effect::contact)) return;
-            empty(Pairs{}, ConvexContacts<Real>{}, ActiveContacts{}, Islands{}, Layout{},
-                  Rows<Real>{});
+            empty(Pairs{}, ConvexContacts<Real>{}, MethodPairs{}, ActiveContacts{}, Islands{},
+                  Layout{}, Rows<Real>{});
         },
         step);
 }

@@ -7,6 +7,7 @@
 
 #include "kernels/data/shapes.hpp"
 #include "narrowphase/methods/gjk.hpp"
+#include "narrowphase/methods/method_start.hpp"
 #include "narrowphase/polytope_contacts.hpp"
 
 #include <cstdint>
@@ -76,13 +77,6 @@ struct MethodMemory {
     Vec3 axis = Vec3::Zero();
     std::uint32_t a[4] = {}, b[4] = {};
     std::uint32_t count = 0, kind = 0;
-};
-
-/// With how much of its speed a method runs.
-enum class MethodStart : std::uint8_t {
-    cached,  // from what the pair remembers
-    cold,    // as if it remembered nothing
-    plain,   // without its accelerations: the answer sheet
 };
 
 /// What a method can tell, to be added up.

@@ -9,6 +9,7 @@
 #include "kernels/solve/contact_rows.hpp"
 #include "narrowphase/box_pairs.hpp"
 #include "narrowphase/narrowphase.hpp"
+#include "pipeline/stages/chosen_method.hpp"
 #include "pipeline/stages/collide.hpp"
 #include "pipeline/stages/contact_places.hpp"
 #include "pipeline/stages/known_apart.hpp"
@@ -39,9 +40,10 @@ public:
               const Bounds& bounds,
               const Poses& poses,
               const BodyStates& states,
+              ChosenMethod& chosen,
               ConvexContacts<Real>& contacts)
         : pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds), poses_(poses),
-          states_(states), contacts_(contacts), scale_(static_cast<Real>(impulse_scale(conditions)))
+          states_(states), chosen_(chosen), contacts_(contacts), scale_(static_cast<Real>(impulse_scale(conditions)))
     { }
 
     void look_at(std::size_t begin, std::size_t end, std::size_t block)
@@ -99,11 +101,30 @@ private:
         using enum ShapeKind;
         const ShapeKind a = colliders_.shape[pair.a].kind, b = colliders_.shape[pair.b].kind;
         if (a == mesh || b == mesh) return;
+        if (chosen_.asks(a, b)) {
+            if (chosen_.parts(pair)) return part(i, block);
+            if (chosen_.has_method() && collide_chosen(i, pair, block)) return;
+        }
         if (a == sphere && b == sphere) return collide_spheres(i, pair, block);
         if constexpr (std::is_same_v<Real, float>)
             if (a == box && b == box) return put_aside(i, pair, boxes);
-        if (is_recycled(a, b)) return collide_or_recycle(i, pair, block);
+        if (contacts_.recycles && is_recycled(a, b)) return collide_or_recycle(i, pair, block);
         collide_pair(i, pair, block);
+    }
+
+    bool collide_chosen(std::size_t i, const PairPlace& pair, std::size_t block)
+    {
+        LocalManifold<double> exact;
+        if (!chosen_.collide(i, pair, exact, block)) return false;
+        LocalManifold<Real> manifold;
+        manifold.normal = exact.normal.cast<Real>();
+        for (int k = 0; k < exact.count; ++k) {
+            const auto& point = exact.points[static_cast<std::size_t>(k)];
+            manifold.add(point.position.cast<Real>(), static_cast<Real>(point.separation),
+                         point.feature);
+        }
+        take(i, pair, false, manifold, block);
+        return true;
     }
 
     void collide_spheres(std::size_t i, const PairPlace& pair, std::size_t block)
@@ -243,10 +264,21 @@ private:
     const Bounds& bounds_;
     const Poses& poses_;
     const BodyStates& states_;
+    ChosenMethod& chosen_;
     ConvexContacts<Real>& contacts_;
     Real scale_;
     typename ConvexContacts<Real>::Begun& begun_ = begun();
 };
+
+// Nobody has followed what was found while a method of choice answered.
+template <class Real>
+void forget_found(ConvexContacts<Real>& contacts)
+{
+    FoundManifold<Real> nothing;
+    nothing.b_in_a.position.setConstant(std::numeric_limits<Real>::quiet_NaN());
+    contacts.found.assign(contacts.contacts.size(), nothing);
+    contacts.apart_until.assign(contacts.apart_until.size(), 0.0F);
+}
 
 }  // namespace
 
@@ -258,22 +290,28 @@ void collide_convex(const Conditions& conditions,
                     const Bounds& bounds,
                     const Poses& poses,
                     const BodyStates& states,
-                    ConvexContacts<Real>& contacts)
+                    ConvexContacts<Real>& contacts,
+                    MethodPairs& method_pairs)
 {
     if (pairs.changed) follow_pairs(pairs, contacts);
     const std::size_t blocks = block_count(pairs.keys.size(), kGrain);
     contacts.begun.resize(blocks);
     contacts.parted.start(blocks);
-    contacts.recycles = !shapes.hulls.empty();
+    ChosenMethod chosen(conditions, pairs, shapes, colliders, bounds, blocks, method_pairs);
+    const bool recycles = !shapes.hulls.empty() && !chosen.has_method();
+    if (recycles && !contacts.recycles) forget_found(contacts);
+    contacts.recycles = recycles;
     if (contacts.recycles) {
         resize_closely(contacts.apart_until, pairs.keys.size());
         follow_colliders(bounds.placed, colliders.outer_radius, bounds.reach, contacts.travels);
     }
     for_each_block(
         pairs.keys.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-            Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, contacts)
+            Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, chosen,
+                            contacts)
                 .look_at(begin, end, block);
         });
+    chosen.count_fallbacks();
     move_in_and_out(contacts);
     put_in_order(contacts);
 }
@@ -281,7 +319,7 @@ void collide_convex(const Conditions& conditions,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void collide_convex<Real>(const Conditions&, const Pairs&, const Shapes&,             \
                                        const Colliders&, const Bounds&, const Poses&,              \
-                                       const BodyStates&, ConvexContacts<Real>&);
+                                       const BodyStates&, ConvexContacts<Real>&, MethodPairs&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE
