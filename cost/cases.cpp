@@ -1,6 +1,7 @@
 #include "cost/cases.hpp"
 
 #include "cost/hard_cases/hard_cases.hpp"
+#include "kernels/math/rotation.hpp"
 #include "pipeline/world.hpp"
 
 #include <algorithm>
@@ -20,8 +21,20 @@ constexpr HardCase kCases[] = {
      Fault::friction},
     {"H22", "logs and ladders stand or fall, either side of the limit", case_leaning,
      Fault::friction},
-    {"H33", "a stack far from the origin rests as it does at the origin", case_far_away,
-     Fault::float_poses},
+    {"H28", "pairs that broke real libraries, at three scales and both ways round",
+     case_broken_pairs, Fault::nudge},
+    {"H29", "boxes a hair apart, touching and a hair overlapped", case_kissing, Fault::nudge},
+    {"H30", "degenerate hulls are refused or answer as the clean one does", case_degenerate_hulls,
+     Fault::nudge},
+    {"H31", "needles and plates a million times longer than thick", case_slender, Fault::nudge},
+    {"H32", "answers grow with the scale, and by nothing else", case_scaled, Fault::nudge},
+    {"H33", "far from the origin a stack rests and pairs answer as they do at the origin",
+     case_far_away, Fault::float_poses},
+    {"H34", "boxes all but parallel: normals follow the tilt, contacts are whole",
+     case_near_parallel, Fault::nudge},
+    {"H35", "shapes about one center leave by the shortest way", case_concentric, Fault::nudge},
+    {"H36", "the volume that two polytopes share", case_shared_volume, Fault::nudge},
+    {"H37", "accelerations change the time and never the answer", case_same_answers, Fault::nudge},
 };
 
 void plant(Fault fault, Scene& scene)
@@ -41,14 +54,23 @@ void plant(Fault fault, Scene& scene)
     }
 }
 
+Vec3 rounded(const Vec3& place) { return place.cast<float>().cast<double>(); }
+
 void round_poses(World& world)
 {
     for (const BodyId body : world.bodies()) {
         if (world.motion(body) != Motion::dynamic) continue;
         Pose pose = world.pose(body);
-        pose.position = pose.position.cast<float>().cast<double>();
+        pose.position = rounded(pose.position);
         world.set_pose(body, pose);
     }
+}
+
+// Aslant, so that no face of a pair lets it pass.
+Pose nudged(const Pose& pose, double size)
+{
+    const Vec3 aslant = Vec3(0.5, 0.6, 0.62);
+    return {pose.position + 1e-6 * size * aslant, pose.orientation * exponential(1e-6 * aslant)};
 }
 
 }  // namespace
@@ -99,6 +121,57 @@ void CaseBench::report(
     lost_ = 0;
     result.time_ms = spent_ms_;
     spent_ms_ = 0;
+    results_.push_back(std::move(result));
+}
+
+ConvexAnswer CaseBench::ask(ConvexQuery& query,
+                            std::string_view method,
+                            const Pose& a,
+                            const Pose& b,
+                            double size,
+                            QueryStart start)
+{
+    using Clock = std::chrono::steady_clock;
+    Pose at_a = a, at_b = b;
+    if (fault_ == Fault::nudge) at_b = nudged(at_b, size);
+    if (fault_ == Fault::float_poses) {
+        at_a.position = rounded(at_a.position);
+        at_b.position = rounded(at_b.position);
+    }
+    const auto begin = Clock::now();
+    ConvexAnswer answer = query.ask(method, seen_from(at_a, at_b), start);
+    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    const auto spent = method_ms_.find(method);
+    if (spent != method_ms_.end())
+        spent->second += ms;
+    else
+        method_ms_.emplace(method, ms);
+    return answer;
+}
+
+void CaseBench::report_method(std::string_view method,
+                              std::string_view setting,
+                              std::string quantity,
+                              double figure,
+                              double bound,
+                              std::string unit)
+{
+    const std::string where(setting);
+    report(std::string(method) + (where.empty() ? "" : ", " + where), std::move(quantity), figure,
+           bound, std::move(unit));
+    results_.back().method = method;
+    double& spent = method_ms_[std::string(method)];
+    results_.back().time_ms = spent;
+    spent = 0;
+}
+
+void CaseBench::skip(std::string quantity, std::string why)
+{
+    CaseResult result;
+    result.setting = "all methods";
+    result.quantity = std::move(quantity);
+    result.verdict = Verdict::skipped;
+    result.why = std::move(why);
     results_.push_back(std::move(result));
 }
 

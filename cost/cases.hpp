@@ -5,9 +5,10 @@
 // cases.cpp.
 #pragma once
 
-#include "pipeline/scene.hpp"
+#include "pipeline/convex_query.hpp"
 
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +21,7 @@ enum class Verdict : std::uint8_t { pass, fail, skipped };
 /// One line of a case's answer. A figure passes when it is at most its bound.
 struct CaseResult {
     std::string name;      // H8
+    std::string method;    // of those that convex_query.hpp lists; empty where none was asked
     std::string setting;   // n=10
     std::string quantity;  // greatest overlap
     double figure = 0;
@@ -35,7 +37,8 @@ enum class Fault : std::uint8_t {
     none,
     friction,     // coefficients 10 % too small
     mass,         // bodies 10 % too heavy
-    float_poses,  // poses rounded to float after every step
+    float_poses,  // poses rounded to float after every step, and before a method sees them
+    nudge,        // pairs handed to a method off by a millionth of their size, and of a radian
 };
 
 /// What a case runs on: it makes the worlds, so that settings and faults reach all of them.
@@ -53,9 +56,27 @@ public:
              double time,
              const std::function<bool(class World&, double now)>& watch);
 
+    /// What a method says of two shapes, placed in the world.
+    ConvexAnswer ask(ConvexQuery& query,
+                     std::string_view method,
+                     const Pose& a,
+                     const Pose& b,
+                     double size,
+                     QueryStart start);
+
     /// Adds a line. Time is counted from the last line, or from the start.
     void report(
         std::string setting, std::string quantity, double figure, double bound, std::string unit);
+
+    /// Adds a line about a method; time is what it took since its last line.
+    void report_method(std::string_view method,
+                       std::string_view setting,
+                       std::string quantity,
+                       double figure,
+                       double bound,
+                       std::string unit);
+    /// Adds a line that says why there is none.
+    void skip(std::string quantity, std::string why);
 
     std::vector<CaseResult> take_results(std::string_view name);
 
@@ -65,6 +86,7 @@ private:
     int threads_;
     double spent_ms_ = 0;
     std::size_t lost_ = 0;  // bodies quarantined since the last line
+    std::map<std::string, double, std::less<>> method_ms_;
     std::vector<CaseResult> results_;
 };
 

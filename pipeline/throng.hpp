@@ -1,6 +1,7 @@
 // throng: all that a program includes.
 #pragma once
 
+#include "pipeline/convex_query.hpp"
 #include "pipeline/queries.hpp"
 #include "pipeline/report.hpp"
 #include "pipeline/scene.hpp"

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <map>
 
 namespace throng {
 namespace {
@@ -75,6 +76,55 @@ void print_line(const CaseResult& result)
               << (result.why.empty() ? "" : " (" + result.why + ")") << std::endl;
 }
 
+// Which methods keep their bounds in which cases: a row a method, a column a case.
+class MethodTable {
+public:
+    void add(const CaseResult& result)
+    {
+        if (result.method.empty()) return;
+        keep(methods_, result.method);
+        keep(cases_, result.name);
+        bool& failed = failed_[{result.method, result.name}];
+        failed = failed || result.verdict == Verdict::fail;
+    }
+
+    void print(std::ostream& out) const
+    {
+        if (methods_.empty()) return;
+        std::size_t widest = 6;
+        for (const std::string& method : methods_) widest = std::max(widest, method.size());
+        const auto begin_row = [&](const std::string& name) {
+            out << std::left << std::setw(static_cast<int>(widest)) << name;
+        };
+        begin_row("method");
+        for (const std::string& name : cases_) out << ' ' << std::setw(4) << name;
+        out << '\n';
+        for (const std::string& method : methods_) {
+            begin_row(method);
+            for (const std::string& name : cases_)
+                out << ' ' << std::setw(4) << text_of(method, name);
+            out << '\n';
+        }
+        out << std::flush;
+    }
+
+private:
+    static void keep(std::vector<std::string>& names, const std::string& name)
+    {
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    // A dash where the method claims nothing that the case asks for.
+    std::string_view text_of(const std::string& method, const std::string& name) const
+    {
+        const auto found = failed_.find({method, name});
+        if (found == failed_.end()) return "-";
+        return found->second ? "fail" : "pass";
+    }
+
+    std::vector<std::string> methods_, cases_;
+    std::map<std::pair<std::string, std::string>, bool> failed_;
+};
+
 std::string json_line(const CaseResult& result)
 {
     std::string line = "{\"case\": " + json_string(result.name) + ", \"setting\": "
@@ -83,6 +133,7 @@ std::string json_line(const CaseResult& result)
         + ", \"bound\": " + number_text(result.bound) + ", \"unit\": " + json_string(result.unit)
         + ", \"status\": " + json_string(text_of(result.verdict))
         + ", \"ms\": " + number_text(result.time_ms);
+    if (!result.method.empty()) line += ", \"method\": " + json_string(result.method);
     if (!result.why.empty()) line += ", \"why\": " + json_string(result.why);
     return line + "}";
 }
@@ -96,10 +147,12 @@ int run_cases(const Options& options)
 
     std::size_t passed = 0, failed = 0;
     std::string lines;
+    MethodTable methods;
     for (const HardCase* one : cases) {
         for (const CaseResult& result :
              run_case(*one, settings, Fault::none, threads_asked(options))) {
             print_line(result);
+            methods.add(result);
             lines += (lines.empty() ? "  " : ",\n  ") + json_line(result);
             passed += result.verdict == Verdict::pass ? 1 : 0;
             failed += result.verdict == Verdict::fail ? 1 : 0;
@@ -110,6 +163,7 @@ int run_cases(const Options& options)
         json.stream() << "[\n" << lines << "\n]\n";
         json.keep();
     }
+    methods.print(std::cout);
     std::cout << passed << " passed, " << failed << " failed" << std::endl;
     if (interrupted()) return kInterrupted;
     return failed == 0 ? kDone : kCaseFailed;

@@ -9,7 +9,19 @@ void case_stack(CaseBench& bench);        // H8, stack.cpp
 void case_sliding(CaseBench& bench);      // H12, sliding.cpp
 void case_slope_limit(CaseBench& bench);  // H13, slope_limit.cpp
 void case_leaning(CaseBench& bench);      // H22, leaning.cpp
-void case_far_away(CaseBench& bench);     // H33, stack.cpp
+
+// What convex methods say of two shapes.
+void case_broken_pairs(CaseBench& bench);      // H28, convex_pairs.cpp
+void case_kissing(CaseBench& bench);           // H29, kissing.cpp
+void case_degenerate_hulls(CaseBench& bench);  // H30, degenerate_hulls.cpp
+void case_slender(CaseBench& bench);           // H31, slender.cpp
+void case_scaled(CaseBench& bench);            // H32, convex_pairs.cpp
+void case_far_away(CaseBench& bench);          // H33, stack.cpp, and pairs of convex_pairs.cpp
+void far_away_pairs(CaseBench& bench);
+void case_near_parallel(CaseBench& bench);  // H34, near_parallel.cpp
+void case_concentric(CaseBench& bench);     // H35, concentric.cpp
+void case_shared_volume(CaseBench& bench);  // H36, shared_volume.cpp
+void case_same_answers(CaseBench& bench);   // H37, same_answers.cpp
 
 /// A scene under construction: shapes, materials and bodies by value, ids in order.
 class SceneParts {

@@ -100,6 +100,7 @@ void case_far_away(CaseBench& bench)
             error = std::max(error, (home[i] - away[i]).norm());
         bench.report(name, "distance from where it rests at the origin", error, 1e-3, "m");
     }
+    far_away_pairs(bench);
 }
 
 }  // namespace throng

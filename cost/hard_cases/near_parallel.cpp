@@ -1,0 +1,101 @@
+// Near parallel: H34, boxes tilted against one another by 1e-9 to 1e-2 rad, and edges parallel to
+// within 1e-12.
+//
+// Answer: the normal leans by no more than some tilts; depths and distances in four times the
+// digits; a box that rests on another has a contact of four points whatever the tilt.
+#include "cost/hard_cases/convex_judge.hpp"
+#include "cost/hard_cases/hard_cases.hpp"
+#include "kernels/math/rotation.hpp"
+#include "pipeline/names.hpp"
+#include "pipeline/world.hpp"
+
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+const Vec3 kHalf(0.5, 0.4, 0.3);  // m
+
+struct Axes {
+    const char* name;
+    Vec3 about;  // rad, for a tilt of 1
+};
+const Axes kAxes[] = {{"tilt about one axis", Vec3(1, 0, 0)},
+                      {"tilt about two axes", Vec3(0.8, 0.6, 0)}};
+
+void judge_normal(
+    CaseBench& bench, MethodTally& tally, const KnownPair& pair, const char* setting, double tilt)
+{
+    for (const MethodDescription& method : known_methods()) {
+        ConvexQuery query(pair.a, pair.b);
+        const ConvexAnswer answer =
+            bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, QueryStart::cold);
+        if (std::isnan(told_separation(method, answer))) continue;
+        tally.worst(method.name, setting, "lean of the normal / tilt",
+                    (answer.normal - Vec3::UnitZ()).norm() / tilt, 10);
+    }
+}
+
+void judge_faces(CaseBench& bench, MethodTally& tally)
+{
+    for (double tilt = 1e-9; tilt < 2e-2; tilt *= 10)
+        for (const Axes& axes : kAxes)
+            for (const double up : {0.598, 0.62}) {  // overlapped, apart
+                const Pose pose{Vec3(0.1, 0.05, up), exponential(tilt * axes.about)};
+                const KnownPair pair = known_boxes(kHalf, Pose{}, kHalf, pose);
+                judge(bench, tally, pair, axes.name);
+                judge_normal(bench, tally, pair, axes.name, tilt);
+            }
+}
+
+// Edge upon edge: two cubes turned on their edges, all but parallel along x.
+void judge_edges(CaseBench& bench, MethodTally& tally)
+{
+    constexpr double kEighthTurn = 0.78539816339744830962;
+    const Vec3 half = Vec3::Constant(0.5);
+    const Quat on_edge = exponential(Vec3(kEighthTurn, 0, 0));
+    for (const double tilt : {0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10})
+        for (const Axes& axes : kAxes)
+            for (const double gap : {-1e-3, -1e-9, 0.0, 1e-9, 1e-3}) {
+                // About y and z here: the edges run along x.
+                const Vec3 about(0, axes.about.x(), axes.about.y());
+                const Pose pose{Vec3(0.03, 0, std::sqrt(2.0) + gap),
+                                exponential(tilt * about) * on_edge};
+                judge(bench, tally, known_boxes(half, {Vec3::Zero(), on_edge}, half, pose),
+                      "edges all but parallel");
+            }
+}
+
+// Points that a box and the one it is set down upon share after one step.
+void judge_contact(CaseBench& bench)
+{
+    double fewest = 8;
+    for (double tilt = 1e-9; tilt < 2e-3; tilt *= 10)
+        for (const Axes& axes : kAxes) {
+            SceneParts parts(bench.scene());
+            const std::uint32_t stuff = parts.material(0.5);
+            const Pose above{Vec3(0.1, 0.05, 0.5995), exponential(tilt * axes.about)};
+            parts.body(parts.box(stuff, 1, kHalf, Pose{})).motion = Motion::static_;
+            parts.box(stuff, 1, kHalf, above);
+            const double dt = parts.scene().settings.dt;
+            bench.run(parts.scene(), dt, [&](World& world, double) {
+                fewest = std::min(fewest, static_cast<double>(world.report().contacts));
+                return true;
+            });
+        }
+    bench.report("contact in a world", "points missing of four", 4 - fewest, 0, "1");
+}
+
+}  // namespace
+
+void case_near_parallel(CaseBench& bench)
+{
+    MethodTally tally;
+    judge_faces(bench, tally);
+    judge_edges(bench, tally);
+    tally.report(bench);
+    judge_contact(bench);
+}
+
+}  // namespace throng

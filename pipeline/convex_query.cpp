@@ -1,0 +1,190 @@
+#include "pipeline/convex_query.hpp"
+
+#include "kernels/geometry/hull.hpp"
+#include "narrowphase/methods/convex_methods.hpp"
+#include "narrowphase/narrowphase.hpp"
+#include "pipeline/names.hpp"
+#include "pipeline/scene_check.hpp"
+#include "pipeline/scene_rules.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+namespace {
+
+// A reach beyond all that a scene may hold, whose square is finite still.
+constexpr double kAnywhere = 1e30;
+
+struct ShapeMaker {
+    Shapes& shapes;
+
+    template <class Shape>
+    static ShapeRef append(std::vector<Shape>& kind, ShapeKind name, Shape shape)
+    {
+        kind.push_back(std::move(shape));
+        return {name, static_cast<std::uint32_t>(kind.size() - 1)};
+    }
+    ShapeRef operator()(const SphereShape& s) const
+    {
+        return append(shapes.spheres, ShapeKind::sphere, Sphere{s.radius});
+    }
+    ShapeRef operator()(const CapsuleShape& s) const
+    {
+        return append(shapes.capsules, ShapeKind::capsule, Capsule{s.radius, s.half_length});
+    }
+    ShapeRef operator()(const CylinderShape& s) const
+    {
+        return append(shapes.cylinders, ShapeKind::cylinder, Cylinder{s.radius, s.half_length});
+    }
+    ShapeRef operator()(const BoxShape& s) const
+    {
+        return append(shapes.boxes, ShapeKind::box, Box{s.half_extents});
+    }
+    ShapeRef operator()(const HullShape& s) const
+    {
+        return append(shapes.hulls, ShapeKind::hull, build_hull(s.points).hull);
+    }
+    // Refused before they come here.
+    ShapeRef operator()(const PlaneShape&) const { return {}; }
+    ShapeRef operator()(const MeshShape&) const { return {}; }
+    ShapeRef operator()(const CompoundShape&) const { return {}; }
+};
+
+std::string trouble_with(const ShapeDescription& shape)
+{
+    if (std::holds_alternative<PlaneShape>(shape.shape)
+        || std::holds_alternative<MeshShape>(shape.shape)
+        || std::holds_alternative<CompoundShape>(shape.shape))
+        return "wanted a sphere, capsule, cylinder, box or hull";
+    Scene scene;
+    scene.shapes.push_back({"", shape.shape});
+    try {
+        check_shapes(scene);
+    } catch (const SceneTrouble& trouble) {
+        // The path leads through a scene that nobody but us has seen.
+        const ScenePath inside(trouble.path.begin() + std::min<long>(2, std::ssize(trouble.path)),
+                               trouble.path.end());
+        return path_text(inside) + ": " + trouble.wanted;
+    }
+    return {};
+}
+
+MethodStart start_of(QueryStart start)
+{
+    switch (start) {
+    case QueryStart::cached:
+        return MethodStart::cached;
+    case QueryStart::cold:
+        return MethodStart::cold;
+    default:
+        return MethodStart::plain;
+    }
+}
+
+QueryVerdict verdict_of(Touch touch)
+{
+    switch (touch) {
+    case Touch::apart:
+        return QueryVerdict::apart;
+    case Touch::touching:
+        return QueryVerdict::touching;
+    default:
+        return QueryVerdict::undecided;
+    }
+}
+
+ConvexAnswer refusal(std::string trouble)
+{
+    ConvexAnswer answer;
+    answer.trouble = std::move(trouble);
+    return answer;
+}
+
+std::string unknown_method(std::string_view method)
+{
+    std::vector<std::string_view> names;
+    for (const ConvexMethod& one : convex_methods()) names.push_back(one.name);
+    return "there is no method " + in_quotes(method) + "; there are: " + either_of(names);
+}
+
+std::string trouble_with(const Pose& pose, double reach)
+{
+    if (!pose.position.allFinite() || pose.position.cwiseAbs().maxCoeff() > kGreatestLength)
+        return "position is not finite or too far; give a place in m";
+    if (!is_unit(pose.orientation)) return std::string(kWantedUnitQuaternion);
+    if (!(reach >= 0)) return "reach is below 0 or no number; give a distance in m";
+    return {};
+}
+
+}  // namespace
+
+struct ConvexQuery::Inside {
+    std::string trouble;
+    Shapes shapes;
+    std::optional<ConvexPair> pair;
+    std::vector<MethodMemory> memories;  // by method, so that none sees another's
+};
+
+std::vector<MethodDescription> known_methods()
+{
+    std::vector<MethodDescription> known;
+    for (const ConvexMethod& method : convex_methods())
+        known.push_back({method.name, method.about, (method.tells & kTellsTouch) != 0,
+                         (method.tells & kTellsDistance) != 0, (method.tells & kTellsDepth) != 0,
+                         (method.tells & kTellsVolume) != 0, method.polytopes_only});
+    return known;
+}
+
+Pose seen_from(const Pose& a, const Pose& b) { return pose_seen_from_a({}, {}, a, b); }
+
+ConvexQuery::ConvexQuery(const ShapeDescription& a, const ShapeDescription& b)
+    : inside_(std::make_unique<Inside>())
+{
+    for (const auto& [name, shape] : {std::pair("a", &a), std::pair("b", &b)}) {
+        const std::string trouble = trouble_with(*shape);
+        if (trouble.empty()) continue;
+        inside_->trouble = std::string("shape ") + name + ": " + trouble;
+        return;
+    }
+    const ShapeMaker maker{inside_->shapes};
+    const ShapeRef first = std::visit(maker, a.shape), second = std::visit(maker, b.shape);
+    inside_->pair.emplace(inside_->shapes, first, second, Pose{});
+    inside_->memories.resize(convex_methods().size());
+}
+
+ConvexQuery::~ConvexQuery() = default;
+ConvexQuery::ConvexQuery(ConvexQuery&&) noexcept = default;
+ConvexQuery& ConvexQuery::operator=(ConvexQuery&&) noexcept = default;
+
+const std::string& ConvexQuery::trouble() const { return inside_->trouble; }
+
+ConvexAnswer
+ConvexQuery::ask(std::string_view method, const Pose& b_in_a, QueryStart start, double reach)
+{
+    if (!inside_->trouble.empty()) return refusal(inside_->trouble);
+    const ConvexMethod* const found = find_convex_method(method);
+    if (found == nullptr) return refusal(unknown_method(method));
+    if (!found->serves(*inside_->pair))
+        return refusal("method " + in_quotes(method) + " serves boxes and hulls alone");
+    if (std::string trouble = trouble_with(b_in_a, reach); !trouble.empty())
+        return refusal(std::move(trouble));
+
+    inside_->pair->place({b_in_a.position, b_in_a.orientation.normalized()});
+    const auto at = static_cast<std::size_t>(found - convex_methods().data());
+    const MethodAnswer told = found->ask(*inside_->pair, std::min(reach, kAnywhere),
+                                         start_of(start), inside_->memories[at]);
+    return {verdict_of(told.touch),
+            {},
+            told.separation,
+            told.normal,
+            told.on_a,
+            told.on_b,
+            told.volume,
+            told.surface,
+            told.center,
+            told.rounds,
+            told.cut_short};
+}
+
+}  // namespace throng
