@@ -116,7 +116,7 @@ void judge_random_pairs(CaseBench& bench, MethodTally& tally)
 std::vector<Hull> hulls_to_climb()
 {
     std::vector<Vec3> can, dome;
-    constexpr int kAround = 360;
+    constexpr int kAround = 120;
     for (int i = 0; i < kAround; ++i) {
         const SinCos turn = sin_cos(2 * 3.14159265358979323846 * i / kAround);
         for (const double z : {-0.2, 0.2}) can.emplace_back(turn.cos, turn.sin, z);
@@ -126,7 +126,7 @@ std::vector<Hull> hulls_to_climb()
     dome.emplace_back(0, 0, 0);
     dome.emplace_back(0, 0, -0.5);
     Random random(38);
-    return {build_hull(can).hull, build_hull(dome).hull, random_hull(random, 1000)};
+    return {build_hull(can).hull, build_hull(dome).hull, random_hull(random, 300)};
 }
 
 void judge_great_hulls(CaseBench& bench, MethodTally& tally)

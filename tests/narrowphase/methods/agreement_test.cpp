@@ -193,7 +193,7 @@ TEST_P(AgreementOnHullsFromGames, AllMethodsSayTheSame)
     const std::filesystem::path path = shared_data("hulls/game_hulls.bin");
     if (path.empty()) GTEST_SKIP() << "hulls/game_hulls.bin is not there; set THRONG_DATA";
     Shapes shapes;
-    shapes.hulls = game_hulls(path, 300);
+    shapes.hulls = game_hulls(path, 1000);
     ASSERT_GT(shapes.hulls.size(), 100u);
     const auto count = static_cast<std::uint32_t>(shapes.hulls.size());
     Random random(static_cast<std::uint64_t>(2000 + GetParam()));
@@ -205,8 +205,10 @@ TEST_P(AgreementOnHullsFromGames, AllMethodsSayTheSame)
         const Hull& b = shapes.hulls[second];
         const Quat turn = random_turn(random);
         const Vec3 way = random_turn(random) * Vec3::UnitX();
-        const double reach = random.uniform(0.5, 1.1) * (a.outer_radius + b.outer_radius);
-        const Pose pose{a.center + reach * way - turn * b.center, turn};
+        // As far as both reach along the way between them, they are surely apart.
+        const double reach = reach_of(a.vertices, {-a.center, Quat::Identity()})(way)
+            + reach_of(b.vertices, {-(turn * b.center), turn})(-way);
+        const Pose pose{a.center + random.uniform(0.5, 1.02) * reach * way - turn * b.center, turn};
         ConvexPair pair(shapes, {ShapeKind::hull, first}, {ShapeKind::hull, second}, pose);
         std::vector<MethodMemory> memories;
         panel.ask(pair, memories, i);

@@ -1,0 +1,49 @@
+// Cases: what the command prints and writes of hard cases.
+#include "pipeline/convex_query.hpp"
+#include "scenes/json.hpp"
+#include "tests/apps/command.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace throng {
+namespace {
+
+using Node = JsonDocument::Node;
+
+TEST(Cases, MethodsAreSummedUpCaseByCase)
+{
+    const TestFolder folder;
+    const Outcome done = run_throng({"cases", "h32", "H35", "--json", folder / "c.json"});
+    ASSERT_EQ(done.err, "");
+    const std::size_t table = done.out.find("\nmethod ");
+    ASSERT_NE(table, std::string::npos) << done.out;
+    EXPECT_NE(done.out.find(" H32  H35", table), std::string::npos) << done.out;
+    for (const MethodDescription& method : known_methods())
+        EXPECT_NE(done.out.find("\n" + std::string(method.name) + " ", table), std::string::npos)
+            << method.name << " is not in the table of " << done.out;
+
+    // Each line of a method names it, beside the keys that every line has.
+    const JsonDocument json(folder.read("c.json"), "c.json");
+    std::set<std::string> named;
+    Node line = json.first(JsonDocument::kRoot);
+    for (std::size_t i = 0; i < json.size(JsonDocument::kRoot); ++i, line = json.next(line)) {
+        for (const char* key : {"case", "setting", "quantity", "figure", "bound", "unit", "status"})
+            EXPECT_NE(json.find(line, key), JsonDocument::kRoot) << key;
+        const Node method = json.find(line, "method");
+        if (method != JsonDocument::kRoot) named.insert(std::string(json.text(method)));
+    }
+    for (const MethodDescription& method : known_methods())
+        EXPECT_EQ(named.count(std::string(method.name)), 1u) << method.name;
+}
+
+TEST(Cases, WithoutMethodsThereIsNoTable)
+{
+    const Outcome done = run_throng({"cases", "H12"});
+    EXPECT_EQ(done.code, 0) << done.out << done.err;
+    EXPECT_EQ(done.out.find("\nmethod "), std::string::npos) << done.out;
+}
+
+}  // namespace
+}  // namespace throng
