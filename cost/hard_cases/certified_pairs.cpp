@@ -129,6 +129,8 @@ CertifiedPair certified_pair(const Hull& a, const Hull& b, Random& random)
     pair.touching = random.below(2) == 0;
 
     if (!pair.touching) {
+        if (random.below(8) == 0)
+            pair.gap = log_uniform(random, kFarGap, 10 * kFarGap) * certified_size(a, b);
         // A vertex of b above a point of a's furthest face, edge or vertex; then aside, along the
         // plane between them, so that faces lie over one another in all ways.
         const Vec3 along = direction_between(a, b, turn, random);

@@ -21,7 +21,11 @@ struct CertifiedPair {
 /// m, what gaps are relative to: the radius of the greater ball round the two.
 double certified_size(const Hull& a, const Hull& b);
 
-/// A placing whose gap is from 1e-9 to 0.3 of the size, all magnitudes alike.
+/// Beyond this, of the size, any filter can tell that two hulls about their origins are apart.
+inline constexpr double kFarGap = 5;
+
+/// A placing whose gap is from 1e-9 to 0.3 of the size, all magnitudes alike; one in sixteen is far
+/// apart.
 CertifiedPair certified_pair(const Hull& a, const Hull& b, Random& random);
 
 /// A turn, each as likely as the others.

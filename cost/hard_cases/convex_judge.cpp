@@ -78,11 +78,14 @@ struct Judge {
         const bool verdict_matters = std::abs(truth) > bounds.decided_beyond * side.pair.size;
         const bool measured = tells_values(method, answer);
         const bool wrong = answer.verdict == QueryVerdict::refused || !all_finite(answer)
-            || answer.cut_short || (verdict_matters && !right_verdict(method, answer, truth))
+            || (verdict_matters && !right_verdict(method, answer, truth))
             || (measured && !(std::abs(answer.normal.norm() - 1) < 1e-12));
         tally.count(method.name, setting, "wrong or no answers", wrong ? 1 : 0);
-        if (bounds.rounds > 0)
+        // Those for polytopes alone look at all there is of a pair; the others search.
+        if (bounds.rounds > 0 && !method.polytopes_only) {
             tally.worst(method.name, setting, "rounds", answer.rounds, bounds.rounds);
+            tally.count(method.name, setting, "cut short", answer.cut_short ? 1 : 0);
+        }
         if (!measured) return;
         const bool apart = answer.verdict == QueryVerdict::apart;
         worst(apart ? "error of the distance / size" : "error of the depth / size",

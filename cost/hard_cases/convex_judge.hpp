@@ -61,7 +61,7 @@ KnownPair known_boxes(const Vec3& half_a, const Pose& at_a, const Vec3& half_b, 
 struct AnswerBounds {
     double decided_beyond = 1e-12;  // the verdict is right where they are further apart or deeper
     double value = 1e-9;            // errors of lengths
-    int rounds = 0;                 // 0: any number
+    int rounds = 0;                 // of a search; 0: any number, as long as the answer is good
 };
 
 /// Asks every method that serves the pair both ways round, from every start, and tallies what it

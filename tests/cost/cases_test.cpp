@@ -48,8 +48,9 @@ TEST_P(HardCases, NoticesAPlantedFaultInEveryMethod)
         noticed[result.method] |= result.verdict == Verdict::fail;
     }
     for (const auto& [method, has_figures] : measures)
-        if (!method.empty() && has_figures)
+        if (!method.empty() && has_figures) {
             EXPECT_TRUE(noticed[method]) << GetParam().name << " passes with a fault in " << method;
+        }
 }
 
 TEST_P(HardCases, GivesTheSameFiguresOnThreeThreads)

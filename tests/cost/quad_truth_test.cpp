@@ -32,9 +32,10 @@ TEST(QuadTruth, GivesThePublishedValuesOfBrokenPairs)
         EXPECT_NEAR(quad_truth(made_unit(pair.a), made_unit(pair.b)).separation, pair.separation,
                     1e-9 * size)
             << pair.name;
-        if (pair.separation < -1e-12)
+        if (pair.separation < -1e-12) {
             EXPECT_NEAR(quad_separation_along(a, b, pair.normal), pair.separation, 2e-9 * size)
                 << pair.name;
+        }
     }
 }
 
@@ -97,10 +98,11 @@ TEST(CertifiedPairs, AreWhatTheyAreCertifiedToBe)
                                         quad_cloud(b.vertices, QuadPose(pair.b_in_a)))
                                  .separation;
         const double noise = 1e-14 * certified_size(a, b);
-        if (pair.touching)
+        if (pair.touching) {
             EXPECT_LE(found, noise - pair.gap) << "seed 72, pair " << i;
-        else
+        } else {
             EXPECT_GE(found, pair.gap - noise) << "seed 72, pair " << i;
+        }
         ++(pair.touching ? touching : apart);
     }
     EXPECT_GT(std::min(touching, apart), 100);

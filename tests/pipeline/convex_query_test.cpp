@@ -88,8 +88,9 @@ TEST(ConvexQuery, WhatItRemembersDependsOnTheMethodAlone)
             const ConvexAnswer cached = query.ask(method.name, pose, QueryStart::cached);
             const ConvexAnswer plain = query.ask(method.name, pose, QueryStart::plain);
             EXPECT_EQ(cached.verdict, plain.verdict) << method.name << ", step " << i;
-            if (method.depth && plain.verdict == QueryVerdict::touching)
+            if (method.depth && plain.verdict == QueryVerdict::touching) {
                 EXPECT_NEAR(cached.separation, plain.separation, 1e-12) << method.name;
+            }
         }
     }
 }
