@@ -36,10 +36,9 @@ Vec3 point_of(const Core<double>& core, std::uint32_t feature)
 // Whether the points of a core can be told from their features.
 bool has_names(const Core<double>& core) { return core.kind != ShapeKind::cylinder; }
 
-void remember(const Simplex& simplex, const Vec3& axis, MethodMemory& memory)
+void remember(const Simplex& simplex, MethodMemory& memory)
 {
     memory.kind = 1;
-    memory.axis = axis;
     memory.count = static_cast<std::uint32_t>(simplex.count);
     for (std::size_t i = 0; i < memory.count; ++i) {
         memory.a[i] = simplex.corners[i].feature_a;
@@ -107,9 +106,10 @@ public:
         rounds += found.iterations;
         cut_short = found.iterations > kMostRounds;
         CoreAnswer answer{found.distance, found.normal, found.on_a, found.on_b};
+        remember(found.simplex, memory);
         const bool settled = found.apart && (found.beyond || prove(found, answer));
-        if (!settled) dig(found.apart, answer);
-        remember(found.simplex, answer.normal, memory);
+        if (!settled) dig(found, answer, memory);
+        memory.axis = answer.normal;
         return answer;
     }
 
@@ -136,13 +136,20 @@ private:
         return false;
     }
 
-    void dig(bool apart, CoreAnswer& answer)
+    void dig(const Distance& walked, CoreAnswer& answer, MethodMemory& memory)
     {
-        const Depth found = epa(cores_, supports_);
+        const Depth found = epa(cores_, supports_, walked.apart ? Simplex{} : walked.simplex);
         rounds += found.iterations;
-        if (apart && answer.separation >= -found.depth) return;
-        answer = {-found.depth, found.normal, found.on_a, found.on_b};
         cut_short = cut_short || found.cut_short;
+        if (walked.apart && answer.separation >= -found.depth) return;
+        answer = {-found.depth, found.normal, found.on_a, found.on_b};
+        if (!found.has_face) return;
+        // With its far side the face is likely to enclose 0 again.
+        Simplex likely;
+        likely.count = 4;
+        std::copy(found.face.begin(), found.face.end(), likely.corners.begin());
+        likely.corners[3] = furthest(-found.normal);
+        remember(likely, memory);
     }
 
     const CorePair& cores_;

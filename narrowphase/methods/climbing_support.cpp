@@ -175,10 +175,23 @@ ClimbingSupports::Side::Side(const Core<double>& of, bool climbs)
 SupportPoint<double> ClimbingSupports::Side::furthest(const Vec3& direction, ClimbCount& count)
 {
     if (!shape.guide) return support(core, direction);
-    last = last == kNone
-        ? furthest_vertex(shape, direction, count)
-        : furthest_vertex_near(shape, direction, static_cast<std::uint16_t>(last), count);
+    const auto start = static_cast<std::uint16_t>(last);
+    if (is_near) {
+        last = furthest_vertex(shape, direction, start, count);
+    } else if (last != kNone) {
+        last = furthest_vertex_near(shape, direction, start, count);
+    } else {
+        last = furthest_vertex(shape, direction, count);
+    }
+    is_near = false;
     return {shape.vertices[last], last};
+}
+
+void ClimbingSupports::Side::start_at(std::uint32_t feature)
+{
+    if (!shape.guide || feature >= shape.count) return;
+    last = feature;
+    is_near = true;
 }
 
 ClimbingSupports::ClimbingSupports(const CorePair& pair, bool climbs)
@@ -201,8 +214,8 @@ Difference ClimbingSupports::operator()(const Vec3& direction)
 
 void ClimbingSupports::start_at(std::uint32_t feature_a, std::uint32_t feature_b)
 {
-    if (a_.shape.guide && feature_a < a_.shape.count) a_.last = feature_a;
-    if (b_.shape.guide && feature_b < b_.shape.count) b_.last = feature_b;
+    a_.start_at(feature_a);
+    b_.start_at(feature_b);
 }
 
 }  // namespace throng

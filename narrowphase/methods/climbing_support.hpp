@@ -63,7 +63,7 @@ public:
     /// As furthest_difference() of gjk.hpp, to the last bit.
     Difference operator()(const Vec3& direction);
 
-    /// Begins the next search at these features of the two, if they have them.
+    /// Begins the next search at these features of the two, if they have them, and nowhere else.
     void start_at(std::uint32_t feature_a, std::uint32_t feature_b);
 
     const ClimbCount& count() const { return count_; }
@@ -72,10 +72,12 @@ private:
     struct Side {
         Side(const Core<double>& core, bool climbs);
         SupportPoint<double> furthest(const Vec3& direction, ClimbCount& count);
+        void start_at(std::uint32_t feature);
 
         const Core<double>& core;
         ClimbingShape shape;
-        std::uint32_t last;  // none: no vertex is known yet
+        std::uint32_t last;    // none: no vertex is known yet
+        bool is_near = false;  // the last is known to be the place to begin
     };
 
     const CorePair& pair_;

@@ -14,6 +14,9 @@ constexpr double kTolerance = 1e-14;  // of the size
 constexpr std::size_t kRoom = 128;    // corners
 constexpr std::size_t kMuchRoom = 512;
 
+// Of the block that a tetrahedron's edges span: flatter ones make noisy faces.
+constexpr double kVolume = 1e-4;
+
 struct Face {
     std::array<std::uint16_t, 3> corners;  // counter-clockwise seen from outside
     std::array<std::uint16_t, 3> beyond;   // face over the edge from corner i to the next
@@ -247,6 +250,16 @@ bool spread_start(Furthest& furthest,
     return most > tolerance && std::max(above, under) > tolerance;
 }
 
+// Whether these are four corners, none of them near the plane of the others.
+bool encloses_volume(const Simplex& simplex)
+{
+    if (simplex.count < 4) return false;
+    const Vec3 x = simplex.corners[1].point - simplex.corners[0].point;
+    const Vec3 y = simplex.corners[2].point - simplex.corners[0].point;
+    const Vec3 z = simplex.corners[3].point - simplex.corners[0].point;
+    return std::abs(x.cross(y).dot(z)) > kVolume * x.norm() * y.norm() * z.norm();
+}
+
 // Points of both surfaces below 0's shadow on a face.
 template <class Grown>
 void place_witness(const Grown& polytope, const Face& face, Depth& result)
@@ -276,7 +289,7 @@ bool is_corner_of(const Grown& polytope, const Face& face, const Vec3& point)
 }
 
 template <std::size_t kMaxCorners, class Furthest>
-Depth search(const CorePair& pair, Furthest& furthest)
+Depth search(const CorePair& pair, Furthest& furthest, const Simplex& beginning)
 {
     const double tolerance = kTolerance * (pair.size + pair.b_position.norm());
     Depth result;
@@ -291,9 +304,9 @@ Depth search(const CorePair& pair, Furthest& furthest)
         return true;
     };
 
-    std::array<Difference, 4> start;
+    std::array<Difference, 4> start = beginning.corners;
     Vec3 flat_normal = Vec3::UnitZ();
-    if (!spread_start(furthest, tolerance, start, flat_normal)) {
+    if (!encloses_volume(beginning) && !spread_start(furthest, tolerance, start, flat_normal)) {
         keep(flat_normal, furthest(flat_normal));
         keep(-flat_normal, furthest(-flat_normal));
         return result;
@@ -306,7 +319,11 @@ Depth search(const CorePair& pair, Furthest& furthest)
         if (nearest < 0) break;
         const Face face = polytope.face(nearest);
         const Difference further = furthest(face.normal);
-        if (keep(face.normal, further)) place_witness(polytope, face, result);
+        if (keep(face.normal, further)) {
+            place_witness(polytope, face, result);
+            result.has_face = true;
+            for (std::size_t i = 0; i < 3; ++i) result.face[i] = polytope.corner(face.corners[i]);
+        }
         // No direction parts the cores by less than the nearest face's offset.
         if (result.depth - face.offset <= tolerance) break;
         if (face.normal.dot(further.point) - face.offset <= tolerance) break;
@@ -324,12 +341,12 @@ Depth epa(const CorePair& pair)
     const auto furthest = [&](const Vec3& direction) {
         return furthest_difference(pair, direction);
     };
-    return search<kRoom>(pair, furthest);
+    return search<kRoom>(pair, furthest, Simplex{});
 }
 
-Depth epa(const CorePair& pair, ClimbingSupports& supports)
+Depth epa(const CorePair& pair, ClimbingSupports& supports, const Simplex& beginning)
 {
-    return search<kMuchRoom>(pair, supports);
+    return search<kMuchRoom>(pair, supports, beginning);
 }
 
 }  // namespace throng

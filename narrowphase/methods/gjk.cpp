@@ -113,15 +113,15 @@ Nearest nearest_of(const Simplex& simplex)
     return best;
 }
 
+// Corners are named in order, so that none is overwritten before it is moved.
 void reduce(Simplex& simplex, const Nearest& nearest)
 {
-    Simplex kept;
-    kept.count = nearest.count;
+    simplex.count = nearest.count;
     for (std::size_t i = 0; i < static_cast<std::size_t>(nearest.count); ++i) {
-        kept.corners[i] = simplex.corners[static_cast<std::size_t>(nearest.corners[i])];
-        kept.weights[i] = nearest.weights[i];
+        const auto from = static_cast<std::size_t>(nearest.corners[i]);
+        if (from != i) simplex.corners[i] = simplex.corners[from];
+        simplex.weights[i] = nearest.weights[i];
     }
-    simplex = kept;
 }
 
 bool has(const Simplex& simplex, const Vec3& point)
@@ -145,64 +145,49 @@ void finish(Distance& result, const Vec3& nearest)
     }
 }
 
-// The first simplex and its point nearest to 0; false where it contains 0.
+// The first simplex, the furthest difference from center to center. The direction is told too, for
+// what it shows already.
 template <class Furthest>
-bool begin_walk(const CorePair& pair, Furthest& furthest, Simplex& simplex, Vec3& nearest)
+Vec3 begin_between_centers(const CorePair& pair, Furthest& furthest, Simplex& simplex)
 {
-    if (simplex.count == 0) {
-        Vec3 start = pair.a.middle - (pair.b_turn * pair.b.middle + pair.b_position);
-        if (!(start.squaredNorm() > 0)) start = Vec3::UnitX();
-        simplex.corners[0] = furthest(-start);
-        simplex.weights[0] = 1;
-        simplex.count = 1;
-        nearest = simplex.corners[0].point;
-        return true;
-    }
-    if (simplex.count == 4 && tetrahedron_has_zero(simplex)) return false;
-    Nearest next = nearest_of(simplex);
-    if (simplex.count == 4) keep_nearer(next, nearest_of_triangle(simplex, 0, 1, 2));
-    reduce(simplex, next);
-    nearest = next.point;
-    return true;
+    Vec3 start = pair.a.middle - (pair.b_turn * pair.b.middle + pair.b_position);
+    if (!(start.squaredNorm() > 0)) start = Vec3::UnitX();
+    simplex.corners[0] = furthest(-start);
+    simplex.weights[0] = 1;
+    simplex.count = 1;
+    return start;
 }
 
+// From a simplex and its point nearest to 0.
 template <class Furthest>
-Distance walk(const CorePair& pair, double limit, Furthest& furthest, const Simplex& beginning)
+void walk(const CorePair& pair, double limit, Furthest& furthest, Vec3 nearest, Distance& result)
 {
-    Distance result;
     Simplex& simplex = result.simplex;
-    simplex = beginning;
-    Vec3 nearest;
-    if (!begin_walk(pair, furthest, simplex, nearest)) return result;
-
     const double slack = kTolerance * (pair.size + pair.b_position.norm());
     while (result.iterations++ < kMostRounds) {
         const double length = nearest.norm();
-        if (!(length > slack)) return result;
+        if (!(length > slack)) return;
         const Difference further = furthest(-nearest);
         const double bound = nearest.dot(further.point) / length;
         if (bound > limit) {
             finish(result, nearest);
             result.beyond = true;
             result.distance = bound;
-            return result;
+            return;
         }
         if (length - bound <= slack || has(simplex, further.point)) break;
 
-        Simplex grown = simplex;
-        grown.corners[static_cast<std::size_t>(grown.count++)] = further;
-        if (grown.count == 4 && tetrahedron_has_zero(grown)) {
-            simplex = grown;
-            return result;
+        simplex.corners[static_cast<std::size_t>(simplex.count++)] = further;
+        if (simplex.count == 4 && tetrahedron_has_zero(simplex)) return;
+        const Nearest next = nearest_of(simplex);
+        if (!(next.square < length * length)) {
+            --simplex.count;
+            break;
         }
-        const Nearest next = nearest_of(grown);
-        if (!(next.square < length * length)) break;
-        reduce(grown, next);
-        simplex = grown;
+        reduce(simplex, next);
         nearest = next.point;
     }
     if (nearest.norm() > slack) finish(result, nearest);
-    return result;
 }
 
 }  // namespace
@@ -237,13 +222,40 @@ Distance gjk(const CorePair& pair, double limit)
     const auto furthest = [&](const Vec3& direction) {
         return furthest_difference(pair, direction);
     };
-    return walk(pair, limit, furthest, Simplex{});
+    Distance result;
+    begin_between_centers(pair, furthest, result.simplex);
+    walk(pair, limit, furthest, result.simplex.corners[0].point, result);
+    return result;
 }
 
 Distance
 gjk(const CorePair& pair, double limit, ClimbingSupports& supports, const Simplex& beginning)
 {
-    return walk(pair, limit, supports, beginning);
+    Distance result;
+    Simplex& simplex = result.simplex;
+    if (beginning.count == 0) {
+        const Vec3 start = begin_between_centers(pair, supports, simplex);
+        const Vec3& corner = simplex.corners[0].point;
+        result.iterations = 1;
+        const double length = start.norm();
+        if (start.dot(corner) > limit * length) {
+            finish(result, corner);
+            result.beyond = true;
+            result.distance = start.dot(corner) / length;
+            result.normal = -start / length;
+            return result;
+        }
+        walk(pair, limit, supports, corner, result);
+        return result;
+    }
+    simplex = beginning;
+    if (simplex.count == 4 && tetrahedron_has_zero(simplex)) return result;
+    Nearest next = nearest_of(simplex);
+    // Nothing is known of which corner came last.
+    if (simplex.count == 4) keep_nearer(next, nearest_of_triangle(simplex, 0, 1, 2));
+    reduce(simplex, next);
+    walk(pair, limit, supports, next.point, result);
+    return result;
 }
 
 }  // namespace throng

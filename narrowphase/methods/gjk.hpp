@@ -75,7 +75,8 @@ struct Distance {
 Distance gjk(const CorePair& pair, double limit);
 
 /// The same with supports of one's own, begun with a simplex of differences that need not be the
-/// furthest along anything; of count 0 for the usual beginning.
+/// furthest along anything; of count 0 for the usual beginning, the direction from center to
+/// center, which is then asked at once whether it shows more room than the limit.
 Distance
 gjk(const CorePair& pair, double limit, ClimbingSupports& supports, const Simplex& beginning);
 
