@@ -142,6 +142,18 @@ void time_pairs(benchmark::State& state, std::size_t vertices, const Case& meeti
                 return peers[i]->ask(pair, step, meeting.reach, warm);
             });
     }
+    double off = 0;
+    if (meeting.question != Question::whether && !peers.empty())
+        for (std::size_t i = 0; i < kPairs; ++i) {
+            MethodMemory fresh;
+            const ConvexPair& asked = *scene.pairs[i];
+            const double truth = find_convex_method("gjk")
+                                     ->ask(asked, meeting.reach, MethodStart::cold, fresh)
+                                     .separation;
+            for (const auto& peer : peers)
+                off = std::max(off, std::abs(peer->ask(i, 0, meeting.reach, false) - truth));
+        }
+    state.counters["off"] = off;
     for (const Turn& turn : ours) state.counters[turn.name + "_ns"] = turn.best;
     for (const Turn& turn : theirs) {
         state.counters[turn.name + "_ns"] = turn.best;

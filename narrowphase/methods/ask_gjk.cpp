@@ -1,6 +1,5 @@
 #include "narrowphase/methods/ask_gjk.hpp"
 
-#include "narrowphase/methods/climbing_support.hpp"
 #include "narrowphase/methods/epa.hpp"
 
 #include <algorithm>
@@ -113,6 +112,8 @@ public:
         return answer;
     }
 
+    const ClimbCount& climbed() const { return supports_.count(); }
+
     int rounds = 0;
     bool cut_short = false;
 
@@ -160,6 +161,16 @@ private:
 
 MethodAnswer ask_gjk(const ConvexPair& pair, double reach, MethodStart start, MethodMemory& memory)
 {
+    ClimbCount count;
+    return ask_gjk(pair, reach, start, memory, count);
+}
+
+MethodAnswer ask_gjk(const ConvexPair& pair,
+                     double reach,
+                     MethodStart start,
+                     MethodMemory& memory,
+                     ClimbCount& count)
+{
     const CorePair& cores = pair.cores();
     const double rounding = cores.a.radius + cores.b.radius;
     const double limit = reach + rounding;
@@ -177,6 +188,7 @@ MethodAnswer ask_gjk(const ConvexPair& pair, double reach, MethodStart start, Me
     answer.on_b = found.on_b - found.normal * cores.b.radius;
     answer.rounds = question.rounds;
     answer.cut_short = question.cut_short;
+    count += question.climbed();
     return answer;
 }
 

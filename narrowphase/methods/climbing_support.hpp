@@ -21,6 +21,14 @@ namespace throng {
 ///   looked    heights measured
 struct ClimbCount {
     std::int64_t supports = 0, steps = 0, looked = 0;
+
+    ClimbCount& operator+=(const ClimbCount& other)
+    {
+        supports += other.supports;
+        steps += other.steps;
+        looked += other.looked;
+        return *this;
+    }
 };
 
 /// What a hull is climbed by; it lives as long as the hull.

@@ -1,6 +1,5 @@
 #include "narrowphase/methods/ask_gjk.hpp"
 
-#include "narrowphase/methods/climbing_support.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
 #include "tests/narrowphase/methods/method_pairs.hpp"
 
@@ -184,6 +183,87 @@ TEST(AskGjk, BeyondTheReachOneDirectionIsEnough)
         if (step > 0) asked += warm.rounds;
     }
     EXPECT_LE(asked, 2 * 199);
+}
+
+// What climbing takes of a warm question about two hulls that move slowly.
+ClimbCount climbing_of(int points)
+{
+    RandomShapes random(88);
+    Shapes shapes;
+    shapes.hulls = {random.hull(points, 0.5), random.hull(points, 0.5)};
+    ConvexPair pair(shapes, {ShapeKind::hull, 0}, {ShapeKind::hull, 1}, Pose{});
+    MethodMemory memory;
+    ClimbCount count;
+    for (int step = 0; step < 1000; ++step) {
+        const double t = 0.005 * step;
+        const Quat turn(Eigen::AngleAxisd(t, Vec3(1, 2, 3).normalized()));
+        pair.place({Vec3(1.2 * std::cos(t), 1.2 * std::sin(t), 0.1), turn});
+        if (step == 1) count = {};
+        ask_gjk(pair, kFar, MethodStart::cached, memory, count);
+    }
+    return count;
+}
+
+TEST(AskGjk, WarmQuestionsHardlyGrowWithTheHull)
+{
+    const auto mean = [](const ClimbCount& count) {
+        return static_cast<double>(count.steps) / static_cast<double>(count.supports);
+    };
+    const ClimbCount few = climbing_of(32);
+    for (const int points : {128, 1000, 10000}) {
+        const ClimbCount many = climbing_of(points);
+        EXPECT_LT(mean(many), 2 * mean(few)) << points;
+        EXPECT_LT(mean(many), 3) << points;
+        EXPECT_LT(many.looked, 3 * few.looked) << points;
+    }
+}
+
+// A million times longer than thick, and against SAT's exhaustive search.
+TEST(AskGjk, NeedlesAndPlatesAreRight)
+{
+    RandomShapes random(89);
+    Shapes shapes;
+    shapes.boxes = {{Vec3::Constant(0.5)}, {{1000, 0.0005, 0.0005}}, {{500, 500, 0.0005}}};
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 89, pair " + std::to_string(i));
+        const Quat turn = random.turn();
+        const Vec3 shift = turn * Vec3(200 * random.number(-1, 1), 0, random.number(-1.2, 1.2));
+        const ConvexPair pair(shapes, {ShapeKind::box, 0}, {ShapeKind::box, i % 2 == 0 ? 1u : 2u},
+                              {shift, turn});
+        const double small = 1e-11 * pair.size();
+        const MethodAnswer answer = ask(pair, MethodStart::cold);
+        const PolytopePair& two = *pair.polytopes();
+        const double room = polytope_separation(two.a, two.b, {shift, turn}, nullptr);
+        if (std::abs(room) > small) {
+            ASSERT_EQ(answer.touch, room > 0 ? Touch::apart : Touch::touching);
+        }
+        if (answer.touch == Touch::apart) {
+            ASSERT_NEAR(separation_along(pair.cores(), answer.normal), answer.separation, small);
+        } else {
+            ASSERT_NEAR(answer.separation, room, small);
+        }
+    }
+}
+
+TEST(AskGjk, BoxesOfNoThicknessGiveFiniteAnswers)
+{
+    MethodMemory memory;
+    for (const Vec3& half : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0)}) {
+        for (const Vec3& other : {Vec3(0, 0, 0), Vec3(0, 2, 0), Vec3(0, 1, 1), Vec3(1, 1, 0)}) {
+            for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(0, 0, 1e-12), Vec3(0.5, 0.5, 0.5)}) {
+                const Shapes shapes = two_boxes(half, other);
+                const ConvexPair pair(shapes, kBoxA, kBoxB, {shift, Quat::Identity()});
+                for (const MethodStart start :
+                     {MethodStart::plain, MethodStart::cold, MethodStart::cached}) {
+                    const MethodAnswer answer = ask_gjk(pair, kFar, start, memory);
+                    EXPECT_TRUE(std::isfinite(answer.separation));
+                    EXPECT_NEAR(answer.normal.norm(), 1, 1e-12);
+                    EXPECT_NEAR(answer.separation, separation_along(pair.cores(), answer.normal),
+                                1e-12);
+                }
+            }
+        }
+    }
 }
 
 // Radii are taken off exactly: balls and rods against their own formulas.
