@@ -11,8 +11,8 @@ namespace throng {
 /// `plain` looks at every vertex for each support, the others climb (climbing_support.hpp) and walk
 /// the same way. `cached` first asks whether the direction that parted the two last time still
 /// parts them by more than the reach, then begins with the differences that the last walk ended
-/// on. Rounds are those of GJK, at most 128, and of EPA, at most 508, and the supports that prove an
-/// answer. Allocates nothing but the marks of climbing.
+/// on. Rounds are those of GJK, at most 128, and of EPA, at most 508, and the supports that prove
+/// an answer. Allocates nothing but the marks of climbing.
 ///
 /// Error: distances within 1e-13 of the size; depths within 1e-13 of it for polytopes and 1e-6 for
 ///        cylinders, where it is not cut short.

@@ -64,8 +64,7 @@ TEST(HullGuide, FacesOfManyCornersAreLinkedBothWays)
 TEST(HullGuide, SlackCoversCornersOffTheirPlane)
 {
     std::vector<Vec3> points;
-    for (int i = 0; i < 8; ++i)
-        points.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    for (int i = 0; i < 8; ++i) points.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
     EXPECT_LT(build_hull(points).hull.guide.slack, 1e-10);
     points[7].z() -= 1e-5;
     const Hull uneven = build_hull(points).hull;
