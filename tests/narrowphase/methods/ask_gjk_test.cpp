@@ -218,6 +218,38 @@ TEST(AskGjk, WarmQuestionsHardlyGrowWithTheHull)
     }
 }
 
+// Pairs that are apart, moved together along their normal until a hair is left, and a hair deep.
+TEST(AskGjk, AHairApartIsMeasuredAsWellAsAMeter)
+{
+    PolytopeCases cases(90, 1);
+    int pairs = 0;
+    for (int i = 0; i < 1500; ++i) {
+        cases.next();
+        ConvexPair pair(cases.shapes(), cases.a, cases.b, cases.b_in_a);
+        const MethodAnswer apart = ask(pair, MethodStart::cold);
+        if (apart.separation < 0.01) continue;
+        ++pairs;
+        for (const double gap : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, -1e-12, -1e-10, -1e-7, -1e-4}) {
+            SCOPED_TRACE("seed 90, pair " + std::to_string(i) + ", gap " + std::to_string(gap));
+            Pose pose = cases.b_in_a;
+            pose.position -= apart.normal * (apart.separation - gap);
+            pair.place(pose);
+            const double small = 1e-14 * (pair.size() + cases.b_in_a.position.norm());
+            const MethodAnswer answer = ask(pair, MethodStart::cold);
+            ASSERT_EQ(answer.touch, gap > 0 ? Touch::apart : Touch::touching);
+            const double shown = separation_along(pair.cores(), answer.normal);
+            ASSERT_NEAR(shown, answer.separation, 100 * small);
+            // One corner in another overlap by less than they were moved.
+            if (gap > 0) {
+                ASSERT_NEAR(answer.separation, gap, small);
+            } else {
+                ASSERT_GE(answer.separation, gap - small);
+            }
+        }
+    }
+    EXPECT_GT(pairs, 300);
+}
+
 // A million times longer than thick, and against SAT's exhaustive search.
 TEST(AskGjk, NeedlesAndPlatesAreRight)
 {
