@@ -75,6 +75,20 @@ Vec3 square_to(const Simplex& simplex, const Vec3& normal)
     return unit_or<double>(across.dot(normal) < 0 ? Vec3(-across) : across, normal);
 }
 
+// The points of the two that the walk ended on. False where it left none.
+bool weigh(const Simplex& simplex, Vec3& on_a, Vec3& on_b)
+{
+    double sum = 0;
+    on_a.setZero();
+    on_b.setZero();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.count); ++i) {
+        sum += simplex.weights[i];
+        on_a += simplex.corners[i].on_a * simplex.weights[i];
+        on_b += simplex.corners[i].on_b * simplex.weights[i];
+    }
+    return std::abs(sum - 1) < 1e-9;
+}
+
 // Of two answers about cores the one that shows more room: no direction shows too much.
 struct CoreAnswer {
     double separation;
@@ -144,6 +158,16 @@ private:
         cut_short = cut_short || found.cut_short;
         if (walked.apart && answer.separation >= -found.depth) return;
         answer = {-found.depth, found.normal, found.on_a, found.on_b};
+        // Where the two are a hair apart or deep, 0 may lie beside the face that is nearest, over
+        // another in the same plane: the walk's own points then fit the depth better.
+        const auto misfit = [&](const Vec3& on_a, const Vec3& on_b) {
+            return (on_b - on_a + found.normal * found.depth).squaredNorm();
+        };
+        Vec3 on_a, on_b;
+        if (weigh(walked.simplex, on_a, on_b) && misfit(on_a, on_b) < misfit(found.on_a, found.on_b)) {
+            answer.on_a = on_a;
+            answer.on_b = on_b;
+        }
         if (!found.has_face) return;
         // With its far side the face is likely to enclose 0 again.
         Simplex likely;
