@@ -342,6 +342,8 @@ std::string why_unused(const Settings& settings, std::string_view name)
         return "response " + response + " solves no rows";
     if (settings.solver != Solver::soft_step && is_one_of({"contact_rate", "push_limit"}))
         return "solver " + solver + " has no soft contacts";
+    if (settings.narrowphase == NarrowPhase::auto_ && name == "method_start")
+        return "narrowphase auto always begins with what a pair remembers";
     if (settings.solver != Solver::direct && name == "direct_limit")
         return "solver " + solver + " takes islands of any size";
     if (settings.response != Response::penalty

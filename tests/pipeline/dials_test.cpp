@@ -162,7 +162,9 @@ TEST(Dials, ReportThoseThatAnotherMakesMeaningless)
         "push_limit: unused, solver pgs has no soft contacts"};
     EXPECT_EQ(unused_dials(settings, set), expected);
     const std::vector<std::string> others = {"penalty_damping", "max_parts", "direct_limit",
-                                             "sleep"};
+                                             "sleep", "method_start"};
+    EXPECT_EQ(unused_dials(settings, others).size(), 4u);
+    settings.narrowphase = NarrowPhase::gjk;
     EXPECT_EQ(unused_dials(settings, others).size(), 3u);
 }
 
