@@ -1,5 +1,5 @@
-// The step graph on a oneTBB flow graph, or, where a step is over before other threads are awake, on
-// one thread.
+// The step graph on a oneTBB flow graph, or, where a step is over before other threads are awake,
+// on one thread.
 #include "pipeline/step_graph.hpp"
 
 #include <tbb/flow_graph.h>
@@ -86,8 +86,8 @@ void StepGraph<Real>::run()
         nodes_->start.try_put(Signal());
         nodes_->graph.wait_for_all();
     }
-    nodes_->quicker.took(
-        way, std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+    nodes_->quicker.took(way,
+                         std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
 }
 
 template class StepGraph<float>;

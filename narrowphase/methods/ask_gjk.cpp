@@ -164,7 +164,8 @@ private:
             return (on_b - on_a + found.normal * found.depth).squaredNorm();
         };
         Vec3 on_a, on_b;
-        if (weigh(walked.simplex, on_a, on_b) && misfit(on_a, on_b) < misfit(found.on_a, found.on_b)) {
+        if (weigh(walked.simplex, on_a, on_b)
+            && misfit(on_a, on_b) < misfit(found.on_a, found.on_b)) {
             answer.on_a = on_a;
             answer.on_b = on_b;
         }

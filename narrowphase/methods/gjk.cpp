@@ -217,6 +217,32 @@ double separation_along(const CorePair& pair, const Vec3& direction)
     return -direction.dot(furthest_difference(pair, direction).point);
 }
 
+SweptDistance swept_gjk(const CorePair& pair, const Vec3& motion, double limit)
+{
+    constexpr std::uint32_t kMoved = 1u << 31;  // of a difference: b was at the end of its way
+    const auto furthest = [&](const Vec3& direction) {
+        Difference difference = furthest_difference(pair, direction);
+        if (direction.dot(motion) < 0) {
+            difference.on_b += motion;
+            difference.point -= motion;
+            difference.feature_b |= kMoved;
+        }
+        return difference;
+    };
+    CorePair path = pair;
+    path.size += motion.norm();
+    SweptDistance swept;
+    Distance& nearest = swept.nearest;
+    begin_between_centers(path, furthest, nearest.simplex);
+    walk(path, limit, furthest, nearest.simplex.corners[0].point, nearest);
+    if (!nearest.apart) return swept;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(nearest.simplex.count); ++i)
+        if ((nearest.simplex.corners[i].feature_b & kMoved) != 0)
+            swept.at += nearest.simplex.weights[i];
+    swept.at = std::clamp(swept.at, 0.0, 1.0);
+    return swept;
+}
+
 Distance gjk(const CorePair& pair, double limit)
 {
     const auto furthest = [&](const Vec3& direction) {

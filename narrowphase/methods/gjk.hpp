@@ -80,4 +80,21 @@ Distance gjk(const CorePair& pair, double limit);
 Distance
 gjk(const CorePair& pair, double limit, ClimbingSupports& supports, const Simplex& beginning);
 
+/// What GJK found of a core that is passed by another.
+///
+///   nearest  as of gjk(), of a and of all that b sweeps over; on_b is where b was then
+///   at       while apart: how far b had gone, 0 to 1 of its motion; one moment of those as near
+struct SweptDistance {
+    Distance nearest;
+    double at = 0;
+};
+
+/// Distance of a to b on its way, while b moves along a straight line and does not turn: not apart
+/// where b passes through a, however thin a is.
+///
+///   motion  m, of b against a, in a's frame
+///
+/// Source: van den Bergen (2003), section 4.3, on the sum of a shape and a segment.
+SweptDistance swept_gjk(const CorePair& pair, const Vec3& motion, double limit);
+
 }  // namespace throng

@@ -54,9 +54,8 @@ ChosenMethod::ChosenMethod(const Conditions& conditions,
                            std::size_t blocks,
                            MethodPairs& memories)
     : shapes_(shapes), colliders_(colliders), bounds_(bounds), memories_(memories),
-      method_(method_of(conditions.settings.narrowphase)),
-      start_(conditions.settings.method_start), filter_(conditions.settings.bounds_filter),
-      slabs_(slabs_of(filter_))
+      method_(method_of(conditions.settings.narrowphase)), start_(conditions.settings.method_start),
+      filter_(conditions.settings.bounds_filter), slabs_(slabs_of(filter_))
 {
     memories_.fell_back = 0;
     memories_.fallbacks.assign(blocks, 0);
@@ -75,10 +74,9 @@ ChosenMethod::ChosenMethod(const Conditions& conditions,
                            const ShapeRef shape = colliders.shape[i];
                            if (!ends(shape.kind)) continue;
                            const Pose& placed = bounds.placed[i];
-                           memories_.bounds[i] =
-                               k_dop_of(core_of<double>(shapes, shape),
-                                        placed.orientation.toRotationMatrix(), placed.position,
-                                        slabs_);
+                           memories_.bounds[i] = k_dop_of(core_of<double>(shapes, shape),
+                                                          placed.orientation.toRotationMatrix(),
+                                                          placed.position, slabs_);
                        }
                    });
 }

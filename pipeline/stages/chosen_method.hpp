@@ -22,7 +22,10 @@ public:
 
     /// Whether it is up to the filter or the method, and not to `auto` alone: two convex shapes
     /// that end somewhere.
-    bool asks(ShapeKind a, ShapeKind b) const { return (method_ || filters()) && ends(a) && ends(b); }
+    bool asks(ShapeKind a, ShapeKind b) const
+    {
+        return (method_ || filters()) && ends(a) && ends(b);
+    }
 
     /// Whether the filter shows them to be out of reach.
     bool parts(const PairPlace& pair) const;

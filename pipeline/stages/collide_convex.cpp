@@ -43,7 +43,8 @@ public:
               ChosenMethod& chosen,
               ConvexContacts<Real>& contacts)
         : pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds), poses_(poses),
-          states_(states), chosen_(chosen), contacts_(contacts), scale_(static_cast<Real>(impulse_scale(conditions)))
+          states_(states), chosen_(chosen), contacts_(contacts),
+          scale_(static_cast<Real>(impulse_scale(conditions)))
     { }
 
     void look_at(std::size_t begin, std::size_t end, std::size_t block)
@@ -305,12 +306,12 @@ void collide_convex(const Conditions& conditions,
         resize_closely(contacts.apart_until, pairs.keys.size());
         follow_colliders(bounds.placed, colliders.outer_radius, bounds.reach, contacts.travels);
     }
-    for_each_block(
-        pairs.keys.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-            Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, chosen,
-                            contacts)
-                .look_at(begin, end, block);
-        });
+    for_each_block(pairs.keys.size(), kGrain,
+                   [&](std::size_t begin, std::size_t end, std::size_t block) {
+                       Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states,
+                                       chosen, contacts)
+                           .look_at(begin, end, block);
+                   });
     chosen.count_fallbacks();
     move_in_and_out(contacts);
     put_in_order(contacts);

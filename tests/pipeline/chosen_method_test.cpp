@@ -103,8 +103,7 @@ TEST(BoundsFilter, ChangesNoBit)
               BoundsFilter::k_dop_18, BoundsFilter::k_dop_26}) {
             Scene scene = plain;
             scene.settings.bounds_filter = filter;
-            EXPECT_EQ(hash_after(scene, 2, 100), wanted)
-                << name << " " << static_cast<int>(filter);
+            EXPECT_EQ(hash_after(scene, 2, 100), wanted) << name << " " << static_cast<int>(filter);
         }
     }
 }

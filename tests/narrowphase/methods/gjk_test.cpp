@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace throng {
 namespace {
 
@@ -219,6 +221,70 @@ TEST(Gjk, LimitStopsEarlyWithATrueBound)
         EXPECT_LE(stopped.distance, exact + 1e-12);
         EXPECT_FALSE(gjk(pair.cores(), 1.001 * exact).beyond);
     }
+}
+
+constexpr double kNoLimit = 1e30;
+
+TEST(SweptGjk, ABulletNeverPassesUnseen)
+{
+    // A plate of a tenth of a millimeter, a cube of a centimeter, a hundred meters on.
+    const BoxPair pair =
+        boxes({1, 1, 5e-5}, {5e-3, 5e-3, 5e-3}, {Vec3(0.3, -0.2, 50), Quat::Identity()});
+    EXPECT_FALSE(swept_gjk(pair.cores(), {0, 0, -100}, kNoLimit).nearest.apart);
+    EXPECT_TRUE(swept_gjk(pair.cores(), {0, 0, -49}, kNoLimit).nearest.apart);
+    EXPECT_TRUE(swept_gjk(pair.cores(), {0, 0, 100}, kNoLimit).nearest.apart);
+}
+
+TEST(SweptGjk, TellsHowNearItPassedAndWhen)
+{
+    // A corner's width beside the edge, halfway.
+    const BoxPair pair = boxes({1, 1, 1}, {0.5, 0.5, 0.5}, {Vec3(1.75, -9, 0), Quat::Identity()});
+    const SweptDistance swept = swept_gjk(pair.cores(), {0, 18, 0}, kNoLimit);
+    ASSERT_TRUE(swept.nearest.apart);
+    EXPECT_NEAR(swept.nearest.distance, 0.25, 1e-14);
+    EXPECT_NEAR((swept.nearest.normal - Vec3::UnitX()).norm(), 0, 1e-12);
+    EXPECT_GE(swept.at, (9 - 1.5) / 18 - 1e-12);
+    EXPECT_LE(swept.at, (9 + 1.5) / 18 + 1e-12);
+}
+
+TEST(SweptGjk, IsAsNearAsTheNearestMoment)
+{
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> size(0.1, 1), place(-4, 4);
+    const auto vector = [&](auto& of) -> Vec3 { return {of(random), of(random), of(random)}; };
+    int apart = 0, through = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 position = vector(place), motion = vector(place) - position;
+        const Quat turn = Quat(place(random), place(random), place(random), 1).normalized();
+        BoxPair pair = boxes(vector(size), vector(size), {position, turn});
+        const SweptDistance swept = swept_gjk(pair.cores(), motion, kNoLimit);
+        constexpr int kMoments = 400;
+        double nearest = kNoLimit;
+        for (int k = 0; k <= kMoments; ++k) {
+            pair.b_in_a.position = position + motion * (static_cast<double>(k) / kMoments);
+            const Distance now = gjk(pair.cores(), kNoLimit);
+            nearest = std::min(nearest, now.apart ? now.distance : 0.0);
+        }
+        const double found = swept.nearest.apart ? swept.nearest.distance : 0;
+        EXPECT_LE(found, nearest + 1e-12);
+        EXPECT_GE(found, nearest - motion.norm() / kMoments);
+        (swept.nearest.apart ? apart : through)++;
+        if (!swept.nearest.apart) continue;
+        pair.b_in_a.position = position + motion * swept.at;
+        EXPECT_NEAR(gjk(pair.cores(), kNoLimit).distance, found, 1e-9);
+    }
+    EXPECT_GT(apart, 50);
+    EXPECT_GT(through, 50);
+}
+
+TEST(SweptGjk, WithoutMotionIsGjk)
+{
+    const BoxPair pair = boxes({1, 2, 1}, {0.5, 0.5, 0.7},
+                               {Vec3(2, 2.9, 0.4), Quat(0.9, 0.1, 0.2, 0.3).normalized()});
+    const Distance still = gjk(pair.cores(), kNoLimit);
+    const SweptDistance swept = swept_gjk(pair.cores(), Vec3::Zero(), kNoLimit);
+    EXPECT_EQ(still.distance, swept.nearest.distance);
+    EXPECT_EQ(still.on_b, swept.nearest.on_b);
 }
 
 }  // namespace
