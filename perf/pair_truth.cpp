@@ -15,7 +15,8 @@ namespace {
 constexpr double kClose = 1e-9;
 // rad, by how much the normals at the edges of a face that is not quite flat may lean from its own.
 constexpr double kLean = 0.05;
-// Of the nearest corners of each, so many are tried; a face and what is round it, and some to spare.
+// Of the nearest corners of each, so many are tried; a face and what is round it, and some to
+// spare.
 constexpr std::size_t kNearest = 8;
 
 struct Line {
@@ -52,8 +53,11 @@ public:
           slack_(kClose * (pair.a.outer_radius + pair.b.outer_radius))
     {
         const double far = pair.offset.norm();
-        if (far > 0) best_ = measure(pair.offset / far) - slack_;
+        if (far > 0) offer_center(pair.offset / far);
     }
+
+    /// The best axis there is, to rounding.
+    const Vec3& normal() const { return normal_; }
 
     std::vector<Contender> contenders()
     {
@@ -72,7 +76,8 @@ public:
                 for (const double sign : {1.0, -1.0}) offer(across * (sign / sine), made);
             }
         }
-        std::erase_if(found_, [&](const Contender& one) { return one.separation < best_ - slack_; });
+        std::erase_if(found_,
+                      [&](const Contender& one) { return one.separation < best_ - slack_; });
         return std::move(found_);
     }
 
@@ -86,12 +91,21 @@ private:
                         - pair_.a.vertices[at_a_]);
     }
 
+    void offer_center(const Vec3& unit)
+    {
+        normal_ = unit;
+        best_ = measure(unit) - slack_;
+    }
+
     void offer(const Vec3& unit, Contender made)
     {
         if (!cone_.holds(unit, best_ - slack_)) return;
         made.separation = measure(unit);
         if (made.separation < best_ - slack_) return;
-        best_ = std::max(best_, made.separation);
+        if (made.separation > best_) {
+            best_ = made.separation;
+            normal_ = unit;
+        }
         found_.push_back(made);
     }
 
@@ -116,8 +130,8 @@ private:
                      bool is_b)
     {
         const Vec3& first = shape.vertices[corners[0]];
-        Vec3 across = (shape.vertices[corners[1]] - first)
-                          .cross(shape.vertices[corners[2]] - first);
+        Vec3 across =
+            (shape.vertices[corners[1]] - first).cross(shape.vertices[corners[2]] - first);
         const double length = across.norm();
         if (!(length > 0)) return;
         if (is_b) across = pair_.turn * across;
@@ -154,6 +168,7 @@ private:
     Cone cone_;
     double slack_;
     double best_ = -std::numeric_limits<double>::infinity();
+    Vec3 normal_ = Vec3::UnitZ();
     mutable std::uint16_t at_a_ = 0, at_b_ = 0;
     std::vector<Contender> found_;
 };
@@ -209,8 +224,8 @@ PairTruth distance_truth(const PolytopePair& pair,
     // A direction that is a little off may name the wrong corners; the next names better ones.
     for (int i = 0; i < 20 && best.unproved > 1e-14; ++i) {
         const Vec3 back = -(pair.turn.transpose() * normal);
-        const QuadTruth truth = quad_truth(nearest_corners(pair.a, normal, at_a),
-                                           nearest_corners(pair.b, back, at_b));
+        const QuadTruth truth =
+            quad_truth(nearest_corners(pair.a, normal, at_a), nearest_corners(pair.b, back, at_b));
         const double proved = quad_separation_along(all_a, all_b, truth.normal);
         const double gap = std::abs(truth.separation - proved);
         if (gap < best.unproved) best = {truth.separation, gap};
@@ -304,7 +319,8 @@ Long volume_beneath(const std::vector<LongFace>& faces,
             if (highest > planes[i].rough_offset - noise) clip(planes[i], polygon);
         }
         for (std::size_t i = 2; i < polygon.size(); ++i)
-            sum += (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]).dot(polygon[0] - from)
+            sum +=
+                (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]).dot(polygon[0] - from)
                 / 2;
     }
     return sum;
@@ -315,10 +331,10 @@ Long volume_beneath(const std::vector<LongFace>& faces,
 PairTruth pair_truth(const PolytopePair& pair, const Pose& b_in_a)
 {
     const QuadPose at_a{Pose{}}, at_b(b_in_a);
-    QuadSolid a = quad_corners(pair.a, at_a), b = quad_corners(pair.b, at_b);
-    const QuadSolid plain_a = a, plain_b = b;
-    Vec3 likely = pair.offset.normalized();
-    for (const Contender& one : AxisSearch(pair).contenders()) {
+    const QuadSolid all_a = quad_corners(pair.a, at_a), all_b = quad_corners(pair.b, at_b);
+    QuadSolid a = all_a, b = all_b;
+    AxisSearch search(pair);
+    for (const Contender& one : search.contenders()) {
         if (one.kind == Contender::face_a) add(pair.a, one.a, 3, at_a, a);
         if (one.kind == Contender::face_b) add(pair.b, one.b, 3, at_b, b);
         if (one.kind != Contender::edges) continue;
@@ -326,11 +342,9 @@ PairTruth pair_truth(const PolytopePair& pair, const Pose& b_in_a)
         add(pair.b, one.b, 2, at_b, b);
     }
     const QuadTruth truth = quad_truth(a, b);
-    if (truth.separation < 0 && truth.separation > -1e30) return {truth.separation, 0};
-    // Apart: where the centers lie names the side, and the nearest corners the rest.
-    const double along = quad_separation_along(plain_a, plain_b, likely);
-    if (!(along > 0)) likely = truth.normal;
-    return distance_truth(pair, plain_a, plain_b, at_a, at_b, likely);
+    const bool known = !a.normals.empty() || !b.normals.empty() || !a.directions.empty();
+    if (known && truth.separation <= 0) return {truth.separation, 0};
+    return distance_truth(pair, all_a, all_b, at_a, at_b, search.normal());
 }
 
 double shared_volume(const PolytopePair& pair, const Pose& b_in_a)
@@ -339,8 +353,7 @@ double shared_volume(const PolytopePair& pair, const Pose& b_in_a)
     const LongVec from = (pair.a.center + pair.offset / 2).cast<Long>();
     const LongVec middle_a = pair.a.center.cast<Long>();
     const LongVec middle_b = (pair.a.center + pair.offset).cast<Long>();
-    const Long sum =
-        volume_beneath(a, b, middle_b, pair.b.inner_radius, pair.b.outer_radius, from)
+    const Long sum = volume_beneath(a, b, middle_b, pair.b.inner_radius, pair.b.outer_radius, from)
         + volume_beneath(b, a, middle_a, pair.a.inner_radius, pair.a.outer_radius, from);
     return static_cast<double>(sum / 3);
 }

@@ -59,6 +59,7 @@ RollingPairs::RollingPairs(const Shapes& shapes,
         Quat orientation = random_turn(random, 3);
         const Quat round = turn(random_direction(random), motion.angle);
         const Quat about = turn(random_direction(random), motion.angle);
+        const double wanted = meeting.either && i % 2 == 1 ? -meeting.gap : meeting.gap;
         double found = 1;
         for (std::size_t step = 0; step < kSteps; ++step) {
             // Along the way that b lies, nearer or further until the gap is the one wanted.
@@ -66,7 +67,7 @@ RollingPairs::RollingPairs(const Shapes& shapes,
             for (int halving = 0; halving < 46; ++halving) {
                 found = (near + far) / 2;
                 const double gap = separation(shapes, one, {found * from, orientation});
-                (gap < meeting.gap ? near : far) = found;
+                (gap < wanted ? near : far) = found;
             }
             one.b_in_a.push_back({found * from, orientation});
             one.asked.push_back(

@@ -19,8 +19,9 @@ struct Build {
 
 struct Meeting {
     const char* name;
-    double gap;    // m, below 0 minus the depth
-    double reach;  // m
+    double gap;           // m, below 0 minus the depth
+    double reach;         // m
+    bool either = false;  // every second pair is as deep as the others are apart
 };
 
 /// rad a step, of b round a and of b about itself.
