@@ -94,46 +94,6 @@ std::uint16_t support_vertex(const PolytopeView& shape, const Vec3& direction, s
     return furthest_vertex_near(ClimbingShape(shape), direction, start, count);
 }
 
-std::uint16_t look_for_vertex(const PolytopeView& shape, const Vec3& direction)
-{
-    std::size_t best = 0;
-    double best_reach = direction.dot(shape.vertices[0]);
-    for (std::size_t i = 1; i < shape.vertices.size(); ++i) {
-        const double reach = direction.dot(shape.vertices[i]);
-        if (reach > best_reach) {
-            best_reach = reach;
-            best = i;
-        }
-    }
-    return static_cast<std::uint16_t>(best);
-}
-
-std::uint16_t
-climb_to_vertex(const PolytopeView& shape, const Vec3& direction, std::uint16_t start, int* looked)
-{
-    THRONG_CHECK(start < shape.vertices.size(), "climbing starts at a vertex");
-    // On a convex polyhedron a vertex with no higher neighbor is a highest one.
-    std::uint16_t best = start;
-    double best_reach = direction.dot(shape.vertices[best]);
-    if (looked) ++*looked;
-    for (bool climbed = true; climbed;) {
-        climbed = false;
-        const std::uint16_t here = best;
-        const std::uint32_t end = shape.neighbor_begin[here + 1u];
-        if (looked) *looked += static_cast<int>(end - shape.neighbor_begin[here]);
-        for (std::uint32_t i = shape.neighbor_begin[here]; i < end; ++i) {
-            const std::uint16_t next = shape.neighbors[i];
-            const double reach = direction.dot(shape.vertices[next]);
-            if (reach > best_reach) {
-                best_reach = reach;
-                best = next;
-                climbed = true;
-            }
-        }
-    }
-    return best;
-}
-
 PolytopeShape::PolytopeShape(const Shapes& shapes, ShapeRef shape)
     : hull_(shape.kind == ShapeKind::hull ? &shapes.hulls[shape.index] : nullptr),
       box_(hull_ ? Vec3(Vec3::Zero()) : shapes.boxes[shape.index].half_extents)

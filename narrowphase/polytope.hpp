@@ -64,27 +64,6 @@ struct TrianglePolytope {
 ///   start   where to begin climbing; changes the time, not the distance found
 std::uint16_t support_vertex(const PolytopeView& shape, const Vec3& direction, std::uint16_t start);
 
-/// What climbing may miss by, of the outer radius: a hundred times what build_hull() lets corners
-/// stray, for that counts more where edges are short.
-inline constexpr double kClimbError = 1e-3;
-
-/// The same by looking at every vertex.
-std::uint16_t look_for_vertex(const PolytopeView& shape, const Vec3& direction);
-
-/// The same by climbing alone, from neighbor to higher neighbor: short where `start` is near, and
-/// as short for many vertices as for few.
-///
-/// Corners of a hull's face may lie a little below its plane, so that a climb can end a little
-/// short of the furthest vertex; kClimbError of the outer radius is ample for that.
-///
-///   looked   counts the vertices looked at; may be null
-///
-/// Needs: neighbors.
-std::uint16_t climb_to_vertex(const PolytopeView& shape,
-                              const Vec3& direction,
-                              std::uint16_t start,
-                              int* looked = nullptr);
-
 /// A box or a hull of the world, as a polytope. Keep it while the view is in use.
 class PolytopeShape {
 public:

@@ -1,5 +1,6 @@
 #include "narrowphase/methods/chung_wang.hpp"
 
+#include "narrowphase/methods/climbing_support.hpp"
 #include "narrowphase/methods/direction_cone.hpp"
 
 #include <cmath>
@@ -32,59 +33,37 @@ struct FurthestPoints {
 // The differences of two polytopes, by climbing from the vertices of the round before.
 struct FurthestVertices {
     FurthestVertices(const PolytopePair& polytopes, const CorePair& cores)
-        : pair(polytopes), box_a(cores.a.kind == ShapeKind::box),
-          box_b(cores.b.kind == ShapeKind::box)
+        : pair(polytopes), supports(cores)
     { }
 
     const PolytopePair& pair;
-    bool box_a, box_b;
-    std::uint16_t a = 0, b = 0;
+    ClimbingSupports supports;
+    std::uint32_t a = 0, b = 0;
     // By round, so that a witness can be told by its vertices.
-    std::array<std::uint16_t, kRounds> seen_a, seen_b;
+    std::array<std::uint32_t, kRounds> seen_a, seen_b;
 
-    static std::uint16_t
-    furthest(const PolytopeView& shape, bool box, const Vec3& s, std::uint16_t start)
-    {
-        // A box's corner is known by the signs alone.
-        if (box)
-            return static_cast<std::uint16_t>((s.x() > 0) | (s.y() > 0) << 1 | (s.z() > 0) << 2);
-        return climb_to_vertex(shape, s, start);
-    }
-    Vec3 between(std::uint16_t vertex_a, std::uint16_t vertex_b) const
+    Vec3 between(std::uint32_t vertex_a, std::uint32_t vertex_b) const
     {
         return pair.turn * pair.b.vertices[vertex_b] + pair.shift - pair.a.vertices[vertex_a];
     }
     Vec3 difference(const Vec3& s)
     {
-        const Vec3 against = -(pair.turn.transpose() * s);
-        a = furthest(pair.a, box_a, s, a);
-        b = furthest(pair.b, box_b, against, b);
-        Vec3 r = between(a, b);
-        const double along = s.dot(r);
-        if (!(along > 0) || along > kClimbError * (pair.a.outer_radius + pair.b.outer_radius))
-            return r;
-        // Only who has looked at every vertex may say that the two are apart by so little.
-        if (!box_a) a = look_for_vertex(pair.a, s);
-        if (!box_b) b = look_for_vertex(pair.b, against);
-        return between(a, b);
+        const Difference furthest = supports(s);
+        a = furthest.feature_a;
+        b = furthest.feature_b;
+        return -furthest.point;
     }
     bool has(std::uint32_t vertex_a, std::uint32_t vertex_b) const
     {
         return vertex_a < pair.a.vertices.size() && vertex_b < pair.b.vertices.size();
     }
-    void begin_at(const MethodMemory& memory)
-    {
-        if (!has(memory.a[0], memory.b[0])) return;
-        a = static_cast<std::uint16_t>(memory.a[0]);
-        b = static_cast<std::uint16_t>(memory.b[0]);
-    }
+    void begin_at(const MethodMemory& memory) { supports.start_at(memory.a[0], memory.b[0]); }
     bool still_touch(const MethodMemory& memory) const
     {
         DirectionCone cone;
         for (std::uint32_t i = 0; i < memory.count && i < 4; ++i) {
             if (!has(memory.a[i], memory.b[i])) return false;
-            const Vec3 r = between(static_cast<std::uint16_t>(memory.a[i]),
-                                   static_cast<std::uint16_t>(memory.b[i]));
+            const Vec3 r = between(memory.a[i], memory.b[i]);
             const double length = std::sqrt(r.squaredNorm());
             if (!(length > 0) || !cone.add(r / length)) return true;
         }

@@ -1,5 +1,7 @@
 #include "narrowphase/methods/polytope_side.hpp"
 
+#include "narrowphase/methods/climbing_support.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -57,15 +59,11 @@ NearestFace nearest_face(const PolytopeSide& side, const Vec3& point)
 FaceAxis lowest_vertex(const PolytopeSide& side, std::uint16_t face, std::uint16_t start)
 {
     const Vec3 down = -(side.pair.turn.transpose() * side.pair.a.normals[face]);
-    std::uint16_t vertex = climb_to_vertex(side.pair.b, down, start, &side.rounds);
-    double height = side.height(face, side.place(vertex));
-    // Only who has looked at every vertex may say that none is beneath by so little.
-    if (height > side.noise && height < kClimbError * side.pair.b.outer_radius) {
-        vertex = look_for_vertex(side.pair.b, down);
-        side.rounds += static_cast<int>(side.pair.b.vertices.size());
-        height = side.height(face, side.place(vertex));
-    }
-    return {height, face, vertex};
+    ClimbCount count;
+    const std::uint16_t vertex =
+        furthest_vertex_near(ClimbingShape(side.pair.b), down, start, count);
+    side.rounds += static_cast<int>(count.looked);
+    return {side.height(face, side.place(vertex)), face, vertex};
 }
 
 WalkEnd walk(PolytopeSide& side, std::uint16_t face, std::uint16_t start)

@@ -50,8 +50,7 @@ bool cut(
 /// Whether something of an edge is inside, and what.
 ///
 ///   part   in: faces likely to leave nothing, as those that ended the last edge; out: what is
-///   left,
-///          or the faces that ended this one
+///          left, or the faces that ended this one
 bool meets(const PolytopeSide& side, const Vec3& from, const Vec3& to, EdgePart& part);
 
 /// The face that a point is furthest beyond, or least far beneath.
@@ -84,8 +83,9 @@ struct BelowScratch {
 };
 
 /// Shows the vertices that lie beneath the plane of side.best, and the edges with an end there: all
-/// others are outside. They hang together, and the lowest is among them; a little above the plane
-/// is beneath it too, so that they do so for faces whose corners stray. Ends once shown enough.
+/// others are outside. They hang together, and the lowest is among them; up to the slack of the
+/// guide above the plane is beneath it too, so that they do so for faces whose corners stray. Ends
+/// once shown enough.
 ///
 ///   on_vertex   (vertex), true for enough
 ///   on_edge     (from, to), true for enough; neither may call any_below()
@@ -95,7 +95,7 @@ bool any_below(const PolytopeSide& side, OnVertex&& on_vertex, OnEdge&& on_edge)
     using Below = BelowScratch::Below;
     BelowScratch& scratch = BelowScratch::of_thread();
     const PolytopeView& shape = side.pair.b;
-    const double level = side.noise + kClimbError * shape.outer_radius;
+    const double level = 2 * side.noise + (shape.guide ? shape.guide->slack : 0);
     std::vector<Below>& below = scratch.below;
     std::vector<std::uint16_t>&looked = scratch.looked, &open = scratch.open;
     if (below.size() < shape.vertices.size()) below.resize(shape.vertices.size(), Below::unknown);
