@@ -1,6 +1,7 @@
 #include "cost/hard_cases/certified_pairs.hpp"
 
 #include "kernels/math/rotation.hpp"
+#include "scenes/parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +10,6 @@ namespace throng {
 namespace {
 
 constexpr double kLeastGap = 1e-9, kGreatestGap = 0.3;
-
-Vec3 random_vector(Random& random)
-{
-    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-    return {x, y, random.uniform(-1, 1)};
-}
-
-Vec3 random_direction(Random& random) { return random_turn(random) * Vec3::UnitX(); }
 
 const Vec3& furthest(const Hull& hull, const Vec3& direction)
 {
@@ -39,7 +32,9 @@ Quat awkward_turn(Random& random)
     if (kind == 0) return turn;
     turn = Quat::Identity();
     if (kind == 2) turn = Quat(1, 1, 0, 0).normalized();
-    if (kind == 3) turn = exponential(log_uniform(random, 1e-12, 1e-2) * random_direction(random));
+    if (kind == 3)
+        turn =
+            exponential(log_uniform(random, 1e-12, 1e-2) * (random_turn(random) * Vec3::UnitX()));
     return turn;
 }
 
@@ -70,7 +65,7 @@ Vec3 direction_between(const Hull& a, const Hull& b, const Quat& turn, Random& r
     default:
         break;
     }
-    return random_direction(random);
+    return random_turn(random) * Vec3::UnitX();
 }
 
 // A point of the surface: a vertex, or somewhere on an edge or a face beside it.
@@ -113,7 +108,7 @@ Hull random_hull(Random& random, int points)
     for (int axis = 0; axis < 3; ++axis) axes[axis] = random.uniform(0.3, 1);
     std::vector<Vec3> cloud;
     while (static_cast<int>(cloud.size()) < points) {
-        const Vec3 point = random_vector(random);
+        const Vec3 point = random_vector(random, -1, 1);
         const double square = point.squaredNorm();
         if (square > 0.01 && square < 1) cloud.push_back(axes.cwiseProduct(point.normalized()));
     }
@@ -135,7 +130,7 @@ CertifiedPair certified_pair(const Hull& a, const Hull& b, Random& random)
         // plane between them, so that faces lie over one another in all ways.
         const Vec3 along = direction_between(a, b, turn, random);
         const Vec3 lowest = turn * furthest(b, turn.conjugate() * -along);
-        const Vec3 aside = random_vector(random) * random.uniform(0, 1) * a.outer_radius;
+        const Vec3 aside = random_vector(random, -1, 1) * random.uniform(0, 1) * a.outer_radius;
         pair.b_in_a.position = furthest(a, along) - lowest + pair.gap * along
             + (random.below(2) == 0 ? aside - along * along.dot(aside) : Vec3(Vec3::Zero()));
         return pair;

@@ -1,7 +1,8 @@
 #include "narrowphase/box_pairs.hpp"
 
-#include "tests/narrowphase/broken_pairs.hpp"
+#include "cost/hard_cases/broken_pairs.hpp"
 #include "tests/narrowphase/placed_boxes.hpp"
+#include "tests/narrowphase/polyhedra.hpp"
 
 #include <gtest/gtest.h>
 

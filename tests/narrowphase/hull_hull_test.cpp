@@ -1,5 +1,5 @@
+#include "cost/hard_cases/broken_pairs.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
-#include "tests/narrowphase/broken_pairs.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
 
 #include <gtest/gtest.h>

@@ -48,6 +48,20 @@ inline std::vector<Vec3> corners_of(const Vec3& half)
     return {box.vertices.begin(), box.vertices.end()};
 }
 
+/// How far corners of the faces lie beneath their planes, at most: more than rounding only where a
+/// hull's faces were put together of triangles that are not quite in one plane.
+inline double stray_of(const PolytopeView& shape)
+{
+    double most = 0;
+    for (std::size_t face = 0; face < shape.normals.size(); ++face) {
+        for (const std::uint16_t vertex : shape.face(face)) {
+            const double along = shape.normals[face].dot(shape.vertices[vertex]);
+            most = std::max(most, shape.offsets[face] - along);
+        }
+    }
+    return most;
+}
+
 inline Shapes two_boxes(const Vec3& half_a, const Vec3& half_b)
 {
     Shapes shapes;

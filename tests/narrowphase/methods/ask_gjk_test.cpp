@@ -1,7 +1,7 @@
 #include "narrowphase/methods/ask_gjk.hpp"
 
 #include "narrowphase/methods/separating_axes.hpp"
-#include "tests/narrowphase/methods/method_pairs.hpp"
+#include "tests/narrowphase/methods/polytope_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ void expect_agree(const MethodAnswer& one, const MethodAnswer& other, double sma
     EXPECT_NEAR(one.separation, other.separation, small);
 }
 
-void expect_right_on(const PolytopeCases& cases, const ConvexPair& pair)
+void expect_right_on(const MeetingPairs& cases, const ConvexPair& pair)
 {
     const double size = pair.size() + cases.b_in_a.position.norm();
     const MethodAnswer answer = ask(pair, MethodStart::cold);
@@ -67,7 +67,7 @@ void expect_right_on(const PolytopeCases& cases, const ConvexPair& pair)
 TEST(AskGjk, RightOnPolytopesHoweverTheyMeet)
 {
     for (const double scale : {1e-6, 1.0, 1e6}) {
-        PolytopeCases cases(81, scale);
+        MeetingPairs cases(81, scale);
         const int pairs = scale == 1 ? 10000 : 5000;
         for (int i = 0; i < pairs && !testing::Test::HasFailure(); ++i) {
             SCOPED_TRACE("seed 81, scale " + std::to_string(scale) + ", pair " + std::to_string(i));
@@ -80,7 +80,7 @@ TEST(AskGjk, RightOnPolytopesHoweverTheyMeet)
 
 TEST(AskGjk, SwappedTheySayTheSame)
 {
-    PolytopeCases cases(82, 1);
+    MeetingPairs cases(82, 1);
     for (int i = 0; i < 2000; ++i) {
         SCOPED_TRACE("seed 82, pair " + std::to_string(i));
         cases.next();
@@ -144,7 +144,7 @@ TEST(AskGjk, WhatIsRememberedChangesNothing)
 // Memory of another pair, or of a pose long past, is a bad start and no more.
 TEST(AskGjk, AWrongMemoryDoesNoHarm)
 {
-    PolytopeCases cases(84, 1);
+    MeetingPairs cases(84, 1);
     MethodMemory memory;
     for (int i = 0; i < 2000; ++i) {
         SCOPED_TRACE("seed 84, pair " + std::to_string(i));
@@ -221,7 +221,7 @@ TEST(AskGjk, WarmQuestionsHardlyGrowWithTheHull)
 // Pairs that are apart, moved together along their normal until a hair is left, and a hair deep.
 TEST(AskGjk, AHairApartIsMeasuredAsWellAsAMeter)
 {
-    PolytopeCases cases(90, 1);
+    MeetingPairs cases(90, 1);
     int pairs = 0;
     for (int i = 0; i < 1500; ++i) {
         cases.next();

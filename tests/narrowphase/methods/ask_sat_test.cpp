@@ -1,6 +1,6 @@
 #include "narrowphase/methods/ask_sat.hpp"
 
-#include "tests/narrowphase/methods/method_pairs.hpp"
+#include "tests/narrowphase/methods/polytope_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ void expect_as_plain(const ConvexPair& pair, const MethodAnswer& plain, const Me
 TEST(AskSat, FastAndPlainAgreeHoweverTheyMeet)
 {
     for (const double scale : {1e-6, 1.0, 1e6}) {
-        PolytopeCases cases(91, scale);
+        MeetingPairs cases(91, scale);
         const int pairs = scale == 1 ? 10000 : 5000;
         for (int i = 0; i < pairs; ++i) {
             SCOPED_TRACE("seed 91, scale " + std::to_string(scale) + ", pair " + std::to_string(i));
@@ -51,7 +51,7 @@ TEST(AskSat, FastAndPlainAgreeHoweverTheyMeet)
 
 TEST(AskSat, SwappedTheySayTheSame)
 {
-    PolytopeCases cases(92, 1);
+    MeetingPairs cases(92, 1);
     for (int i = 0; i < 2000; ++i) {
         SCOPED_TRACE("seed 92, pair " + std::to_string(i));
         cases.next();
@@ -72,7 +72,7 @@ TEST(AskSat, SwappedTheySayTheSame)
 // A wrong memory, as of another pair, is a bad start and no more.
 TEST(AskSat, WhatIsRememberedChangesNothing)
 {
-    PolytopeCases cases(93, 1);
+    MeetingPairs cases(93, 1);
     MethodMemory wrong;
     for (int i = 0; i < 1000; ++i) {
         SCOPED_TRACE("seed 93, pair " + std::to_string(i));
@@ -95,7 +95,7 @@ TEST(AskSat, WhatIsRememberedChangesNothing)
 // One look each, while the axis that parted them still does.
 TEST(AskSat, TheAxisRememberedPartsThemAtOnce)
 {
-    PolytopeCases cases(94, 1);
+    MeetingPairs cases(94, 1);
     int parted = 0, at_once = 0;
     for (int i = 0; i < 2000; ++i) {
         cases.next();

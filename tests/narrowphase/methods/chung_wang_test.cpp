@@ -1,7 +1,6 @@
 #include "narrowphase/methods/chung_wang.hpp"
 
 #include "narrowphase/methods/epa.hpp"
-#include "tests/narrowphase/broken_pairs.hpp"
 #include "tests/narrowphase/methods/polytope_pairs.hpp"
 
 #include <gtest/gtest.h>
@@ -9,16 +8,7 @@
 namespace throng {
 namespace {
 
-using testing::face_to_face;
-using testing::is_clear;
-using testing::PolytopeCase;
-using testing::pool_of_polytopes;
-using testing::RandomPairs;
-using testing::uneven_prisms;
-
 constexpr MethodStart kStarts[] = {MethodStart::plain, MethodStart::cold, MethodStart::cached};
-
-Touch truth_of(double gap) { return gap > 0 ? Touch::apart : Touch::touching; }
 
 // Where they are apart the normal must part them, by the plainest of means.
 void expect_parted(const ConvexPair& pair, const MethodAnswer& answer)
@@ -98,22 +88,12 @@ TEST(ChungWang, AnswersAlikeAtEveryScale)
 TEST(ChungWang, HardBoxesAtEveryScaleAndBothWaysRound)
 {
     int asked = 0;
-    for (const BrokenPair& hard : broken_pairs()) {
-        SCOPED_TRACE(hard.name);
-        // Some poses are given to 1e-8 only.
-        const double size = hard.a.size.norm() + hard.b.size.norm();
-        if (std::abs(hard.separation) < 1e-8 * size) continue;
-        for (const double scale : {1e-6, 1.0, 1e6}) {
-            const Shapes shapes = two_boxes(hard.a.size * (scale / 2), hard.b.size * (scale / 2));
-            Pose pose = inverse(hard.a.pose) * hard.b.pose;
-            pose.position *= scale;
-            Tally tally;
-            ASSERT_NO_FATAL_FAILURE(
-                expect_truth_both_ways(shapes, {kBoxA, kBoxB, pose, hard.separation}, tally));
-            EXPECT_EQ(tally.undecided, 0);
-            asked += tally.asked;
-        }
-    }
+    for_hard_boxes([&](const Shapes& shapes, const PolytopeCase& pair) {
+        Tally tally;
+        ASSERT_NO_FATAL_FAILURE(expect_truth_both_ways(shapes, pair, tally));
+        EXPECT_EQ(tally.undecided, 0);
+        asked += tally.asked;
+    });
     EXPECT_GT(asked, 0);
 }
 

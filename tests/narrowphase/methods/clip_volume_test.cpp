@@ -1,8 +1,7 @@
 #include "narrowphase/methods/clip_volume.hpp"
 
 #include "narrowphase/methods/cut_polyhedron.hpp"
-#include "narrowphase/methods/separating_axes.hpp"
-#include "tests/narrowphase/polyhedra.hpp"
+#include "tests/narrowphase/methods/polytope_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,12 +17,6 @@ MethodAnswer ask(const ConvexPair& pair, MethodStart start)
 {
     MethodMemory memory;
     return ask_clip_volume(pair, 0, start, memory);
-}
-
-double separation_of(const ConvexPair& pair)
-{
-    const PolytopePair& shapes = *pair.polytopes();
-    return polytope_separation(shapes.a, shapes.b, {shapes.shift, Quat(shapes.turn)}, nullptr);
 }
 
 Pose scaled(const Pose& pose, double scale) { return {pose.position * scale, pose.orientation}; }
@@ -48,19 +41,6 @@ Shapes some_shapes(RandomShapes& random, int few, int many)
         }
     }
     return shapes;
-}
-
-// How far corners lie below the planes of their faces: 0 to rounding, but where a hull's faces were
-// put together of triangles that are not quite in one plane.
-double roughness(const Hull& hull)
-{
-    double most = 0;
-    const PolytopeView view = view_of(hull);
-    for (std::size_t face = 0; face < hull.normals.size(); ++face)
-        for (const std::uint16_t corner : view.face(face))
-            most =
-                std::max(most, hull.offsets[face] - hull.normals[face].dot(hull.vertices[corner]));
-    return most;
 }
 
 // The twin: each face of either is cut by all planes of the other, a polygon on its own, and the
@@ -245,7 +225,9 @@ TEST(ClipVolume, AgreesWithFacesCutOneByOne)
         SCOPED_TRACE("seed 71, pair " + std::to_string(i));
         const Shapes shapes = some_shapes(random, 4, i < 100 ? 12 : 40);
         const ConvexPair pair(shapes, kHullA, kHullB, random.pose(0.45));
-        if (std::max(roughness(shapes.hulls[0]), roughness(shapes.hulls[1])) > 1e-14) continue;
+        if (std::max(stray_of(view_of(shapes.hulls[0])), stray_of(view_of(shapes.hulls[1])))
+            > 1e-14)
+            continue;
         const WideSum truth = by_faces(*pair.polytopes());
         if (truth.volume < 1e-4L) continue;
         ++compared;

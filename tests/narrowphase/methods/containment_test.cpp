@@ -1,6 +1,5 @@
 #include "narrowphase/methods/containment.hpp"
 
-#include "tests/narrowphase/broken_pairs.hpp"
 #include "tests/narrowphase/methods/polytope_pairs.hpp"
 
 #include <gtest/gtest.h>
@@ -8,17 +7,7 @@
 namespace throng {
 namespace {
 
-using testing::face_to_face;
-using testing::is_clear;
-using testing::PolytopeCase;
-using testing::pool_of_polytopes;
-using testing::RandomPairs;
-using testing::stray_of;
-using testing::uneven_prisms;
-
 constexpr double kQuarter = 1.5707963267948966;
-
-Touch truth_of(double gap) { return gap > 0 ? Touch::apart : Touch::touching; }
 
 Touch ask(const ConvexPair& pair, MethodStart start, MethodMemory& memory)
 {
@@ -149,20 +138,11 @@ TEST(Containment, FindsEdgesThatPierceFaces)
 TEST(Containment, HardBoxesAtEveryScaleAndBothWaysRound)
 {
     int asked = 0;
-    for (const BrokenPair& hard : broken_pairs()) {
-        SCOPED_TRACE(hard.name);
-        for (const double scale : {1e-6, 1.0, 1e6}) {
-            const Shapes shapes = two_boxes(hard.a.size * (scale / 2), hard.b.size * (scale / 2));
-            // Some poses are given to 1e-8 only.
-            if (std::abs(hard.separation) < 1e-8 * (hard.a.size.norm() + hard.b.size.norm()))
-                continue;
-            Pose pose = inverse(hard.a.pose) * hard.b.pose;
-            pose.position *= scale;
-            ASSERT_NO_FATAL_FAILURE(
-                expect_touch(shapes, kBoxA, kBoxB, pose, truth_of(hard.separation)));
-            ++asked;
-        }
-    }
+    for_hard_boxes([&](const Shapes& shapes, const PolytopeCase& pair) {
+        ASSERT_NO_FATAL_FAILURE(
+            expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.gap)));
+        ++asked;
+    });
     EXPECT_GE(asked, 30);
 }
 

@@ -1,10 +1,11 @@
 #include "narrowphase/methods/gjk.hpp"
 
+#include "cost/hard_cases/broken_pairs.hpp"
 #include "narrowphase/contact_axis.hpp"
 #include "narrowphase/methods/epa.hpp"
 #include "narrowphase/pair_functions.hpp"
-#include "tests/narrowphase/broken_pairs.hpp"
 #include "tests/narrowphase/direction_search.hpp"
+#include "tests/narrowphase/polyhedra.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "narrowphase/methods/bounding_ball.hpp"
 #include "narrowphase/methods/k_dop_tree.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
-#include "tests/narrowphase/polyhedra.hpp"
+#include "tests/narrowphase/methods/polytope_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,12 +18,6 @@ MethodAnswer ask(const char* filter, const ConvexPair& pair, MethodStart start)
 {
     MethodMemory memory;
     return find_convex_method(filter)->ask(pair, 0, start, memory);
-}
-
-double separation_of(const ConvexPair& pair)
-{
-    const PolytopePair& shapes = *pair.polytopes();
-    return polytope_separation(shapes.a, shapes.b, {shapes.shift, Quat(shapes.turn)}, nullptr);
 }
 
 // Boxes 0 to 9 and hulls 0 to 9, of 8 to 60 vertices.

@@ -1,12 +1,17 @@
-// Polytope pairs: random boxes and hulls placed against one another at a gap that is known.
+// Polytope pairs: boxes and hulls placed against one another, for tests of methods that ask about
+// two.
 #pragma once
 
+#include "cost/hard_cases/broken_pairs.hpp"
+#include "narrowphase/methods/convex_methods.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
-namespace throng::testing {
+namespace throng {
 
 /// Boxes, and hulls of 8 to 60 vertices, of radii from a twentieth of the scale to the scale.
 inline Shapes pool_of_polytopes(std::uint64_t seed, double scale)
@@ -126,23 +131,125 @@ private:
     int count_ = 0;
 };
 
-/// How far corners of the faces lie beneath their planes, at most.
-inline double stray_of(const PolytopeView& shape)
-{
-    double most = 0;
-    for (std::size_t face = 0; face < shape.normals.size(); ++face) {
-        for (const std::uint16_t vertex : shape.face(face)) {
-            const double along = shape.normals[face].dot(shape.vertices[vertex]);
-            most = std::max(most, shape.offsets[face] - along);
-        }
-    }
-    return most;
-}
-
 /// Whether rounding has no say in whether they touch.
 inline bool is_clear(const PolytopeCase& pair, double scale)
 {
     return std::abs(pair.gap) > 0.99e-9 * scale;
 }
 
-}  // namespace throng::testing
+/// What a method has to say of a gap that is known.
+inline Touch truth_of(double gap) { return gap > 0 ? Touch::apart : Touch::touching; }
+
+/// m, by the axes of their faces and edges.
+inline double separation_of(const ConvexPair& pair)
+{
+    const PolytopePair& shapes = *pair.polytopes();
+    return polytope_separation(shapes.a, shapes.b, {shapes.shift, Quat(shapes.turn)}, nullptr);
+}
+
+/// Shows (shapes, pair) the hard boxes at each scale, but for those whose poses are given to fewer
+/// digits than it takes to tell.
+template <class Visit>
+void for_hard_boxes(Visit&& visit)
+{
+    for (const BrokenPair& hard : broken_pairs()) {
+        SCOPED_TRACE(hard.name);
+        const double size = hard.a.size.norm() + hard.b.size.norm();
+        if (std::abs(hard.separation) < 1e-8 * size) continue;
+        for (const double scale : {1e-6, 1.0, 1e6}) {
+            const Shapes shapes = two_boxes(hard.a.size * (scale / 2), hard.b.size * (scale / 2));
+            Pose pose = inverse(hard.a.pose) * hard.b.pose;
+            pose.position *= scale;
+            visit(shapes, PolytopeCase{kBoxA, kBoxB, pose, hard.separation * scale});
+        }
+    }
+}
+
+/// A box or a hull of 8 to 60 points, about a meter across: round, or with points strewn in a box.
+inline ShapeRef add_polytope(RandomShapes& random, double scale, Shapes& shapes)
+{
+    const double which = random.number(0, 3);
+    if (which < 1) {
+        shapes.boxes.push_back({random.vector(0.1, 0.6) * scale});
+        return {ShapeKind::box, static_cast<std::uint32_t>(shapes.boxes.size() - 1)};
+    }
+    const int points = static_cast<int>(random.number(8, 60.99));
+    if (which < 2) {
+        shapes.hulls.push_back(random.hull(points, 0.5 * scale));
+    } else {
+        std::vector<Vec3> cloud;
+        const Vec3 half = random.vector(0.1, 0.6);
+        for (int i = 0; i < points; ++i)
+            cloud.emplace_back(random.vector(-1, 1).cwiseProduct(half) * scale);
+        shapes.hulls.push_back(build_hull(cloud).hull);
+    }
+    return {ShapeKind::hull, static_cast<std::uint32_t>(shapes.hulls.size() - 1)};
+}
+
+/// Far, near, touching, deep, contained, parallel or concentric, one after the other.
+inline Pose meeting_pose(RandomShapes& random, int which, double scale)
+{
+    Pose pose{random.vector(-1, 1).normalized() * scale, random.turn()};
+    switch (which % 7) {
+    case 0:
+        pose.position *= random.number(2, 10);
+        break;
+    case 1:
+        pose.position *= random.number(0.9, 1.3);
+        break;
+    case 2:
+        pose.position *= random.number(0.7, 1);
+        break;
+    case 3:
+        pose.position *= random.number(0, 0.5);
+        break;
+    case 4:
+        pose.position *= random.number(0, 0.05);
+        break;
+    case 5:
+        pose.orientation = Quat(1, 0, 0, 0);
+        pose.position *= random.number(0, 1.5);
+        break;
+    default:
+        pose.position.setZero();
+        if (which % 2 == 0) pose.orientation = Quat(1, 0, 0, 0);
+        break;
+    }
+    return pose;
+}
+
+/// Such shapes in such poses, with gaps as they come. A few hundred shapes are enough: hulls take
+/// longer to build than to ask about.
+class MeetingPairs {
+public:
+    MeetingPairs(std::uint64_t seed, double scale) : random_(seed), scale_(scale)
+    {
+        for (int i = 0; i < 200; ++i) refs_.push_back(add_polytope(random_, scale, shapes_));
+    }
+
+    const Shapes& shapes() const { return shapes_; }
+    void next()
+    {
+        a = any();
+        b = count_ % 50 == 49 ? a : any();
+        b_in_a = meeting_pose(random_, count_++, scale_);
+    }
+
+    ShapeRef a, b;
+    Pose b_in_a;
+
+private:
+    ShapeRef any()
+    {
+        return refs_[static_cast<std::size_t>(
+            random_.number(0, static_cast<double>(refs_.size())))];
+    }
+
+    RandomShapes random_;
+    double scale_;
+    int count_ = 0;
+    Shapes shapes_;
+    std::vector<ShapeRef> refs_;
+};
+
+}  // namespace throng
