@@ -130,9 +130,9 @@ std::vector<MethodDescription> known_methods()
 {
     std::vector<MethodDescription> known;
     for (const ConvexMethod& method : convex_methods())
-        known.push_back({method.name, method.about, (method.tells & kTellsTouch) != 0,
-                         (method.tells & kTellsDistance) != 0, (method.tells & kTellsDepth) != 0,
-                         (method.tells & kTellsVolume) != 0, method.polytopes_only});
+        known.push_back({method.name, method.about, (method.tells & tells_touch) != 0,
+                         (method.tells & tells_distance) != 0, (method.tells & tells_depth) != 0,
+                         (method.tells & tells_volume) != 0, method.polytopes_only});
     return known;
 }
 

@@ -16,8 +16,7 @@ namespace throng {
 ///
 ///   toward         [6 side side] a vertex that is furthest, or nearly, in the middle of the cell
 ///   begin, links   as neighbor_begin and neighbors of Hull, with far corners of the same face
-///   added
-///                  where faces have many; empty where none has
+///                  added where faces have many; empty where none has
 ///   slack          m, by which a path over edges to the furthest vertex may have to descend first:
 ///                  corners of a face need not lie in one plane
 struct HullGuide {

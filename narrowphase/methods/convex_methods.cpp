@@ -1,16 +1,14 @@
 #include "narrowphase/methods/convex_methods.hpp"
 
-#include "narrowphase/methods/bounding_ball.hpp"
-#include "narrowphase/methods/clip_volume.hpp"
-#include "narrowphase/methods/k_dop.hpp"
-#include "narrowphase/methods/chung_wang.hpp"
-#include "narrowphase/methods/containment.hpp"
-#include "narrowphase/methods/separating_axes.hpp"
 #include "narrowphase/methods/ask_gjk.hpp"
 #include "narrowphase/methods/ask_sat.hpp"
+#include "narrowphase/methods/bounding_ball.hpp"
+#include "narrowphase/methods/chung_wang.hpp"
+#include "narrowphase/methods/clip_volume.hpp"
+#include "narrowphase/methods/containment.hpp"
+#include "narrowphase/methods/k_dop.hpp"
 
 namespace throng {
-
 namespace {
 
 bool is_polytope(ShapeRef shape)
@@ -19,20 +17,20 @@ bool is_polytope(ShapeRef shape)
 }
 
 constexpr ConvexMethod kMethods[] = {
-    {"sat", "every axis that could part two polytopes", kTellsTouch | kTellsDepth, true, ask_sat},
-    {"clip_volume", "one polytope cut by the planes of the other, and what is left measured",
-     kTellsTouch | kTellsVolume, true, ask_clip_volume},
-    {"sphere", "filter: balls round the two", kTellsTouch, false, ask_bounding_ball},
-    {"k_dop:6", "filter: slabs along the axes", kTellsTouch, false, ask_k_dop<6>},
-    {"k_dop:14", "filter: slabs along axes and cube's corners", kTellsTouch, false, ask_k_dop<14>},
-    {"k_dop:18", "filter: slabs along axes and cube's edges", kTellsTouch, false, ask_k_dop<18>},
-    {"k_dop:26", "filter: slabs along axes, corners and edges", kTellsTouch, false, ask_k_dop<26>},
     {"containment", "vertices inside and edges through faces, as in the first textbooks",
-     kTellsTouch, true, ask_containment},
-    {"chung_wang", "the search for a direction that parts the two", kTellsTouch, false,
+     tells_touch, true, ask_containment},
+    {"clip_volume", "one polytope cut by the planes of the other, and what is left measured",
+     tells_touch | tells_volume, true, ask_clip_volume},
+    {"sat", "every axis that could part two polytopes", tells_touch | tells_depth, true, ask_sat},
+    {"chung_wang", "the search for a direction that parts the two", tells_touch, false,
      ask_chung_wang},
-    {"gjk", "the distance by GJK, the depth by EPA", kTellsTouch | kTellsDistance | kTellsDepth,
+    {"gjk", "the distance by GJK, the depth by EPA", tells_touch | tells_distance | tells_depth,
      false, ask_gjk},
+    {"sphere", "filter: balls round the two", tells_touch, false, ask_bounding_ball},
+    {"k_dop:6", "filter: slabs along the axes", tells_touch, false, ask_k_dop<6>},
+    {"k_dop:14", "filter: slabs along axes and cube's corners", tells_touch, false, ask_k_dop<14>},
+    {"k_dop:18", "filter: slabs along axes and cube's edges", tells_touch, false, ask_k_dop<18>},
+    {"k_dop:26", "filter: slabs along axes, corners and edges", tells_touch, false, ask_k_dop<26>},
 };
 
 }  // namespace

@@ -81,10 +81,10 @@ struct MethodMemory {
 
 /// What a method can tell, to be added up.
 enum Tells : std::uint8_t {
-    kTellsTouch = 1,
-    kTellsDistance = 2,  // of those that are apart, with points and normal
-    kTellsDepth = 4,     // of those that touch, with normal
-    kTellsVolume = 8,    // of those that touch, with surface and center
+    tells_touch = 1,
+    tells_distance = 2,  // of those that are apart, with points and normal
+    tells_depth = 4,     // of those that touch, with normal
+    tells_volume = 8,    // of those that touch, with surface and center
 };
 
 struct ConvexMethod {
@@ -107,7 +107,7 @@ struct ConvexMethod {
     }
 };
 
-/// All methods, the plainest first.
+/// All methods, the plainest first; the filters, which tell only what is far apart, come last.
 std::span<const ConvexMethod> convex_methods();
 
 /// The method of that name, or null.

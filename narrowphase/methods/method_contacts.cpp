@@ -90,9 +90,9 @@ bool collide_by(const ConvexMethod& method,
                 LocalManifold<double>& out)
 {
     out.count = 0;
-    const bool depth = (method.tells & kTellsDepth) != 0;
-    const bool distance = (method.tells & kTellsDistance) != 0;
-    const bool volume = (method.tells & kTellsVolume) != 0;
+    const bool depth = (method.tells & tells_depth) != 0;
+    const bool distance = (method.tells & tells_distance) != 0;
+    const bool volume = (method.tells & tells_volume) != 0;
     const ConvexPair pair(shapes, a, b, b_in_a);
     if (!method.serves(pair)) return false;
     if (depth && !distance && start != MethodStart::plain)

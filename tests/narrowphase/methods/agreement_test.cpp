@@ -33,7 +33,7 @@ public:
         memories.resize(convex_methods().size());
         for (std::size_t i = 0; i < convex_methods().size(); ++i) {
             const ConvexMethod& method = convex_methods()[i];
-            if ((method.tells & kTellsTouch) == 0 || !method.serves(pair)) continue;
+            if ((method.tells & tells_touch) == 0 || !method.serves(pair)) continue;
             const MethodStart start = kStarts[turn % 3];
             const MethodAnswer answer = method.ask(pair, 1e30, start, memories[i]);
             answers_.push_back({&method, answer.touch, answer.separation});
@@ -62,8 +62,8 @@ public:
         bool any_apart = false, any_touching = false;
         for (const Answer& one : answers_) {
             const bool told = one.touch == Touch::touching
-                ? (one.method->tells & kTellsDepth) != 0
-                : (one.method->tells & kTellsDistance) != 0;
+                ? (one.method->tells & tells_depth) != 0
+                : (one.method->tells & tells_distance) != 0;
             if (told && one.touch != Touch::undecided && std::abs(one.separation) < hair)
                 return false;
             any_apart = any_apart || one.touch == Touch::apart;
