@@ -129,7 +129,7 @@ ConvexAnswer CaseBench::ask(ConvexQuery& query,
                             const Pose& a,
                             const Pose& b,
                             double size,
-                            QueryStart start)
+                            MethodStart start)
 {
     using Clock = std::chrono::steady_clock;
     Pose at_a = a, at_b = b;

@@ -62,7 +62,7 @@ public:
                      const Pose& a,
                      const Pose& b,
                      double size,
-                     QueryStart start);
+                     MethodStart start);
 
     /// Adds a line. Time is counted from the last line, or from the start.
     void report(

@@ -70,18 +70,6 @@ std::string trouble_with(const ShapeDescription& shape)
     return {};
 }
 
-MethodStart start_of(QueryStart start)
-{
-    switch (start) {
-    case QueryStart::cached:
-        return MethodStart::cached;
-    case QueryStart::cold:
-        return MethodStart::cold;
-    default:
-        return MethodStart::plain;
-    }
-}
-
 QueryVerdict verdict_of(Touch touch)
 {
     switch (touch) {
@@ -160,7 +148,7 @@ ConvexQuery& ConvexQuery::operator=(ConvexQuery&&) noexcept = default;
 const std::string& ConvexQuery::trouble() const { return inside_->trouble; }
 
 ConvexAnswer
-ConvexQuery::ask(std::string_view method, const Pose& b_in_a, QueryStart start, double reach)
+ConvexQuery::ask(std::string_view method, const Pose& b_in_a, MethodStart start, double reach)
 {
     if (!inside_->trouble.empty()) return refusal(inside_->trouble);
     const ConvexMethod* const found = find_convex_method(method);
@@ -172,8 +160,8 @@ ConvexQuery::ask(std::string_view method, const Pose& b_in_a, QueryStart start, 
 
     inside_->pair->place({b_in_a.position, b_in_a.orientation.normalized()});
     const auto at = static_cast<std::size_t>(found - convex_methods().data());
-    const MethodAnswer told = found->ask(*inside_->pair, std::min(reach, kAnywhere),
-                                         start_of(start), inside_->memories[at]);
+    const MethodAnswer told =
+        found->ask(*inside_->pair, std::min(reach, kAnywhere), start, inside_->memories[at]);
     return {verdict_of(told.touch),
             {},
             told.separation,

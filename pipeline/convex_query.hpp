@@ -4,6 +4,7 @@
 // for itself, says what it can tell, and none answers through another; known_methods() lists them.
 #pragma once
 
+#include "narrowphase/methods/method_start.hpp"
 #include "pipeline/scene.hpp"
 
 #include <limits>
@@ -29,13 +30,6 @@ struct MethodDescription {
 
 /// All methods, the plainest first.
 std::vector<MethodDescription> known_methods();
-
-/// What a method sets out from.
-enum class QueryStart : std::uint8_t {
-    cached,  // what it remembers of the last question about this pair
-    cold,    // nothing
-    plain,   // nothing, and without its accelerations: slow, and what the others are tested against
-};
 
 enum class QueryVerdict : std::uint8_t {
     refused,    // the question makes no sense; `trouble` says why, nothing else is filled in
@@ -88,10 +82,12 @@ public:
     /// does not serve, a pose that is not finite or not of unit length within 1e-6, and a reach
     /// below 0 are refused.
     ///
+    ///   start   from what the method remembers of the last question, from nothing, or without its
+    ///           accelerations
     ///   reach   m, of shapes further apart only the verdict has to be good
     ConvexAnswer ask(std::string_view method,
                      const Pose& b_in_a,
-                     QueryStart start = QueryStart::cached,
+                     MethodStart start = MethodStart::cached,
                      double reach = std::numeric_limits<double>::infinity());
 
 private:

@@ -49,7 +49,7 @@ void judge_repeat(CaseBench& bench, MethodTally& tally, const KnownPair& pair)
         for (ConvexAnswer& answer : answers) {
             ConvexQuery query(pair.a, pair.b);
             answer =
-                bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, QueryStart::cold);
+                bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, MethodStart::cold);
         }
         const bool same = answers[0].verdict == answers[1].verdict
             && answers[0].separation == answers[1].separation

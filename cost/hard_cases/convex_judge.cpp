@@ -9,8 +9,8 @@ namespace throng {
 namespace {
 
 // Twice cached: once from what a cold start has left, once from what a cached one has.
-constexpr std::array kStarts = {QueryStart::cold, QueryStart::cached, QueryStart::cached,
-                                QueryStart::plain};
+constexpr std::array kStarts = {MethodStart::cold, MethodStart::cached, MethodStart::cached,
+                                MethodStart::plain};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 bool all_finite(const ConvexAnswer& answer)

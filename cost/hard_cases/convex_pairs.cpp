@@ -37,7 +37,7 @@ KnownPair moved(const BrokenPair& pair, const Vec3& by)
 ConvexAnswer cold_answer(CaseBench& bench, const MethodDescription& method, const KnownPair& pair)
 {
     ConvexQuery query(pair.a, pair.b);
-    return bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, QueryStart::cold);
+    return bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, MethodStart::cold);
 }
 
 // An absolute tolerance anywhere shows as a figure that does not grow with the scale.

@@ -51,7 +51,7 @@ void judge_order(CaseBench& bench, MethodTally& tally, std::vector<KnownPair>& s
             ConvexQuery query(pair.a, pair.b);
             const double told = told_separation(
                 method,
-                bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, QueryStart::cold));
+                bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, MethodStart::cold));
             if (std::isnan(told)) continue;
             tally.worst(method.name, "", "fall while the gap grows / size",
                         std::max(0.0, most - told) / pair.size, 1e-14);

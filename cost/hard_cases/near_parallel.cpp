@@ -30,7 +30,7 @@ void judge_normal(
     for (const MethodDescription& method : known_methods()) {
         ConvexQuery query(pair.a, pair.b);
         const ConvexAnswer answer =
-            bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, QueryStart::cold);
+            bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, MethodStart::cold);
         if (std::isnan(told_separation(method, answer))) continue;
         tally.worst(method.name, setting, "lean of the normal / tilt",
                     (answer.normal - Vec3::UnitZ()).norm() / tilt, 10);

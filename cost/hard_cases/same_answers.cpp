@@ -18,7 +18,7 @@ namespace throng {
 namespace {
 
 constexpr int kShapes = 500, kPlacings = 200;  // 100,000 pairs
-constexpr QueryStart kStarts[] = {QueryStart::cached, QueryStart::cold, QueryStart::plain};
+constexpr MethodStart kStarts[] = {MethodStart::cached, MethodStart::cold, MethodStart::plain};
 // Methods that look at faces or edges take time with the square of their number.
 constexpr int kMostForPolytopes = 1000;
 
@@ -167,11 +167,11 @@ void judge_starts(CaseBench& bench, MethodTally& tally)
         ConvexQuery query(pair.a, pair.b);
         for (const MethodDescription& method : known_methods()) {
             if (!method.touch) continue;
-            const auto ask = [&](QueryStart start) {
+            const auto ask = [&](MethodStart start) {
                 return bench.ask(query, method.name, pair.at_a, pair.at_b, pair.size, start);
             };
-            const ConvexAnswer plain = ask(QueryStart::plain);
-            for (const QueryStart start : {QueryStart::cold, QueryStart::cached}) {
+            const ConvexAnswer plain = ask(MethodStart::plain);
+            for (const MethodStart start : {MethodStart::cold, MethodStart::cached}) {
                 const ConvexAnswer answer = ask(start);
                 const double change =
                     std::abs(told_separation(method, answer) - told_separation(method, plain));
@@ -203,7 +203,7 @@ std::vector<double> mean_rounds(CaseBench& bench, int vertices)
         for (int i = 0; i < kSteps && method.touch && !method.polytopes_only; ++i) {
             const Vec3 about(0, 0.3 * kStep * i, kStep * i);
             const Pose way{exponential(about) * Vec3(reach, 0, 0), exponential(2 * about)};
-            sum += bench.ask(query, method.name, Pose{}, way, reach, QueryStart::cached).rounds;
+            sum += bench.ask(query, method.name, Pose{}, way, reach, MethodStart::cached).rounds;
         }
         rounds.push_back(sum / kSteps);
     }

@@ -84,7 +84,7 @@ void judge_volume(CaseBench& bench,
                   const MethodDescription& method,
                   const Shared& shared)
 {
-    const auto ask = [&](const Points& a, const Points& b, const Pose& b_in_a, QueryStart start) {
+    const auto ask = [&](const Points& a, const Points& b, const Pose& b_in_a, MethodStart start) {
         ConvexQuery query(hull(a), hull(b));
         return bench.ask(query, method.name, Pose{}, b_in_a, 1, start);
     };
@@ -105,7 +105,7 @@ void judge_volume(CaseBench& bench,
     Points a = shared.a, b = shared.b;
     // Corners in another order make faces in another order, which are then cut by in another order.
     for (int order = 0; order < 8; ++order) {
-        for (const QueryStart start : {QueryStart::cold, QueryStart::plain}) {
+        for (const MethodStart start : {MethodStart::cold, MethodStart::plain}) {
             const ConvexAnswer there = ask(a, b, shared.b_in_a, start);
             const ConvexAnswer back = ask(b, a, a_in_b, start);
             look_at(there, shared.center);
@@ -128,7 +128,7 @@ void judge_merely_touching(CaseBench& bench, MethodTally& tally, const MethodDes
         const ShapeDescription box{"", BoxShape{Vec3::Constant(0.5)}};
         ConvexQuery query(box, box);
         const ConvexAnswer answer =
-            bench.ask(query, method.name, Pose{}, {shift, Quat::Identity()}, 1, QueryStart::cold);
+            bench.ask(query, method.name, Pose{}, {shift, Quat::Identity()}, 1, MethodStart::cold);
         tally.worst(method.name, "merely touching", "volume", std::abs(answer.volume), 1e-15, "m3");
         tally.count(method.name, "merely touching", "refused",
                     answer.verdict == QueryVerdict::refused ? 1 : 0);

@@ -15,7 +15,7 @@ ShapeDescription box(double x, double y, double z) { return {"", BoxShape{{x, y,
 ShapeDescription ball(double radius) { return {"", SphereShape{radius}}; }
 Pose at(double x, double y, double z) { return {{x, y, z}, Quat::Identity()}; }
 
-constexpr QueryStart kStarts[] = {QueryStart::cached, QueryStart::cold, QueryStart::plain};
+constexpr MethodStart kStarts[] = {MethodStart::cached, MethodStart::cold, MethodStart::plain};
 
 TEST(KnownMethods, HaveNamesOfTheirOwnAndTellSomething)
 {
@@ -37,7 +37,7 @@ TEST(ConvexQuery, TellsOfBoxesWhatEachMethodClaims)
     ConvexQuery query(box(0.5, 0.5, 0.5), box(0.5, 1, 1));
     EXPECT_EQ(query.trouble(), "");
     for (const MethodDescription& method : known_methods()) {
-        for (const QueryStart start : kStarts) {
+        for (const MethodStart start : kStarts) {
             const ConvexAnswer touching = query.ask(method.name, at(shift, 0.1, 0.2), start);
             const ConvexAnswer apart = query.ask(method.name, at(1 + gap, 0.1, 0.2), start);
             ASSERT_EQ(touching.trouble, "");
@@ -85,8 +85,8 @@ TEST(ConvexQuery, WhatItRemembersDependsOnTheMethodAlone)
         const Quat turn = Quat(1, 0.02 * i, 0.3, -0.01 * i).normalized();
         const Pose pose{{0.9 - 0.02 * i, 0.1, 0.05}, turn};
         for (const MethodDescription& method : known_methods()) {
-            const ConvexAnswer cached = query.ask(method.name, pose, QueryStart::cached);
-            const ConvexAnswer plain = query.ask(method.name, pose, QueryStart::plain);
+            const ConvexAnswer cached = query.ask(method.name, pose, MethodStart::cached);
+            const ConvexAnswer plain = query.ask(method.name, pose, MethodStart::plain);
             EXPECT_EQ(cached.verdict, plain.verdict) << method.name << ", step " << i;
             if (method.depth && plain.verdict == QueryVerdict::touching) {
                 EXPECT_NEAR(cached.separation, plain.separation, 1e-12) << method.name;
@@ -100,7 +100,7 @@ TEST(ConvexQuery, RefusesQuestionsThatMakeNoSense)
     ConvexQuery query(box(1, 1, 1), box(1, 1, 1));
     const std::string_view good = known_methods().front().name;
     const auto trouble = [&](std::string_view method, const Pose& pose, double reach = 1) {
-        const ConvexAnswer answer = query.ask(method, pose, QueryStart::cold, reach);
+        const ConvexAnswer answer = query.ask(method, pose, MethodStart::cold, reach);
         EXPECT_EQ(answer.verdict, QueryVerdict::refused);
         return answer.trouble;
     };
