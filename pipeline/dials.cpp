@@ -29,15 +29,11 @@ constexpr Choice kRotation[] = {{"quaternion"},
                                 {"matrix_euler_repaired", kNotYet}};
 constexpr Choice kGyroscopic[] = {{"implicit"}, {"explicit"}, {"off"}};
 constexpr Choice kBroadPhase[] = {{"auto"}, {"embree"}, {"grid"}, {"sweep"}, {"all_pairs"}};
-constexpr Choice kNarrowPhase[] = {{"auto"},
-                                   {"gjk"},
-                                   {"sat"},
-                                   {"chung_wang"},
-                                   {"clip_volume"},
-                                   {"containment"}};
+constexpr Choice kNarrowPhase[] = {{"auto"},       {"gjk"},         {"sat"},
+                                   {"chung_wang"}, {"clip_volume"}, {"containment"}};
 constexpr Choice kMethodStart[] = {{"cached"}, {"cold"}, {"plain"}};
-constexpr Choice kBoundsFilter[] = {
-    {"none"}, {"sphere"}, {"k_dop:14"}, {"k_dop:6"}, {"k_dop:18"}, {"k_dop:26"}};
+constexpr Choice kBoundsFilter[] = {{"none"},    {"sphere"},   {"k_dop:14"},
+                                    {"k_dop:6"}, {"k_dop:18"}, {"k_dop:26"}};
 constexpr Choice kNonconvex[] = {{"voxels"},
                                  {"parts", kNotYet},
                                  {"spheres", kNotYet},
