@@ -199,7 +199,7 @@ MethodAnswer ask_gjk(const ConvexPair& pair,
     const CorePair& cores = pair.cores();
     const double rounding = cores.a.radius + cores.b.radius;
     const double limit = reach + rounding;
-    const bool knows = start == MethodStart::cached && memory.kind == 1;
+    const bool knows = start == MethodStart::cached && memory.kind == 1 && memory.has_direction();
     Question question(cores, start != MethodStart::plain);
     CoreAnswer found;
     if (!knows || !question.still_beyond(limit, memory, found))

@@ -153,7 +153,7 @@ MethodAnswer ask_sat(const ConvexPair& pair, double, MethodStart start, MethodMe
     }
     int rounds = 0;
     BestAxis best;
-    if (start == MethodStart::cached && memory.kind != 0) {
+    if (start == MethodStart::cached && memory.kind != 0 && memory.has_direction()) {
         best = recall(shapes, memory);
         ++rounds;
     }

@@ -136,7 +136,8 @@ void ask(Points& points,
 {
     Vec3 s = memory.axis;
     const auto kind = static_cast<Remembered>(memory.kind);
-    const bool known = start == MethodStart::cached && kind != Remembered::nothing;
+    const bool known =
+        start == MethodStart::cached && kind != Remembered::nothing && memory.has_direction();
     if (known) {
         if (kind == Remembered::witness && points.still_touch(memory)) {
             answer.rounds = 1;

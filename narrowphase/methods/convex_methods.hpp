@@ -10,6 +10,7 @@
 #include "narrowphase/methods/method_start.hpp"
 #include "narrowphase/polytope_contacts.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -77,6 +78,9 @@ struct MethodMemory {
     Vec3 axis = Vec3::Zero();
     std::uint32_t a[4] = {}, b[4] = {};
     std::uint32_t count = 0, kind = 0;
+
+    /// Whether the axis is of unit length: one that is not was left by somebody else.
+    bool has_direction() const { return std::abs(axis.squaredNorm() - 1) <= 1e-12; }
 };
 
 /// What a method can tell, to be added up.

@@ -167,7 +167,7 @@ inline Pose pose_of(FuzzBytes& bytes, ConvexPair& pair)
     Vec3 along = bytes.direction();
     if (const PolytopePair* both = pair.polytopes(); both && way > 5)
         along = both->a.normals[bytes.byte() % both->a.normals.size()];
-    const double hair = bytes.small(15), wanted = pair.size() * hair * (1 - bytes.below(3));
+    const double hair = bytes.small(15), wanted = pair.size() * hair * (1.0 - bytes.below(3));
     pair.place(pose);
     pose.position += along * (wanted - room_along(pair.cores(), along));
     return pose;
