@@ -82,8 +82,8 @@ TEST_P(ForeignMemory, ChangesNoAnswer)
 INSTANTIATE_TEST_SUITE_P(Methods,
                          ForeignMemory,
                          ::testing::Range(std::size_t{0}, convex_methods().size()),
-                         [](const auto& info) {
-                             std::string name(convex_methods()[info.param].name);
+                         [](const auto& tested) {
+                             std::string name(convex_methods()[tested.param].name);
                              std::replace(name.begin(), name.end(), ':', '_');
                              return name;
                          });
