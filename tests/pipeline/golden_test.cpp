@@ -45,8 +45,8 @@ class Golden : public ::testing::TestWithParam<GoldenScene> { };
 
 TEST_P(Golden, SceneDoesWhatItDid)
 {
-    const std::filesystem::path file = std::filesystem::path(__FILE__).parent_path().parent_path()
-        / "golden" / (std::string(GetParam().name) + ".txt");
+    const auto file =
+        std::filesystem::path(THRONG_GOLDEN) / (std::string(GetParam().name) + ".txt");
     const std::string now = told(GetParam(), 2);
     // Tests change no environment.
     if (std::getenv("THRONG_UPDATE_GOLDEN") != nullptr) {  // NOLINT(concurrency-mt-unsafe)
