@@ -110,7 +110,7 @@ Hull random_hull(Random& random, int points)
     while (static_cast<int>(cloud.size()) < points) {
         const Vec3 point = random_vector(random, -1, 1);
         const double square = point.squaredNorm();
-        if (square > 0.01 && square < 1) cloud.push_back(axes.cwiseProduct(point.normalized()));
+        if (square > 0.01 && square < 1) cloud.emplace_back(axes.cwiseProduct(point.normalized()));
     }
     return build_hull(cloud).hull;
 }

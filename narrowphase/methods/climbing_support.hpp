@@ -78,7 +78,7 @@ public:
 
 private:
     struct Side {
-        Side(const Core<double>& core, bool climbs);
+        Side(const Core<double>& of, bool climbs);
         SupportPoint<double> furthest(const Vec3& direction, ClimbCount& count);
         void start_at(std::uint32_t feature);
 
