@@ -320,6 +320,8 @@ void check_query(ConvexQuery& query,
                  const ConvexPair& pair,
                  const Placing& placing)
 {
+    now.method = method.name;
+    now.reach = kAnyReach;
     const ConvexAnswer cold = query.ask(method.name, now.pose, QueryStart::cold);
     if (!method.serves(pair)) {
         expect(cold.verdict == QueryVerdict::refused && !cold.trouble.empty(),
