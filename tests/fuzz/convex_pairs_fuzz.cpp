@@ -169,7 +169,7 @@ public:
         by_faces_ = by_points_;
         if (const PolytopePair* both = pair.polytopes()) {
             by_faces_ = polytope_separation(both->a, both->b, pose, nullptr);
-            const double stray = std::max(testing::stray_of(both->a), testing::stray_of(both->b));
+            const double stray = std::max(stray_of(both->a), stray_of(both->b));
             strays_ = stray > kFlat * pair.size();
         }
     }
