@@ -74,10 +74,10 @@ void judge(const ConvexMethod& method,
     }
     if ((answer.touch == Touch::touching) != touch) ++worth.wrong;
     const double off = std::abs(answer.separation - known.separation);
-    if (touch && (method.tells & kTellsDepth) != 0) worth.add_error("depth", off);
-    if (!touch && (method.tells & kTellsDistance) != 0 && known.separation <= meeting.reach)
+    if (touch && (method.tells & tells_depth) != 0) worth.add_error("depth", off);
+    if (!touch && (method.tells & tells_distance) != 0 && known.separation <= meeting.reach)
         worth.add_error("distance", off);
-    if (known.volume > 0 && (method.tells & kTellsVolume) != 0)
+    if (known.volume > 0 && (method.tells & tells_volume) != 0)
         worth.add_error("volume", std::abs(answer.volume - known.volume) / known.volume);
 }
 

@@ -183,7 +183,7 @@ public:
         check_numbers(method, told);
         check_touch(method, told);
         if (told.touch == Touch::apart) check_apart(method, reach, told);
-        if (told.touch == Touch::touching && (method.tells & kTellsDepth)) check_depth(told);
+        if (told.touch == Touch::touching && (method.tells & tells_depth)) check_depth(told);
     }
 
     /// What a start from memory and a cold one have in common.
@@ -197,13 +197,13 @@ public:
             expect(told.touch == cold.touch, "memory does not change who touches");
         if (told.touch != cold.touch || told.cut_short || cold.cut_short) return;
         const bool apart = told.touch == Touch::apart;
-        const bool measured = (method.tells & (apart ? kTellsDistance : kTellsDepth)) != 0;
+        const bool measured = (method.tells & (apart ? tells_distance : tells_depth)) != 0;
         if (measured && cold.separation <= reach) {
             const double error = std::abs(told.separation - cold.separation);
             expect(error <= length_slack(), "memory does not change lengths", told.separation,
                    cold.separation);
         }
-        if (!apart && (method.tells & kTellsVolume)) {
+        if (!apart && (method.tells & tells_volume)) {
             expect(std::abs(told.volume - cold.volume) <= kHair * size_ * size_ * size_,
                    "memory does not change volumes", told.volume, cold.volume);
         }
@@ -262,7 +262,7 @@ private:
         if (method.name == "clip_volume" || method.name == "containment") return;
         const double room = room_along(pair_.cores(), told.normal);
         expect(room > -kParts * size_, "the normal of what is apart parts it", room, size_);
-        if ((method.tells & kTellsDistance) == 0) return;
+        if ((method.tells & tells_distance) == 0) return;
         expect(room >= told.separation - kHair * size_, "the normal shows the distance", room,
                told.separation);
         if (told.separation > reach) return;
@@ -322,13 +322,13 @@ void check_query(ConvexQuery& query,
 {
     now.method = method.name;
     now.reach = kAnyReach;
-    const ConvexAnswer cold = query.ask(method.name, now.pose, QueryStart::cold);
+    const ConvexAnswer cold = query.ask(method.name, now.pose, MethodStart::cold);
     if (!method.serves(pair)) {
         expect(cold.verdict == QueryVerdict::refused && !cold.trouble.empty(),
                "what a method does not serve is refused");
         return;
     }
-    const ConvexAnswer kept = query.ask(method.name, now.pose, QueryStart::cached);
+    const ConvexAnswer kept = query.ask(method.name, now.pose, MethodStart::cached);
     for (const ConvexAnswer& answer : {cold, kept}) {
         expect(answer.verdict != QueryVerdict::refused, "what makes sense is answered");
         placing.check(method, kAnyReach,

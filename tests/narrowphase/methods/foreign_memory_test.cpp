@@ -71,7 +71,7 @@ TEST_P(ForeignMemory, ChangesNoAnswer)
                         ASSERT_EQ(told.touch, cold.touch);
                         ASSERT_NEAR(told.normal.norm(), 1, 1e-12);
                         const bool apart = told.touch == Touch::apart;
-                        if (method.tells & (apart ? kTellsDistance : kTellsDepth)) {
+                        if (method.tells & (apart ? tells_distance : tells_depth)) {
                             ASSERT_NEAR(told.separation, cold.separation, 1e-6);
                         }
                     }
