@@ -250,6 +250,29 @@ TEST(AskGjk, AHairApartIsMeasuredAsWellAsAMeter)
     EXPECT_GT(pairs, 300);
 }
 
+// Apart by rounding alone, where the walk has come to an end and EPA tells the depth: 0 lies beside
+// the face that it found.
+TEST(AskGjk, PointsFaceOneAnotherWhereTheGapIsRounding)
+{
+    const std::array<Vec3, 8> corners = {
+        Vec3(-0.671875, 0.8828125, -0.15625),   Vec3(-0.3984375, -0.9453125, 0.703125),
+        Vec3(-0.984375, -0.96875, -0.515625),   Vec3(-0.6484375, -0.1328125, -0.515625),
+        Vec3(-0.484375, 0.8828125, -0.9296875), Vec3(0.75, 0.1015625, -0.03125),
+        Vec3(0.796875, -0.2578125, -0.8046875), Vec3(0.15625, 0.15625, 0.15625)};
+    Shapes shapes;
+    shapes.hulls = {build_hull(corners).hull};
+    shapes.boxes = {{Vec3::Constant(0.328125)}};
+    const Pose pose{Vec3(-0.18683567890075287, 1.2109375000000016, -0.26605536016402509),
+                    Quat(0.97106399791693887, 0, 0.23881941284068869, 0)};
+    const ConvexPair pair(shapes, {ShapeKind::hull, 0}, {ShapeKind::box, 0}, pose);
+    for (const MethodStart start : {MethodStart::cold, MethodStart::plain}) {
+        const MethodAnswer answer = ask(pair, start);
+        EXPECT_NEAR(answer.separation, 0, 1e-14);
+        const Vec3 between = answer.on_b - answer.on_a;
+        EXPECT_NEAR((between - answer.normal * answer.separation).norm(), 0, 1e-13);
+    }
+}
+
 // A million times longer than thick, and against SAT's exhaustive search.
 TEST(AskGjk, NeedlesAndPlatesAreRight)
 {

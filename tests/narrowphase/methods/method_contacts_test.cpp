@@ -91,7 +91,7 @@ TEST_P(MethodContacts, WhatIsOutOfReachHasNoPoint)
 INSTANTIATE_TEST_SUITE_P(Methods,
                          MethodContacts,
                          ::testing::Values("gjk", "sat", "clip_volume"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& one) { return std::string(one.param); });
 
 TEST(CollideBy, GjkAndSatTellOfWhatIsWithinReach)
 {
