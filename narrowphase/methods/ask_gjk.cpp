@@ -138,11 +138,32 @@ private:
         return supports_(direction);
     }
 
+    // Squares the normal to what lies further back than it shows.
+    void straighten(double enough, CoreAnswer& answer)
+    {
+        const Vec3 nearest = answer.normal * -answer.separation;
+        Difference further = furthest(answer.normal);
+        for (int round = 0; round < 4; ++round) {
+            const double shown = -answer.normal.dot(further.point);
+            if (shown >= answer.separation - enough) return;
+            const Vec3 along = further.point - nearest;
+            const Vec3 straight = unit_or<double>(
+                answer.normal - along * (along.dot(answer.normal) / along.squaredNorm()),
+                answer.normal);
+            further = furthest(straight);
+            if (!(-straight.dot(further.point) > shown)) return;
+            answer.normal = straight;
+        }
+    }
+
     // Whether the normal, squared where they are near, parts the two by what was measured.
     bool prove(const Distance& found, CoreAnswer& answer)
     {
         const double size = cores_.size + cores_.b_position.norm();
-        if (found.distance > kNear * size) return true;
+        if (found.distance > kNear * size) {
+            if (found.stalled) straighten(kProof * size, answer);
+            return true;
+        }
         answer.normal = square_to(found.simplex, found.normal);
         answer.separation = -answer.normal.dot(found.simplex.corners[0].point);
         const double shown = -answer.normal.dot(furthest(answer.normal).point);

@@ -182,6 +182,7 @@ void walk(const CorePair& pair, double limit, Furthest& furthest, Vec3 nearest, 
         const Nearest next = nearest_of(simplex);
         if (!(next.square < length * length)) {
             --simplex.count;
+            result.stalled = true;
             break;
         }
         reduce(simplex, next);

@@ -50,10 +50,13 @@ inline constexpr int kMostRounds = 128;
 ///   apart      the cores have a positive distance; else only `simplex` is of use
 ///   distance   m, of the cores; where `beyond` a lower bound of it
 ///   beyond     stopped early: further apart than was asked about
+///   stalled    stopped as lengths showed no gain any more, which says that the distance is right
+///              but the normal only to the root of rounding
 ///   normal     unit, from a to b
 struct Distance {
     bool apart = false;
     bool beyond = false;
+    bool stalled = false;
     double distance = 0;
     Vec3 normal = Vec3::UnitZ();
     Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();

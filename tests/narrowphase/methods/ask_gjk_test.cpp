@@ -273,6 +273,22 @@ TEST(AskGjk, PointsFaceOneAnotherWhereTheGapIsRounding)
     }
 }
 
+// The gain from the last corner to the edge behind it is below rounding, the turn is not.
+TEST(AskGjk, TheNormalIsSquareToAnEdgeThatHardlyHelps)
+{
+    Shapes shapes;
+    shapes.boxes = {{Vec3::Constant(0.001)}, {Vec3::Constant(1)}};
+    const Pose pose{
+        Vec3(2.9795390624997022, 1.0010000000003014, 2.9795390625000002),
+        Quat(-1.9531252886751343e-09, 2.8867513515863157e-16, -2.8867513403099435e-16, 1)};
+    const ConvexPair pair(shapes, {ShapeKind::box, 0}, {ShapeKind::box, 1}, pose);
+    for (const MethodStart start : {MethodStart::cold, MethodStart::plain}) {
+        const MethodAnswer answer = ask(pair, start);
+        EXPECT_NEAR(separation_along(pair.cores(), answer.normal), answer.separation, 1e-11);
+        EXPECT_NEAR((answer.on_b - answer.on_a).norm(), answer.separation, 1e-14);
+    }
+}
+
 // A million times longer than thick, and against SAT's exhaustive search.
 TEST(AskGjk, NeedlesAndPlatesAreRight)
 {
