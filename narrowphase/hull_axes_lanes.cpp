@@ -63,6 +63,8 @@ private:
     void find_edges(float to_beat);
     HullGuess best() const;
     void cross_edges(HullTouch& out) const;
+    float clip_face(bool by_b, HullTouch& out) const;
+    void touch_vertex(bool by_b, HullTouch& out) const;
 
     const HullPair& pair_;
     Side by_a_, by_b_;
@@ -275,6 +277,36 @@ void turn_round(const Side& by_a, HullTouch& out)
     }
 }
 
+// The separation of the deepest point over the best face of one of the two; above any where there
+// is none.
+float Search::clip_face(bool by_b, HullTouch& out) const
+{
+    const int face = (by_b ? best_b_ : best_a_).face;
+    const F3 normal = by_b ? -by_a_.from_other(normal_of(pair_.b, face)) : normal_of(pair_.a, face);
+    out.count = 0;
+    out.normal[0] = normal.x;
+    out.normal[1] = normal.y;
+    out.normal[2] = normal.z;
+    const float deepest = clip_under(by_b ? by_b_ : by_a_, face, pair_.reach, pair_.bias, out);
+    if (by_b) turn_round(by_a_, out);
+    return out.count > 0 ? deepest : -kNever;
+}
+
+// The corner that is deepest under the best face of one of the two, over it or not.
+void Search::touch_vertex(bool by_b, HullTouch& out) const
+{
+    const Side& side = by_b ? by_b_ : by_a_;
+    const FaceAxis& face = by_b ? best_b_ : best_a_;
+    const F3 normal = normal_of(side.self, face.face);
+    const int vertex = lowest_vertex(side.other, side.to_other(normal));
+    const F3 corner = side.from_other(vertex_of(side.other, vertex)) + side.center;
+    const F3 middle = corner - normal * (face.separation / 2);
+    const auto name =
+        static_cast<std::uint32_t>(face.face) << 8 | static_cast<std::uint32_t>(vertex);
+    out.points[out.count++] = {{middle.x, middle.y, middle.z}, face.separation, 1u << 30 | name};
+    if (by_b) turn_round(by_a_, out);
+}
+
 void Search::touch(HullTouch& out)
 {
     out.count = 0;
@@ -291,12 +323,7 @@ void Search::touch(HullTouch& out)
         cross_edges(out);
         return;
     }
-    out.normal[0] = normal.x;
-    out.normal[1] = normal.y;
-    out.normal[2] = normal.z;
-    const float deepest = clip_under(by_b ? by_b_ : by_a_, face.face, pair_.reach, bias, out);
-    const float at_depth = out.count > 0 ? deepest : -kNever;
-    if (by_b) turn_round(by_a_, out);
+    const float at_depth = clip_face(by_b, out);
     if (!edge_better && (face.separation >= 0 || at_depth <= face.separation + 2 * bias)) return;
     // A face that has lost its deepest corner over the other's side still tells the depth, if what
     // is left of it agrees with the edges. Otherwise clipping has lost the very place of touch.
@@ -304,6 +331,15 @@ void Search::touch(HullTouch& out)
     const float unlike = at_depth - edge_.separation;
     const bool agrees = unlike <= 2 * bias && unlike >= -2 * bias;
     if (edge_.a >= 0 && !(agrees && alike())) cross_edges(out);
+    // A face that leads by its bias alone may have nothing over it.
+    if (out.count == 0 && face.separation < 0) {
+        const bool other_known = (by_b ? best_a_ : best_b_).separation > kNever;
+        if (other_known) clip_face(!by_b, out);
+        if (out.count == 0) {
+            clip_face(by_b, out);
+            touch_vertex(by_b, out);
+        }
+    }
 }
 
 float Search::apart() const

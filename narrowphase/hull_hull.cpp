@@ -38,6 +38,15 @@ void face_manifold(const PolytopePair& pair,
     reduce_to_four<double>({found.points.data(), found.count}, out);
 }
 
+// The corner that is deepest under a face, over it or not.
+void touch_vertex(const PolytopePair& pair, const FaceAxis& axis, LocalManifold<double>& out)
+{
+    out.normal = pair.a.normals[axis.face];
+    const Vec3 corner = pair.turn * pair.b.vertices[axis.vertex] + pair.shift;
+    out.add(corner - out.normal * (axis.separation / 2), axis.separation,
+            1u << 30 | std::uint32_t{axis.face} << 16 | axis.vertex);
+}
+
 // The remembered face, or a likely one: it parts the two at once or is a good face to begin with.
 FaceAxis first_guess(const PolytopePair& pair, const PairCache& cache)
 {
@@ -106,6 +115,11 @@ void collide_polytopes(const PolytopePair& pair,
     const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
     const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
     if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
+    if (out.count > 0 || face.separation >= 0) return;
+    // A face that leads by its bias alone may have nothing over it.
+    face_manifold(b_leads ? pair : turned, b_leads ? face_a : face_b, reach, bias, out, least);
+    if (out.count == 0) touch_vertex(b_leads ? pair : turned, b_leads ? face_a : face_b, out);
+    if (!b_leads) turn_round(pair, out);
 }
 
 // Of the size of both: where the balls inside are smaller, the bias of faces comes near rounding.

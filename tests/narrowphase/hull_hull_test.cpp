@@ -1,5 +1,6 @@
 #include "cost/hard_cases/broken_pairs.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
+#include "narrowphase/narrowphase.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
 
 #include <gtest/gtest.h>
@@ -159,6 +160,56 @@ TEST(HullHull, ManyCorneredFacesKeepFourSpreadPoints)
         high = high.cwiseMax(point.position);
     }
     EXPECT_GT((high - low).head<2>().minCoeff(), 0.6);
+}
+
+// a's face leads by the bias alone, and nothing of b's face lies over it.
+TEST(HullHull, WhatIsDeepHasContactsThoughTheLeadingFaceHasNothingOverIt)
+{
+    const Vec3 a[] = {{1, 0.5, 0.5},  {0.5, -1, -1}, {-1, -1, -1},  {-0.5, 1, 0.5},  {-0.5, 0, -1},
+                      {1, 0, 1},      {1, 0, -1},    {0, 1, 0.5},   {-1, -0.5, 1},   {0.5, 0.5, 1},
+                      {0.5, -1, 0.5}, {1, -1, -1},   {-0.5, -1, 0}, {-1, -0.5, 0.5}, {-1, 1, -0.5}};
+    const Vec3 b[] = {{-0.99981689453125, -0.875, -1},
+                      {-0.99859619140625, 0.0262451171875, 0.50909423828125},
+                      {-0.88983154296875, -0.861419677734375, 0.835723876953125},
+                      {-0.749969482421875, -0.96875, -0.9920654296875},
+                      {-0.979400634765625, -0.068939208984375, 0.5716552734375},
+                      {0.585357666015625, 0.602874755859375, 0.679656982421875},
+                      {0.9951171875, -0.25, -0.917510986328125},
+                      {0.124053955078125, -0.9920654296875, -0.984344482421875},
+                      {-0.43011474609375, 0.68170166015625, -0.398162841796875},
+                      {0.757904052734375, -0.976470947265625, -0.96856689453125},
+                      {-0.9375, -1, -0.99993896484375},
+                      {-0.522491455078125, 0.304412841796875, -0.561614990234375},
+                      {-0.41448974609375, 0.400848388671875, -0.47625732421875},
+                      {-0.999969482421875, -0.88671875, -0.151702880859375},
+                      {-0.9998779296875, -0.98712158203125, 0.93133544921875},
+                      {-0.769561767578125, -1, -0.95263671875},
+                      {-1, -1, -0.968658447265625},
+                      {-0.0078125, -0.99981689453125, -0.875},
+                      {-0.038970947265625, -0.976470947265625, -0.999908447265625},
+                      {-0.9921875, -0.9842529296875, -1},
+                      {-0.999969482421875, -0.999969482421875, -0.976531982421875}};
+    Shapes shapes;
+    shapes.hulls = {build_hull(a).hull, build_hull(b).hull};
+    const ShapeRef hull_a{ShapeKind::hull, 0}, hull_b{ShapeKind::hull, 1};
+    const Vec3 offset(1.4273090760989557, -0.53942442021032644, -0.9033355310769744);
+    const double depth = overlap_depth(shapes, hull_a, hull_b, {offset, Quat::Identity()});
+    ASSERT_NEAR(depth, 0.572, 1e-3);
+    PairCache cache, wide_cache;
+    LocalManifold<double> exact;
+    LocalManifold<float> wide;
+    hull_hull<double>(shapes, hull_a, hull_b, {offset, Quat::Identity()}, 0.5, cache, exact);
+    hull_hull<float>(shapes, hull_a, hull_b, {offset.cast<float>(), QuatT<float>::Identity()}, 0.5F,
+                     wide_cache, wide);
+    ASSERT_GT(exact.count, 0);
+    ASSERT_GT(wide.count, 0);
+    double deepest = 0, wide_deepest = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(exact.count); ++i)
+        deepest = std::min(deepest, exact.points[i].separation);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(wide.count); ++i)
+        wide_deepest = std::min(wide_deepest, double{wide.points[i].separation});
+    EXPECT_NEAR(deepest, -depth, 2e-3);
+    EXPECT_NEAR(wide_deepest, -depth, 2e-3);
 }
 
 }  // namespace throng
