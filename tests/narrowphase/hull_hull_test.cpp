@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace throng {
 namespace {
 
@@ -210,6 +212,40 @@ TEST(HullHull, WhatIsDeepHasContactsThoughTheLeadingFaceHasNothingOverIt)
         wide_deepest = std::min(wide_deepest, double{wide.points[i].separation});
     EXPECT_NEAR(deepest, -depth, 2e-3);
     EXPECT_NEAR(wide_deepest, -depth, 2e-3);
+}
+
+// Corners that stray a little from their faces lead nobody to think that edges part what is deep.
+TEST(HullHull, WhatIsDeepHasContactsHoweverUnevenTheFaces)
+{
+    std::mt19937 random(11);
+    std::uniform_int_distribution<int> place(-2, 2), count(12, 34);
+    std::uniform_real_distribution<double> noise(-1e-6, 1e-6), offset(-1, 1);
+    const auto cloud = [&](double stray) {
+        std::vector<Vec3> points(static_cast<std::size_t>(count(random)));
+        for (Vec3& point : points)
+            for (int k = 0; k < 3; ++k)
+                point[k] = 0.5 * place(random) + stray * 1e6 * noise(random);
+        return points;
+    };
+    int deep = 0;
+    for (int i = 0; i < 3000; ++i) {
+        Shapes shapes;
+        shapes.hulls = {build_hull(cloud(0)).hull, build_hull(cloud(1e-6)).hull};
+        if (shapes.hulls[0].vertices.empty() || shapes.hulls[1].vertices.empty()) continue;
+        const ShapeRef a{ShapeKind::hull, 0}, b{ShapeKind::hull, 1};
+        const Pose pose{{offset(random), offset(random), offset(random)}, Quat::Identity()};
+        if (overlap_depth(shapes, a, b, pose) < 1e-2) continue;
+        ++deep;
+        PairCache cache, wide_cache;
+        LocalManifold<double> exact;
+        LocalManifold<float> wide;
+        hull_hull<double>(shapes, a, b, pose, 0.4, cache, exact);
+        hull_hull<float>(shapes, a, b, {pose.position.cast<float>(), QuatT<float>::Identity()},
+                         0.4F, wide_cache, wide);
+        EXPECT_GT(exact.count, 0) << i;
+        EXPECT_GT(wide.count, 0) << i;
+    }
+    EXPECT_GT(deep, 1000);
 }
 
 }  // namespace throng
