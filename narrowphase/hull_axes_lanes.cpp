@@ -331,8 +331,9 @@ void Search::touch(HullTouch& out)
     const float unlike = at_depth - edge_.separation;
     const bool agrees = unlike <= 2 * bias && unlike >= -2 * bias;
     if (edge_.a >= 0 && !(agrees && alike())) cross_edges(out);
-    // A face that leads by its bias alone may have nothing over it.
-    if (out.count == 0 && face.separation < 0) {
+    // A face that leads by its bias alone may have nothing over it. At rest others bear the body,
+    // and a contact that comes and goes would rock it.
+    if (out.count == 0 && face.separation < -4 * bias) {
         const bool other_known = (by_b ? best_a_ : best_b_).separation > kNever;
         if (other_known) clip_face(!by_b, out);
         if (out.count == 0) {

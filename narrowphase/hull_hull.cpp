@@ -115,8 +115,9 @@ void collide_polytopes(const PolytopePair& pair,
     const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
     const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
     if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
-    if (out.count > 0 || face.separation >= 0) return;
-    // A face that leads by its bias alone may have nothing over it.
+    // A face that leads by its bias alone may have nothing over it. At rest others bear the body,
+    // and a contact that comes and goes would rock it.
+    if (out.count > 0 || face.separation >= -4 * bias) return;
     face_manifold(b_leads ? pair : turned, b_leads ? face_a : face_b, reach, bias, out, least);
     if (out.count == 0) touch_vertex(b_leads ? pair : turned, b_leads ? face_a : face_b, out);
     if (!b_leads) turn_round(pair, out);
