@@ -263,7 +263,7 @@ private:
         const double room = room_along(pair_.cores(), told.normal);
         expect(room > -kParts * size_, "the normal of what is apart parts it", room, size_);
         if ((method.tells & tells_distance) == 0) return;
-        expect(room >= told.separation - kHair * size_, "the normal shows the distance", room,
+        expect(room >= told.separation - length_slack(), "the normal shows the distance", room,
                told.separation);
         if (told.separation > reach) return;
         const double between = (told.on_b - told.on_a).norm();
