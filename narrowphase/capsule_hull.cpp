@@ -140,11 +140,7 @@ void capsule_hull(const Shapes& shapes,
                         static_cast<double>(reach), found)) {
         touch_at(seen.rod, axis, found);
     }
-    out.normal = found.normal.cast<Real>();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(found.count); ++i) {
-        const auto& point = found.points[i];
-        out.add(point.position.cast<Real>(), static_cast<Real>(point.separation), point.feature);
-    }
+    out = found.cast<Real>();
 }
 
 THRONG_PAIR_INSTANCES(capsule_hull)

@@ -28,11 +28,7 @@ void convex_convex(const Shapes& shapes,
     LocalManifold<double> exact;
     fill_points(pair, axis, static_cast<double>(reach), exact);
 
-    out.normal = exact.normal.cast<Real>();
-    for (int i = 0; i < exact.count; ++i) {
-        const auto& point = exact.points[static_cast<std::size_t>(i)];
-        out.add(point.position.cast<Real>(), static_cast<Real>(point.separation), point.feature);
-    }
+    out = exact.cast<Real>();
 }
 
 THRONG_PAIR_INSTANCES(convex_convex)

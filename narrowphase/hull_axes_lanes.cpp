@@ -63,6 +63,7 @@ private:
     void find_edges(float to_beat);
     HullGuess best() const;
     void cross_edges(HullTouch& out) const;
+    F3 face_normal(bool by_b) const;
     float clip_face(bool by_b, HullTouch& out) const;
     void touch_vertex(bool by_b, HullTouch& out) const;
 
@@ -256,10 +257,7 @@ void Search::cross_edges(HullTouch& out) const
     const float limit = pair_.reach + pair_.bias;
     out.count = 0;
     if (edge_.separation > 0 && dot(apart, apart) > limit * limit) return;
-    const F3 normal = edge_.normal;
-    out.normal[0] = normal.x;
-    out.normal[1] = normal.y;
-    out.normal[2] = normal.z;
+    edge_.normal.store(out.normal);
     out.count = 1;
     const std::uint32_t edges =
         static_cast<std::uint32_t>(edge_.a) << 8 | static_cast<std::uint32_t>(edge_.b);
@@ -277,16 +275,20 @@ void turn_round(const Side& by_a, HullTouch& out)
     }
 }
 
+// From a to b, in a's axes.
+F3 Search::face_normal(bool by_b) const
+{
+    return by_b ? -by_a_.from_other(normal_of(pair_.b, best_b_.face))
+                : normal_of(pair_.a, best_a_.face);
+}
+
 // The separation of the deepest point over the best face of one of the two; above any where there
 // is none.
 float Search::clip_face(bool by_b, HullTouch& out) const
 {
-    const int face = (by_b ? best_b_ : best_a_).face;
-    const F3 normal = by_b ? -by_a_.from_other(normal_of(pair_.b, face)) : normal_of(pair_.a, face);
     out.count = 0;
-    out.normal[0] = normal.x;
-    out.normal[1] = normal.y;
-    out.normal[2] = normal.z;
+    face_normal(by_b).store(out.normal);
+    const int face = (by_b ? best_b_ : best_a_).face;
     const float deepest = clip_under(by_b ? by_b_ : by_a_, face, pair_.reach, pair_.bias, out);
     if (by_b) turn_round(by_a_, out);
     return out.count > 0 ? deepest : -kNever;
@@ -301,6 +303,7 @@ void Search::touch_vertex(bool by_b, HullTouch& out) const
     const int vertex = lowest_vertex(side.other, side.to_other(normal));
     const F3 corner = side.from_other(vertex_of(side.other, vertex)) + side.center;
     const F3 middle = corner - normal * (face.separation / 2);
+    face_normal(by_b).store(out.normal);
     const auto name =
         static_cast<std::uint32_t>(face.face) << 8 | static_cast<std::uint32_t>(vertex);
     out.points[out.count++] = {{middle.x, middle.y, middle.z}, face.separation, 1u << 30 | name};
@@ -312,8 +315,7 @@ void Search::touch(HullTouch& out)
     out.count = 0;
     const bool by_b = b_leads();
     const FaceAxis& face = by_b ? best_b_ : best_a_;
-    const F3 normal =
-        by_b ? -by_a_.from_other(normal_of(pair_.b, face.face)) : normal_of(pair_.a, face.face);
+    const F3 normal = face_normal(by_b);
     const float bias = pair_.bias;
     const bool edge_better = edge_.a >= 0;
     const auto alike = [&] {
@@ -336,10 +338,7 @@ void Search::touch(HullTouch& out)
     if (out.count == 0 && face.separation < -4 * bias) {
         const bool other_known = (by_b ? best_a_ : best_b_).separation > kNever;
         if (other_known) clip_face(!by_b, out);
-        if (out.count == 0) {
-            clip_face(by_b, out);
-            touch_vertex(by_b, out);
-        }
+        if (out.count == 0) touch_vertex(by_b, out);
     }
 }
 

@@ -186,13 +186,7 @@ void meet_plain(const Shapes& shapes,
     LocalManifold<double> found;
     collide_polytopes({shape_a.view(), shape_b.view(), pose}, reach, cache, found);
 
-    out.normal = found.normal.template cast<Real>();
-    out.count = 0;
-    for (int i = 0; i < found.count; ++i) {
-        const auto& point = found.points[static_cast<std::size_t>(i)];
-        out.add(point.position.template cast<Real>(), static_cast<Real>(point.separation),
-                point.feature);
-    }
+    out = found.cast<Real>();
 }
 
 }  // namespace

@@ -11,6 +11,12 @@ using L = Lanes<float>;
 struct F3 {
     float x, y, z;
 
+    void store(float* to) const
+    {
+        to[0] = x;
+        to[1] = y;
+        to[2] = z;
+    }
     friend F3 operator+(F3 a, F3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
     friend F3 operator-(F3 a, F3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
     friend F3 operator-(F3 a) { return {-a.x, -a.y, -a.z}; }

@@ -30,6 +30,20 @@ struct LocalManifold {
     {
         points[static_cast<std::size_t>(count++)] = {position, separation, feature};
     }
+
+    /// The same in another kind of number.
+    template <class To>
+    LocalManifold<To> cast() const
+    {
+        LocalManifold<To> to;
+        to.normal = normal.template cast<To>();
+        for (int i = 0; i < count; ++i) {
+            const Point& point = points[static_cast<std::size_t>(i)];
+            to.add(point.position.template cast<To>(), static_cast<To>(point.separation),
+                   point.feature);
+        }
+        return to;
+    }
 };
 
 /// A manifold as it was found, and what for: while the two have hardly moved against one another

@@ -131,12 +131,9 @@ ClimbingShape::ClimbingShape(const PolytopeView& shape)
 
 std::uint16_t furthest_vertex(const ClimbingShape& shape, const Vec3& direction, ClimbCount& count)
 {
-    if (!shape.guide) {
-        ++count.supports;
-        return look_at_all(shape, direction, count);
-    }
-    return furthest_vertex(shape, direction, shape.guide->toward[shape.guide->cell(direction)],
-                           count);
+    const std::uint16_t named =
+        shape.guide ? shape.guide->toward[shape.guide->cell(direction)] : std::uint16_t{0};
+    return furthest_vertex(shape, direction, named, count);
 }
 
 std::uint16_t furthest_vertex(const ClimbingShape& shape,

@@ -117,14 +117,7 @@ private:
     {
         LocalManifold<double> exact;
         if (!chosen_.collide(i, pair, exact, block)) return false;
-        LocalManifold<Real> manifold;
-        manifold.normal = exact.normal.cast<Real>();
-        for (int k = 0; k < exact.count; ++k) {
-            const auto& point = exact.points[static_cast<std::size_t>(k)];
-            manifold.add(point.position.cast<Real>(), static_cast<Real>(point.separation),
-                         point.feature);
-        }
-        take(i, pair, false, manifold, block);
+        take(i, pair, false, exact.cast<Real>(), block);
         return true;
     }
 
