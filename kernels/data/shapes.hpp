@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/data/hull_guide.hpp"
+#include "kernels/data/solids.hpp"
 #include "kernels/data/wide_hull.hpp"
 #include "kernels/math/types.hpp"
 
@@ -13,8 +14,18 @@
 
 namespace throng {
 
-enum class ShapeKind : std::uint8_t { sphere, capsule, cylinder, box, hull, plane, mesh, triangle };
-inline constexpr int kShapeKinds = 8;
+enum class ShapeKind : std::uint8_t {
+    sphere,
+    capsule,
+    cylinder,
+    box,
+    hull,
+    plane,
+    mesh,
+    triangle,
+    solid
+};
+inline constexpr int kShapeKinds = 9;
 
 struct ShapeRef {
     ShapeKind kind = ShapeKind::sphere;
@@ -73,26 +84,6 @@ struct Hull {
     HullGuide guide;             // to where its furthest vertices are; made by make_guide()
 };
 
-/// Static triangles, solid on neither side but one-sided in contact: pushes come out along the
-/// face normals (counter-clockwise seen from outside).
-///
-/// edge_cos/edge_kind say for each edge (0: v0-v1, 1: v1-v2, 2: v2-v0) what lies beyond it, so that
-/// contacts on internal edges take the normal of the surface and not of the triangle's rim.
-struct Mesh {
-    struct Node {  // binary tree over triangles, boxes in mesh axes
-        Vec3 lower, upper;
-        std::uint32_t first = 0;  // leaf: first in `order`; inner: left child; right is left + 1
-        std::uint32_t count = 0;  // leaf: triangles; inner: 0
-    };
-    std::vector<Vec3> vertices;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Vec3> normals;                        // [triangles] unit
-    std::vector<std::array<std::int32_t, 3>> beyond;  // triangle over each edge, -1 at a rim
-    std::vector<std::uint8_t> convex_edges;           // bit e set: edge e sticks out, or is a rim
-    std::vector<Node> tree;                           // [0] is the root
-    std::vector<std::uint32_t> order;
-};
-
 /// All shapes of a world.
 struct Shapes {
     std::vector<Sphere> spheres;
@@ -102,6 +93,7 @@ struct Shapes {
     std::vector<Hull> hulls;
     std::vector<Plane> planes;
     std::vector<Mesh> meshes;
+    std::vector<Solid> solids;
 };
 
 }  // namespace throng

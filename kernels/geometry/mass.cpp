@@ -152,6 +152,8 @@ MassProperties mass_of(const Shapes& shapes, ShapeRef shape)
         return mass_of(shapes.hulls[shape.index]);
     case ShapeKind::mesh:
         return mass_of(shapes.meshes[shape.index]);
+    case ShapeKind::solid:
+        return mass_of(shapes.solids[shape.index].mesh);
     case ShapeKind::plane:
     case ShapeKind::triangle:
         break;

@@ -1,6 +1,7 @@
 #include "kernels/geometry/nearest_point.hpp"
 
 #include "kernels/geometry/closest_points.hpp"
+#include "kernels/geometry/mesh_distance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -75,44 +76,18 @@ NearestPoint of_hull(const Vec3& point, const Hull& hull, double limit)
     return outside ? nearest : NearestPoint{0, point};
 }
 
-double distance_to(const Mesh::Node& node, const Vec3& point)
-{
-    return (point - point.cwiseMax(node.lower).cwiseMin(node.upper)).norm();
-}
-
-// Down the tree, the nearer child first.
 NearestPoint of_mesh(const Vec3& point, const Mesh& mesh, double limit)
 {
-    struct Visit {
-        std::uint32_t node;
-        double distance;
-    };
-    // As deep as visit_triangles() in mesh.hpp, which says why.
-    std::array<Visit, 96> waiting;
-    std::size_t count = 0;
-    if (!mesh.tree.empty()) waiting[count++] = {0, distance_to(mesh.tree.front(), point)};
-    NearestPoint nearest;
-    while (count > 0) {
-        const Visit visit = waiting[--count];
-        if (visit.distance > std::min(nearest.distance, limit)) continue;
-        const Mesh::Node& node = mesh.tree[visit.node];
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const auto& [a, b, c] = mesh.triangles[mesh.order[i]];
-            const NearestPoint now =
-                at(closest_on_triangle<double>(point, mesh.vertices[a], mesh.vertices[b],
-                                               mesh.vertices[c])
-                       .point,
-                   point);
-            if (now.distance < nearest.distance) nearest = now;
-        }
-        if (node.count > 0) continue;
-        Visit near{node.first, distance_to(mesh.tree[node.first], point)};
-        Visit far{node.first + 1, distance_to(mesh.tree[node.first + 1], point)};
-        if (far.distance < near.distance) std::swap(near, far);
-        waiting[count++] = far;
-        waiting[count++] = near;
-    }
-    return nearest;
+    const MeshPoint nearest = nearest_on_mesh(mesh, point, limit);
+    return {nearest.distance, nearest.point};
+}
+
+NearestPoint of_solid(const Vec3& point, const Solid& solid)
+{
+    // Without a limit: a point deep inside is near, however far the surface is.
+    const MeshPoint nearest = nearest_on_mesh(solid.mesh, point);
+    if (signed_distance(solid.mesh, point, nearest) <= 0) return {0, point};
+    return {nearest.distance, nearest.point};
 }
 
 }  // namespace
@@ -135,6 +110,8 @@ NearestPoint nearest_point(const Shapes& shapes, ShapeRef shape, const Vec3& poi
         return of_plane(point, shapes.planes[i]);
     case ShapeKind::mesh:
         return of_mesh(point, shapes.meshes[i], limit);
+    case ShapeKind::solid:
+        return of_solid(point, shapes.solids[i]);
     case ShapeKind::triangle:
         break;
     }

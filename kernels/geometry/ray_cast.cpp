@@ -1,5 +1,6 @@
 #include "kernels/geometry/ray_cast.hpp"
 
+#include "kernels/geometry/mesh_distance.hpp"
 #include "kernels/geometry/support.hpp"
 
 #include <algorithm>
@@ -291,6 +292,9 @@ RayMeeting cast_ray(const Shapes& shapes, ShapeRef shape, const LocalRay& ray)
         return first_of(through_plane(ray, shapes.planes[i]), ray);
     case ShapeKind::mesh:
         return cast_at_mesh(shapes.meshes[i], ray);
+    case ShapeKind::solid:
+        if (signed_distance(shapes.solids[i].mesh, ray.from) <= 0) return {0, -ray.along};
+        return cast_at_mesh(shapes.solids[i].mesh, ray);
     case ShapeKind::triangle:
         break;
     }

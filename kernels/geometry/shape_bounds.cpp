@@ -46,6 +46,15 @@ double farthest(const std::vector<Vec3>& vertices)
     return std::sqrt(squared);
 }
 
+// A mesh may have millions of vertices; its own box answers at once.
+Box3 box_round_mesh(const Mesh& mesh, const Pose& pose)
+{
+    if (mesh.tree.empty()) return {};
+    const Mesh::Node& root = mesh.tree.front();
+    return box_round(pose * Vec3(0.5 * (root.lower + root.upper)),
+                     turned_reach(pose.orientation, 0.5 * (root.upper - root.lower)));
+}
+
 }  // namespace
 
 Box3 shape_bounds(const Shapes& shapes, ShapeRef shape, const Pose& pose)
@@ -71,13 +80,10 @@ Box3 shape_bounds(const Shapes& shapes, ShapeRef shape, const Pose& pose)
                          turned_reach(pose.orientation, shapes.boxes[i].half_extents));
     case ShapeKind::hull:
         return box_round_vertices(shapes.hulls[i].vertices, pose);
-    case ShapeKind::mesh: {
-        // A mesh may have millions of vertices; its own box answers at once.
-        if (shapes.meshes[i].tree.empty()) return {};
-        const Mesh::Node& root = shapes.meshes[i].tree.front();
-        return box_round(pose * Vec3(0.5 * (root.lower + root.upper)),
-                         turned_reach(pose.orientation, 0.5 * (root.upper - root.lower)));
-    }
+    case ShapeKind::mesh:
+        return box_round_mesh(shapes.meshes[i], pose);
+    case ShapeKind::solid:
+        return box_round_mesh(shapes.solids[i].mesh, pose);
     case ShapeKind::plane:
     case ShapeKind::triangle:
         break;
@@ -104,6 +110,8 @@ double outer_radius(const Shapes& shapes, ShapeRef shape)
         return farthest(shapes.hulls[i].vertices);
     case ShapeKind::mesh:
         return farthest(shapes.meshes[i].vertices);
+    case ShapeKind::solid:
+        return farthest(shapes.solids[i].mesh.vertices);
     case ShapeKind::plane:
     case ShapeKind::triangle:
         break;
@@ -127,6 +135,11 @@ double inner_extent(const Shapes& shapes, ShapeRef shape)
         return shapes.hulls[i].inner_radius;
     case ShapeKind::mesh:
         return 0;
+    case ShapeKind::solid: {
+        // Of its thinnest part nothing is known; the box is no thinner than the whole.
+        const Mesh::Node& root = shapes.solids[i].mesh.tree.front();
+        return 0.5 * (root.upper - root.lower).minCoeff();
+    }
     case ShapeKind::plane:
     case ShapeKind::triangle:
         break;

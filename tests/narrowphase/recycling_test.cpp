@@ -1,8 +1,8 @@
 // Recycling: a manifold told from where its points are now, against points moved in double and
 // against one that is found anew.
-#include "narrowphase/methods/separating_axes.hpp"
 #include "narrowphase/recycling.hpp"
 
+#include "narrowphase/methods/separating_axes.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
 
 #include <gtest/gtest.h>

@@ -273,8 +273,7 @@ bool same_layout(const Layout& x, const Layout& y)
                           [&](const auto& i, const auto& k) { return numbers(i) == numbers(k); });
     };
     return x.points == y.points && x.slot_a == y.slot_a && x.slot_b == y.slot_b
-        && x.contacts == y.contacts && x.lane == y.lane
-        && x.body_of_slot == y.body_of_slot
+        && x.contacts == y.contacts && x.lane == y.lane && x.body_of_slot == y.body_of_slot
         && equal(x.lanes, y.lanes, [](const LaneSource& lane) { return lane.entry; })
         && equal(x.colors, y.colors,
                  [](const Color& c) { return std::tuple(c.first, c.count, c.serial); })

@@ -1,0 +1,32 @@
+// Mesh: triangles that know their neighbors, in a tree.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+#include <array>
+#include <vector>
+
+namespace throng {
+
+/// Triangles, solid on neither side but one-sided in contact: pushes come out along the
+/// face normals (counter-clockwise seen from outside).
+///
+/// edge_cos/edge_kind say for each edge (0: v0-v1, 1: v1-v2, 2: v2-v0) what lies beyond it, so that
+/// contacts on internal edges take the normal of the surface and not of the triangle's rim.
+struct Mesh {
+    struct Node {  // binary tree over triangles, boxes in mesh axes
+        Vec3 lower, upper;
+        std::uint32_t first = 0;  // leaf: first in `order`; inner: left child; right is left + 1
+        std::uint32_t count = 0;  // leaf: triangles; inner: 0
+    };
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Vec3> normals;         // [triangles] unit
+    std::vector<Vec3> vertex_normals;  // [vertices] unit; of solids alone: see mesh_distance.hpp
+    std::vector<std::array<std::int32_t, 3>> beyond;  // triangle over each edge, -1 at a rim
+    std::vector<std::uint8_t> convex_edges;           // bit e set: edge e sticks out, or is a rim
+    std::vector<Node> tree;                           // [0] is the root
+    std::vector<std::uint32_t> order;
+};
+
+}  // namespace throng
