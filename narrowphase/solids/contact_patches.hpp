@@ -23,7 +23,8 @@ struct SurfaceTouch {
 
 /// One of the manifolds of a pair of which at least one is a solid.
 ///
-///   patch  the same from step to step while the same part of the surfaces touches
+///   patch  the same from step to step while the same part of the surfaces touches: where the
+///          normal looks in a's frame, so other patches that come and go leave it as it is
 struct PatchManifold {
     std::uint32_t patch = 0;
     LocalManifold<double> manifold;
@@ -32,16 +33,25 @@ struct PatchManifold {
 /// The greatest number of manifolds made of one pair's touches.
 inline constexpr std::size_t kMostPatches = 12;
 
-/// Groups touches that lie near one another and push much the same way into manifolds of up to four
-/// points that span the group; the deepest touch of each is among its points. Appended to `out` in
-/// order of patch.
+/// Groups touches that push much the same way into manifolds of up to four points that span the
+/// group. Appended to `out` in order of patch.
 ///
-///   touches  are sorted by this; the answer does not hang on their order
+///   touches  sorted by this, and those further apart than `reach` taken out; the answer does not
+///            hang on their order. Features are to differ from one another
 ///   reach    m, touches further apart than this are left out
 ///   size     m, of the smaller of the two shapes
 ///
-/// Where there are more groups than kMostPatches, the shallowest are joined to the nearest that
-/// pushes much the same way, or left out; how many touches were left out is what it answers.
+/// Normals of a group's touches are within 31 degrees of the group's: their mean, weighed by how
+/// far within reach each is. Separations are what of them lies along it. The places of touches do
+/// not part them: bodies are rigid, so what pushes one way holds by the four that span the most
+/// wherever they are, as a table stands on four legs.
+///
+/// What is chosen hangs on directions and places rather than on small differences in depth, so that
+/// bodies at rest keep the same points. The deepest of each group is among them, or one that is as
+/// deep to within a ten-thousandth of size.
+///
+/// Where there are more groups than kMostPatches, the touches of the shallowest join those that
+/// push within 45 degrees of them, or are left out; how many were left out is what it answers.
 std::size_t make_patches(std::vector<SurfaceTouch>& touches,
                          double reach,
                          double size,
