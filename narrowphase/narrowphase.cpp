@@ -11,7 +11,8 @@ namespace throng {
 
 namespace {
 
-// Pairs that never meet: planes with planes, and all that goes by triangles (collide_mesh).
+// Pairs that never meet here: planes with planes, and all that goes by triangles (collide_mesh) or
+// that is a solid (collide_solid).
 template <class Real>
 void apart(const Shapes&,
            ShapeRef,

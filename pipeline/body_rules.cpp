@@ -122,9 +122,6 @@ void check_shape_and_mass(const Scene& scene,
     const auto& shape = scene.shapes[body.shape].shape;
     checker.at("motion").need(!std::holds_alternative<PlaneShape>(shape),
                               "wanted static or kinematic for a plane");
-    checker.at("motion").need(!std::holds_alternative<MeshShape>(shape),
-                              "wanted static or kinematic for a mesh; moving meshes are not "
-                              "available in this build");
     const double density =
         body.material == kNone ? Material{}.density : scene.materials[body.material].density;
     check_mass(body, masses[body.shape], density, checker);

@@ -34,11 +34,7 @@ constexpr Choice kNarrowPhase[] = {{"auto"},       {"gjk"},         {"sat"},
 constexpr Choice kMethodStart[] = {{"cached"}, {"cold"}, {"plain"}};
 constexpr Choice kBoundsFilter[] = {{"none"},    {"sphere"},   {"k_dop:14"},
                                     {"k_dop:6"}, {"k_dop:18"}, {"k_dop:26"}};
-constexpr Choice kNonconvex[] = {{"voxels"},
-                                 {"parts", kNotYet},
-                                 {"spheres", kNotYet},
-                                 {"depth_image", kNotYet},
-                                 {"hull", kNotYet}};
+constexpr Choice kNonconvex[] = {{"voxels"}, {"parts"}, {"spheres"}, {"depth_image"}, {"hull"}};
 constexpr Choice kResponse[] = {{"impulse"}, {"penalty", kNotYet}, {"kinematic", kNotYet}};
 constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct", kNotYet}};
 constexpr Choice kFrictionCone[] = {{"cone"}, {"pyramid", kNotYet}};
@@ -189,6 +185,39 @@ std::string set_push_limit(Settings& settings, std::string_view text)
 
 std::string get_push_limit(const Settings& settings) { return number_text(settings.push_limit); }
 
+std::string set_voxel_size(Settings& settings, std::string_view text)
+{
+    const double length = parse_number(text);
+    if (!(length >= 1e-9 && length <= 1e9) && text != "auto")
+        return wanted("auto or a length from 1e-9 to 1e9 m", text);
+    settings.voxel_size = text == "auto" ? 0 : length;
+    return {};
+}
+
+std::string get_voxel_size(const Settings& settings)
+{
+    return settings.voxel_size > 0 ? number_text(settings.voxel_size) : "auto";
+}
+
+/// A whole number, or auto, which is 0.
+template <auto Member, int least, int greatest>
+std::string set_whole(Settings& settings, std::string_view text)
+{
+    const int count = parse_whole(text, greatest);
+    if (count < least && text != "auto")
+        return wanted("auto or a whole number from " + std::to_string(least) + " to "
+                          + std::to_string(greatest),
+                      text);
+    settings.*Member = text == "auto" ? 0 : count;
+    return {};
+}
+
+template <auto Member>
+std::string get_whole(const Settings& settings)
+{
+    return settings.*Member > 0 ? std::to_string(settings.*Member) : "auto";
+}
+
 std::string set_sleep(Settings& settings, std::string_view text)
 {
     std::size_t place = 0;
@@ -229,6 +258,16 @@ Dial choice_dial(std::string_view name, std::string_view trades)
 {
     const auto set = set_choice<Member, choices>;
     return named_dial(name, choices, set, get_choice<Member, choices>, trades);
+}
+
+template <auto Member, int least, int greatest>
+Dial whole_dial(std::string_view name,
+                std::string_view values,
+                std::string_view unit,
+                std::string_view trades)
+{
+    return number_dial(name, values, unit, set_whole<Member, least, greatest>, get_whole<Member>,
+                       trades);
 }
 
 template <const auto& choices>
@@ -286,15 +325,15 @@ std::vector<Dial> make_dials()
             "time alone: what a pair remembers from the step before saves work"),
         choice_dial<&S::bounds_filter, kBoundsFilter>("bounds_filter",
             "time alone: tighter bounds leave fewer pairs to look at, and cost a test each"),
-        fixed_dial<kNonconvex>("nonconvex",
+        choice_dial<&S::nonconvex, kNonconvex>("nonconvex",
             "finer stand-ins for a moving non-convex shape fit better, and cost more points"),
-        fixed_number<kAuto>("voxel_size", "auto (set by the shape's size), or a length", "m",
+        number_dial("voxel_size", "auto (set by the shape's size), or a length", "m", set_voxel_size, get_voxel_size,
             "smaller voxels fit the shape better, and cost memory with the cube"),
-        fixed_number<kAuto>("image_resolution", "auto (set by the shape's size), or a whole number", "pixels",
+        whole_dial<&S::image_resolution, 4, 1024>("image_resolution", "auto (set by the shape's size), or a whole number", "pixels",
             "finer depth images fit the shape better, and cost time with the square"),
-        fixed_number<kAuto>("sphere_levels", "auto (set by the shape's size), or a whole number", "",
+        whole_dial<&S::sphere_levels, 1, 6>("sphere_levels", "auto (set by the shape's size), or a whole number", "",
             "deeper sphere trees fit the shape better, and cost more tests"),
-        fixed_number<kAuto>("max_parts", "auto (set by the shape's size), or a whole number", "",
+        whole_dial<&S::max_parts, 1, 256>("max_parts", "auto (set by the shape's size), or a whole number", "",
             "more convex parts fit the shape better, and cost a pair each"),
         choice_dial<&S::response, kResponse>("response",
             "impulses hold overlap small; penalty forces are smooth and soft; kinematic is cheap and loses momentum"),

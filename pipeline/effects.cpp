@@ -25,10 +25,11 @@ constexpr Known kKnown[] = {
     {"drive", true},          {"rotation", true},     {"gyroscopic", true},
     {"contact", true},        {"friction", true},     {"rolling friction", true},
     {"restitution", true},    {"fast motion", false}, {"mesh contact", true},
-    {"voxel contact", false}, {"springs", false},     {"attractors", false},
-    {"wind", false},          {"drag", false},        {"pivot", false},
-    {"joints", false},        {"motors", false},      {"sleeping", true},
-    {"sensors", false},       {"events", false},      {"agents", false},
+    {"voxel contact", true},  {"sphere contact", true}, {"image contact", true},
+    {"springs", false},       {"attractors", false},  {"wind", false},
+    {"drag", false},          {"pivot", false},       {"joints", false},
+    {"motors", false},        {"sleeping", true},     {"sensors", false},
+    {"events", false},        {"agents", false},
 };
 static_assert(std::size(kKnown) == kEffects);
 
@@ -128,17 +129,28 @@ private:
                 const std::uint32_t other = b.first != a.dynamic ? b.first : b.second;
                 if (other == kNobody) continue;
                 call(Effect::contact, name(a.dynamic) + " may touch " + name(other));
-                find_meshes();
+                find_surfaces();
                 return;
             }
     }
 
-    void find_meshes()
+    void find_surfaces()
     {
-        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i)
-            if (facts_.colliders.body[i] != kNobody
-                && facts_.colliders.shape[i].kind == ShapeKind::mesh)
+        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
+            if (facts_.colliders.body[i] == kNobody) continue;
+            const ShapeRef shape = facts_.colliders.shape[i];
+            if (shape.kind == ShapeKind::mesh)
                 call(Effect::mesh_contact, name(facts_.colliders.body[i]));
+            if (shape.kind == ShapeKind::solid)
+                call(effect_of(facts_.shapes.solids[shape.index].way),
+                     name(facts_.colliders.body[i]));
+        }
+    }
+    static Effect effect_of(SolidWay way)
+    {
+        return way == SolidWay::spheres    ? Effect::sphere_contact
+            : way == SolidWay::depth_image ? Effect::image_contact
+                                           : Effect::voxel_contact;
     }
 
     // Of materials that nothing tells apart, the first.

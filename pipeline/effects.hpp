@@ -27,6 +27,8 @@ enum class Effect : std::uint8_t {
     fast_motion,
     mesh_contact,
     voxel_contact,
+    sphere_contact,
+    image_contact,
     springs,
     attractors,
     wind,
@@ -39,6 +41,9 @@ enum class Effect : std::uint8_t {
     events,
     agents,
 };
+/// What calls for contacts of solids, each by its way.
+inline constexpr Set<Effect> kSolidContact = {Effect::voxel_contact, Effect::sphere_contact,
+                                              Effect::image_contact};
 inline constexpr int kEffects = static_cast<int>(Effect::agents) + 1;
 
 std::string_view name_of(Effect effect);

@@ -5,6 +5,7 @@
 #include "kernels/math/hash.hpp"
 #include "kernels/math/rotation.hpp"
 #include "narrowphase/narrowphase.hpp"
+#include "narrowphase/solids/solid_pairs.hpp"
 #include "pipeline/stages/recycled_manifolds.hpp"
 #include "pipeline/world_state.hpp"
 
@@ -14,6 +15,15 @@ namespace throng {
 
 namespace {
 
+// Solids before meshes before all that is convex, and planes last.
+int comes_first(ShapeKind kind)
+{
+    return kind == ShapeKind::solid ? 3
+        : kind == ShapeKind::mesh   ? 2
+        : kind == ShapeKind::plane  ? 0
+                                    : 1;
+}
+
 double mesh_depth(const Shapes& shapes, ShapeRef mesh, ShapeRef other, const Pose& other_in_mesh)
 {
     std::vector<TriangleManifold<double>> found;
@@ -22,6 +32,17 @@ double mesh_depth(const Shapes& shapes, ShapeRef mesh, ShapeRef other, const Pos
     for (const auto& touch : found)
         for (int k = 0; k < touch.manifold.count; ++k)
             depth = std::max(depth, -touch.manifold.points[static_cast<std::size_t>(k)].separation);
+    return depth;
+}
+
+double solid_depth(const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pose& other_in_solid)
+{
+    std::vector<PatchManifold> found;
+    collide_solid(shapes, solid, other, other_in_solid, 0.0, found);
+    double depth = 0;
+    for (const PatchManifold& patch : found)
+        for (int k = 0; k < patch.manifold.count; ++k)
+            depth = std::max(depth, -patch.manifold.points[static_cast<std::size_t>(k)].separation);
     return depth;
 }
 
@@ -51,13 +72,15 @@ void measure_overlaps(const World::State& state, Measures& measures)
     for_each_block(pairs.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
             std::uint32_t a = first_of(pairs[i]), b = second_of(pairs[i]);
-            if (colliders.shape[b].kind == ShapeKind::mesh
-                || colliders.shape[a].kind == ShapeKind::plane)
+            if (comes_first(colliders.shape[b].kind) > comes_first(colliders.shape[a].kind))
                 std::swap(a, b);
-            const Pose b_in_a = pose_seen_from_a(shapes, colliders.shape[b], placed[a], placed[b]);
-            depth[i] = colliders.shape[a].kind == ShapeKind::mesh
-                ? mesh_depth(shapes, colliders.shape[a], colliders.shape[b], b_in_a)
-                : overlap_depth(shapes, colliders.shape[a], colliders.shape[b], b_in_a);
+            const ShapeRef shape_a = colliders.shape[a], shape_b = colliders.shape[b];
+            const Pose b_in_a = pose_seen_from_a(shapes, shape_b, placed[a], placed[b]);
+            depth[i] = shape_a.kind == ShapeKind::solid
+                ? solid_depth(shapes, shape_a, shape_b, b_in_a)
+                : shape_a.kind == ShapeKind::mesh
+                ? mesh_depth(shapes, shape_a, shape_b, b_in_a)
+                : overlap_depth(shapes, shape_a, shape_b, b_in_a);
         }
     });
     double sum = 0;
@@ -166,10 +189,19 @@ std::string World::state_hash() const
                                    kind_of(second_of(pairs.keys[i]))))
                     add_found(convex.found[convex.of_pair[i].contact]);
             }
-            for (const auto& entry : std::get<MeshContacts<Real>>(chosen.data).entries) {
-                hash.add(std::uint64_t{entry.triangle});
-                add_contact(pairs.keys[entry.pair], entry.contact);
-            }
+            const auto add_many = [&](const ManyContacts<Real>& many) {
+                for (const auto& entry : many.entries) {
+                    hash.add(std::uint64_t{entry.part});
+                    add_contact(pairs.keys[entry.pair], entry.contact);
+                }
+            };
+            add_many(std::get<MeshContacts<Real>>(chosen.data));
+            const auto& solids = std::get<SolidContacts<Real>>(chosen.data);
+            add_many(solids);
+            for (const auto& found : solids.found.pairs)
+                for (std::uint32_t k = 0; k < found.count; ++k)
+                    add_found(FoundManifold<double>{
+                        solids.found.patches[found.first + k].manifold, found.b_in_a, found.reach});
         },
         state_->step);
     return hash.text();

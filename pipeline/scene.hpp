@@ -59,6 +59,9 @@ struct MeshShape {
     std::string nonconvex;  // how a moving one is taken: the dial's value, empty for the dial's own
     std::vector<Vec3> vertices;  // already scaled
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    // The dials of that way, for this shape alone; 0 for the scene's own.
+    double voxel_size = 0;     // m
+    int image_resolution = 0, sphere_levels = 0, max_parts = 0;
 };
 struct CompoundShape {
     struct Part {
@@ -147,6 +150,7 @@ struct Scene {
     std::vector<Spring> springs;
     std::vector<Attractor> attractors;
     Vec3 wind = Vec3::Zero();
+    std::string cache_folder;  // keeps what takes long to make of shapes; empty: nothing is kept
 
     std::size_t body_count() const
     {

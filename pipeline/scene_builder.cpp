@@ -2,6 +2,8 @@
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
+#include "pipeline/scene_rules.hpp"
+#include "pipeline/solid_maker.hpp"
 #include "pipeline/world_state.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -162,6 +164,29 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
         }
     };
     return std::visit(Maker{*this, shapes, scene, one}, description.shape);
+}
+
+PlacedShape
+SceneBuilder::add_solid(const Scene& scene, const std::string& name, const MeshShape& mesh)
+{
+    MadeSolid made;
+    state_.pool.run([&](std::size_t, std::size_t, std::size_t) {
+        made = make_solid(mesh, state_.get<Conditions>().settings, scene.cache_folder);
+    });
+    const std::string who = "shape " + name + ": ";
+    if (!made.trouble.empty()) throw std::invalid_argument(who + made.trouble);
+    for (const std::string& remark : made.remarks) state_.remarks.push_back(who + remark);
+    state_.solids.push_back(name + ": " + made.summary);
+    PlacedShape placed;
+    placed.mass = made.mass;
+    Shapes& shapes = state_.get<Shapes>();
+    if (Solid* const solid = std::get_if<Solid>(&made.shape))
+        placed.parts.push_back(append(shapes.solids, ShapeKind::solid, std::move(*solid)));
+    else
+        for (Hull& hull : std::get<std::vector<Hull>>(made.shape))
+            placed.parts.push_back(append(shapes.hulls, ShapeKind::hull, std::move(hull)));
+    placed.poses.resize(placed.parts.size());
+    return placed;
 }
 
 std::uint32_t SceneBuilder::take_body()
@@ -372,9 +397,20 @@ std::vector<BodyId> SceneBuilder::add(const Scene& scene)
     make_room(scene.body_count());
     add_materials(scene);
     shapes_.reserve(scene.shapes.size());
-    for (const ShapeDescription& shape : scene.shapes) shapes_.push_back(add_shape(scene, shape));
+    moving_.resize(scene.shapes.size());
+    const ShapeUses uses = shape_uses(scene);
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const ShapeDescription& shape = scene.shapes[i];
+        const auto* const mesh = std::get_if<MeshShape>(&shape.shape);
+        const bool moves = mesh != nullptr && uses.dynamic[i];
+        if (moves) moving_[i] = add_solid(scene, shape.name, *mesh);
+        shapes_.push_back(moves && !uses.other[i] ? PlacedShape{} : add_shape(scene, shape));
+    }
     const auto shape_of = [&](const BodyDescription& body) -> const PlacedShape* {
-        return body.shape == kNone ? nullptr : &shapes_[body.shape];
+        if (body.shape == kNone) return nullptr;
+        const PlacedShape& moving = moving_[body.shape];
+        const bool apart = body.motion == Motion::dynamic && !moving.parts.empty();
+        return apart ? &moving : &shapes_[body.shape];
     };
     std::vector<BodyId> ids;
     ids.reserve(scene.body_count());

@@ -64,6 +64,12 @@ inline constexpr std::string_view kWantedUnitQuaternion =
 
 bool is_unit(const Quat& orientation);
 
+/// [shapes] whether some body with the shape is dynamic, and whether some is not.
+struct ShapeUses {
+    std::vector<bool> dynamic, other;
+};
+ShapeUses shape_uses(const Scene& scene);
+
 /// Checks all shapes; answers what each weighs at unit density.
 std::vector<MassProperties> check_shapes(const Scene& scene);
 

@@ -24,6 +24,7 @@ enum class Gyroscopic : std::uint8_t { implicit, explicit_, off };
 enum class BroadPhase : std::uint8_t { auto_, embree, grid, sweep, all_pairs };
 enum class NarrowPhase : std::uint8_t { auto_, gjk, sat, chung_wang, clip_volume, containment };
 enum class BoundsFilter : std::uint8_t { none, sphere, k_dop_14, k_dop_6, k_dop_18, k_dop_26 };
+enum class NonConvex : std::uint8_t { voxels, parts, spheres, depth_image, hull };
 enum class Response : std::uint8_t { impulse, penalty, kinematic };
 enum class Solver : std::uint8_t { soft_step, pgs, direct };
 enum class FrictionAt : std::uint8_t { manifold, points };
@@ -49,6 +50,13 @@ struct Settings {
     NarrowPhase narrowphase = NarrowPhase::auto_;
     MethodStart method_start = MethodStart::cached;
     BoundsFilter bounds_filter = BoundsFilter::none;
+    // How moving shapes that are not convex are taken, where they do not say so themselves; 0: set by
+    // the shape's size.
+    NonConvex nonconvex = NonConvex::voxels;
+    double voxel_size = 0;     // m
+    int image_resolution = 0;  // rays along the shape's longest side
+    int sphere_levels = 0;     // of the sphere tree, from 1
+    int max_parts = 0;         // convex parts of a shape
     Response response = Response::impulse;
     Solver solver = Solver::soft_step;
     FrictionAt friction_at = FrictionAt::manifold;

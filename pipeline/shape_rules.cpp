@@ -1,5 +1,6 @@
 // Shape rules: what a shape of a scene must be, and what it then weighs.
 #include "kernels/geometry/hull.hpp"
+#include "kernels/geometry/mesh.hpp"
 #include "pipeline/scene_rules.hpp"
 
 #include <cmath>
@@ -8,10 +9,20 @@
 namespace throng {
 namespace {
 
+// Of the volume of its box, the least that a mesh which moves must enclose.
+constexpr double kThinnest = 1e-9;
+
+MassProperties turned_inside_out(const MassProperties& mass)
+{
+    const Sym3& of = mass.inertia;
+    return {-mass.volume, mass.center, {-of.xx, -of.yy, -of.zz, -of.xy, -of.xz, -of.yz}};
+}
+
 /// Checks one shape; a compound's parts are checked as shapes of their own.
 struct ShapeChecker {
     const Scene& scene;
     const SceneChecker& checker;
+    bool moves;         // a body with it is dynamic
     Shapes scratch{};  // for mass_of()
 
     void need_size(std::string_view kind, std::string_view key, double size) const
@@ -82,7 +93,15 @@ struct ShapeChecker {
         for (const auto& triangle : mesh.triangles)
             for (const std::uint32_t corner : triangle)
                 file.need(corner < mesh.vertices.size(), "wanted triangles between vertices");
-        return {};
+        if (!moves) return {};
+        MeshResult built = build_mesh(mesh.vertices, mesh.triangles);
+        file.need(built.trouble.empty(), "wanted a mesh that can move; it " + built.trouble);
+        MassProperties mass = mass_as_if_closed(built.mesh);
+        if (mass.volume < 0) mass = turned_inside_out(mass);
+        const Mesh::Node& root = built.mesh.tree.front();
+        file.need(mass.volume > kThinnest * (root.upper - root.lower).prod(),
+                  "wanted a mesh that encloses a volume, for a body that moves");
+        return mass;
     }
     MassProperties operator()(const CompoundShape& compound)
     {
@@ -107,17 +126,31 @@ struct ShapeChecker {
 
 }  // namespace
 
+ShapeUses shape_uses(const Scene& scene)
+{
+    const std::vector<bool> none(scene.shapes.size(), false);
+    ShapeUses uses{none, none};
+    const auto note = [&](const BodyDescription& body) {
+        if (body.shape >= scene.shapes.size()) return;
+        (body.motion == Motion::dynamic ? uses.dynamic : uses.other)[body.shape] = true;
+    };
+    for (const BodyDescription& body : scene.bodies) note(body);
+    for (const Instances& group : scene.instances) note(group.common);
+    return uses;
+}
+
 std::vector<MassProperties> check_shapes(const Scene& scene)
 {
     std::vector<MassProperties> masses;
     const SceneChecker whole, shapes = whole.at("shapes");
     std::set<std::string_view> names;
+    const std::vector<bool> moving = shape_uses(scene).dynamic;
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
         const ShapeDescription& shape = scene.shapes[i];
         const SceneChecker checker = shapes.at(shape.name, i);
         checker.need(shape.name.empty() || names.insert(shape.name).second,
                      "wanted a name of its own for each shape");
-        masses.push_back(std::visit(ShapeChecker{scene, checker}, shape.shape));
+        masses.push_back(std::visit(ShapeChecker{scene, checker, moving[i]}, shape.shape));
     }
 
     // Compounds last: their parts may be named before or after them.

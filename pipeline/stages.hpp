@@ -35,7 +35,18 @@ void collide_convex(const Conditions&,
                     ConvexContacts<Real>&,
                     MethodPairs&);
 
-/// The same against triangle meshes.
+/// Pairs with a solid: several contacts each, or what they had while they hardly moved.
+template <class Real>
+void collide_solids(const Conditions&,
+                    const Pairs&,
+                    const Shapes&,
+                    const Colliders&,
+                    const Bounds&,
+                    const Poses&,
+                    const BodyStates&,
+                    SolidContacts<Real>&);
+
+/// Convex shapes against triangle meshes.
 template <class Real>
 void collide_meshes(const Conditions&,
                     const Pairs&,
@@ -52,11 +63,12 @@ void wake_touched(const Pairs&,
                   const Colliders&,
                   const Velocities&,
                   const ConvexContacts<Real>&,
+                  const SolidContacts<Real>&,
                   Beds&,
                   BodyStates&,
                   Rest&);
 
-/// Both kinds of contact into one order: those that this step has to solve.
+/// All kinds of contact into one order: those that this step has to solve.
 template <class Real>
 void gather_contacts(const Pairs&,
                      const Colliders&,
@@ -64,6 +76,7 @@ void gather_contacts(const Pairs&,
                      const BodyStates&,
                      const ConvexContacts<Real>&,
                      const MeshContacts<Real>&,
+                     const SolidContacts<Real>&,
                      ActiveContacts&);
 
 /// Contacts into islands.
@@ -92,6 +105,7 @@ void solve_impulses(const Conditions&,
                     Rows<Real>&,
                     ConvexContacts<Real>&,
                     MeshContacts<Real>&,
+                    SolidContacts<Real>&,
                     Poses&,
                     Velocities&,
                     Trouble&);

@@ -22,7 +22,6 @@ namespace throng {
 struct Trouble {
     std::vector<std::uint32_t>
         quarantined;                     // bodies that turned non-finite in this step, ascending
-    std::uint64_t contacts_dropped = 0;  // of this step
     BlockLists<std::uint32_t> of_block;  // scratch
 };
 
@@ -54,6 +53,7 @@ using StepData = std::tuple<Conditions,
                             ConvexContacts<Real>,
                             MethodPairs,
                             MeshContacts<Real>,
+                            SolidContacts<Real>,
                             ActiveContacts,
                             IslandFinder,
                             Islands,

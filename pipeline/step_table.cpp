@@ -15,6 +15,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, update_bounds>        ("update_bounds",     {contact}),
     stage<Real, find_pairs>           ("find_pairs",        {contact}),
     stage<Real, collide_convex<Real>> ("collide_convex",    {contact}),
+    stage<Real, collide_solids<Real>> ("collide_solids",    kSolidContact),
     stage<Real, wake_touched<Real>>   ("wake_touched",      {sleeping}),
     stage<Real, collide_meshes<Real>> ("collide_meshes",    {mesh_contact}),
     stage<Real, gather_contacts<Real>>("gather_contacts",   {contact}),
@@ -40,8 +41,9 @@ consteval bool reads_follow_writes()
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;
         ready = ready | row.writes;
-        // gather_contacts reads the mesh contacts of a scene that may have no meshes.
-        if (row.name == "collide_convex") ready = ready | data_set<Real, MeshContacts<Real>>;
+        // What is read of scenes that may have neither meshes nor solids is then empty.
+        if (row.name == "collide_convex")
+            ready = ready | data_set<Real, MeshContacts<Real>> | data_set<Real, SolidContacts<Real>>;
     }
     return true;
 }

@@ -194,7 +194,12 @@ void World::step(int steps)
             });
             Conditions& conditions = state.get<Conditions>();
             conditions.last_substep = conditions.substep();
-            state.report.contacts_dropped += state.get<Trouble>().contacts_dropped;
+            state.report.contacts_dropped += std::visit(
+                [](const auto& chosen) {
+                    using Real = typename std::decay_t<decltype(chosen)>::Number;
+                    return std::get<SolidContacts<Real>>(chosen.data).left_out;
+                },
+                state.step);
             state.report.fallbacks += state.get<MethodPairs>().fell_back;
             state.follow_step();
         }
@@ -321,12 +326,18 @@ Vec3 World::contact_force(BodyId body) const
                 if (const Contact<Real>* contact = convex.at(i)) add(i, *contact);
             for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
                 if (entry.contact.count > 0) add(entry.pair, entry.contact);
+            for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
+                if (entry.contact.count > 0) add(entry.pair, entry.contact);
         },
         state_->step);
     return impulse / substep;
 }
 
 const StepReport& World::report() const { return state_->report; }
+
+const std::vector<std::string>& World::remarks() const { return state_->remarks; }
+
+const std::vector<std::string>& World::solids() const { return state_->solids; }
 
 std::vector<StageReport> World::stages() const
 {

@@ -62,8 +62,10 @@ void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
     pairs.keys.resize(kept);
 
     const auto gone = [&](std::uint32_t pair) { return kept_as[pair] == Pairs::kNewPair; };
-    std::erase_if(pairs.on_mesh, gone);
-    for (std::uint32_t& pair : pairs.on_mesh) pair = kept_as[pair];
+    for (auto* const list : {&pairs.on_mesh, &pairs.on_solid}) {
+        std::erase_if(*list, gone);
+        for (std::uint32_t& pair : *list) pair = kept_as[pair];
+    }
     std::visit(
         [&](auto& chosen) {
             using Real = typename std::decay_t<decltype(chosen)>::Number;
@@ -83,9 +85,13 @@ void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
             for (std::size_t i = 0; i < memories.size(); ++i)
                 if (kept_as[i] != Pairs::kNewPair) memories[kept_as[i]] = memories[i];
             memories.resize(std::min<std::size_t>(memories.size(), kept));
-            auto& entries = std::get<MeshContacts<Real>>(chosen.data).entries;
-            std::erase_if(entries, [&](const auto& entry) { return gone(entry.pair); });
-            for (auto& entry : entries) entry.pair = kept_as[entry.pair];
+            const auto keep = [&](auto& list) {
+                std::erase_if(list, [&](const auto& item) { return gone(item.pair); });
+                for (auto& item : list) item.pair = kept_as[item.pair];
+            };
+            keep(std::get<MeshContacts<Real>>(chosen.data).entries);
+            keep(std::get<SolidContacts<Real>>(chosen.data).entries);
+            keep(std::get<SolidContacts<Real>>(chosen.data).found.pairs);
         },
         step);
 }
@@ -128,6 +134,7 @@ void World::State::empty_unused()
                 ((std::get<decltype(kinds)>(chosen.data) = {}), ...);
             };
             if (!on.has(Effect::mesh_contact)) empty(MeshContacts<Real>{});
+            if (!on.meets(kSolidContact)) empty(SolidContacts<Real>{});
             if (on.has(Effect::contact)) return;
             empty(Pairs{}, ConvexContacts<Real>{}, MethodPairs{}, ActiveContacts{}, Islands{},
                   Layout{}, Rows<Real>{});

@@ -50,6 +50,7 @@ struct World::State {
     std::size_t alive = 0;
 
     std::vector<std::string> material_names;
+    std::vector<std::string> remarks, solids;  // see World
 
     template <class Data>
     Data& get()
@@ -102,6 +103,7 @@ private:
     void make_room_for(ShapeKind kind, std::size_t count);
     void add_materials(const Scene& scene);
     PlacedShape add_shape(const Scene& scene, const ShapeDescription& description);
+    PlacedShape add_solid(const Scene& scene, const std::string& name, const MeshShape& mesh);
     ShapeRef sized(ShapeKind kind, const double* sizes);
     BodyId add_body(const BodyDescription& body, const PlacedShape* shape);
     std::uint32_t take_body();
@@ -115,7 +117,8 @@ private:
     std::uint32_t first_material_ = 0;
     std::uint32_t default_material_ = kNone;
     std::vector<double> density_;
-    std::vector<PlacedShape> shapes_;
+    std::vector<PlacedShape> shapes_;  // as what stands still has them
+    std::vector<PlacedShape> moving_;  // as what moves has them, where that is something else
 };
 
 }  // namespace throng

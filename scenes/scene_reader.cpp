@@ -235,14 +235,18 @@ private:
         mesh.file = text(file);
         if (const Node at = find(node, "scale")) mesh.scale = number(at);
         // The dials of one shape take what the dials of the scene take.
+        Settings own;
         for (const std::string_view dial : Keys(kMeshKeys).subspan(2)) {
             const Node at = find(node, dial);
             if (!at) continue;
-            Settings scratch;
-            const std::string trouble = find_dial(dial)->set(scratch, text_or_number(at));
+            const std::string trouble = find_dial(dial)->set(own, text_or_number(at));
             if (!trouble.empty()) refuse(at, trouble);
             if (dial == "nonconvex") mesh.nonconvex = text(at);
         }
+        mesh.voxel_size = own.voxel_size;
+        mesh.image_resolution = own.image_resolution;
+        mesh.sphere_levels = own.sphere_levels;
+        mesh.max_parts = own.max_parts;
         const FileContent content = read_named(file, kGreatestMeshFile);
         if (content.size > kGreatestMeshFile) refuse(file, "wanted a mesh file of at most 4 GiB");
         MeshFile read = read_mesh_text(content.bytes, mesh.file);

@@ -223,6 +223,13 @@ private:
             members.add("file", json_string(write_beside(tail, mesh.file, text)));
         }
         if (!mesh.nonconvex.empty()) members.add("nonconvex", json_string(mesh.nonconvex));
+        const auto add_dial = [&](std::string_view dial, double number) {
+            members.add(dial, number, 0.0);
+        };
+        add_dial("voxel_size", mesh.voxel_size);
+        add_dial("image_resolution", mesh.image_resolution);
+        add_dial("sphere_levels", mesh.sphere_levels);
+        add_dial("max_parts", mesh.max_parts);
         return "\"mesh\": " + members.text();
     }
 

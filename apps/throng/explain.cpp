@@ -98,6 +98,13 @@ void print_stages(const Stages& stages, const std::vector<InnerRow>& inner, cons
     }
 }
 
+void print_solids(const std::vector<std::string>& solids)
+{
+    if (solids.empty()) return;
+    std::cout << "\nmoving meshes\n";
+    for (const std::string& solid : solids) std::cout << "  " << solid << '\n';
+}
+
 void write_dot(const Stages& stages, const std::vector<InnerRow>& inner, std::ostream& out)
 {
     out << "digraph step {\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n";
@@ -164,6 +171,7 @@ int explain(const Options& options)
     }
     print_effects(effects);
     print_stages(stages, inner, stage_ms);
+    print_solids(world.solids());
     for (const std::string& sentence : idle_dials(argument.scene))
         std::cerr << "warning: " << sentence << '\n';
     return interrupted() ? kInterrupted : kDone;

@@ -69,7 +69,9 @@ void set_dials(Scene& scene, const Options& options)
 World make_world(const SceneArgument& argument, int threads)
 {
     try {
-        return World(argument.scene, threads);
+        World world(argument.scene, threads);
+        for (const std::string& remark : world.remarks()) std::cerr << "warning: " << remark << '\n';
+        return world;
     } catch (const std::invalid_argument& error) {
         throw BadInput(argument.label + ": " + error.what());
     }

@@ -122,24 +122,55 @@ struct ConvexContacts {
     }
 };
 
-/// Contacts of convex colliders with meshes: any number a pair, in order of pair and triangle.
+/// Contacts of pairs that may have any number of them, in order of pair and part.
+///
+///   part  tells the contacts of a pair apart, from step to step
 template <class Real>
-struct MeshContacts {
+struct ManyContacts {
     struct Entry {
         std::uint32_t pair = 0;
-        std::uint32_t triangle = 0;
+        std::uint32_t part = 0;
         Contact<Real> contact;
     };
     std::vector<Entry> entries;
     std::vector<Entry> before;
 };
 
+/// Contacts of convex colliders with meshes; a part is a triangle.
+template <class Real>
+struct MeshContacts : ManyContacts<Real> { };
+
+/// Contacts of solids with whatever there is; a part is a patch of the two surfaces.
+template <class Real>
+struct SolidContacts : ManyContacts<Real> {
+    /// What was found of a pair, and where its two were then.
+    struct Found {
+        std::uint32_t pair = 0;
+        std::uint32_t first = 0, count = 0;  // among the manifolds
+        PoseT<double> b_in_a;                // of the other in the solid's frame
+        double reach = 0;                    // m
+    };
+    struct Patch {
+        std::uint32_t part = 0;
+        LocalManifold<double> manifold;
+    };
+    struct Finds {
+        std::vector<Found> pairs;  // ascending
+        std::vector<Patch> patches;
+    };
+    Finds found, found_before;
+    std::uint64_t left_out = 0;  // touches of this step that no manifold has room for
+};
+
+/// Which list a contact is kept in.
+enum class ContactList : std::uint8_t { convex, mesh, solid };
+
 /// The contacts that this step solves: at least one point, at least one body that can move.
 struct ActiveContacts {
     struct Entry {
         std::uint32_t body_a = 0, body_b = 0;
-        std::uint32_t slot = 0;  // in ConvexContacts, or in MeshContacts
-        bool on_mesh = false;
+        std::uint32_t slot = 0;  // in the list
+        ContactList list = ContactList::convex;
         std::uint8_t points = 0;
         float friction = 0, restitution = 0, rolling_friction = 0;
         float extent = 0;  // m, the lesser of the smallest half extents of the two shapes

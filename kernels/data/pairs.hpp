@@ -22,12 +22,13 @@ constexpr std::uint32_t second_of(PairKey key) { return static_cast<std::uint32_
 ///
 ///   keys     ascending
 ///   from     [pairs] where each was in the last step's list, or kNewPair; filled when changed
-///   on_mesh  places of the pairs with a mesh on one side, ascending
+///   on_mesh  places of the pairs of a convex shape and a mesh, ascending
+///   on_solid the same of pairs with a solid on one side or both
 struct Pairs {
     static constexpr std::uint32_t kNewPair = kNewItem;
     std::vector<PairKey> keys;
     std::vector<std::uint32_t> from;
-    std::vector<std::uint32_t> on_mesh;
+    std::vector<std::uint32_t> on_mesh, on_solid;
     bool changed = false;
     std::vector<PairKey> found;       // scratch
     std::vector<std::uint8_t> asked;  // [colliders] all 0 between stages

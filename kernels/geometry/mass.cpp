@@ -105,6 +105,19 @@ Moments moments_about(const Solid& solid, const Vec3& origin)
     return moments;
 }
 
+MassProperties about_center(const Moments& moments, const Vec3& start)
+{
+    const Vec3 off = moments.first / moments.volume;
+    const double v = moments.volume;
+    const double xx = moments.second.xx - v * off.x() * off.x();
+    const double yy = moments.second.yy - v * off.y() * off.y();
+    const double zz = moments.second.zz - v * off.z() * off.z();
+    return {v,
+            start + off,
+            {yy + zz, xx + zz, xx + yy, v * off.x() * off.y() - moments.second.xy,
+             v * off.x() * off.z() - moments.second.xz, v * off.y() * off.z() - moments.second.yz}};
+}
+
 // Twice round the surface: about a vertex to find the center, then about the center, so that
 // nothing is lost to a frame far away or to a long thin shape.
 template <class Solid>
@@ -115,17 +128,7 @@ MassProperties mass_inside(const Solid& solid)
     const Moments rough = moments_about(solid, start);
     if (rough.volume == 0) return {};
     const Vec3 guess = start + rough.first / rough.volume;
-    const Moments fine = moments_about(solid, guess);
-    const Vec3 off = fine.first / fine.volume;
-
-    const double v = fine.volume;
-    const double xx = fine.second.xx - v * off.x() * off.x();
-    const double yy = fine.second.yy - v * off.y() * off.y();
-    const double zz = fine.second.zz - v * off.z() * off.z();
-    return {v,
-            guess + off,
-            {yy + zz, xx + zz, xx + yy, v * off.x() * off.y() - fine.second.xy,
-             v * off.x() * off.z() - fine.second.xz, v * off.y() * off.z() - fine.second.yz}};
+    return about_center(moments_about(solid, guess), guess);
 }
 
 }  // namespace
@@ -135,6 +138,14 @@ MassProperties mass_of(const Hull& hull) { return mass_inside(hull); }
 MassProperties mass_of(const Mesh& mesh)
 {
     return is_closed(mesh) ? mass_inside(mesh) : MassProperties{};
+}
+
+MassProperties mass_as_if_closed(const Mesh& mesh)
+{
+    if (mesh.tree.empty()) return {};
+    const Vec3 middle = 0.5 * (mesh.tree.front().lower + mesh.tree.front().upper);
+    const Moments moments = moments_about(mesh, middle);
+    return moments.volume == 0 ? MassProperties{} : about_center(moments, middle);
 }
 
 MassProperties mass_of(const Shapes& shapes, ShapeRef shape)

@@ -26,6 +26,9 @@ MassProperties mass_of(const Shapes& shapes, ShapeRef shape);
 MassProperties mass_of(const Hull& hull);
 MassProperties mass_of(const Mesh& mesh);
 
+/// The same for a mesh that may have a rim: its holes are closed by cones to the middle of its box.
+MassProperties mass_as_if_closed(const Mesh& mesh);
+
 /// All parts as one, in the axes of the whole. Parts that overlap count twice.
 MassProperties combine(std::span<const PlacedMass> parts);
 

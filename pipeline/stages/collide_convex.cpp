@@ -101,7 +101,7 @@ private:
     {
         using enum ShapeKind;
         const ShapeKind a = colliders_.shape[pair.a].kind, b = colliders_.shape[pair.b].kind;
-        if (a == mesh || b == mesh) return;
+        if (a == mesh || b == mesh || a == solid || b == solid) return;
         if (chosen_.asks(a, b)) {
             if (chosen_.parts(pair)) return part(i, block);
             if (chosen_.has_method() && collide_chosen(i, pair, block)) return;

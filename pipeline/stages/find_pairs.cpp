@@ -136,16 +136,20 @@ private:
     Pairs& pairs_;
 };
 
-void note_meshes(const Shapes& shapes, const Colliders& colliders, Pairs& pairs)
+// Those that other stages look after than that of convex shapes.
+void note_pairs_apart(const Shapes& shapes, const Colliders& colliders, Pairs& pairs)
 {
     pairs.on_mesh.clear();
-    if (shapes.meshes.empty()) return;
-    const auto is_mesh = [&](std::uint32_t collider) {
-        return colliders.shape[collider].kind == ShapeKind::mesh;
-    };
-    for (std::uint32_t i = 0; i < pairs.keys.size(); ++i)
-        if (is_mesh(first_of(pairs.keys[i])) || is_mesh(second_of(pairs.keys[i])))
+    pairs.on_solid.clear();
+    if (shapes.meshes.empty() && shapes.solids.empty()) return;
+    for (std::uint32_t i = 0; i < pairs.keys.size(); ++i) {
+        const ShapeKind a = colliders.shape[first_of(pairs.keys[i])].kind;
+        const ShapeKind b = colliders.shape[second_of(pairs.keys[i])].kind;
+        if (a == ShapeKind::solid || b == ShapeKind::solid)
+            pairs.on_solid.push_back(i);
+        else if (a == ShapeKind::mesh || b == ShapeKind::mesh)
             pairs.on_mesh.push_back(i);
+    }
 }
 
 }  // namespace
@@ -170,7 +174,7 @@ void find_pairs(const Bounds& bounds,
     for (const std::uint32_t collider : bounds.asked) pairs.asked[collider] = 1;
     pairs.changed = Merge(pairs).run();
     for (const std::uint32_t collider : bounds.asked) pairs.asked[collider] = 0;
-    if (pairs.changed) note_meshes(shapes, colliders, pairs);
+    if (pairs.changed) note_pairs_apart(shapes, colliders, pairs);
 }
 
 }  // namespace throng

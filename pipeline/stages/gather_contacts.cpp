@@ -1,4 +1,5 @@
-// Gather contacts: both kinds into one order, by pair, convex ones before those on meshes.
+// Gather contacts: all kinds into one order, each by pair: convex ones, those on meshes, those of
+// solids.
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
 
@@ -49,7 +50,8 @@ public:
             std::size_t at = active_.begin[block];
             for (std::size_t i = begin; i < end; ++i)
                 if (const Contact<Real>* contact = convex.at(i))
-                    at += take(i, *contact, convex.of_pair[i].contact, false, meetings,
+                    at += take(i, *contact, convex.of_pair[i].contact,
+                               ContactList::convex, meetings,
                                active_.entries[at])
                         ? 1
                         : 0;
@@ -58,13 +60,13 @@ public:
         join_places();
     }
 
-    void gather(const MeshContacts<Real>& meshes)
+    void gather(const ManyContacts<Real>& contacts, ContactList list)
     {
         Meetings meetings(surfaces_);
-        for (std::size_t i = 0; i < meshes.entries.size(); ++i) {
-            const auto& [pair, triangle, contact] = meshes.entries[i];
+        for (std::size_t i = 0; i < contacts.entries.size(); ++i) {
+            const auto& [pair, part, contact] = contacts.entries[i];
             ActiveContacts::Entry entry;
-            if (contact.count > 0 && take(pair, contact, i, true, meetings, entry))
+            if (contact.count > 0 && take(pair, contact, i, list, meetings, entry))
                 active_.entries.push_back(entry);
         }
     }
@@ -105,7 +107,7 @@ private:
     bool take(std::size_t pair,
               const Contact<Real>& contact,
               std::size_t slot,
-              bool on_mesh,
+              ContactList list,
               Meetings& meetings,
               ActiveContacts::Entry& entry) const
     {
@@ -117,7 +119,7 @@ private:
         entry = {body_a,
                  body_b,
                  static_cast<std::uint32_t>(slot),
-                 on_mesh,
+                 list,
                  static_cast<std::uint8_t>(contact.count),
                  static_cast<float>(meeting.friction),
                  static_cast<float>(meeting.restitution),
@@ -142,17 +144,20 @@ void gather_contacts(const Pairs& pairs,
                      const BodyStates& states,
                      const ConvexContacts<Real>& convex,
                      const MeshContacts<Real>& meshes,
+                     const SolidContacts<Real>& solids,
                      ActiveContacts& active)
 {
     Gathering<Real> gathering(pairs, colliders, surfaces, states, active);
     gathering.gather(convex);
-    gathering.gather(meshes);
+    gathering.gather(meshes, ContactList::mesh);
+    gathering.gather(solids, ContactList::solid);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void gather_contacts<Real>(const Pairs&, const Colliders&, const Surfaces&,           \
                                         const BodyStates&, const ConvexContacts<Real>&,            \
-                                        const MeshContacts<Real>&, ActiveContacts&);
+                                        const MeshContacts<Real>&, const SolidContacts<Real>&,             \
+                                        ActiveContacts&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

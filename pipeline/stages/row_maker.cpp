@@ -38,8 +38,9 @@ RowMaker<Real>::RowMaker(const Conditions& conditions,
                          const ActiveContacts& active,
                          ConvexContacts<Real>& convex,
                          MeshContacts<Real>& meshes,
+                         SolidContacts<Real>& solids,
                          Rows<Real>& rows)
-    : layout_(layout), active_(active), convex_(convex), meshes_(meshes), rows_(rows),
+    : layout_(layout), active_(active), convex_(convex), meshes_(meshes), solids_(solids), rows_(rows),
       view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
       turns_(conditions.has(Effect::rotation)), softness_(softness_of<Real>(conditions))
 { }
@@ -47,7 +48,15 @@ RowMaker<Real>::RowMaker(const Conditions& conditions,
 template <class Real>
 Contact<Real>& RowMaker<Real>::contact_of(const ActiveContacts::Entry& source) const
 {
-    return source.on_mesh ? meshes_.entries[source.slot].contact : convex_.contacts[source.slot];
+    switch (source.list) {
+    case ContactList::mesh:
+        return meshes_.entries[source.slot].contact;
+    case ContactList::solid:
+        return solids_.entries[source.slot].contact;
+    case ContactList::convex:
+        break;
+    }
+    return convex_.contacts[source.slot];
 }
 
 template <class Real>

@@ -18,6 +18,7 @@ public:
              const ActiveContacts& active,
              ConvexContacts<Real>& convex,
              MeshContacts<Real>& meshes,
+             SolidContacts<Real>& solids,
              Rows<Real>& rows);
 
     /// Makes the rows of blocks from `begin` to before `end`. Bodies have not moved yet.
@@ -34,6 +35,7 @@ private:
     const ActiveContacts& active_;
     ConvexContacts<Real>& convex_;
     MeshContacts<Real>& meshes_;
+    SolidContacts<Real>& solids_;
     Rows<Real>& rows_;
     RowsView<Real> view_;
     const SolveKernels<Real>& kernels_;

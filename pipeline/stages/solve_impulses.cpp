@@ -61,12 +61,13 @@ void solve_impulses(const Conditions& conditions,
                     Rows<Real>& rows,
                     ConvexContacts<Real>& convex,
                     MeshContacts<Real>& meshes,
+                    SolidContacts<Real>& solids,
                     Poses& poses,
                     Velocities& velocities,
                     Trouble& trouble)
 {
     trouble.quarantined.clear();
-    const RowMaker<Real> maker(conditions, layout, active, convex, meshes, rows);
+    const RowMaker<Real> maker(conditions, layout, active, convex, meshes, solids, rows);
     const auto solve = [&](const Batch& batch) {
         solve_batch(conditions, layout, batch, maker, rows);
     };
@@ -95,6 +96,7 @@ void solve_impulses(const Conditions& conditions,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(const Conditions&, const Layout&, const ActiveContacts&,    \
                                        Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,    \
+                                       SolidContacts<Real>&,                                       \
                                        Poses&, Velocities&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

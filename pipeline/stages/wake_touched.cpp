@@ -26,6 +26,7 @@ void wake_touched(const Pairs& pairs,
                   const Colliders& colliders,
                   const Velocities& velocities,
                   const ConvexContacts<Real>& contacts,
+                  const SolidContacts<Real>& solids,
                   Beds& beds,
                   BodyStates& states,
                   Rest& rest)
@@ -62,6 +63,8 @@ void wake_touched(const Pairs& pairs,
         if (!states.dynamic(a)) wake(b);
         if (!states.dynamic(b)) wake(a);
     }
+    for (const auto& entry : solids.entries)
+        if (entry.contact.count > 0) meet(pairs.keys[entry.pair]);
     // Contacts with meshes are not known yet: a mesh that moves wakes whoever is near.
     for (const std::uint32_t i : pairs.on_mesh) meet(pairs.keys[i]);
     std::sort(rest.awoken.begin(), rest.awoken.end());
@@ -69,7 +72,8 @@ void wake_touched(const Pairs& pairs,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void wake_touched<Real>(const Pairs&, const Colliders&, const Velocities&,            \
-                                     const ConvexContacts<Real>&, Beds&, BodyStates&, Rest&);
+                                     const ConvexContacts<Real>&, const SolidContacts<Real>&, Beds&,        \
+                                     BodyStates&, Rest&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

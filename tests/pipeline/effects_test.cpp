@@ -139,6 +139,7 @@ TEST(Effects, AllHaveNamesOfTheirOwn)
     }
     EXPECT_EQ(name_of(Effect::motion), "motion");
     EXPECT_EQ(name_of(Effect::mesh_contact), "mesh contact");
+    EXPECT_EQ(name_of(Effect::voxel_contact), "voxel contact");
     EXPECT_EQ(name_of(Effect::sleeping), "sleeping");
     EXPECT_EQ(name_of(Effect::springs), "springs");
 }

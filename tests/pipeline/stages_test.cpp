@@ -240,15 +240,38 @@ TEST(WakeTouched, WakesTheWholeBedOfWhoeverIsTouched)
     pairs.keys = {pair_key(0, 1), pair_key(2, 3)};
     ConvexContacts<float> contacts;
     contacts.of_pair.resize(2);
+    SolidContacts<float> solids;
     Rest rest;
-    wake_touched(pairs, b.colliders, b.velocities, contacts, beds, b.states, rest);
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
     EXPECT_TRUE(rest.awoken.empty());
     contacts.contacts.resize(1);
     contacts.of_pair[0].contact = 0;
-    wake_touched(pairs, b.colliders, b.velocities, contacts, beds, b.states, rest);
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
     EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1, 3}));
     EXPECT_EQ(b.states.awake[3], 1);
     EXPECT_EQ(beds.free, (std::vector<std::uint32_t>{0}));
+}
+
+TEST(WakeTouched, SolidsWakeWhomTheyTouchAndNobodyNear)
+{
+    Bodies b(2, 0.9);
+    b.states.awake[1] = 0;
+    b.states.bed[1] = 0;
+    Beds beds;
+    beds.sleepers = {{1}};
+    Pairs pairs;
+    pairs.keys = {pair_key(0, 1)};
+    pairs.on_solid = {0};
+    ConvexContacts<float> contacts;
+    contacts.of_pair.resize(1);
+    SolidContacts<float> solids;
+    solids.entries.resize(1);
+    Rest rest;
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
+    EXPECT_TRUE(rest.awoken.empty()) << "a contact without points";
+    solids.entries[0].contact.count = 1;
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
+    EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1}));
 }
 
 TEST(WakeTouched, WhatMovesByItselfWakesOnlyWhileItMoves)
@@ -264,11 +287,12 @@ TEST(WakeTouched, WhatMovesByItselfWakesOnlyWhileItMoves)
     ConvexContacts<double> contacts;
     contacts.contacts.resize(1);
     contacts.of_pair.push_back({{}, 0});
+    const SolidContacts<double> solids;
     Rest rest;
-    wake_touched(pairs, b.colliders, b.velocities, contacts, beds, b.states, rest);
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
     EXPECT_TRUE(rest.awoken.empty());
     b.velocities.angular[0] = Vec3(0, 0, 1);
-    wake_touched(pairs, b.colliders, b.velocities, contacts, beds, b.states, rest);
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
     EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1}));
 }
 

@@ -99,6 +99,8 @@ constexpr const char* kBody[] = {
     "{\"radius\": 1}}, \"pill\": {\"capsule\": {\"radius\": 1, \"half_length\": 1}}},\n"
     "\"bodies\": [{\"name\": \"first\", \"shape\": null, \"motion\": \"static\"},\n{",
     "}]}"};
+constexpr const char* kMoving[] = {
+    "{\"throng\": 1,\n\"bodies\": [{\"shape\": \"s\"}],\n\"shapes\": {\"s\": {", "}}}"};
 constexpr const char* kGroup[] = {
     "{\"throng\": 1,\n\"shapes\": {\"box\": {\"box\": {\"half_extents\": [1, 1, 1]}}, \"floor\": "
     "{\"plane\": {\"normal\": [0, 0, 1]}}, \"ball\": {\"sphere\": {\"radius\": 1}}, \"pill\": "
@@ -161,7 +163,8 @@ TEST(SceneFile, RefusesBadTops)
         {kTop, "\"settings\": {\"dt\": @-0.1}", "settings.dt: wanted a time from 1e-9 to 1e4 s"},
         {kTop, "\"settings\": {\"solver\": @\"direct\"}",
          "settings.solver: wanted soft_step or pgs; \"direct\" is not available in this build"},
-        {kTop, "\"settings\": {\"max_parts\": @3}", "settings.max_parts: wanted auto, not \"3\""},
+        {kTop, "\"settings\": {\"max_parts\": @0}",
+         "settings.max_parts: wanted auto or a whole number from 1 to 256, not \"0\""},
     });
     EXPECT_EQ(error_of("{}"), "s.json:1:1: error: throng: wanted 1, the version of the format");
     EXPECT_EQ(error_of("{\"throng\": 2}"),
@@ -275,10 +278,15 @@ TEST(SceneFile, RefusesBadShapes)
          "shapes.s.mesh.file: wanted vertices of a size that a step can hold"},
         {kShape, "\"mesh\": {\"file\": \"tri.obj\", \"scale\": @0}",
          "shapes.s.mesh.scale: wanted a factor above 0, not 0"},
-        {kShape, "\"mesh\": {\"file\": \"tri.obj\", \"nonconvex\": @\"parts\"}",
-         "shapes.s.mesh.nonconvex: wanted voxels; \"parts\" is not available in this build"},
-        {kShape, "\"mesh\": {\"file\": \"tri.obj\", \"voxel_size\": @0.1}",
-         "shapes.s.mesh.voxel_size: wanted auto, not \"0.1\""},
+        {kShape, "\"mesh\": {\"file\": \"tri.obj\", \"nonconvex\": @\"part\"}",
+         "shapes.s.mesh.nonconvex: wanted voxels, parts, spheres, depth_image or hull, not "
+         "\"part\""},
+        {kShape, "\"mesh\": {\"file\": \"tri.obj\", \"voxel_size\": @0}",
+         "shapes.s.mesh.voxel_size: wanted auto or a length from 1e-9 to 1e9 m, not \"0\""},
+        {kShape, "\"mesh\": {\"file\": \"tri.obj\", \"max_parts\": @257}",
+         "shapes.s.mesh.max_parts: wanted auto or a whole number from 1 to 256, not \"257\""},
+        {kMoving, "\"mesh\": {\"file\": @\"tri.obj\"}",
+         "shapes.s.mesh.file: wanted a mesh that encloses a volume, for a body that moves"},
         {kShape, "\"voxels\": @{\"file\": \"x.vdb\"}",
          "shapes.s.voxels: wanted another kind of shape; voxels are not available in this build"},
         {kShape, "\"compound\": @[]", "shapes.s.compound: wanted at least one part"},
@@ -364,8 +372,6 @@ TEST(SceneFile, RefusesBadBodies)
         {kBody, box + "\"mask\": @1.5", "bodies[1].mask: wanted a whole number"},
         {kBody, "\"shape\": \"floor\", \"motion\": @\"dynamic\"",
          "bodies[1].motion: wanted static or kinematic for a plane"},
-        {kBody, "\"shape\": \"tri\", \"motion\": @\"dynamic\"",
-         "bodies[1].motion: wanted static or kinematic for a mesh"},
         {kBody, box + "\"inertia\": @[1, 1, 1]",
          "bodies[1].inertia: wanted six numbers [xx, yy, zz, xy, xz, yz], not a list of 3"},
         {kBody, box + "\"inertia\": @[1, 1, -1, 0, 0, 0]",

@@ -1,0 +1,37 @@
+// Solid maker: a stated mesh made into what a moving body collides as, by the way it is to be taken.
+#pragma once
+
+#include "kernels/data/shapes.hpp"
+#include "kernels/geometry/mass.hpp"
+#include "pipeline/scene.hpp"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace throng {
+
+/// What a moving mesh became: one solid, or convex parts of it.
+///
+///   mass     of unit density: of the mesh where it is closed, else of what its way makes of it
+///   summary  how it is taken, and how exactly
+///   remarks  what was found wrong with the mesh and what was done about it, as sentences
+///   trouble  empty, or why it cannot be had, and what would do
+struct MadeSolid {
+    std::variant<Solid, std::vector<Hull>> shape;
+    MassProperties mass;
+    std::string summary;
+    std::vector<std::string> remarks;
+    std::string trouble;
+};
+
+/// By the mesh's own way and dials where it names them, else by the settings'.
+///
+///   cache_folder  where fields and parts are kept between runs; empty: nowhere
+MadeSolid
+make_solid(const MeshShape& mesh, const Settings& settings, const std::string& cache_folder);
+
+/// The way that a mesh is taken: its own, or the settings'.
+NonConvex way_of(const MeshShape& mesh, const Settings& settings);
+
+}  // namespace throng

@@ -1,0 +1,235 @@
+// Collide solids: shapes that need not be convex, against whatever there is; a contact for each
+// patch of the two surfaces.
+//
+// What was found of a pair is told from where its points are now for as long as the two have hardly
+// moved against one another: most of a heap at rest.
+#include "narrowphase/narrowphase.hpp"
+#include "narrowphase/recycling.hpp"
+#include "narrowphase/solids/solid_pairs.hpp"
+#include "pipeline/stages/many_contacts.hpp"
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kGrain = 4;  // pairs a block: each costs microseconds at least
+// A pair is found anew once a point has moved by this share of the smaller shape's smallest half
+// extent: as with hulls, a sixth of the reach of bodies at rest.
+constexpr double kRecycled = 12e-3;
+
+// One call of the stage.
+template <class Real>
+class SolidCollision {
+public:
+    using Contacts = SolidContacts<Real>;
+    using Finds = typename Contacts::Finds;
+    using Entry = typename Contacts::Entry;
+
+    SolidCollision(const Conditions& conditions,
+                   const Pairs& pairs,
+                   const Shapes& shapes,
+                   const Colliders& colliders,
+                   const Bounds& bounds,
+                   const Poses& poses,
+                   const BodyStates& states,
+                   Contacts& contacts)
+        : conditions_(conditions), pairs_(pairs), shapes_(shapes), colliders_(colliders),
+          bounds_(bounds), poses_(poses), states_(states), contacts_(contacts),
+          scale_(static_cast<Real>(impulse_scale(conditions)))
+    { }
+
+    void run()
+    {
+        std::swap(contacts_.found, contacts_.found_before);
+        const std::size_t blocks = block_count(pairs_.on_solid.size(), kGrain);
+        finds_.assign(blocks, {});
+        left_out_.assign(blocks, 0);
+        const auto find = [&](auto&&... all) { look_at(all...); };
+        refresh_contacts<Real>(conditions_, pairs_, pairs_.on_solid, colliders_, bounds_, states_,
+                               kGrain, contacts_, find);
+        join_finds();
+    }
+
+private:
+    // The two of a pair as they are collided: the solid first.
+    struct Sides {
+        std::uint32_t solid = 0, other = 0;
+        bool swapped = false;
+    };
+
+    Sides sides_of(const PairPlace& pair) const
+    {
+        if (colliders_.shape[pair.a].kind == ShapeKind::solid) return {pair.a, pair.b, false};
+        return {pair.b, pair.a, true};
+    }
+
+    void look_at(std::uint32_t i,
+                 const PairPlace& pair,
+                 std::span<const Entry> old,
+                 std::size_t block,
+                 ContactEntries<Real>& out)
+    {
+        const Sides sides = sides_of(pair);
+        const Pose pose = pose_seen_from_a(shapes_, colliders_.shape[sides.other],
+                                           bounds_.placed[sides.solid], bounds_.placed[sides.other]);
+        const std::span kept = items_of(contacts_.found_before.pairs, old_place(pairs_, i));
+        Finds& finds = finds_[block];
+        const std::size_t first = out.size();
+        if (kept.empty() || !recycle_all(kept.front(), sides, pose, pair.reach, finds, out)) {
+            out.resize(first);
+            find_anew(sides, pose, pair.reach, block, out);
+        }
+        finds.pairs.back().pair = i;
+        for (std::size_t n = first; n < out.size(); ++n) carry_over(old, out[n].contact, out[n].part);
+    }
+
+    void find_anew(const Sides& sides,
+                   const Pose& pose,
+                   double reach,
+                   std::size_t block,
+                   ContactEntries<Real>& out)
+    {
+        static thread_local std::vector<PatchManifold> patches;
+        patches.clear();
+        left_out_[block] += collide_solid(shapes_, colliders_.shape[sides.solid],
+                                          colliders_.shape[sides.other], pose, reach, patches);
+        Finds& finds = finds_[block];
+        finds.pairs.push_back({0, static_cast<std::uint32_t>(finds.patches.size()),
+                               static_cast<std::uint32_t>(patches.size()), pose, reach});
+        for (const PatchManifold& patch : patches) {
+            finds.patches.push_back({patch.patch, patch.manifold});
+            add(sides, patch.patch, patch.manifold, out);
+        }
+    }
+
+    // False where the two have moved too much.
+    bool recycle_all(const typename Contacts::Found& kept,
+                     const Sides& sides,
+                     const Pose& pose,
+                     double reach,
+                     Finds& finds,
+                     ContactEntries<Real>& out)
+    {
+        const double least = std::min(colliders_.inner_extent[sides.solid],
+                                      colliders_.inner_extent[sides.other]);
+        // A plane has no furthest point: what moves against it is then the solid.
+        const double radius = std::min(colliders_.outer_radius[sides.other],
+                                       colliders_.outer_radius[sides.solid] + pose.position.norm());
+        FoundManifold<double> found{{}, kept.b_in_a, kept.reach};
+        LocalManifold<double> now;
+        if (!recycle(found, pose, reach, radius, kRecycled * least, now)) return false;
+        const auto begin = contacts_.found_before.patches.begin() + kept.first;
+        const auto first = static_cast<std::uint32_t>(finds.patches.size());
+        for (auto patch = begin; patch != begin + kept.count; ++patch) {
+            found.manifold = patch->manifold;
+            recycle(found, pose, reach, radius, kRecycled * least, now);
+            finds.patches.push_back(*patch);
+            if (now.count > 0) add(sides, patch->part, now, out);
+        }
+        finds.pairs.push_back({0, first, kept.count, kept.b_in_a, kept.reach});
+        return true;
+    }
+
+    void add(const Sides& sides,
+             std::uint32_t part,
+             const LocalManifold<double>& manifold,
+             ContactEntries<Real>& out) const
+    {
+        const std::uint32_t solid = colliders_.body[sides.solid];
+        const std::uint32_t other = colliders_.body[sides.other];
+        Entry& entry = out.emplace_back();
+        entry.part = part;
+        make_contact(manifold.template cast<Real>(), bounds_.placed[sides.solid],
+                     anchor_origin(solid, other, states_, poses_),
+                     anchor_origin(other, solid, states_, poses_), entry.contact);
+        note_round_sides(shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
+                         bounds_.placed[sides.solid], bounds_.placed[sides.other], entry.contact);
+        // The answer is in the solid's frame, solid first; the pair may have it second.
+        if (sides.swapped) turn_round(entry.contact);
+    }
+
+    // From the contact of the same patch, or else from that which shares the most points.
+    void carry_over(std::span<const Entry> old, Contact<Real>& contact, std::uint32_t part) const
+    {
+        const Entry* best = nullptr;
+        int most = 0;
+        for (const Entry& before : old) {
+            const int shared = 2 * shared_points(before.contact, contact)
+                + (before.part == part ? 1 : 0);
+            if (shared > most) {
+                most = shared;
+                best = &before;
+            }
+        }
+        if (best != nullptr) carry_impulses(best->contact, scale_, contact);
+    }
+
+    static int shared_points(const Contact<Real>& x, const Contact<Real>& y)
+    {
+        int shared = 0;
+        for (int i = 0; i < x.count; ++i)
+            for (int k = 0; k < y.count; ++k)
+                shared += x.points[static_cast<std::size_t>(i)].feature
+                        == y.points[static_cast<std::size_t>(k)].feature
+                    ? 1
+                    : 0;
+        return shared;
+    }
+
+    // Blocks in order, so that the list is in order of pair.
+    void join_finds()
+    {
+        Finds& all = contacts_.found;
+        all.pairs.clear();
+        all.patches.clear();
+        contacts_.left_out = 0;
+        for (std::size_t block = 0; block < finds_.size(); ++block) {
+            const auto before = static_cast<std::uint32_t>(all.patches.size());
+            for (typename Contacts::Found found : finds_[block].pairs) {
+                found.first += before;
+                all.pairs.push_back(found);
+            }
+            all.patches.insert(all.patches.end(), finds_[block].patches.begin(),
+                               finds_[block].patches.end());
+            contacts_.left_out += left_out_[block];
+        }
+    }
+
+    const Conditions& conditions_;
+    const Pairs& pairs_;
+    const Shapes& shapes_;
+    const Colliders& colliders_;
+    const Bounds& bounds_;
+    const Poses& poses_;
+    const BodyStates& states_;
+    Contacts& contacts_;
+    Real scale_;
+    std::vector<Finds> finds_;              // [blocks]
+    std::vector<std::uint64_t> left_out_;  // [blocks]
+};
+
+}  // namespace
+
+template <class Real>
+void collide_solids(const Conditions& conditions,
+                    const Pairs& pairs,
+                    const Shapes& shapes,
+                    const Colliders& colliders,
+                    const Bounds& bounds,
+                    const Poses& poses,
+                    const BodyStates& states,
+                    SolidContacts<Real>& contacts)
+{
+    SolidCollision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, contacts)
+        .run();
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void collide_solids<Real>(const Conditions&, const Pairs&, const Shapes&,             \
+                                       const Colliders&, const Bounds&, const Poses&,              \
+                                       const BodyStates&, SolidContacts<Real>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng
