@@ -44,6 +44,8 @@ struct VoxelBricks {
 ///   x, y, z     [points] m
 ///   normals     [points] unit, outward; of an edge or a corner the mean over its faces, weighed by
 ///               their angles
+///   cones       [points] cosine of the angle to -normal within which another surface can push the
+///               point: that of its faces to its normal, and 40 degrees
 ///   nodes       [0] is the root
 struct SurfacePoints {
     struct Node {
@@ -55,6 +57,7 @@ struct SurfacePoints {
     double spacing = 0;
     std::vector<float> x, y, z;
     std::vector<Vec3T<float>> normals;
+    std::vector<float> cones;
     std::vector<Node> nodes;
 
     std::size_t size() const { return x.size(); }
