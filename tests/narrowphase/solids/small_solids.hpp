@@ -1,0 +1,74 @@
+// Small solids: closed meshes with fields and points, made ready in no time.
+#pragma once
+
+#include "kernels/data/shapes.hpp"
+#include "kernels/geometry/mesh.hpp"
+#include "kernels/geometry/mesh_distance.hpp"
+#include "kernels/geometry/surface_points.hpp"
+#include "kernels/geometry/voxel_bricks.hpp"
+#include "scenes/closed_meshes.hpp"
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace throng::test {
+
+struct Dice {
+    std::mt19937_64 engine;
+    double between(double low, double high)
+    {
+        return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1p-53);
+    }
+    Vec3 point(double reach)
+    {
+        const double x = between(-reach, reach), y = between(-reach, reach);
+        return {x, y, between(-reach, reach)};
+    }
+    Quat turn()
+    {
+        const Vec3 axis = point(1);
+        return Quat(between(-1, 1), axis.x(), axis.y(), axis.z()).normalized();
+    }
+};
+
+/// Points a voxel apart and a band of four. `distance` of the shape that the mesh is of, or that of
+/// the mesh itself where none is given.
+inline Solid small_solid(const TriangleSoup& soup,
+                         double voxel,
+                         std::function<double(const Vec3&)> distance = {})
+{
+    Solid solid;
+    solid.mesh = build_mesh(soup.vertices, soup.triangles).mesh;
+    find_vertex_normals(solid.mesh);
+    if (!distance) distance = [&](const Vec3& at) { return signed_distance(solid.mesh, at); };
+    const Mesh::Node& root = solid.mesh.tree.front();
+    solid.field = bake_bricks({root.lower, root.upper}, voxel, 4 * voxel, distance);
+    solid.points = build_surface_points(solid.mesh, voxel);
+    return solid;
+}
+
+/// A ball whose corners are on the sphere; its faces are within a thousandth of the radius.
+inline Solid small_ball(double radius, double voxel)
+{
+    return small_solid(ball_mesh(radius, 96, 48), voxel,
+                       [=](const Vec3& at) { return at.norm() - radius; });
+}
+
+inline Solid small_box(const Vec3& half, double voxel)
+{
+    return small_solid(box_mesh(half), voxel, [=](const Vec3& at) {
+        const Vec3 past = at.cwiseAbs() - half;
+        return past.cwiseMax(0).norm() + std::min(past.maxCoeff(), 0.0);
+    });
+}
+
+inline Solid small_torus(double ring, double tube, double voxel)
+{
+    return small_solid(torus_mesh(ring, tube, 128, 64), voxel, [=](const Vec3& at) {
+        const double across = std::sqrt(at.x() * at.x() + at.y() * at.y()) - ring;
+        return std::sqrt(across * across + at.z() * at.z()) - tube;
+    });
+}
+
+}  // namespace throng::test
