@@ -21,8 +21,9 @@ struct HullResult {
 ///
 /// Points inside, repeated, on an edge or on a face are left out, and so are those that stick out
 /// of the rest by less than a hundred-thousandth of the extent (a thousandth of the thickness,
-/// where that is less). Faces that lie in one plane by the same measure become one polygon; no
-/// vertex is above the plane of any face.
+/// where that is less). Faces that lie in one plane by the same measure become one polygon. The
+/// plane of a face touches the vertex farthest along its normal: no vertex is above it by more than
+/// rounding, 1e-14 of the extent or of the farthest coordinate, where that is more.
 ///
 /// Trouble reads on from the name of what was asked for: "points lie in one plane; give points
 /// that enclose a volume".

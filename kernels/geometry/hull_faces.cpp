@@ -10,6 +10,8 @@ constexpr std::uint32_t kNone = 0xffffffffU;
 // A region that is no convex polygon is tried again with a tolerance this much smaller.
 constexpr double kStricter = 0.125;
 constexpr int kTries = 4;
+// What rounding to the grid may hide, above and below: twice what it moves two points by.
+constexpr double kGrid = 1e-11;
 
 struct Candidate {
     Vec3 normal = Vec3::Zero();
@@ -21,8 +23,8 @@ class Merger {
 public:
     Merger(std::span<const Vec3> points, const TriangleHull& hull, double tolerance)
         : points_(points), hull_(hull), tolerance_(tolerance), next_(points.size(), kNone),
-          triangle_at_(points.size(), kNone), taken_(hull.triangles.size(), 0),
-          visit_(hull.triangles.size(), 0)
+          triangle_at_(points.size(), kNone), seen_(points.size(), 0),
+          taken_(hull.triangles.size(), 0), visit_(hull.triangles.size(), 0)
     {
         for (std::uint32_t t = 0; t < hull.triangles.size(); ++t) {
             const auto& [a, b, c] = hull.triangles[t];
@@ -108,23 +110,44 @@ private:
         return facing >= 0 || facing * facing <= tolerance * tolerance * longest;
     }
 
-    // The corner of the hull farthest along the direction: uphill from corner to corner, which on
-    // a convex hull leads to the top.
-    std::uint32_t highest(const Vec3& direction, std::uint32_t start) const
+    // Calls visit(corner) for the corners that share an edge with the one named.
+    template <class Visit>
+    void visit_round(std::uint32_t corner, Visit visit) const
     {
+        const std::uint32_t first = triangle_at_[corner];
+        std::uint32_t triangle = first;
+        do {
+            const auto& corners = hull_.triangles[triangle];
+            const std::size_t k = corners[0] == corner ? 0 : corners[1] == corner ? 1 : 2;
+            visit(corners[(k + 1) % 3]);
+            triangle = hull_.beyond[triangle][k];
+        } while (triangle != first);
+    }
+
+    // The corner of the hull farthest along the direction: uphill from corner to corner, which on
+    // a convex hull leads to the top, or, as points were rounded to a grid before they had a hull,
+    // to corners nearly as high that hang together with it.
+    std::uint32_t highest(const Vec3& direction, std::uint32_t start)
+    {
+        const auto height = [&](std::uint32_t corner) { return direction.dot(points_[corner]); };
         std::uint32_t best = start;
         for (std::uint32_t from = kNone; from != best;) {
             from = best;
-            const std::uint32_t first = triangle_at_[from];
-            std::uint32_t triangle = first;
-            do {
-                const auto& corners = hull_.triangles[triangle];
-                const std::size_t k = corners[0] == from ? 0 : corners[1] == from ? 1 : 2;
-                const std::uint32_t other = corners[(k + 1) % 3];
-                if (direction.dot(points_[other]) > direction.dot(points_[best])) best = other;
-                triangle = hull_.beyond[triangle][k];
-            } while (triangle != first);
+            visit_round(from, [&](std::uint32_t other) {
+                if (height(other) > height(best)) best = other;
+            });
         }
+        const double level = height(best) - kGrid;
+        ++climbs_;
+        seen_[best] = climbs_;
+        high_.assign(1, best);
+        for (std::size_t i = 0; i < high_.size(); ++i)
+            visit_round(high_[i], [&](std::uint32_t other) {
+                if (seen_[other] == climbs_ || height(other) < level) return;
+                seen_[other] = climbs_;
+                high_.push_back(other);
+                if (height(other) > height(best)) best = other;
+            });
         return best;
     }
 
@@ -174,9 +197,12 @@ private:
     std::vector<Vec3> areas_;                 // [triangles] normal, twice the area long
     std::vector<std::uint32_t> next_;         // [points] along the rim at hand
     std::vector<std::uint32_t> triangle_at_;  // [points] one that has the point for a corner
+    std::vector<std::uint32_t> seen_;         // [points] the last climb it was high in
+    std::vector<std::uint32_t> high_;         // corners as high as the last climb's, about
     std::vector<std::uint8_t> taken_;         // [triangles] by a face already
     std::vector<std::uint32_t> visit_;        // [triangles] the last region it was in
     std::uint32_t visits_ = 0;
+    std::uint32_t climbs_ = 0;
 };
 
 }  // namespace

@@ -5,9 +5,9 @@
 
 namespace throng {
 
-/// A face: corners counter-clockwise seen from outside, and a plane that no point is above. It
-/// goes through the point named by highest; the corners are on it or below by the tolerance at
-/// most.
+/// A face: corners counter-clockwise seen from outside, and a plane that no corner of the hull is
+/// above. It goes through the corner named by highest; its own are on it or below by the tolerance
+/// at most.
 struct HullFace {
     std::vector<std::uint32_t> corners;
     Vec3 normal;

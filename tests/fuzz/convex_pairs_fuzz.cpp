@@ -24,6 +24,8 @@ constexpr double kFlat = 1e-13;
 constexpr double kOfStraying = 1e-4;
 constexpr double kOfCylinders = 1e-6;
 constexpr double kParts = 1e-12;
+// What build_hull() promises of vertices above faces.
+constexpr double kAbove = 1e-14;
 constexpr double kAnyReach = 1e30;
 constexpr int kMoves = 6;
 
@@ -95,15 +97,19 @@ bool take_hull(const HullShape& shape, Shapes& shapes)
     const auto vertices = std::ssize(hull.vertices), faces = std::ssize(hull.normals);
     expect(vertices - std::ssize(hull.edges) + faces == 2, "a hull is closed");
     expect(std::ssize(hull.face_vertices) == 2 * std::ssize(hull.edges), "edges lie between faces");
-    double extent = 0;
-    for (const Vec3& vertex : hull.vertices)
-        extent = std::max(extent, vertex.cwiseAbs().maxCoeff());
+    Vec3 lower = hull.vertices[0], upper = lower;
+    for (const Vec3& vertex : hull.vertices) {
+        lower = lower.cwiseMin(vertex);
+        upper = upper.cwiseMax(vertex);
+    }
+    const double extent = std::max(
+        {(upper - lower).maxCoeff(), upper.cwiseAbs().maxCoeff(), lower.cwiseAbs().maxCoeff()});
     for (std::size_t face = 0; face < hull.normals.size(); ++face) {
         const Vec3& normal = hull.normals[face];
         expect(std::abs(normal.norm() - 1) < kParts, "normals of faces are of unit length");
         for (const Vec3& vertex : hull.vertices) {
             const double above = normal.dot(vertex) - hull.offsets[face];
-            expect(above <= kParts * extent, "no vertex is above a face", above, extent);
+            expect(above <= kAbove * extent, "no vertex is above a face", above, extent);
         }
     }
     shapes.hulls.push_back(std::move(made.hull));
