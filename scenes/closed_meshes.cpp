@@ -61,6 +61,12 @@ TriangleSoup torus_mesh(double ring, double tube, std::uint32_t around, std::uin
             const Vec3 out = on_circle(1, i, around), turn = on_circle(tube, k, across);
             mesh.vertices.push_back(out * (ring + turn.x()) + Vec3(0, 0, turn.y()));
         }
+    close_grid(mesh, around, across);
+    return mesh;
+}
+
+void close_grid(TriangleSoup& mesh, std::uint32_t around, std::uint32_t across)
+{
     const auto at = [&](std::uint32_t i, std::uint32_t k) {
         return i % around * across + k % across;
     };
@@ -69,7 +75,6 @@ TriangleSoup torus_mesh(double ring, double tube, std::uint32_t around, std::uin
             mesh.triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
             mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
         }
-    return mesh;
 }
 
 }  // namespace throng
