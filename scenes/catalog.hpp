@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pipeline/scene.hpp"
+#include "scenes/closed_meshes.hpp"
 
 #include <cstdint>
 #include <span>
@@ -21,6 +22,9 @@ struct CatalogEntry {
     int most = 0;
     std::string_view about;
     Scene (*make)(int size, std::uint64_t seed) = nullptr;
+    /// The same with a mesh in place of the generated ones, brought to their size; null where the
+    /// scene has none that another could replace.
+    Scene (*make_of)(int size, std::uint64_t seed, const TriangleSoup& mesh) = nullptr;
 };
 
 /// All scenes, in the order in which they are listed to users.

@@ -1,6 +1,7 @@
 #include "scenes/parts.hpp"
 
 #include "kernels/check.hpp"
+#include "kernels/data/bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,32 @@ Scene begin_scene(std::string_view name, int size)
     stone.name = "stone";
     scene.materials.push_back(stone);
     return scene;
+}
+
+MeshShape mesh_shape(TriangleSoup mesh)
+{
+    MeshShape shape;
+    shape.vertices = std::move(mesh.vertices);
+    shape.triangles = std::move(mesh.triangles);
+    return shape;
+}
+
+TriangleSoup fitted(TriangleSoup mesh, double reach)
+{
+    Box3 bounds;
+    for (const Vec3& vertex : mesh.vertices) {
+        bounds.lower = bounds.lower.cwiseMin(vertex);
+        bounds.upper = bounds.upper.cwiseMax(vertex);
+    }
+    const Vec3 middle = (bounds.lower + bounds.upper) / 2;
+    double greatest = 0;
+    for (Vec3& vertex : mesh.vertices) {
+        vertex -= middle;
+        greatest = std::max(greatest, vertex.norm());
+    }
+    THRONG_CHECK(greatest > 0, "a point has no size to be fitted");
+    for (Vec3& vertex : mesh.vertices) vertex *= reach / greatest;
+    return mesh;
 }
 
 BodyDescription&
@@ -159,6 +186,23 @@ Vec3 Grid::place(int i, Random& random) const
     const double x = column * spacing - half + random.uniform(-jitter, jitter);
     const double y = row * spacing - half + random.uniform(-jitter, jitter);
     return {x, y, lowest + layer * spacing};
+}
+
+void drop_in_turn(
+    Scene& scene, std::vector<ShapeDescription> kinds, int size, const Grid& grid, Random& random)
+{
+    const int stride = static_cast<int>(kinds.size());
+    for (int kind = 0; kind < std::min(stride, size); ++kind) {
+        const auto shape = static_cast<std::uint32_t>(scene.shapes.size());
+        scene.shapes.push_back(std::move(kinds[static_cast<std::size_t>(kind)]));
+        const auto count = static_cast<std::size_t>((size - kind + stride - 1) / stride);
+        Instances& group = add_instances(scene, shape, count, false);
+        for (int i = kind; i < size; i += stride) {
+            const Vec3 position = grid.place(i, random);
+            const Vec3 velocity = random_drift(random);
+            add_record(group, {position, random_turn(random, std::numbers::pi)}, velocity);
+        }
+    }
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pipeline/scene.hpp"
+#include "scenes/closed_meshes.hpp"
 #include "scenes/random.hpp"
 
 #include <string_view>
@@ -21,6 +22,13 @@ std::uint32_t add_shape(Scene& scene, std::string_view name, Shape shape)
     scene.shapes.push_back({std::string(name), std::move(shape)});
     return static_cast<std::uint32_t>(scene.shapes.size() - 1);
 }
+
+/// A shape of these triangles, to be taken as the dial says where it moves.
+MeshShape mesh_shape(TriangleSoup mesh);
+
+/// The same mesh about the middle of its bounds, of such a size that it just reaches so far from
+/// there. The mesh must not be a single point.
+TriangleSoup fitted(TriangleSoup mesh, double reach);
 
 /// Adds a static box with a shape of its own; both get the name.
 BodyDescription&
@@ -73,6 +81,11 @@ struct Grid {
     double spacing = 0, lowest = 0;
     Vec3 place(int i, Random& random) const;
 };
+
+/// Drops bodies from a grid, turned at random: body i of the grid is of kind i modulo their number.
+/// Each kind becomes a shape and a group, so that ids run kind by kind.
+void drop_in_turn(
+    Scene& scene, std::vector<ShapeDescription> kinds, int size, const Grid& grid, Random& random);
 
 /// Corners of a random convex stone about its centroid: 24 points on an ellipsoid with semi-axes
 /// of 0.35 to 0.55 m.

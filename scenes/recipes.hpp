@@ -1,8 +1,11 @@
 // Recipes: one function a catalogue scene. Each makes the scene of about `size` bodies (or levels,
 // or stones: catalog.cpp says of what) from a seed; the same size and seed give the same bits.
+// Those named make_..._of put a mesh of the user's in the place of the generated ones, at their
+// size.
 #pragma once
 
 #include "pipeline/scene.hpp"
+#include "scenes/closed_meshes.hpp"
 
 #include <cstdint>
 
@@ -17,6 +20,15 @@ Scene make_tumbler(int size, std::uint64_t seed);
 
 // terrain.cpp
 Scene make_meshes(int size, std::uint64_t seed);
+Scene make_terrain(int size, std::uint64_t seed);
+Scene make_terrain_of(int size, std::uint64_t seed, const TriangleSoup& mesh);
+
+// tangles.cpp
+Scene make_knots(int size, std::uint64_t seed);
+Scene make_knots_of(int size, std::uint64_t seed, const TriangleSoup& mesh);
+Scene make_chain(int size, std::uint64_t seed);
+Scene make_peg(int size, std::uint64_t seed);
+Scene make_bolt(int size, std::uint64_t seed);
 
 // stacks.cpp
 Scene make_pyramid(int size, std::uint64_t seed);

@@ -1,6 +1,8 @@
 // Terrain: hills made of triangles, and bodies of every kind dropped on them.
+#include "scenes/noisy_balls.hpp"
 #include "scenes/parts.hpp"
 #include "scenes/recipes.hpp"
+#include "scenes/swept_meshes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -42,9 +44,9 @@ constexpr double kHighest = 2.4;
 
 // A square of cells of 1 m about the origin. Beyond `inner` m from the middle it rises like a bowl,
 // so that nothing rolls off.
-MeshShape make_terrain(int cells, double inner, std::uint64_t seed)
+TriangleSoup hill_mesh(int cells, double inner, std::uint64_t seed)
 {
-    MeshShape mesh;
+    TriangleSoup mesh;
     const int corners = cells + 1;
     for (int row = 0; row < corners; ++row)
         for (int column = 0; column < corners; ++column) {
@@ -70,6 +72,38 @@ MeshShape make_terrain(int cells, double inner, std::uint64_t seed)
     return mesh;
 }
 
+// Hills with a flat bottom 2 m below the lowest place and upright sides, closed all round: the
+// bottom is the hills' own lattice once more, seen from the other side.
+TriangleSoup hill_block(int cells, double inner, std::uint64_t seed)
+{
+    const double bottom = -2;
+    TriangleSoup mesh = hill_mesh(cells, inner, seed);
+    const auto corners = static_cast<std::uint32_t>(cells + 1);
+    const auto below = static_cast<std::uint32_t>(mesh.vertices.size());
+    const std::size_t upper = mesh.triangles.size();
+    for (std::uint32_t i = 0; i < below; ++i) {
+        const Vec3 above = mesh.vertices[i];
+        mesh.vertices.emplace_back(above.x(), above.y(), bottom);
+    }
+    for (std::size_t t = 0; t < upper; ++t) {
+        const auto [a, b, c] = mesh.triangles[t];
+        mesh.triangles.push_back({below + a, below + c, below + b});
+    }
+    // Once round the rim, counter-clockwise seen from above.
+    std::vector<std::uint32_t> rim;
+    const std::uint32_t last = corners - 1;
+    for (std::uint32_t i = 0; i < last; ++i) rim.push_back(i);
+    for (std::uint32_t i = 0; i < last; ++i) rim.push_back(i * corners + last);
+    for (std::uint32_t i = last; i > 0; --i) rim.push_back(last * corners + i);
+    for (std::uint32_t i = last; i > 0; --i) rim.push_back(i * corners);
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+        const std::uint32_t a = rim[i], b = rim[(i + 1) % rim.size()];
+        mesh.triangles.push_back({below + a, below + b, b});
+        mesh.triangles.push_back({below + a, b, a});
+    }
+    return mesh;
+}
+
 // The kinds that are dropped, in the order of their ids.
 enum class Kind { sphere, capsule, cylinder, box, hull, compound };
 constexpr int kKinds = 6;
@@ -83,6 +117,31 @@ Vec3 random_size(Kind kind, Random& random)
     if (kind == Kind::sphere) return {radius, 0, 0};
     return {radius, random.uniform(0.1, 0.35), 0};
 }
+
+// How wide hills must be for so many bodies to be dropped on them, and from where those drop.
+struct Ground {
+    explicit Ground(int size)
+    {
+        const double spacing = 1.45;
+        const int side = heap_layout(size).side;
+        inner = side * spacing / 2 + 5;
+        cells = 2 * static_cast<int>(std::ceil(inner + 5));
+        grid = {side, spacing, kHighest + 1};
+    }
+    void add_to(Scene& scene, TriangleSoup hills) const
+    {
+        BodyDescription ground;
+        ground.name = "terrain";
+        ground.shape = add_shape(scene, "terrain", mesh_shape(std::move(hills)));
+        ground.material = 0;
+        ground.motion = Motion::static_;
+        scene.bodies.push_back(std::move(ground));
+    }
+
+    double inner = 0;
+    int cells = 0;
+    Grid grid;
+};
 
 // A corner piece: a plate with a post on its end.
 std::uint32_t add_corner_piece(Scene& scene)
@@ -106,17 +165,8 @@ Scene make_meshes(int size, std::uint64_t seed)
 {
     Scene scene = begin_scene("meshes", size);
     Random random(seed);
-    const double spacing = 1.45;
-    const auto [layers, side] = heap_layout(size);
-    const double inner = side * spacing / 2 + 5;
-    const int cells = 2 * static_cast<int>(std::ceil(inner + 5));
-
-    BodyDescription ground;
-    ground.name = "terrain";
-    ground.shape = add_shape(scene, "terrain", make_terrain(cells, inner, seed));
-    ground.material = 0;
-    ground.motion = Motion::static_;
-    scene.bodies.push_back(std::move(ground));
+    const Ground ground(size);
+    ground.add_to(scene, hill_mesh(ground.cells, ground.inner, seed));
 
     std::array<std::uint32_t, kKinds> shapes = {
         add_shape(scene, "sphere", SphereShape{0.5}),
@@ -125,7 +175,6 @@ Scene make_meshes(int size, std::uint64_t seed)
         add_shape(scene, "box", BoxShape{Vec3::Constant(0.25)}),
         0,
         add_corner_piece(scene)};
-    const Grid grid{side, spacing, kHighest + 1};
 
     // Body i of the grid is of kind i mod 6; hulls take turns among their forms as well.
     const auto drop = [&](Kind kind, std::uint32_t shape, int first, int stride) {
@@ -134,7 +183,7 @@ Scene make_meshes(int size, std::uint64_t seed)
         const auto count = static_cast<std::size_t>((size - first + stride - 1) / stride);
         Instances& group = add_instances(scene, shape, count, own_sizes);
         for (int i = first; i < size; i += stride) {
-            const Vec3 position = grid.place(i, random);
+            const Vec3 position = ground.grid.place(i, random);
             const Vec3 velocity = random_drift(random);
             const Quat orientation = random_turn(random, std::numbers::pi);
             if (own_sizes)
@@ -157,6 +206,47 @@ Scene make_meshes(int size, std::uint64_t seed)
         }
     }
     return scene;
+}
+
+namespace {
+
+// Balls, boxes and stones in turn with solids, on hills that are solid themselves.
+Scene drop_on_hills(int size, std::uint64_t seed, std::vector<ShapeDescription> solids)
+{
+    Scene scene = begin_scene("terrain", size);
+    Random random(seed);
+    const Ground ground(size);
+    ground.add_to(scene, hill_block(ground.cells, ground.inner, seed));
+
+    std::vector<ShapeDescription> kinds;
+    kinds.push_back({"ball", SphereShape{0.4}});
+    kinds.push_back({"box", BoxShape{{0.4, 0.3, 0.25}}});
+    kinds.push_back({"stone", HullShape{random_stone(random)}});
+    for (ShapeDescription& solid : solids) kinds.push_back(std::move(solid));
+    drop_in_turn(scene, std::move(kinds), size, ground.grid, random);
+    return scene;
+}
+
+// How far a solid reaches from its middle, m.
+constexpr double kReach = 0.6;
+
+}  // namespace
+
+// Balls, boxes, stones, tori, lumps and knots, dropped on a closed block of hills: solids against a
+// ground that is large, solid and everywhere curved.
+Scene make_terrain(int size, std::uint64_t seed)
+{
+    return drop_on_hills(
+        size, seed,
+        {{"torus", mesh_shape(fitted(torus_mesh(0.4, 0.15, 32, 16), kReach))},
+         {"lump", mesh_shape(fitted(noisy_ball(1, 0.5, 1280, seed), kReach))},
+         {"knot",
+          mesh_shape(fitted(tube_mesh(torus_knot({2, 3, 1, 0.45}, 72), 0.28, 12), kReach))}});
+}
+
+Scene make_terrain_of(int size, std::uint64_t seed, const TriangleSoup& mesh)
+{
+    return drop_on_hills(size, seed, {{"solid", mesh_shape(fitted(mesh, kReach))}});
 }
 
 }  // namespace throng
