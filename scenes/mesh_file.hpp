@@ -13,6 +13,9 @@
 
 namespace throng {
 
+/// Bytes; far beyond what a step could take.
+inline constexpr std::uint64_t kGreatestMeshFile = std::uint64_t{4} << 30;
+
 struct MeshFile {
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -30,16 +30,17 @@ MeshShape mesh_shape(TriangleSoup mesh)
 TriangleSoup fitted(TriangleSoup mesh, double reach)
 {
     Box3 bounds;
-    for (const Vec3& vertex : mesh.vertices) {
-        bounds.lower = bounds.lower.cwiseMin(vertex);
-        bounds.upper = bounds.upper.cwiseMax(vertex);
-    }
+    for (const auto& triangle : mesh.triangles)
+        for (const std::uint32_t corner : triangle) {
+            bounds.lower = bounds.lower.cwiseMin(mesh.vertices[corner]);
+            bounds.upper = bounds.upper.cwiseMax(mesh.vertices[corner]);
+        }
     const Vec3 middle = (bounds.lower + bounds.upper) / 2;
+    for (Vec3& vertex : mesh.vertices) vertex -= middle;
     double greatest = 0;
-    for (Vec3& vertex : mesh.vertices) {
-        vertex -= middle;
-        greatest = std::max(greatest, vertex.norm());
-    }
+    for (const auto& triangle : mesh.triangles)
+        for (const std::uint32_t corner : triangle)
+            greatest = std::max(greatest, mesh.vertices[corner].norm());
     THRONG_CHECK(greatest > 0, "a point has no size to be fitted");
     for (Vec3& vertex : mesh.vertices) vertex *= reach / greatest;
     return mesh;

@@ -27,7 +27,7 @@ std::uint32_t add_shape(Scene& scene, std::string_view name, Shape shape)
 MeshShape mesh_shape(TriangleSoup mesh);
 
 /// The same mesh about the middle of its bounds, of such a size that it just reaches so far from
-/// there. The mesh must not be a single point.
+/// there. Vertices of no triangle do not count. The triangles must not all lie in one point.
 TriangleSoup fitted(TriangleSoup mesh, double reach);
 
 /// Adds a static box with a shape of its own; both get the name.

@@ -45,7 +45,6 @@ constexpr std::string_view kSpringKeys[] = {"a",         "b",       "at_a",  "at
 
 // Ids are 32 bits wide, and the last one means nobody.
 constexpr double kMostBodies = 4294967294.0;
-constexpr std::uint64_t kGreatestMeshFile = std::uint64_t{4} << 30;
 
 /// Reads one document; scene() is the answer.
 class SceneReader : private JsonReader {

@@ -46,6 +46,9 @@ int run_bench(const Options& options)
     if (options.has("--trace") && plan.scenes.size() * plan.sizes.size() * plan.threads.size() != 1)
         throw BadInput(
             "--trace: is of one run; give one scene, one of --sizes and one of --threads");
+    const MeshOption mesh(options);
+    for (const CatalogEntry* entry : plan.scenes) mesh.check(*entry);
+    plan.mesh = mesh.file();
     Scene unused;
     set_dials(unused, options);  // refused now rather than at the first scene
     TraceOption trace(options);
@@ -53,6 +56,8 @@ int run_bench(const Options& options)
     note_interrupts();
     OutputFile json("--json", options.text("--json"));
     refuse_same_file(trace.file(), json.path(), "--json");
+    refuse_same_file(json, plan.mesh, "--mesh");
+    refuse_same_file(trace.file(), plan.mesh, "--mesh");
     const bool tables = !json.is_stdout() && !trace.file().is_stdout();
     if (tables) bench::print_heading(plan, std::cout);
 
@@ -66,7 +71,7 @@ int run_bench(const Options& options)
     for (const CatalogEntry* entry : plan.scenes)
         for (const int size : plan.sizes) {
             if (interrupted()) break;
-            Scene scene = entry->make(size, plan.seed);
+            Scene scene = mesh.make(*entry, size, plan.seed);
             scene.settings.sleep = false;  // what has come to rest is to be timed, too
             set_dials(scene, options);
             cases.push_back(

@@ -24,6 +24,7 @@ constexpr Option kOptions[] = {
     kThreadsOption,
     kSetOption,
     kSeedOption,
+    kMeshOption,
 };
 
 using Stages = std::vector<World::StageInfo>;
@@ -148,6 +149,7 @@ int explain(const Options& options)
     note_interrupts();
     OutputFile dot("--dot", options.text("--dot"));
     refuse_same_file(dot, argument.file, "the scene");
+    refuse_same_file(dot, argument.mesh, "--mesh");
 
     // What is printed is the step as it begins; bodies that fail on the way may change it.
     const Effects effects = world.effects();

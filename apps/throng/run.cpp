@@ -25,6 +25,7 @@ constexpr Option kOptions[] = {
     kThreadsOption,
     kSetOption,
     kSeedOption,
+    kMeshOption,
     {"--stats", "FILE.json", "times, counts, overlaps, energies and the fingerprint of the state"},
     {"--final", "FILE.csv", "poses and velocities after the last step, with all their digits"},
     {"--out", "RUN.h5", "the whole run as frames, in HDF5"},
@@ -151,9 +152,11 @@ int run(const Options& options)
     OutputFile final_file("--final", options.text("--final"));
     OutputFile run_file("--out", options.text("--out"));
     TraceOption trace(options);
-    for (const OutputFile* file : {&stats_file, &final_file, &run_file})
+    const OutputFile* const outputs[] = {&stats_file, &final_file, &run_file, &trace.file()};
+    for (const OutputFile* file : outputs) {
         refuse_same_file(*file, argument.file, "the scene");
-    refuse_same_file(trace.file(), argument.file, "the scene");
+        refuse_same_file(*file, argument.mesh, "--mesh");
+    }
     refuse_same_file(final_file, stats_file.path(), "--stats");
     refuse_same_file(run_file, stats_file.path(), "--stats");
     refuse_same_file(run_file, final_file.path(), "--final");

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr Option kOptions[] = {
     kSeedOption,
+    kMeshOption,
     {"--out", "FILE.json",
      "where it goes; many bodies go to FILE.0.bin beside it (default: the "
      "standard output, for scenes that need no other file)"},
@@ -98,8 +99,8 @@ int write_to_stdout(const Scene& scene)
     const PassingFolder folder(fs::temp_directory_path() / own_name("throng"));
     const std::vector<fs::path> files = write_in(folder, scene, "scene.json");
     if (files.size() > 1)
-        throw BadInput("scene: its bodies need a file of their own beside it; say where with --out "
-                       "FILE.json");
+        throw BadInput("scene: its bodies or meshes need files of their own beside it; say where "
+                       "with --out FILE.json");
     if (interrupted()) return kInterrupted;
     std::cout << std::ifstream(files.front(), std::ios::binary).rdbuf();
     return kDone;
@@ -135,7 +136,7 @@ int write_to_file(const Scene& scene, const fs::path& out)
 int write_catalog_scene(const Options& options)
 {
     if (options.words().empty()) {
-        if (options.has("--out") || options.has("--seed"))
+        if (options.has("--out") || options.has("--seed") || options.has("--mesh"))
             throw BadInput("scene: wanted the name of a scene to write (throng scene lists them)");
         list_catalog();
         return kDone;
@@ -152,7 +153,11 @@ int write_catalog_scene(const Options& options)
     const std::uint64_t seed = seed_asked(options);
 
     note_interrupts();
-    const Scene scene = parsed.entry->make(parsed.size, seed);
+    const MeshOption mesh(options);
+    std::error_code ignored;
+    if (mesh.asked_for() && fs::equivalent(mesh.file(), options.text("--out"), ignored))
+        throw BadInput("--out: " + mesh.file() + " is taken by --mesh");
+    const Scene scene = mesh.make(*parsed.entry, parsed.size, seed);
     return options.has("--out") ? write_to_file(scene, options.text("--out"))
                                 : write_to_stdout(scene);
 }

@@ -42,6 +42,8 @@ SceneArgument read_scene_argument(const Options& options)
     if (is_file(word)) {
         if (options.has("--seed"))
             throw BadInput("--seed: only a scene of the catalogue has one; this one is a file");
+        if (options.has("--mesh"))
+            throw BadInput("--mesh: only a scene of the catalogue takes one; this one is a file");
         argument.label = argument.file = word;
         argument.scene = read_scene(argument.file);
     } else {
@@ -49,7 +51,12 @@ SceneArgument read_scene_argument(const Options& options)
         if (parsed.entry == nullptr) throw BadInput(parsed.error + " (nor is there such a file)");
         argument.label = std::string(parsed.entry->name) + ':' + std::to_string(parsed.size);
         argument.seed = seed_asked(options);
-        argument.scene = parsed.entry->make(parsed.size, argument.seed);
+        const MeshOption mesh(options);
+        argument.scene = mesh.make(*parsed.entry, parsed.size, argument.seed);
+        if (mesh.asked_for()) {
+            argument.mesh = mesh.file();
+            argument.label += " --mesh " + mesh.file();
+        }
     }
     set_dials(argument.scene, options);
     return argument;

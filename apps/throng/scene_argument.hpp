@@ -1,6 +1,7 @@
 // Scene argument: the SCENE of a command line, with the dials that the line sets.
 #pragma once
 
+#include "apps/throng/mesh_option.hpp"
 #include "apps/throng/options.hpp"
 #include "pipeline/world.hpp"
 
@@ -9,15 +10,17 @@
 namespace throng {
 
 struct SceneArgument {
-    std::string label;  // the file as it was given, or NAME:SIZE
+    std::string label;  // the file as it was given, or NAME:SIZE and with which mesh
     std::string file;   // empty for a scene of the catalogue
+    std::string mesh;   // the file of --mesh, empty without
     std::uint64_t seed = 0;
     Scene scene;  // settings and dials_set as the command line leaves them
 };
 
 inline constexpr std::int64_t kMostSteps = 1'000'000'000'000;
 
-/// The options that read_scene_argument() reads, for a command to list among its own.
+/// The options that read_scene_argument() reads, kMeshOption among them, for a command to list
+/// among its own.
 inline constexpr Option kSeedOption = {"--seed", "K",
                                        "seed of a scene of the catalogue, from 0 (default 1)"};
 inline constexpr Option kDtOption = {

@@ -45,6 +45,9 @@ TEST(Usage, NoWordsAreBadUsage)
     EXPECT_EQ(outcome.err.find("usage:"), 0u);
 }
 
+constexpr const char* kTetrahedron =
+    "v 10 10 10\nv 12 10 10\nv 10 12 10\nv 10 10 12\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
 /// Words that are refused, and what the answer has to say.
 struct Refusal {
     Names words;
@@ -54,6 +57,11 @@ struct Refusal {
 TEST(Usage, WrongWordsAreRefusedWithWhatWasWanted)
 {
     const TestFolder folder;
+    const std::string ball = folder.write("ball.obj", kTetrahedron);
+    const std::string empty = folder.write("empty.obj", "v 0 0 0\n");
+    const std::string point = folder.write("point.obj", "v 3 3 3\nf 1 1 1\n");
+    const std::string broken = folder.write("broken.obj", "v 0 0 x\n");
+    const std::string scene = folder.write("s.json", "{\"throng\": 1}");
     const std::vector<Refusal> refusals = {
         {{"rum"}, "did you mean run?"},
         {{"explian", "pile"}, "did you mean explain?"},
@@ -101,6 +109,18 @@ TEST(Usage, WrongWordsAreRefusedWithWhatWasWanted)
         {{"scene", "pile", "many"}, "give a whole number"},
         {{"scene", "--seed", "3"}, "wanted the name of a scene"},
         {{"scene", "pile:3", "4"}, "given twice"},
+        {{"scene", "--mesh", ball}, "wanted the name of a scene"},
+        {{"scene", "pile", "--mesh", ball}, "--mesh: pile has no mesh that another could replace"},
+        {{"scene", "chain", "--mesh", ball}, "these have: knots, terrain"},
+        {{"scene", "knots", "--mesh", folder / "no.obj"}, "--mesh: "},
+        {{"scene", "knots", "--mesh", empty}, "has no faces"},
+        {{"scene", "knots", "--mesh", point}, "wanted a mesh of some size"},
+        {{"scene", "knots", "--mesh", broken}, "broken.obj:1:7: error: v: wanted three finite"},
+        {{"scene", "knots", "--mesh", ball, "--out", ball}, "--out: "},
+        {{"run", "wall:10", "--mesh", ball}, "--mesh: wall has no mesh"},
+        {{"explain", "wall:10", "--mesh", ball}, "--mesh: wall has no mesh"},
+        {{"run", scene, "--mesh", ball}, "--mesh: only a scene of the catalogue takes one"},
+        {{"bench", "--scenes", "knots,pile", "--mesh", ball}, "--mesh: pile has no mesh"},
     };
     for (const Refusal& refusal : refusals) {
         const Outcome outcome = run_throng(refusal.words);

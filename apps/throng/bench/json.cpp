@@ -202,6 +202,7 @@ void write_json(const Plan& plan, const std::vector<Case>& cases, bool complete,
     json.add("repeats", static_cast<std::uint64_t>(plan.repeats));
     json.add("max_seconds", plan.max_seconds);
     json.add("seed", plan.seed);
+    if (!plan.mesh.empty()) json.add("mesh", json_string(plan.mesh));
     json.add("complete", std::string(complete ? "true" : "false"));
     json.add("cases",
              array(

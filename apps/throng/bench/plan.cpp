@@ -33,6 +33,7 @@ constexpr Option kPlanOptions[] = {
      "other engines to run in turn: bullet, ode, or none (default: those that were found when "
      "throng was built)"},
     kSeedOption,
+    kMeshOption,
     kSetOption,
 };
 

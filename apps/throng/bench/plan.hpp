@@ -18,6 +18,7 @@ struct Plan {
     int repeats = 0;
     double max_seconds = 0;  // an engine may take in all for one scene of one size
     std::uint64_t seed = 0;
+    std::string mesh;  // the file of one in place of those of the scenes; empty without
 };
 
 /// The options that read_plan() reads.
