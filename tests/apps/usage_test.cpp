@@ -179,6 +179,25 @@ TEST(Scenes, BigOnesNeedAFileAndKeepTheirState)
               tail(run_throng({"run", "pile:2000", "--steps", "3"}).out));
 }
 
+TEST(Scenes, TakeAnotherMeshInPlaceOfTheirOwn)
+{
+    const TestFolder folder;
+    const std::string mesh = folder.write("mine.obj", kTetrahedron);
+    const Outcome made =
+        run_throng({"scene", "knots", "6", "--mesh", mesh, "--out", folder / "k.json"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(folder.files(), (Names{"k.5.obj", "k.json", "mine.obj"}));
+    // Its own four triangles, about the middle of its bounds and 0.5 m from there at most.
+    EXPECT_EQ(count_of(folder.read("k.5.obj"), "\nf "), 4u);
+    EXPECT_EQ(count_of(folder.read("k.5.obj"), "0.28867513459481"), 12u) << "not 0.5 / sqrt(3)";
+    EXPECT_EQ(count_of(folder.read("k.json"), "\"solid\""), 7u) << "a shape and six bodies";
+
+    const Outcome plain = run_throng({"scene", "knots", "6", "--out", folder / "p.json"});
+    ASSERT_EQ(plain.code, 0) << plain.err;
+    EXPECT_EQ(folder.read("p.json").find("\"solid\""), std::string::npos);
+    EXPECT_NE(folder.read("p.json").find("\"trefoil\""), std::string::npos);
+}
+
 TEST(Scenes, TakeTheNameOfNoDevice)
 {
     const TestFolder folder;
