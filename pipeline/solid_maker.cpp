@@ -1,9 +1,10 @@
 #include "pipeline/solid_maker.hpp"
 
-#include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
+#include "kernels/geometry/surface_points.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
+#include "narrowphase/methods/convex_parts.hpp"
 #include "pipeline/dials.hpp"
 
 namespace throng {
@@ -70,7 +71,8 @@ private:
         const Mesh::Node& root = mesh.tree.front();
         solid.field = bake_bricks({root.lower, root.upper}, voxel, kBand * voxel,
                                   [&](const Vec3& at) { return signed_distance(mesh, at); });
-        solid.error = voxel;
+        solid.points = build_surface_points(mesh, voxel);
+        solid.error = 0.5 * voxel;
         solid.mesh = std::move(mesh);
         made_.shape = std::move(solid);
         return std::move(made_);
@@ -88,13 +90,21 @@ private:
         return std::move(made_);
     }
 
-    MadeSolid as_parts(const Mesh& mesh) { return as_hull(mesh); }
-
-    MadeSolid as_hull(const Mesh& mesh)
+    MadeSolid as_parts(const Mesh& mesh)
     {
-        HullResult hull = build_hull(mesh.vertices);
-        if (!hull.trouble.empty()) return refused(hull.trouble);
-        made_.shape = std::vector<Hull>{std::move(hull.hull)};
+        PartsWanted wanted;
+        if (settings_.max_parts > 0) wanted.max_parts = settings_.max_parts;
+        return as_hulls(split_into_parts(mesh, wanted));
+    }
+
+    MadeSolid as_hull(const Mesh& mesh) { return as_hulls(put_into_hull(mesh)); }
+
+    MadeSolid as_hulls(ConvexParts parts)
+    {
+        if (!parts.trouble.empty()) return refused(parts.trouble);
+        for (std::string& remark : parts.remarks) made_.summary += remark + "; ";
+        made_.summary += std::to_string(parts.hulls.size()) + " convex parts";
+        made_.shape = std::move(parts.hulls);
         return std::move(made_);
     }
 
