@@ -2,11 +2,13 @@
 #include "scenes/mesh_file.hpp"
 
 #include "pipeline/names.hpp"
+#include "scenes/polygon_cut.hpp"
 #include "scenes/scene_error.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 namespace throng {
 namespace {
@@ -17,8 +19,9 @@ public:
 
     MeshFile parse()
     {
+        if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // how some programs begin a text in UTF-8
         while (at_ < text_.size()) {
-            line_end_ = std::min(text_.find('\n', at_), text_.size());
+            line_end_ = end_of_line();
             const std::string_view keyword = next_word();
             if (keyword == "v") parse_vertex();
             if (keyword == "f") parse_face();
@@ -27,6 +30,7 @@ public:
         // A face may name a vertex further down, so that this is known only at the end.
         if (greatest_ > mesh_.vertices.size())
             fail("f", greatest_at_, "wanted one of the " + vertex_count() + " vertices");
+        cut_polygons();
         return std::move(mesh_);
     }
 
@@ -38,10 +42,23 @@ private:
     }
     std::string vertex_count() const { return std::to_string(mesh_.vertices.size()); }
 
+    /// A line goes on in the next one where it ends with a backslash.
+    std::size_t end_of_line() const
+    {
+        std::size_t end = text_.find('\n', at_);
+        while (end != text_.npos && goes_on(end)) end = text_.find('\n', end + 1);
+        return std::min(end, text_.size());
+    }
+    bool goes_on(std::size_t end) const
+    {
+        const std::string_view line = text_.substr(at_, end - at_);
+        return line.ends_with('\\') || line.ends_with("\\\r");
+    }
+
     /// The next word of the line, empty at its end or at a comment.
     std::string_view next_word()
     {
-        constexpr std::string_view kSpace = " \t\r\v\f";
+        constexpr std::string_view kSpace = " \t\r\v\f\n\\";
         const std::string_view line = text_.substr(0, line_end_);
         at_ = std::min(line.find_first_not_of(kSpace, at_), line_end_);
         if (at_ < line_end_ && line[at_] == '#') at_ = line_end_;
@@ -101,10 +118,29 @@ private:
             if (corners >= 2) mesh_.triangles.push_back(triangle);
         }
         if (corners < 3) fail("f", at_, "wanted at least three corners");
+        if (corners > 3) polygons_.push_back({mesh_.triangles.size() - (corners - 2), corners});
     }
+
+    /// Fans become what their vertices, which may come after their faces, make of them.
+    void cut_polygons()
+    {
+        std::vector<std::uint32_t> corners;
+        for (const Polygon& polygon : polygons_) {
+            const auto fan = std::span(mesh_.triangles).subspan(polygon.first, polygon.corners - 2);
+            corners.assign(fan[0].begin(), fan[0].begin() + 2);
+            for (const auto& triangle : fan) corners.push_back(triangle[2]);
+            cut_polygon(mesh_.vertices, corners, fan);
+        }
+    }
+
+    struct Polygon {
+        std::size_t first = 0;  // of its triangles
+        std::size_t corners = 0;
+    };
 
     std::string_view text_, file_;
     MeshFile mesh_;
+    std::vector<Polygon> polygons_;
     std::size_t at_ = 0, line_end_ = 0;
     std::uint64_t greatest_ = 0;  // vertex named by any face, from 1
     std::size_t greatest_at_ = 0;

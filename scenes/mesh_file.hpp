@@ -1,7 +1,7 @@
 // Mesh file: triangles from a Wavefront OBJ text, and back.
 //
-// Vertices and faces are read, polygons as fans; what else a file may say (normals, textures,
-// groups, materials) is passed over.
+// Vertices and faces are read, polygons cut into triangles (polygon_cut.hpp says how); what else a
+// file may say (normals, textures, groups, materials) is passed over.
 #pragma once
 
 #include "kernels/math/types.hpp"

@@ -32,6 +32,62 @@ TEST(MeshFile, CutsPolygonsIntoFans)
     EXPECT_EQ(mesh.triangles, expected);
 }
 
+TEST(MeshFile, ReadsLinesThatGoOnAndATextThatSaysItIsUtf8)
+{
+    const MeshFile mesh = read_mesh_text("\xef\xbb\xbfv 0 0 0\nv 1 \\\n0 0\nv 0 1\\\r\n 0\n"
+                                         "# a comment may go on \\\nf 9 9 9\nf 1 \\\n\\\n 2 3",
+                                         "m.obj");
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
+}
+
+// Triangles turn as the polygon does and have its area: they do not overlap.
+TEST(MeshFile, CutsPolygonsThatAreNotConvex)
+{
+    // An arrow whose fan would fold over, and a comb of five teeth, both askew in space.
+    std::vector<std::vector<Vec3>> polygons = {{{2, 0, 0}, {0, 2, 0}, {0.5, 0, 0}, {0, -2, 0}}};
+    std::vector<Vec3>& comb = polygons.emplace_back();
+    for (int tooth = 0; tooth < 5; ++tooth) {
+        comb.emplace_back(2 * tooth, tooth == 0 ? -1 : 0, 0);
+        comb.emplace_back(2 * tooth + 0.5, 3, 0);
+    }
+    comb.emplace_back(10, -1, 0);
+    const std::vector<double> areas = {3, 24};
+    const Quat askew(Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()));
+    for (std::size_t p = 0; p < polygons.size(); ++p)
+        for (std::size_t start = 0; start < polygons[p].size(); ++start) {
+            // The face comes first: its vertices are known only at the end.
+            std::string face = "f", vertices;
+            for (std::size_t i = 0; i < polygons[p].size(); ++i) {
+                const Vec3 at = askew * polygons[p][i];
+                vertices += "v " + std::to_string(at.x()) + ' ' + std::to_string(at.y()) + ' '
+                    + std::to_string(at.z()) + '\n';
+                face += ' ' + std::to_string((start + i) % polygons[p].size() + 1);
+            }
+            const MeshFile mesh = read_mesh_text(face + '\n' + vertices, "m.obj");
+            ASSERT_EQ(mesh.triangles.size(), polygons[p].size() - 2);
+            const Vec3 up = askew * Vec3::UnitZ() * (p == 0 ? 1 : -1);
+            double area = 0;
+            for (const auto& [a, b, c] : mesh.triangles) {
+                const Vec3& corner = mesh.vertices[a];
+                const double twice =
+                    (mesh.vertices[b] - corner).cross(mesh.vertices[c] - corner).dot(up);
+                EXPECT_GT(twice, 0) << p << ' ' << start;
+                area += twice / 2;
+            }
+            EXPECT_NEAR(area, areas[p], 1e-4) << p << ' ' << start;  // the text has six digits
+        }
+}
+
+TEST(MeshFile, CutsPolygonsWithoutEarsAsWell)
+{
+    // One that cuts itself, one without any area, and one of too many corners to be cut with care.
+    std::string text = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 1 2 1\nf";
+    for (int i = 0; i < 1000; ++i) text += i % 2 == 0 ? " 1" : " 3";
+    const MeshFile mesh = read_mesh_text(text, "m.obj");
+    EXPECT_EQ(mesh.triangles.size(), 2u + 3 + 998);
+}
+
 TEST(MeshFile, PassesOverTheRest)
 {
     const MeshFile mesh =
