@@ -57,7 +57,8 @@ private:
     /// It sticks out, and no other corner lies in it.
     bool is_ear(std::size_t at) const
     {
-        const auto [a, b, c] = around(at);
+        const Triangle ear = around(at);
+        const std::uint32_t a = ear[0], b = ear[1], c = ear[2];
         if (!(turn(a, b, c) > 0)) return false;
         return std::none_of(corners_.begin(), corners_.end(), [&](std::uint32_t other) {
             return other != a && other != b && other != c && turn(a, b, other) >= 0

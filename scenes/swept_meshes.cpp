@@ -42,8 +42,8 @@ TriangleSoup tube_mesh(std::span<const CurvePoint> curve, double tube, std::uint
     for (std::uint32_t i = 0; i < around; ++i)
         for (std::uint32_t k = 0; k < across; ++k) {
             const double angle = missing * i / around + 2 * kPi * k / across;
-            mesh.vertices.push_back(curve[i].place + tube * std::cos(angle) * out[i]
-                                    + tube * std::sin(angle) * out[i].cross(curve[i].along));
+            mesh.vertices.emplace_back(curve[i].place + tube * std::cos(angle) * out[i]
+                                       + tube * std::sin(angle) * out[i].cross(curve[i].along));
         }
     close_grid(mesh, around, across);
     return mesh;

@@ -34,6 +34,14 @@ Scene drop_tangle(int size, std::uint64_t seed, std::vector<ShapeDescription> ki
     return scene;
 }
 
+// Place i of a square of side x side, centered about the origin.
+Vec3 place_in_square(int i, int side, double spacing)
+{
+    const int column = i % side, row = i / side;
+    const double half = (side - 1) * spacing / 2;
+    return {column * spacing - half, row * spacing - half, 0};
+}
+
 }  // namespace
 
 // Trefoils, cinquefoils, tori and links of a chain dropped in an open container: holes into which
@@ -102,14 +110,13 @@ Scene make_peg(int size, std::uint64_t seed)
     const double floor = side * spacing / 2 + 5;
     add_static_box(scene, "floor", {0, 0, -2}, {floor, floor, 2});
 
-    const auto foot = [&](int peg) {
-        return Vec3((peg % side - (side - 1) / 2.0) * spacing,
-                    (peg / side - (side - 1) / 2.0) * spacing, half_height);
+    const auto middle = [&](int peg) -> Vec3 {
+        return place_in_square(peg, side, spacing) + Vec3(0, 0, half_height);
     };
     const std::uint32_t post = add_shape(scene, "peg", CylinderShape{0.5, half_height});
     Instances& posts = add_instances(scene, post, static_cast<std::size_t>(pegs), false);
     posts.common.motion = Motion::static_;
-    for (int peg = 0; peg < pegs; ++peg) add_record(posts, {foot(peg), Quat::Identity()});
+    for (int peg = 0; peg < pegs; ++peg) add_record(posts, {middle(peg), Quat::Identity()});
 
     // Leaning by 0.15 off upright, a torus reaches 0.15 higher and lower than a level one.
     const double lean = 0.15, level = 2 * (tube + ring * lean) + 0.05;
@@ -122,7 +129,7 @@ Scene make_peg(int size, std::uint64_t seed)
         const double toward = random.uniform(0, 2 * kPi);
         const Vec3 axis(std::cos(toward), std::sin(toward), 0);
         const double height = half_height + level * (i % stack + 0.5);
-        const Vec3 position = foot(i / stack) + Vec3(x, y, height);
+        const Vec3 position = middle(i / stack) + Vec3(x, y, height);
         add_record(tori, {position, turn(axis, random.uniform(-lean, lean))});
     }
     return scene;
@@ -141,10 +148,7 @@ Scene make_bolt(int size, std::uint64_t)
     const double height = 3.2 * thread.pitch, shaft = 10 * thread.pitch;
     const double spacing = 5 * thread.radius;
     const int side = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(size))));
-    const auto place = [&](int i) {
-        return Vec3((i % side - (side - 1) / 2.0) * spacing,
-                    (i / side - (side - 1) / 2.0) * spacing, 0);
-    };
+    const auto place = [&](int i) { return place_in_square(i, side, spacing); };
     const auto count = static_cast<std::size_t>(size);
     const std::uint32_t nut = add_shape(scene, "nut", mesh_shape(nut_mesh(thread, height, 24)));
     Instances& nuts = add_instances(scene, nut, count, false);

@@ -142,7 +142,7 @@ double bolt_radius(const Thread& thread, double turn, double z)
 // last row of triangles, which does not follow the thread, is then out of the other's reach.
 double end_cut(const Thread& thread) { return thread.pitch / 8; }
 
-void check(const Thread& thread, std::uint32_t around)
+void check([[maybe_unused]] const Thread& thread, [[maybe_unused]] std::uint32_t around)
 {
     THRONG_CHECK(around >= 6 && around % 6 == 0, "a hexagon needs a multiple of 6 columns");
     THRONG_CHECK(thread.root_radius() > 2 * end_cut(thread), "a thread needs a core");
