@@ -33,7 +33,7 @@ LIBRARIES = {
     r"(tbb|oneapi)/": ["*_tbb.cpp", "broadphase/embree_tree.cpp", "kernels/parallel/sort_keys.cpp"],
     r"embree\d*/": ["broadphase/embree_tree.cpp"],
     r"(hdf5|H5)": ["pipeline/run_file*.cpp", "tests/pipeline/run_file*.cpp"],
-    r"(openvdb|nanovdb)/": ["narrowphase/voxel_field*.cpp"],
+    r"(openvdb|nanovdb)/": ["narrowphase/solids/voxel_field.cpp"],
     r"(gtest|gmock)/": ["tests/*"],
     r"benchmark/": ["perf/*"],
     r"(hwy/|\w*intrin\.h)": ["kernels/math/lanes*"],

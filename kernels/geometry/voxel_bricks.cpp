@@ -15,10 +15,7 @@ std::size_t value_at(int x, int y, int z)
 
 }  // namespace
 
-VoxelBricks bake_bricks(const Box3& box,
-                        double voxel,
-                        double band,
-                        const std::function<double(const Vec3&)>& distance)
+VoxelBricks lay_bricks(const Box3& box, double voxel, double band)
 {
     VoxelBricks bricks;
     bricks.voxel = voxel;
@@ -29,6 +26,15 @@ VoxelBricks bake_bricks(const Box3& box,
         const double length = box.upper[k] + band - bricks.origin[k];
         bricks.bricks[axis] = static_cast<std::int32_t>(std::ceil(length / (kCells * voxel)));
     }
+    return bricks;
+}
+
+VoxelBricks bake_bricks(const Box3& box,
+                        double voxel,
+                        double band,
+                        const std::function<double(const Vec3&)>& distance)
+{
+    VoxelBricks bricks = lay_bricks(box, voxel, band);
     std::vector<float> values(VoxelBricks::kValues);
     for (int bz = 0; bz < bricks.bricks[2]; ++bz)
         for (int by = 0; by < bricks.bricks[1]; ++by)

@@ -5,8 +5,13 @@
 #include "kernels/data/solids.hpp"
 
 #include <functional>
+#include <span>
 
 namespace throng {
+
+/// The grid for a shape, with nothing stored in it: from a band below its box to a band and less
+/// than a brick above.
+VoxelBricks lay_bricks(const Box3& box, double voxel, double band);
 
 /// Bakes a distance known everywhere: the plain way, a call for every value of the grid.
 ///
@@ -28,5 +33,20 @@ struct FieldSample {
 /// One point, the plain way.
 template <class Real>
 FieldSample<Real> sample_bricks(const VoxelBricks& bricks, const Vec3T<Real>& point);
+
+/// Many points, as many side by side as the machine's registers hold: the bits of
+/// sample_bricks<float>() at every width. What comes out may not overlap what goes in.
+///
+///   x, y, z     [points] m
+///   distance    [points] m
+///   gx, gy, gz  [points] gradient
+void sample_many(const VoxelBricks& bricks,
+                 std::span<const float> x,
+                 std::span<const float> y,
+                 std::span<const float> z,
+                 std::span<float> distance,
+                 std::span<float> gx,
+                 std::span<float> gy,
+                 std::span<float> gz);
 
 }  // namespace throng

@@ -257,6 +257,99 @@ void scatter_8(
     }
 }
 
+/// Towards zero; what int32 can hold.
+template <int W>
+Wide<std::int32_t, W> truncated(Wide<float, W> a)
+{
+    if constexpr (W == 1)
+        return static_cast<std::int32_t>(a.v);
+    else
+        return __builtin_convertvector(a.v, typename Wide<std::int32_t, W>::V);
+}
+/// The float of a whole number.
+template <int W>
+Wide<float, W> whole(Wide<std::int32_t, W> a)
+{
+    if constexpr (W == 1)
+        return static_cast<float>(a.v);
+    else
+        return __builtin_convertvector(a.v, typename Wide<float, W>::V);
+}
+
+/// Lane i = base[index lane i]. For single numbers here and there: where eight stand together,
+/// gather_8() is faster.
+template <int W>
+Wide<std::int32_t, W> gather(const std::int32_t* base, Wide<std::int32_t, W> index)
+{
+    Wide<std::int32_t, W> out;
+#if THRONG_LANE_BYTES == 64
+    if constexpr (W == 16) {
+        const auto got =
+            _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), 0xffff, (__m512i)index.v, base, 4);
+        __builtin_memcpy(&out.v, &got, sizeof got);
+        return out;
+    }
+#elif THRONG_LANE_BYTES == 32
+    if constexpr (W == 8) {
+        const auto all = _mm256_set1_epi32(-1);
+        const auto got =
+            _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), base, (__m256i)index.v, all, 4);
+        __builtin_memcpy(&out.v, &got, sizeof got);
+        return out;
+    }
+#endif
+    for (int i = 0; i < W; ++i) out.set(i, base[index.get(i)]);
+    return out;
+}
+
+/// low and high lane i = base[index lane i] and the number behind it.
+template <int W>
+void gather_pair(const float* base,
+                 Wide<std::int32_t, W> index,
+                 Wide<float, W>& low,
+                 Wide<float, W>& high)
+{
+#if THRONG_LANE_BYTES == 64
+    if constexpr (W == 16) {
+        // Both numbers of a lane at once: half as many reads.
+        const auto none = _mm512_setzero_pd();
+        const auto of_first = __builtin_shufflevector(index.v, index.v, 0, 1, 2, 3, 4, 5, 6, 7);
+        const auto of_second =
+            __builtin_shufflevector(index.v, index.v, 8, 9, 10, 11, 12, 13, 14, 15);
+        const auto first = _mm512_mask_i32gather_pd(none, 0xff, (__m256i)of_first, base, 4);
+        const auto second = _mm512_mask_i32gather_pd(none, 0xff, (__m256i)of_second, base, 4);
+        typename Wide<float, W>::V a, b;
+        __builtin_memcpy(&a, &first, sizeof a);
+        __builtin_memcpy(&b, &second, sizeof b);
+        low.v = __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28,
+                                        30);
+        high.v = __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27,
+                                         29, 31);
+        return;
+    }
+#elif THRONG_LANE_BYTES == 32
+    if constexpr (W == 8) {
+        const auto none = _mm256_setzero_pd();
+        const auto all = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));
+        const auto* const pairs = reinterpret_cast<const double*>(base);
+        const auto of_first = __builtin_shufflevector(index.v, index.v, 0, 1, 2, 3);
+        const auto of_second = __builtin_shufflevector(index.v, index.v, 4, 5, 6, 7);
+        const auto first = _mm256_mask_i32gather_pd(none, pairs, (__m128i)of_first, all, 4);
+        const auto second = _mm256_mask_i32gather_pd(none, pairs, (__m128i)of_second, all, 4);
+        typename Wide<float, W>::V a, b;
+        __builtin_memcpy(&a, &first, sizeof a);
+        __builtin_memcpy(&b, &second, sizeof b);
+        low.v = __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
+        high.v = __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15);
+        return;
+    }
+#endif
+    for (int i = 0; i < W; ++i) {
+        low.set(i, base[index.get(i)]);
+        high.set(i, base[index.get(i) + 1]);
+    }
+}
+
 /// As many as fit this instruction set's registers.
 template <class T>
 using Lanes = Wide<T, THRONG_LANE_BYTES == 0 ? 1 : THRONG_LANE_BYTES / int(sizeof(T))>;

@@ -1,0 +1,25 @@
+// Field cache: level sets kept on disk by what they were made from.
+//
+// A file is named by a hash of the mesh and the settings, and carries a checksum of itself: what is
+// damaged or not throng's is made anew. Several programs may share a folder.
+#pragma once
+
+#include "narrowphase/solids/voxel_field.hpp"
+
+namespace throng {
+
+/// $XDG_CACHE_HOME/throng, or ~/.cache/throng; empty where neither is known.
+std::filesystem::path default_cache_folder();
+
+/// What a level set is made from, as 16 hex digits: vertices, triangles, voxel, band, sign, and the
+/// version of the files.
+std::string field_key(const Mesh& mesh, const FieldSettings& settings);
+
+/// build_field(), or what an earlier one of the same key left in the folder: the same bits.
+///
+///   folder  made where it is not there; empty: nothing is read or written. One that cannot be
+///           written is remarked on, and no trouble
+FieldResult
+cached_field(const Mesh& mesh, const FieldSettings& settings, const std::filesystem::path& folder);
+
+}  // namespace throng

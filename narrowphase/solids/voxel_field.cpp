@@ -1,0 +1,551 @@
+#include "narrowphase/solids/voxel_field.hpp"
+
+#include "kernels/check.hpp"
+#include "kernels/geometry/mesh.hpp"
+#include "kernels/geometry/mesh_distance.hpp"
+#include "kernels/geometry/voxel_bricks.hpp"
+#include "kernels/parallel/blocks.hpp"
+#include "narrowphase/solids/field_values.hpp"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace throng {
+namespace {
+
+using openvdb::FloatGrid;
+using openvdb::FloatTree;
+constexpr int kCells = VoxelBricks::kCells, kSide = VoxelBricks::kSide;
+
+Box3 box_of(const Mesh& mesh) { return {mesh.tree.front().lower, mesh.tree.front().upper}; }
+
+double longest_side(const Mesh& mesh)
+{
+    const Box3 box = box_of(mesh);
+    return (box.upper - box.lower).maxCoeff();
+}
+
+std::string short_text(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+// --- Near the surface
+
+// The mesh as OpenVDB takes it, in voxels from the grid's first value.
+struct GridMesh {
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec3I> triangles;
+};
+
+GridMesh on_grid(const Mesh& mesh, const VoxelBricks& laid)
+{
+    GridMesh made;
+    for (const Vec3& vertex : mesh.vertices) {
+        const Vec3 at = (vertex - laid.origin) / laid.voxel;
+        made.points.emplace_back(at.x(), at.y(), at.z());
+    }
+    for (const auto& [a, b, c] : mesh.triangles) made.triangles.emplace_back(a, b, c);
+    return made;
+}
+
+// Distances in voxels about the surface: about two each way, one at the least.
+FloatGrid::Ptr near_surface(const Mesh& mesh, const VoxelBricks& laid, FieldSign sign)
+{
+    using namespace openvdb::tools;
+    const GridMesh made = on_grid(mesh, laid);
+    const QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(made.points,
+                                                                             made.triangles);
+    int flags = DISABLE_RENORMALIZATION | DISABLE_NARROW_BAND_TRIMMING;
+    if (sign == FieldSign::normals) flags |= UNSIGNED_DISTANCE_FIELD;
+    openvdb::util::NullInterrupter never;
+    const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
+    return meshToVolume<FloatGrid>(never, adapter, *unit, 2.0F, 2.0F, flags);
+}
+
+std::vector<FieldSeed> seeds_of(const FloatGrid& grid, const VoxelBricks& laid)
+{
+    std::vector<FieldSeed> seeds;
+    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+        for (auto value = leaf->cbeginValueOn(); value; ++value) {
+            const openvdb::Coord at = value.getCoord();
+            bool held = true;
+            for (int k = 0; k < 3; ++k)
+                held &= at[k] >= 0 && at[k] <= laid.bricks[static_cast<std::size_t>(k)] * kCells;
+            if (held)
+                seeds.push_back({{at[0], at[1], at[2]}, *value * static_cast<float>(laid.voxel)});
+        }
+    return seeds;
+}
+
+// Whether any value about a triangle is outside: else other parts of the mesh bury it.
+bool exposed(const Mesh& mesh,
+             std::uint32_t triangle,
+             const VoxelBricks& laid,
+             const openvdb::tree::ValueAccessor<const FloatTree, false>& near)
+{
+    const Box3 box = triangle_box(mesh, triangle);
+    openvdb::Coord low, high;
+    for (int k = 0; k < 3; ++k) {
+        low[k] = static_cast<int>(std::floor((box.lower[k] - laid.origin[k]) / laid.voxel));
+        high[k] = static_cast<int>(std::ceil((box.upper[k] - laid.origin[k]) / laid.voxel));
+    }
+    for (int z = low[2]; z <= high[2]; ++z)
+        for (int y = low[1]; y <= high[1]; ++y)
+            for (int x = low[0]; x <= high[0]; ++x)
+                if (near.getValue({x, y, z}) >= 0) return true;
+    return false;
+}
+
+Mesh exposed_part(const Mesh& mesh, const FloatGrid& grid, const VoxelBricks& laid)
+{
+    std::vector<std::uint8_t> kept(mesh.triangles.size(), 0);
+    for_each_block(kept.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+        const openvdb::tree::ValueAccessor<const FloatTree, false> near(grid.tree());
+        for (std::size_t i = begin; i < end; ++i)
+            kept[i] = exposed(mesh, static_cast<std::uint32_t>(i), laid, near) ? 1 : 0;
+    });
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        if (kept[i] != 0) triangles.push_back(mesh.triangles[i]);
+    if (triangles.empty() || triangles.size() == mesh.triangles.size()) return mesh;
+    return build_mesh(mesh.vertices, std::move(triangles)).mesh;
+}
+
+// --- What a level set is worth
+
+struct Worth {
+    double error = 0;      // m
+    double thin_area = 0;  // of all, where half a voxel below the surface is outside already
+};
+
+Worth worth_of(const Mesh& mesh, const VoxelBricks& bricks)
+{
+    constexpr std::size_t kGrain = 1024;
+    struct Part {
+        double error = 0, thin = 0, all = 0;
+    };
+    std::vector<Part> parts(block_count(mesh.triangles.size(), kGrain));
+    for_each_block(
+        mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
+            Part& part = parts[block];
+            const auto off = [&](const Vec3& at) {
+                part.error =
+                    std::max(part.error, std::abs(sample_bricks<double>(bricks, at).distance));
+            };
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto& [a, b, c] = mesh.triangles[i];
+                const Vec3 &va = mesh.vertices[a], &vb = mesh.vertices[b], &vc = mesh.vertices[c];
+                const Vec3 middle = (va + vb + vc) / 3;
+                for (const Vec3& at : {va, vb, vc, middle}) off(at);
+                const double area = (vb - va).cross(vc - va).norm();
+                const Vec3 below = middle - mesh.normals[i] * (bricks.voxel / 2);
+                part.all += area;
+                if (!(sample_bricks<double>(bricks, below).distance < 0)) part.thin += area;
+            }
+        });
+    Worth worth;
+    double thin = 0, all = 0;
+    for (const Part& part : parts) {
+        worth.error = std::max(worth.error, part.error);
+        thin += part.thin;
+        all += part.all;
+    }
+    worth.thin_area = all > 0 ? thin / all : 0;
+    return worth;
+}
+
+std::string trouble_with_size(const Mesh& mesh, double voxel, double most_bytes)
+{
+    if (!(voxel > 0) || !std::isfinite(voxel))
+        return "voxel_size is " + short_text(voxel) + " m; give a positive one";
+    // Bricks and their values are counted in 32 bits.
+    const double limit = std::min(most_bytes, 8e9);
+    const double bytes = field_bytes(mesh, voxel);
+    if (bytes <= limit) return {};
+    double low = voxel, high = 2 * longest_side(mesh);
+    for (int i = 0; i < 60 && high > low * 1.001; ++i) {
+        const double middle = std::sqrt(low * high);
+        (field_bytes(mesh, middle) > limit ? low : high) = middle;
+    }
+    constexpr double kMega = 1024.0 * 1024;
+    return "voxel field would need " + short_text(bytes / kMega) + " MB at voxel size "
+        + short_text(voxel) + " m, more than the limit of " + short_text(limit / kMega)
+        + " MB; give voxel_size at least " + short_text(high * 1.01);
+}
+
+// --- Files
+
+void start_openvdb()
+{
+    [[maybe_unused]] static const bool started = [] {
+        openvdb::initialize();
+        return true;
+    }();
+}
+
+constexpr const char* kOurs = "throng_field";
+constexpr int kFormat = 1;
+
+void fill_leaf(const VoxelBricks& bricks,
+               std::size_t stored,
+               const openvdb::Coord& origin,
+               FloatTree& tree)
+{
+    const float* const values = bricks.values.data() + stored * VoxelBricks::kValues;
+    const auto band = static_cast<float>(bricks.band);
+    auto* const leaf = new FloatTree::LeafNodeType(origin, band, false);
+    float* const buffer = leaf->buffer().data();
+    for (int x = 0; x < kCells; ++x)
+        for (int y = 0; y < kCells; ++y)
+            for (int z = 0; z < kCells; ++z) {
+                const float value = values[(z * kSide + y) * kSide + x];
+                const auto at = static_cast<openvdb::Index>((x * kCells + y) * kCells + z);
+                buffer[at] = value;
+                if (value < band) leaf->setValueOn(at, value);
+            }
+    tree.addLeaf(leaf);
+}
+
+// The grid's last layer lies beyond the last bricks' own cells.
+void fill_rim(const VoxelBricks& bricks,
+              std::size_t stored,
+              const openvdb::Coord& origin,
+              FloatTree& tree)
+{
+    const float* const values = bricks.values.data() + stored * VoxelBricks::kValues;
+    bool rim = false;
+    for (int k = 0; k < 3; ++k)
+        rim |= origin[k] + kCells == bricks.bricks[static_cast<std::size_t>(k)] * kCells;
+    if (!rim) return;
+    for (int z = 0; z < kSide; ++z)
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const float value = values[(z * kSide + y) * kSide + x];
+                const bool beyond = x == kCells || y == kCells || z == kCells;
+                if (beyond && value < static_cast<float>(bricks.band))
+                    tree.setValueOn(origin.offsetBy(x, y, z), value);
+            }
+}
+
+template <class Visit>
+void visit_bricks(const VoxelBricks& bricks, Visit visit)
+{
+    std::size_t row = 0;
+    for (int z = 0; z < bricks.bricks[2]; ++z)
+        for (int y = 0; y < bricks.bricks[1]; ++y)
+            for (int x = 0; x < bricks.bricks[0]; ++x, ++row)
+                visit(row, openvdb::Coord(x * kCells, y * kCells, z * kCells));
+}
+
+FloatGrid::Ptr grid_of(const VoxelBricks& bricks, const FieldNotes& notes)
+{
+    const auto grid = FloatGrid::create(static_cast<float>(bricks.band));
+    const auto stored_at = [&](std::size_t row) {
+        return static_cast<std::size_t>(bricks.brick_of[row]);
+    };
+    visit_bricks(bricks, [&](std::size_t row, const openvdb::Coord& origin) {
+        if (bricks.brick_of[row] >= 0) fill_leaf(bricks, stored_at(row), origin, grid->tree());
+    });
+    visit_bricks(bricks, [&](std::size_t row, const openvdb::Coord& origin) {
+        if (bricks.brick_of[row] >= 0) fill_rim(bricks, stored_at(row), origin, grid->tree());
+    });
+    const auto transform = openvdb::math::Transform::createLinearTransform(bricks.voxel);
+    transform->postTranslate({bricks.origin.x(), bricks.origin.y(), bricks.origin.z()});
+    grid->setTransform(transform);
+    grid->setName("distance");
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setCreator("throng");
+    grid->setSaveFloatAsHalf(false);
+
+    using openvdb::Vec3d, openvdb::Vec3i;
+    grid->insertMeta(kOurs, openvdb::Int32Metadata(kFormat));
+    grid->insertMeta("throng_key", openvdb::StringMetadata(notes.key));
+    grid->insertMeta("throng_error", openvdb::DoubleMetadata(notes.error));
+    grid->insertMeta("throng_voxel", openvdb::DoubleMetadata(bricks.voxel));
+    grid->insertMeta("throng_band", openvdb::DoubleMetadata(bricks.band));
+    grid->insertMeta(
+        "throng_origin",
+        openvdb::Vec3DMetadata(Vec3d(bricks.origin.x(), bricks.origin.y(), bricks.origin.z())));
+    grid->insertMeta(
+        "throng_bricks",
+        openvdb::Vec3IMetadata(Vec3i(bricks.bricks[0], bricks.bricks[1], bricks.bricks[2])));
+    std::string remarks;
+    for (const std::string& remark : notes.remarks) remarks += remark + "\n";
+    grid->insertMeta("throng_remarks", openvdb::StringMetadata(remarks));
+    return grid;
+}
+
+FieldNotes notes_of(const FloatGrid& grid)
+{
+    FieldNotes notes;
+    notes.key = grid.metaValue<std::string>("throng_key");
+    notes.error = grid.metaValue<double>("throng_error");
+    const auto text = grid.metaValue<std::string>("throng_remarks");
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = text.find('\n', begin);
+        notes.remarks.push_back(text.substr(begin, end - begin));
+        if (end == std::string::npos) break;
+        begin = end + 1;
+    }
+    return notes;
+}
+
+// --- Bricks from a tree
+
+// The values of a brick, leaf by leaf; false where all of them are far outside.
+bool copy_brick(const FloatTree& tree, const openvdb::Coord& origin, float band, float* copied)
+{
+    bool near = false;
+    for (int corner = 0; corner < 8; ++corner) {
+        const int ox = corner & 1, oy = corner >> 1 & 1, oz = corner >> 2;
+        const openvdb::Coord base = origin.offsetBy(ox * kCells, oy * kCells, oz * kCells);
+        const auto* const leaf = tree.probeConstLeaf(base);
+        const float* const buffer = leaf != nullptr ? leaf->buffer().data() : nullptr;
+        const float all = leaf != nullptr ? 0 : tree.getValue(base);
+        for (int z = 0; z < (oz != 0 ? 1 : kCells); ++z)
+            for (int y = 0; y < (oy != 0 ? 1 : kCells); ++y)
+                for (int x = 0; x < (ox != 0 ? 1 : kCells); ++x) {
+                    const float value =
+                        buffer != nullptr ? buffer[(x * kCells + y) * kCells + z] : all;
+                    copied[((z + oz * kCells) * kSide + y + oy * kCells) * kSide + x
+                           + ox * kCells] = std::min(value, band);
+                    near |= value < band;
+                }
+    }
+    return near;
+}
+
+void fill_from(const FloatTree& tree, const openvdb::Coord& first, VoxelBricks& bricks)
+{
+    const auto [nx, ny, nz] = bricks.bricks;
+    const auto rows =
+        static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) * static_cast<std::size_t>(nz);
+    bricks.brick_of.assign(rows, -1);
+    std::array<float, VoxelBricks::kValues> copied;
+    const auto band = static_cast<float>(bricks.band);
+    visit_bricks(bricks, [&](std::size_t row, const openvdb::Coord& origin) {
+        if (!copy_brick(tree, origin + first, band, copied.data())) return;
+        bricks.brick_of[row] =
+            static_cast<std::int32_t>(bricks.values.size() / VoxelBricks::kValues);
+        bricks.values.insert(bricks.values.end(), copied.begin(), copied.end());
+    });
+}
+
+VoxelBricks our_bricks(const FloatGrid& grid)
+{
+    VoxelBricks bricks;
+    const auto origin = grid.metaValue<openvdb::Vec3d>("throng_origin");
+    const auto count = grid.metaValue<openvdb::Vec3i>("throng_bricks");
+    bricks.origin = {origin.x(), origin.y(), origin.z()};
+    bricks.voxel = grid.metaValue<double>("throng_voxel");
+    bricks.band = grid.metaValue<double>("throng_band");
+    bricks.bricks = {count.x(), count.y(), count.z()};
+    bricks.values.reserve((grid.tree().leafCount() + 1) * VoxelBricks::kValues);
+    fill_from(grid.tree(), openvdb::Coord(0, 0, 0), bricks);
+    return bricks;
+}
+
+// Where the surface is, of a grid of the given place.
+MeshResult surface_of(const FloatGrid& grid)
+{
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(grid, points, quads, 0.0);
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (const openvdb::Vec3s& point : points)
+        vertices.emplace_back(static_cast<double>(point.x()), static_cast<double>(point.y()),
+                              static_cast<double>(point.z()));
+    // Its faces run the other way round.
+    for (const openvdb::Vec4I& quad : quads) {
+        triangles.push_back({quad[0], quad[2], quad[1]});
+        triangles.push_back({quad[0], quad[3], quad[2]});
+    }
+    MeshResult made = build_mesh(std::move(vertices), std::move(triangles));
+    if (made.trouble.empty()) find_vertex_normals(made.mesh);
+    return made;
+}
+
+// The level set of another tool's: its values, and the depth below those that it has.
+VoxelBricks other_bricks(const FloatGrid& grid, const Mesh& surface)
+{
+    openvdb::CoordBBox box;
+    grid.tree().evalLeafBoundingBox(box);
+    VoxelBricks bricks;
+    bricks.voxel = grid.voxelSize().x();
+    bricks.band = static_cast<double>(grid.background());
+    const openvdb::Coord first = box.min();
+    const openvdb::Vec3d origin = grid.indexToWorld(first);
+    bricks.origin = {origin.x(), origin.y(), origin.z()};
+    for (int k = 0; k < 3; ++k)
+        bricks.bricks[static_cast<std::size_t>(k)] = (box.max()[k] - first[k] + kCells) / kCells;
+
+    std::vector<FieldSeed> seeds;
+    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+        for (auto value = leaf->cbeginValueOn(); value; ++value) {
+            const openvdb::Coord at = value.getCoord() - first;
+            if (*value < grid.background()) seeds.push_back({{at[0], at[1], at[2]}, *value});
+        }
+    return fill_bricks(surface, bricks, seeds, SeedRule::value);
+}
+
+std::string trouble_with_grid(const FloatGrid& grid)
+{
+    const auto map = grid.transform().baseMap();
+    const openvdb::Mat4R matrix = map->getAffineMap()->getMat4();
+    const double h = grid.voxelSize().x();
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            if (!(std::abs(matrix(i, k) - (i == k ? h : 0)) <= 1e-6 * h))
+                return "has voxels that are not cubes along the axes; wanted one voxel size, "
+                       "not turned";
+    if (!(grid.background() > 0)) return "has a background of 0; wanted the band's distance";
+    if (grid.tree().leafCount() == 0) return "is empty; wanted values near a surface";
+    return {};
+}
+
+// The first float grid that is a level set.
+FloatGrid::Ptr level_set_in(openvdb::io::File& file)
+{
+    for (auto name = file.beginName(); name != file.endName(); ++name) {
+        const auto grid = openvdb::gridPtrCast<FloatGrid>(file.readGridMetadata(name.gridName()));
+        if (grid && grid->getGridClass() == openvdb::GRID_LEVEL_SET)
+            return openvdb::gridPtrCast<FloatGrid>(file.readGrid(name.gridName()));
+    }
+    return nullptr;
+}
+
+VdbFile from_grid(const FloatGrid& grid, VdbWants wants)
+{
+    VdbFile result;
+    const bool ours = grid[kOurs] && grid.metaValue<std::int32_t>(kOurs) == kFormat;
+    result.trouble = trouble_with_grid(grid);
+    if (!result.trouble.empty()) return result;
+    if (ours) {
+        result.notes = notes_of(grid);
+        result.bricks = our_bricks(grid);
+        if (wants == VdbWants::bricks) return result;
+    }
+    MeshResult surface = surface_of(grid);
+    if (!surface.trouble.empty()) {
+        result.trouble = "has no surface; wanted values of both signs";
+        return result;
+    }
+    if (!ours) result.bricks = other_bricks(grid, surface.mesh);
+    if (wants == VdbWants::bricks_and_surface) result.surface = std::move(surface.mesh);
+    return result;
+}
+
+}  // namespace
+
+double voxel_size_for(const Mesh& mesh, double error)
+{
+    if (error > 0) return error / kWorstVoxels;
+    return longest_side(mesh) / 48;
+}
+
+// All bricks of the box are named; those are stored that the band or the inside reach into. Making
+// them takes a working copy with a triangle and a state for each value, and a tree near the surface
+// with its points.
+double field_bytes(const Mesh& mesh, double voxel)
+{
+    const Box3 box = box_of(mesh);
+    const double side = kCells * voxel, band = kBandVoxels * voxel;
+    double all = 1, volume = 0, area = 0;
+    for (int k = 0; k < 3; ++k) all *= (box.upper[k] - box.lower[k] + 2 * band) / side + 2;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3 &va = mesh.vertices[a], &vb = mesh.vertices[b], &vc = mesh.vertices[c];
+        area += 0.5 * (vb - va).cross(vc - va).norm();
+        volume += va.dot(vb.cross(vc)) / 6;
+    }
+    const double reached = (std::abs(volume) + area * (band + 1.5 * side)) / (side * side * side);
+    const double stored = std::min(all, reached + 8);
+    constexpr double kStored = 4.0 * VoxelBricks::kValues, kWorking = 9.0 * 512;
+    const double near_bytes = 48 * 4 * area / (voxel * voxel);
+    return 8 * all + stored * (2 * kStored + 2 * kWorking) + near_bytes;
+}
+
+FieldResult build_field(const Mesh& mesh, const FieldSettings& settings)
+{
+    THRONG_CHECK(mesh.vertex_normals.size() == mesh.vertices.size(), "a side needs vertex normals");
+    FieldResult result;
+    const double voxel = settings.voxel != 0 ? settings.voxel : voxel_size_for(mesh);
+    result.trouble = trouble_with_size(mesh, voxel, settings.most_bytes);
+    if (!result.trouble.empty()) return result;
+
+    const VoxelBricks laid = lay_bricks(box_of(mesh), voxel, kBandVoxels * voxel);
+    const FloatGrid::Ptr near = near_surface(mesh, laid, settings.sign);
+    const std::vector<FieldSeed> seeds = seeds_of(*near, laid);
+    if (settings.sign == FieldSign::normals)
+        result.bricks = fill_bricks(mesh, laid, seeds, SeedRule::distance);
+    else
+        result.bricks = fill_bricks(exposed_part(mesh, *near, laid), laid, seeds, SeedRule::sign);
+
+    if (count_inside(result.bricks) == 0) {
+        result.bricks = {};
+        result.trouble = "nothing is inside at voxel size " + short_text(voxel)
+            + " m: the mesh is thinner than a voxel everywhere, or open wider than one; give a "
+              "closed mesh, or a smaller voxel_size";
+        return result;
+    }
+    const Worth worth = worth_of(mesh, result.bricks);
+    result.error = worth.error;
+    if (worth.thin_area > 0)
+        result.remarks.push_back(
+            "thinner than a voxel somewhere: " + short_text(100 * worth.thin_area)
+            + " % of the surface; what is there is lost or blunted at voxel size "
+            + short_text(voxel) + " m, give voxel_size " + short_text(voxel / 2)
+            + " or less to keep more of it");
+    return result;
+}
+
+std::string
+write_vdb(const std::filesystem::path& path, const VoxelBricks& bricks, const FieldNotes& notes)
+{
+    try {
+        start_openvdb();
+        openvdb::io::File file(path.string());
+        // Plain numbers: a few megabytes, read as fast as they are copied.
+        file.setCompression(openvdb::io::COMPRESS_NONE);
+        file.write({grid_of(bricks, notes)});
+        file.close();
+    } catch (const std::exception& error) {
+        return path.string() + ": cannot be written: " + error.what();
+    }
+    return {};
+}
+
+VdbFile read_vdb(const std::filesystem::path& path, VdbWants wants)
+{
+    VdbFile result;
+    const auto refused = [&](const std::string& why) {
+        result.trouble = path.string() + ": " + why;
+        return result;
+    };
+    if (!std::filesystem::is_regular_file(path))
+        return refused("there is no such file; wanted a .vdb file with a float level set");
+    try {
+        start_openvdb();
+        openvdb::io::File file(path.string());
+        file.open(false);
+        const FloatGrid::Ptr grid = level_set_in(file);
+        if (grid == nullptr) return refused("holds no float level-set grid; wanted one");
+        result = from_grid(*grid, wants);
+        if (!result.trouble.empty()) return refused(result.trouble);
+    } catch (const std::exception& error) {
+        result = {};
+        return refused(std::string("is no .vdb file that can be read (") + error.what()
+                       + "); wanted one with a float level set");
+    }
+    return result;
+}
+
+}  // namespace throng
