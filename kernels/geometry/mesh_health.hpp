@@ -1,0 +1,51 @@
+// Mesh health: what is wrong with triangles before they become a solid, and what can be mended.
+#pragma once
+
+#include "kernels/data/mesh.hpp"
+
+#include <string>
+
+namespace throng {
+
+/// What was found; edges and triangles as they came, but for those of no area and identical
+/// vertices, which every mesh loses.
+struct MeshHealth {
+    std::size_t duplicates = 0;     // triangles of the same corners as one before: dropped
+    std::size_t open_edges = 0;     // of one triangle alone
+    std::size_t crowded_edges = 0;  // shared by more than two
+    std::size_t turned = 0;         // triangles wound against their neighbors: turned over
+    std::size_t one_sided = 0;      // pieces that have no outside, as a Moebius strip: left alone
+    std::size_t pieces = 0;         // that no shared edge joins
+    std::size_t inside_out = 0;     // closed pieces turned inward that are no hollow: turned over
+    std::size_t hollows = 0;        // closed pieces turned inward within another: kept
+    std::size_t buried = 0;         // closed pieces turned outward within another
+    std::size_t cuts = 0;           // pairs of triangles that cross
+    bool cuts_cut_short = false;    // not all pairs were looked at
+
+    /// Whether the normals of the mended mesh tell inside from outside.
+    bool sound() const
+    {
+        return open_edges + crowded_edges + one_sided + buried + cuts == 0 && !cuts_cut_short;
+    }
+};
+
+/// A mesh as good as it can be made, vertex normals included.
+///
+///   remarks  one for everything that was found, in plain words, and what was done about it
+///   trouble  as in MeshResult
+struct MendedMesh {
+    Mesh mesh;
+    MeshHealth health;
+    std::vector<std::string> remarks;
+    std::string trouble;
+};
+
+/// Drops duplicates, makes the windings of every piece agree, and turns over what is inside out.
+/// Holes stay holes.
+MendedMesh mend(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles);
+
+/// How many pairs of triangles that share no corner cross one another; those that lie in one plane
+/// do not count. Looks at no more than `most_pairs` of those whose boxes overlap, and says so.
+std::size_t count_cuts(const Mesh& mesh, std::size_t most_pairs, bool& cut_short);
+
+}  // namespace throng
