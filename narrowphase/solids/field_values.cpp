@@ -45,14 +45,14 @@ public:
     // The slot of a place on the grid, or -1 where there is none yet.
     std::ptrdiff_t find(const std::array<std::int32_t, 3>& at) const
     {
-        const std::int32_t block = block_of_[row(at[0] / kCells, at[1] / kCells, at[2] / kCells)];
+        const std::int32_t block = block_of_[row(at[0] >> 3, at[1] >> 3, at[2] >> 3)];
         if (block < 0) return -1;
         return static_cast<std::ptrdiff_t>(static_cast<std::size_t>(block) * kBlockValues
                                            + within(at));
     }
     std::size_t make(const std::array<std::int32_t, 3>& at)
     {
-        std::int32_t& block = block_of_[row(at[0] / kCells, at[1] / kCells, at[2] / kCells)];
+        std::int32_t& block = block_of_[row(at[0] >> 3, at[1] >> 3, at[2] >> 3)];
         if (block < 0) {
             block = static_cast<std::int32_t>(values.size() / kBlockValues);
             values.resize(values.size() + kBlockValues, static_cast<float>(laid_.band));
@@ -73,8 +73,8 @@ public:
 private:
     static std::size_t within(const std::array<std::int32_t, 3>& at)
     {
-        return static_cast<std::size_t>((at[2] % kCells * kCells + at[1] % kCells) * kCells
-                                        + at[0] % kCells);
+        return static_cast<std::size_t>(((at[2] & 7) * kCells + (at[1] & 7)) * kCells
+                                        + (at[0] & 7));
     }
     std::size_t row(int x, int y, int z) const
     {
@@ -265,6 +265,42 @@ private:
     std::vector<Place> layer_;
 };
 
+// Of one brick, from each value to the next along each axis.
+float gap_within(const float* values)
+{
+    constexpr std::array<std::size_t, 3> kSteps{1, kSide, kSide * kSide};
+    float widest = 0;
+    std::size_t i = 0;
+    for (int z = 0; z < kSide; ++z)
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x, ++i) {
+                const std::array<int, 3> at{x, y, z};
+                for (std::size_t k = 0; k < 3; ++k) {
+                    if (at[k] + 1 == kSide) continue;
+                    const float a = values[i], b = values[i + kSteps[k]];
+                    if ((a < 0) != (b < 0)) widest = std::max(widest, std::abs(a - b));
+                }
+            }
+    return widest;
+}
+
+// Whether the inside reaches a face of the grid that the brick has.
+bool reaches_end(const VoxelBricks& bricks, const std::array<int, 3>& brick, const float* values)
+{
+    bool reaches = false;
+    std::size_t i = 0;
+    for (int z = 0; z < kSide; ++z)
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x, ++i) {
+                const std::array<int, 3> at{x, y, z};
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const int place = brick[k] * kCells + at[k];
+                    reaches |= values[i] < 0 && (place == 0 || place == bricks.bricks[k] * kCells);
+                }
+            }
+    return reaches;
+}
+
 }  // namespace
 
 VoxelBricks fill_bricks(const Mesh& mesh,
@@ -282,6 +318,23 @@ std::size_t count_inside(const VoxelBricks& bricks)
 {
     return static_cast<std::size_t>(std::count_if(bricks.values.begin(), bricks.values.end(),
                                                   [](float value) { return value < 0; }));
+}
+
+double widest_gap(const VoxelBricks& bricks)
+{
+    float widest = 0;
+    std::size_t row = 0;
+    for (int z = 0; z < bricks.bricks[2]; ++z)
+        for (int y = 0; y < bricks.bricks[1]; ++y)
+            for (int x = 0; x < bricks.bricks[0]; ++x, ++row) {
+                if (bricks.brick_of[row] < 0) continue;
+                const float* const values = bricks.values.data()
+                    + static_cast<std::size_t>(bricks.brick_of[row]) * VoxelBricks::kValues;
+                if (reaches_end(bricks, {x, y, z}, values))
+                    return std::numeric_limits<double>::infinity();
+                widest = std::max(widest, gap_within(values));
+            }
+    return static_cast<double>(widest);
 }
 
 }  // namespace throng

@@ -40,7 +40,12 @@ VoxelBricks fill_bricks(const Mesh& mesh,
                         std::span<const FieldSeed> seeds,
                         SeedRule rule);
 
-/// What is not far in one piece: how many of a grid's values are inside.
+/// How many of the stored values are inside.
 std::size_t count_inside(const VoxelBricks& bricks);
+
+/// The greatest distance that two values of opposite sign next to each other have between them, m:
+/// about a voxel at the most where a surface parts them, more where the inside leaks out of a hole.
+/// Infinite where the inside reaches the end of the grid.
+double widest_gap(const VoxelBricks& bricks);
 
 }  // namespace throng

@@ -358,7 +358,8 @@ MeshResult surface_of(const FloatGrid& grid)
 {
     std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(grid, points, quads, 0.0);
+    // Not at 0 itself, which flat faces often have on the grid: quads of no area would come of it.
+    openvdb::tools::volumeToMesh(grid, points, quads, 1e-3 * grid.voxelSize().x());
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     for (const openvdb::Vec3s& point : points)
@@ -494,6 +495,13 @@ FieldResult build_field(const Mesh& mesh, const FieldSettings& settings)
         result.trouble = "nothing is inside at voxel size " + short_text(voxel)
             + " m: the mesh is thinner than a voxel everywhere, or open wider than one; give a "
               "closed mesh, or a smaller voxel_size";
+        return result;
+    }
+    // A hole of a voxel leaves values of three between them at the most.
+    if (settings.sign == FieldSign::flood && widest_gap(result.bricks) > 3 * voxel) {
+        result.bricks = {};
+        result.trouble = "is open wider than a voxel of " + short_text(voxel)
+            + " m, so that nothing tells its inside; give a closed mesh, or a greater voxel_size";
         return result;
     }
     const Worth worth = worth_of(mesh, result.bricks);

@@ -71,7 +71,8 @@ write_vdb(const std::filesystem::path& path, const VoxelBricks& bricks, const Fi
 ///
 ///   bricks   of a file of ours bit for bit as written; of others the values of the first float
 ///            level set, filled inside to any depth
-///   surface  where it is 0, vertex normals included; empty unless asked for
+///   surface  where it is 0 but for a thousandth of a voxel, vertex normals included; empty unless
+///            asked for
 ///   notes    empty where the file is not ours
 struct VdbFile {
     VoxelBricks bricks;
