@@ -2,8 +2,10 @@
 //
 // Each asks of b the one thing a sphere cares about: how far the sphere's center is from b's
 // surface, and which way. A center inside b leaves by the nearest way out.
+#include "narrowphase/sphere_pairs.hpp"
+
+#include "kernels/check.hpp"
 #include "kernels/geometry/support.hpp"
-#include "narrowphase/pair_functions.hpp"
 #include "narrowphase/rod_contacts.hpp"
 
 #include <algorithm>
@@ -12,13 +14,6 @@
 namespace throng {
 
 namespace {
-
-// Where the sphere's center is, seen from b's surface, in b's frame.
-template <class Real>
-struct Outward {
-    Vec3T<Real> direction = Vec3T<Real>::UnitZ();  // unit, from the surface to the center
-    Real distance = 0;                             // below 0 inside
-};
 
 template <class Real>
 void touch(const Outward<Real>& outward,
@@ -150,7 +145,42 @@ Real radius_of(const Shapes& shapes, ShapeRef sphere)
     return static_cast<Real>(shapes.spheres[sphere.index].radius);
 }
 
+template <class Real>
+Outward<Real> outward_of(const Capsule& capsule, const Vec3T<Real>& center)
+{
+    const Real half = static_cast<Real>(capsule.half_length);
+    Vec3T<Real> offset = center;
+    offset.z() -= std::clamp(offset.z(), -half, half);
+    // On the axis every way to the side is as short as any other.
+    Outward<Real> outward = away_from(offset, Vec3T<Real>(Vec3T<Real>::UnitX()));
+    outward.distance -= static_cast<Real>(capsule.radius);
+    return outward;
+}
+
 }  // namespace
+
+Outward<double> outward_of_convex(
+    const Shapes& shapes, ShapeRef convex, const Vec3& place, double enough, PairCache& cache)
+{
+    switch (convex.kind) {
+    case ShapeKind::sphere: {
+        Outward<double> outward = away_from(place, Vec3(Vec3::UnitZ()));
+        outward.distance -= shapes.spheres[convex.index].radius;
+        return outward;
+    }
+    case ShapeKind::capsule:
+        return outward_of(shapes.capsules[convex.index], place);
+    case ShapeKind::cylinder:
+        return outward_of(shapes.cylinders[convex.index], place);
+    case ShapeKind::box:
+        return outward_of(shapes.boxes[convex.index], place);
+    case ShapeKind::hull:
+        return outward_of(shapes.hulls[convex.index], place, enough, cache);
+    default:
+        THRONG_CHECK(false, "the way out is that of a convex shape of some volume");
+        return {};
+    }
+}
 
 template <class Real>
 void sphere_sphere(const Shapes& shapes,
@@ -179,13 +209,8 @@ void sphere_capsule(const Shapes& shapes,
                     PairCache&,
                     LocalManifold<Real>& out)
 {
-    const Capsule& capsule = shapes.capsules[b.index];
-    const Real half = static_cast<Real>(capsule.half_length);
-    Vec3T<Real> offset = b_in_a.to_local(Vec3T<Real>::Zero());
-    offset.z() -= std::clamp(offset.z(), -half, half);
-    // On the axis every way to the side is as short as any other.
-    Outward<Real> outward = away_from(offset, Vec3T<Real>(Vec3T<Real>::UnitX()));
-    outward.distance -= static_cast<Real>(capsule.radius);
+    const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
+    const Outward<Real> outward = outward_of(shapes.capsules[b.index], center);
     touch(outward, radius_of<Real>(shapes, a), b_in_a, reach, out);
 }
 
