@@ -11,7 +11,7 @@ namespace {
 
 // Places to cover for each sphere of a level: with half as many, spheres move to where the gaps
 // between places let them; and the least and greatest number of places.
-constexpr std::size_t kPlaces = 20, kFewest = 2000, kMost = 24000;
+constexpr std::size_t kPlaces = 20, kFewest = 2000, kMost = 16000;
 
 constexpr double kBetter = 0.9;
 
@@ -76,7 +76,10 @@ SphereTree build_sphere_tree(const Mesh& mesh, const SphereTreeLimits& limits)
     SphereTree tree;
     double last = std::numeric_limits<double>::infinity();
     std::size_t count = 1;
-    for (int level = 0; level < limits.levels && last > limits.error; ++level, count *= 8) {
+    // One level may miss; where the next does too, no more spheres will help.
+    int missed = 0;
+    for (int level = 0; level < limits.levels && last > limits.error && missed < 2;
+         ++level, count *= 8) {
         count = std::min(count, limits.spheres);
         const auto points = cover_points(mesh, std::clamp(kPlaces * count, kFewest, kMost));
         if (points.empty()) break;
@@ -84,7 +87,11 @@ SphereTree build_sphere_tree(const Mesh& mesh, const SphereTreeLimits& limits)
         const std::vector<Ball> cover = cover_mesh(mesh, points, count, gap);
         const std::vector<Ball> balls = rounded(cover, gap / 2);
         const double error = sphere_error(mesh, balls, kSlack, limits.looks);
-        if (!(error < kBetter * last)) continue;
+        if (!(error < kBetter * last)) {
+            ++missed;
+            continue;
+        }
+        missed = 0;
         last = error;
         SphereTree::Level made;
         made.error = error;

@@ -19,12 +19,13 @@ struct SphereTreeLimits {
     int levels = 5;
     std::size_t spheres = 2000;
     double error = 0;
-    std::size_t looks = 1000000;
+    std::size_t looks = 400000;
 };
 
 /// The tree of a closed mesh, with vertex normals. Each level's error is a bound for every point
 /// (sphere_error.hpp), and less than that of the level before: a level that would not better it by
-/// a tenth is left out. One without a level where the mesh is empty.
+/// a tenth is left out, and after two of those there are no more. One without a level where the
+/// mesh is empty.
 SphereTree build_sphere_tree(const Mesh& mesh, const SphereTreeLimits& limits = {});
 
 }  // namespace throng
