@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace throng {
 namespace {
@@ -21,7 +22,11 @@ constexpr double kSlack = 1e-12;
 constexpr double kLeast = 1e-5;
 // Points of the surface that tell how hollow a piece is: of the mesh, and looked at for a cut.
 constexpr int kSamples = 4000;
-constexpr std::size_t kSamplesLooked = 300;
+constexpr std::size_t kSamplesLooked = 150;
+// And of its points where two cuts are looked for, which are tried where the best single one leaves
+// a part reaching outside by this share of what it did, and its hulls that share of their volume.
+constexpr std::size_t kPointsLooked = 300;
+constexpr double kStalled = 0.9;
 // Cuts that leave least are looked at again by how far they reach outside.
 constexpr std::size_t kFinalists = 8;
 // What is hollow against how far it reaches outside, each as a depth: cuts that leave some of both.
@@ -42,7 +47,7 @@ struct Part {
     MeshPiece piece;
     std::vector<Sample> samples;
     LooseHull hull;
-    double outside = 0;  // m
+    Overhang over;
     bool whole = false;  // no cut helps
 };
 
@@ -52,9 +57,9 @@ struct Search {
     std::vector<InwardEdge> edges;
 
     double slack() const { return kSlack * extent; }
-    double outside(const LooseHull& hull) const
+    Overhang overhang(const LooseHull& hull) const
     {
-        return find_overhang(mesh, hull, error / 4, error / 2, kLooks).least;
+        return find_overhang(mesh, hull, error / 4, error / 2, kLooks);
     }
 };
 
@@ -112,6 +117,9 @@ struct Cut {
     Sides<LooseHull> hulls;
     double hollow = 0;  // m^3, see hollow_of(), and the volume of both
     double cost = 0;
+    Sides<Overhang> over;
+
+    double outside() const { return std::max(over[0].least, over[1].least); }
 };
 
 // What is between a surface and its hulls, counted for every face that looks into it. Unlike its
@@ -127,16 +135,25 @@ double hollow_of(const Sides<LooseHull>& hulls, const Plane& plane, const std::v
     return hollow * static_cast<double>(stride);
 }
 
+Cut look_at(const Search& search, const Part& part, const Plane& plane)
+{
+    const auto sides = look_at_cut(search.mesh, part.piece, plane, search.slack());
+    return {plane, {loose_hull(sides[0]), loose_hull(sides[1])}, 0, 0, {}};
+}
+
+bool leaves_both(const Part& part, const Cut& cut)
+{
+    const double least = kLeast * part.hull.volume;
+    return cut.hulls[0].volume > least && cut.hulls[1].volume > least;
+}
+
 // The cuts of a piece that leave it least hollow, the best first.
 std::vector<Cut> promising_cuts(const Search& search, const Part& part)
 {
     std::vector<Cut> cuts;
     for (const Plane& plane : cutting_planes(part.piece, part.hull, search.edges)) {
-        const auto sides = look_at_cut(search.mesh, part.piece, plane, search.slack());
-        Cut cut{plane, {loose_hull(sides[0]), loose_hull(sides[1])}, 0, 0};
-        if (!(cut.hulls[0].volume > kLeast * part.hull.volume)
-            || !(cut.hulls[1].volume > kLeast * part.hull.volume))
-            continue;
+        Cut cut = look_at(search, part, plane);
+        if (!leaves_both(part, cut)) continue;
         cut.hollow =
             hollow_of(cut.hulls, plane, part.samples) + cut.hulls[0].volume + cut.hulls[1].volume;
         cuts.push_back(std::move(cut));
@@ -147,34 +164,94 @@ std::vector<Cut> promising_cuts(const Search& search, const Part& part)
     return cuts;
 }
 
+// How clear of a point two planes through it leave the hulls of the four pieces that they make;
+// below 0 where the point is inside of one.
+double clearance(std::span<const Vec3> points, const Vec3& at, const Vec3& one, const Vec3& two)
+{
+    std::array<std::vector<Vec3>, 4> pieces;
+    for (const Vec3& point : points) {
+        const Vec3 off = point - at;
+        pieces[(one.dot(off) > 0 ? 1 : 0) + (two.dot(off) > 0 ? 2u : 0u)].push_back(point);
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& piece : pieces) {
+        const LooseHull hull = loose_hull(piece);
+        if (!hull.empty()) least = std::min(least, height_above(hull, at));
+    }
+    return least;
+}
+
+// The first of two cuts that together clear the point furthest outside, where no single one does:
+// a ring must be cut twice before its hole is open. False where there are none.
+bool opening_cut(const Search& search, const Part& part, Plane& plane)
+{
+    std::vector<Vec3> points;
+    const std::size_t stride = 1 + part.piece.points.size() / kPointsLooked;
+    for (std::size_t i = 0; i < part.piece.points.size(); i += stride)
+        points.push_back(part.piece.points[i]);
+    points.insert(points.end(), part.piece.corners.begin(), part.piece.corners.end());
+    const std::vector<Vec3> ways = cutting_directions();
+    double best = search.error;
+    bool found = false;
+    for (std::size_t i = 0; i < ways.size(); ++i)
+        for (std::size_t k = i + 1; k < ways.size(); ++k) {
+            const double clear = clearance(points, part.over.where, ways[i], ways[k]);
+            if (!(clear > best) || clear > search.extent) continue;
+            best = clear;
+            plane = {ways[i], ways[i].dot(part.over.where)};
+            found = true;
+        }
+    return found;
+}
+
+// Cuts a part in two; its upper half goes to the end.
+void apply(const Search& search, const Cut& cut, std::size_t which, std::vector<Part>& parts)
+{
+    auto pieces = cut_piece(search.mesh, parts[which].piece, cut.plane, search.slack());
+    Sides<Part> made;
+    for (std::size_t side = 0; side < 2; ++side) {
+        made[side].piece = std::move(pieces[side]);
+        made[side].hull = cut.hulls[side];
+        made[side].over = cut.over[side];
+    }
+    for (const Sample& sample : parts[which].samples)
+        made[cut.plane.normal.dot(sample.point) > cut.plane.offset ? 1 : 0].samples.push_back(
+            sample);
+    parts[which] = std::move(made[0]);
+    parts.push_back(std::move(made[1]));
+}
+
+// Of promising cuts the best, by how far it leaves the hulls outside and how hollow.
+Cut best_cut(const Search& search, const Part& part, std::vector<Cut>& cuts)
+{
+    // What is hollow, spread over the piece's surface, is a depth.
+    double area = search.slack() * search.extent;
+    for (const Sample& sample : part.samples) area += sample.area;
+    for (Cut& cut : cuts) {
+        for (std::size_t side = 0; side < 2; ++side)
+            cut.over[side] = search.overhang(cut.hulls[side]);
+        cut.cost = cut.outside() + kHollow * cut.hollow / area;
+    }
+    return std::move(*std::min_element(cuts.begin(), cuts.end(),
+                                       [](const Cut& a, const Cut& b) { return a.cost < b.cost; }));
+}
+
 bool split(const Search& search, std::size_t which, std::vector<Part>& parts)
 {
     std::vector<Cut> cuts = promising_cuts(search, parts[which]);
     if (cuts.empty()) return false;
-    // What is hollow, spread over the piece's surface, is a depth.
-    double area = search.slack() * search.extent;
-    for (const Sample& sample : parts[which].samples) area += sample.area;
-    Sides<double> outside{};
-    const Cut* best = nullptr;
-    for (Cut& cut : cuts) {
-        const Sides<double> reach{search.outside(cut.hulls[0]), search.outside(cut.hulls[1])};
-        cut.cost = std::max(reach[0], reach[1]) + kHollow * cut.hollow / area;
-        if (best != nullptr && best->cost <= cut.cost) continue;
-        best = &cut;
-        outside = reach;
+    Cut best = best_cut(search, parts[which], cuts);
+    Plane plane;
+    const double volume = best.hulls[0].volume + best.hulls[1].volume;
+    if (best.outside() > kStalled * parts[which].over.least
+        && volume > kStalled * parts[which].hull.volume
+        && opening_cut(search, parts[which], plane)) {
+        Cut cut = look_at(search, parts[which], plane);
+        for (std::size_t side = 0; side < 2; ++side)
+            cut.over[side] = search.overhang(cut.hulls[side]);
+        if (leaves_both(parts[which], cut)) best = std::move(cut);
     }
-    auto pieces = cut_piece(search.mesh, parts[which].piece, best->plane, search.slack());
-    Sides<Part> made;
-    for (std::size_t side = 0; side < 2; ++side) {
-        made[side].piece = std::move(pieces[side]);
-        made[side].hull = best->hulls[side];
-        made[side].outside = outside[side];
-    }
-    for (const Sample& sample : parts[which].samples)
-        made[best->plane.normal.dot(sample.point) > best->plane.offset ? 1 : 0].samples.push_back(
-            sample);
-    parts[which] = std::move(made[0]);
-    parts.push_back(std::move(made[1]));
+    apply(search, best, which, parts);
     return true;
 }
 
@@ -184,8 +261,8 @@ std::size_t worst_of(const std::vector<Part>& parts, double error)
 {
     std::size_t worst = parts.size();
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (parts[i].whole || parts[i].outside <= error) continue;
-        if (worst == parts.size() || parts[i].outside > parts[worst].outside) worst = i;
+        if (parts[i].whole || parts[i].over.least <= error) continue;
+        if (worst == parts.size() || parts[i].over.least > parts[worst].over.least) worst = i;
     }
     return worst;
 }
@@ -228,7 +305,7 @@ Joint& best_joint(const Search& search, std::vector<Joint>& joints)
                               [](const Joint& a, const Joint& b) { return a.cost < b.cost; });
         if (best.known) return best;
         best.known = true;
-        best.outside = search.outside(best.hull);
+        best.outside = search.overhang(best.hull).least;
         best.cost += best.outside;
     }
 }
@@ -246,7 +323,6 @@ void merge(const Search& search, std::size_t most, std::vector<Part>& parts)
         if (count <= most && best.outside > search.error) break;
         const std::size_t a = best.a, b = best.b;
         parts[a].hull = std::move(best.hull);
-        parts[a].outside = best.outside;
         gone[b] = true;
         --count;
         std::erase_if(joints, [&](const Joint& joint) {
@@ -364,7 +440,7 @@ ConvexParts split_into_parts(const Mesh& mesh, const PartsWanted& wanted)
     parts[0].piece = whole_piece(mesh);
     parts[0].hull = loose_hull(mesh.vertices);
     parts[0].samples = sample_surface(mesh);
-    parts[0].outside = search.outside(parts[0].hull);
+    parts[0].over = search.overhang(parts[0].hull);
 
     const auto most = static_cast<std::size_t>(std::max(1, wanted.max_parts));
     // Half as many again than wanted: what the last cuts show lets the first be mended.

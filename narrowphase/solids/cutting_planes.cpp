@@ -37,9 +37,8 @@ void add_plane(const Vec3& normal, const Vec3& through, double extent, std::vect
     if (!known) planes.push_back(plane);
 }
 
-void add_spaced(const LooseHull& hull, const Vec3& way, int count, std::vector<Plane>& planes)
+void add_spaced(const LooseHull& hull, const Vec3& normal, int count, std::vector<Plane>& planes)
 {
-    const Vec3 normal = way.normalized();
     double lower = normal.dot(hull.vertices[0]), upper = lower;
     for (const Vec3& vertex : hull.vertices) {
         lower = std::min(lower, normal.dot(vertex));
@@ -95,6 +94,16 @@ std::vector<InwardEdge> inward_edges(const Mesh& mesh)
     return edges;
 }
 
+std::vector<Vec3> cutting_directions()
+{
+    std::vector<Vec3> ways = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+    for (int code = 14; code < 27; ++code) {
+        const Vec3 way(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
+        if (way.squaredNorm() > 1.5) ways.push_back(way.normalized());
+    }
+    return ways;
+}
+
 std::vector<Plane>
 cutting_planes(const MeshPiece& piece, const LooseHull& hull, const std::vector<InwardEdge>& edges)
 {
@@ -115,12 +124,9 @@ cutting_planes(const MeshPiece& piece, const LooseHull& hull, const std::vector<
         add_plane(edge.normal.cross(edge.other), edge.middle, extent, planes);
         if (used.size() == kEdges) break;
     }
-    for (int axis = 0; axis < 3; ++axis) add_spaced(hull, Vec3::Unit(axis), kAcrossAxis, planes);
-    // The first direction of each opposite two, but for the axes.
-    for (int code = 14; code < 27; ++code) {
-        const Vec3 way(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
-        if (way.squaredNorm() > 1.5) add_spaced(hull, way, kAcrossDiagonal, planes);
-    }
+    const std::vector<Vec3> ways = cutting_directions();
+    for (std::size_t i = 0; i < ways.size(); ++i)
+        add_spaced(hull, ways[i], i < 3 ? kAcrossAxis : kAcrossDiagonal, planes);
     return planes;
 }
 

@@ -14,6 +14,10 @@ struct InwardEdge {
 
 std::vector<InwardEdge> inward_edges(const Mesh& mesh);
 
+/// The directions of the axes, then those halfway between two and three of them; of each opposite
+/// two one. Unit.
+std::vector<Vec3> cutting_directions();
+
 /// Planes to try on a piece, each once: evenly spaced ones across the axes, and fewer across the
 /// diagonals; and through the inward edges that lie deepest inside of the piece's hull, weighed by
 /// how sharply they turn, along both faces, along what halves the angle between them, and across.

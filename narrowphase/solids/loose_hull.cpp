@@ -114,13 +114,16 @@ struct Facet {
 };
 
 // Distance changes no faster than place, and that from one triangle is greatest at a corner.
-double bound_of(const Mesh& mesh, const Facet& facet, double& found)
+double bound_of(const Mesh& mesh, const Facet& facet, Overhang& found)
 {
     const auto& [a, b, c] = facet.corners;
     const Vec3 middle = (a + b + c) / 3;
     const MeshPoint nearest = nearest_on_mesh(mesh, middle);
     const double distance = signed_distance(mesh, middle, nearest);
-    found = std::max(found, distance);
+    if (distance > found.least) {
+        found.least = distance;
+        found.where = middle;
+    }
     double radius = 0, off = 0;
     const auto& [u, v, w] = mesh.triangles[nearest.triangle];
     for (const Vec3& corner : facet.corners) {
@@ -190,7 +193,7 @@ Overhang find_overhang(
     std::uint32_t count = 0;
     const auto look = [&](const std::array<Vec3, 3>& corners) {
         Facet facet{0, count++, corners};
-        facet.bound = bound_of(mesh, facet, answer.least);
+        facet.bound = bound_of(mesh, facet, answer);
         waiting.push(facet);
     };
     for (const auto& [a, b, c] : hull.triangles)

@@ -37,8 +37,10 @@ LooseHull simplified(const LooseHull& hull, std::size_t most, double enough);
 ///
 ///   least   m, that far outside a point was found
 ///   bound   m, no point is further outside
+///   where   the point found
 struct Overhang {
     double least = 0, bound = 0;
+    Vec3 where = Vec3::Zero();
 };
 
 /// Looks for the overhang by cutting triangles in four where they may still reach further outside
