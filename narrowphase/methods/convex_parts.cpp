@@ -401,12 +401,14 @@ void finish(const Search& search,
     std::vector<std::size_t> own;
     double volume = 0;
     for (const LooseHull& piece : pieces) {
-        HullResult built = build_hull(simplified(piece, most_vertices, search.error / 8).vertices);
+        std::vector<Vec3> points = simplified(piece, most_vertices, search.error / 8).vertices;
+        HullResult built = build_hull(points);
         own.push_back(hulls.size());
         if (!built.trouble.empty()) continue;
         hulls.push_back(loose_hull(built.hull.vertices));
         volume += mass_of(built.hull).volume;
         made.hulls.push_back(std::move(built.hull));
+        made.points.push_back(std::move(points));
         const double fine = search.error / 8;
         const Overhang over = find_overhang(search.mesh, hulls.back(), fine, fine, kLastLooks);
         made.outside = std::max(made.outside, over.least);

@@ -30,6 +30,7 @@ inline constexpr std::size_t kMostPartVertices = 87;
 
 /// A mesh as hulls, in the mesh's axes.
 ///
+///   points        [hulls] m, what build_hull() made each of, so that it may be made again
 ///   error         m, no hull's surface is further outside of the mesh, and no point of the mesh is
 ///                 further outside of all hulls
 ///   outside       m, that far outside of the mesh there is a point of a hull's surface: the first
@@ -41,6 +42,7 @@ inline constexpr std::size_t kMostPartVertices = 87;
 ///   remarks       what a user may want to know, in words
 struct ConvexParts {
     std::vector<Hull> hulls;
+    std::vector<std::vector<Vec3>> points;
     double error = 0;
     double outside = 0;
     double uncovered = 0;

@@ -6,11 +6,15 @@
 #include "kernels/math/hash.hpp"
 #include "narrowphase/solids/loose_hull.hpp"
 #include "scenes/closed_meshes.hpp"
+#include "scenes/mesh_file.hpp"
+#include "tests/support/shared_data.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
+#include <sstream>
 
 namespace throng {
 namespace {
@@ -54,6 +58,15 @@ Mesh of_cubes(const std::vector<std::array<int, 3>>& cubes)
                 }
             }
     return ready(std::move(vertices), std::move(triangles));
+}
+
+Mesh shared_mesh(const std::filesystem::path& path)
+{
+    std::ifstream in(path);
+    std::stringstream text;
+    text << in.rdbuf();
+    const MeshFile file = read_mesh_text(text.str(), path.filename().string());
+    return ready(file.vertices, file.triangles);
 }
 
 double longest_side(const Mesh& mesh)
@@ -164,7 +177,8 @@ TEST(ConvexParts, TorusKeepsItsHole)
         for (int i = -4; i <= 4; ++i)
             EXPECT_GT(height_above_all(parts, Vec3(0, 0, 0.25 * i)), 1) << most;
     }
-    // No worse than sixths of the ring: their hulls bulge by 1 - cos(pi / 6) of the inner radius, 2.
+    // No worse than sixths of the ring: their hulls bulge by 1 - cos(pi / 6) of the inner
+    // radius, 2.
     EXPECT_LT(last, 0.27);
 }
 
@@ -236,6 +250,40 @@ TEST(ConvexParts, HullTellsHowMuchItFills)
     EXPECT_NEAR(hull.outside, 0.5, 0.01);
     ASSERT_EQ(hull.remarks.size(), 1u);
     EXPECT_EQ(hull.remarks[0], "the hull fills 17 % more than the mesh");
+}
+
+// Real meshes that are closed: parts against the single hull, and the errors that were measured,
+// with room for a tenth.
+struct Real {
+    const char* name;
+    int most;
+    double error;  // of the longest side
+    double volume_error;
+};
+
+TEST(ConvexParts, RealMeshesKeepTheirMeasuredErrors)
+{
+    for (const Real& real : {Real{"torus", 12, 0.026, 0.08}, Real{"snowflake", 8, 0.045, 0.9}}) {
+        SCOPED_TRACE(real.name);
+        const auto path = shared_data("meshes/" + std::string(real.name) + ".obj");
+        if (path.empty()) GTEST_SKIP() << "needs the shared meshes";
+        const Mesh mesh = shared_mesh(path);
+        ASSERT_TRUE(is_closed(mesh));
+        const ConvexParts parts = split_into_parts(mesh, {real.most, 0});
+        expect_sound(mesh, parts, real.most);
+        EXPECT_LT(parts.error, real.error * longest_side(mesh));
+        EXPECT_LT(parts.volume_error, real.volume_error);
+        EXPECT_LT(parts.error, 0.5 * put_into_hull(mesh).error);
+    }
+}
+
+TEST(ConvexParts, OpenRealMeshesAreRefused)
+{
+    // 42 edges round the holes in the base.
+    const auto path = shared_data("meshes/bunny.obj");
+    if (path.empty()) GTEST_SKIP() << "needs the shared meshes";
+    EXPECT_EQ(split_into_parts(shared_mesh(path), {}).trouble,
+              "has 42 edges that are not shared by two triangles; give a closed mesh");
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+// Parts cache: convex parts kept on disk by what they were made from.
+//
+// A file is named by a hash of the mesh and of what was wanted, and carries a checksum of itself:
+// what is damaged or not throng's is made anew. Several programs may share a folder.
+#pragma once
+
+#include "narrowphase/methods/convex_parts.hpp"
+
+#include <filesystem>
+
+namespace throng {
+
+/// What parts are made from, as 16 hex digits: vertices, triangles, parts and error wanted, and the
+/// version of the files.
+std::string parts_key(const Mesh& mesh, const PartsWanted& wanted);
+
+/// split_into_parts(), or what an earlier one of the same key left in the folder: the same bits.
+///
+///   folder  made where it is not there; empty: nothing is read or written. One that cannot be
+///           written is remarked on, and no trouble
+ConvexParts
+cached_parts(const Mesh& mesh, const PartsWanted& wanted, const std::filesystem::path& folder);
+
+}  // namespace throng
