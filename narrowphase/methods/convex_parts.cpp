@@ -34,7 +34,7 @@ constexpr std::size_t kFinalists = 8;
 // either changes the error by some tenths.
 constexpr double kHollow = 0.3, kFilled = 10;
 // Points of a hull to look at: in the search, and for the answer.
-constexpr std::size_t kLooks = 200, kLastLooks = 6000;
+constexpr std::size_t kLooks = 200, kLastLooks = 30000;
 
 // A point of the mesh's surface that stands for some of it.
 struct Sample {
@@ -48,6 +48,7 @@ struct Part {
     std::vector<Sample> samples;
     LooseHull hull;
     Overhang over;
+    bool sure = false;   // `over` is as good as it gets
     bool whole = false;  // no cut helps
 };
 
@@ -60,6 +61,11 @@ struct Search {
     Overhang overhang(const LooseHull& hull) const
     {
         return find_overhang(mesh, hull, error / 4, error / 2, kLooks);
+    }
+    // With looks enough to tell whether there is more than the error.
+    Overhang sure_overhang(const LooseHull& hull) const
+    {
+        return find_overhang(mesh, hull, error / 4, error, kLastLooks);
     }
 };
 
@@ -147,11 +153,14 @@ bool leaves_both(const Part& part, const Cut& cut)
     return cut.hulls[0].volume > least && cut.hulls[1].volume > least;
 }
 
-// The cuts of a piece that leave it least hollow, the best first.
-std::vector<Cut> promising_cuts(const Search& search, const Part& part)
+// The cuts along some planes that leave a piece least hollow, the best first.
+std::vector<Cut> least_hollow(const Search& search,
+                              const Part& part,
+                              const std::vector<Plane>& planes,
+                              std::size_t most)
 {
     std::vector<Cut> cuts;
-    for (const Plane& plane : cutting_planes(part.piece, part.hull, search.edges)) {
+    for (const Plane& plane : planes) {
         Cut cut = look_at(search, part, plane);
         if (!leaves_both(part, cut)) continue;
         cut.hollow =
@@ -160,7 +169,19 @@ std::vector<Cut> promising_cuts(const Search& search, const Part& part)
     }
     std::stable_sort(cuts.begin(), cuts.end(),
                      [](const Cut& a, const Cut& b) { return a.hollow < b.hollow; });
-    if (cuts.size() > kFinalists) cuts.resize(kFinalists);
+    if (cuts.size() > most) cuts.resize(most);
+    return cuts;
+}
+
+// Cuts to choose from: the best of all, and of those through the point furthest outside.
+std::vector<Cut> promising_cuts(const Search& search, const Part& part)
+{
+    std::vector<Cut> cuts =
+        least_hollow(search, part, cutting_planes(part.piece, part.hull, search.edges), kFinalists);
+    std::vector<Plane> through;
+    for (const Vec3& way : cutting_directions()) through.push_back({way, way.dot(part.over.where)});
+    for (Cut& cut : least_hollow(search, part, through, kFinalists / 2))
+        cuts.push_back(std::move(cut));
     return cuts;
 }
 
@@ -267,10 +288,23 @@ std::size_t worst_of(const std::vector<Part>& parts, double error)
     return worst;
 }
 
+// Looks closer at the parts that seem to be good enough.
+void make_sure(const Search& search, std::vector<Part>& parts)
+{
+    for (Part& part : parts) {
+        if (!part.sure) part.over = search.sure_overhang(part.hull);
+        part.sure = true;
+    }
+}
+
 void cut_worst(const Search& search, std::size_t most, std::vector<Part>& parts)
 {
     while (parts.size() < most) {
-        const std::size_t worst = worst_of(parts, search.error);
+        std::size_t worst = worst_of(parts, search.error);
+        if (worst == parts.size()) {
+            make_sure(search, parts);
+            worst = worst_of(parts, search.error);
+        }
         if (worst == parts.size()) return;
         if (!split(search, worst, parts)) parts[worst].whole = true;
     }
@@ -320,7 +354,11 @@ void merge(const Search& search, std::size_t most, std::vector<Part>& parts)
     std::size_t count = parts.size();
     while (count > 1) {
         Joint& best = best_joint(search, joints);
-        if (count <= most && best.outside > search.error) break;
+        if (count <= most) {
+            // Only where it is sure to do no harm.
+            if (best.outside <= search.error) best.outside = search.sure_overhang(best.hull).least;
+            if (best.outside > search.error) break;
+        }
         const std::size_t a = best.a, b = best.b;
         parts[a].hull = std::move(best.hull);
         gone[b] = true;
