@@ -3,282 +3,26 @@
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mass.hpp"
 #include "kernels/geometry/mesh.hpp"
-#include "narrowphase/solids/cutting_planes.hpp"
+#include "narrowphase/solids/part_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace throng {
 namespace {
 
 // Where no error is wanted, against the longest side.
 constexpr double kError = 0.025;
-// Points this near to a plane, against the longest side, are on it: a hundred times the rounding of
-// a plane through three of them.
-constexpr double kSlack = 1e-12;
-// A cut that leaves less of a piece than this on one side is none.
-constexpr double kLeast = 1e-5;
-// Points of the surface that tell how hollow a piece is: of the mesh, and looked at for a cut.
-constexpr int kSamples = 4000;
-constexpr std::size_t kSamplesLooked = 150;
-// And of its points where two cuts are looked for, which are tried where the best single one leaves
-// a part reaching outside by this share of what it did, and its hulls that share of their volume.
-constexpr std::size_t kPointsLooked = 300;
-constexpr double kStalled = 0.9;
-// Cuts that leave least are looked at again by how far they reach outside.
-constexpr std::size_t kFinalists = 8;
-// What is hollow against how far it reaches outside, each as a depth: cuts that leave some of both.
-// And what a joint hull fills, against a square of the longest side. Three times more or less of
-// either changes the error by some tenths.
-constexpr double kHollow = 0.3, kFilled = 10;
-// Points of a hull to look at: in the search, and for the answer.
-constexpr std::size_t kLooks = 200, kLastLooks = 30000;
-
-// A point of the mesh's surface that stands for some of it.
-struct Sample {
-    Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
-    double area = 0;  // m^2
-};
-
-// A piece, the hull of it and how far that reaches outside.
-struct Part {
-    MeshPiece piece;
-    std::vector<Sample> samples;
-    LooseHull hull;
-    Overhang over;
-    bool sure = false;   // `over` is as good as it gets
-    bool whole = false;  // no cut helps
-};
-
-struct Search {
-    const Mesh& mesh;
-    double extent, error;
-    std::vector<InwardEdge> edges;
-
-    double slack() const { return kSlack * extent; }
-    Overhang overhang(const LooseHull& hull) const
-    {
-        return find_overhang(mesh, hull, error / 4, error / 2, kLooks);
-    }
-    // With looks enough to tell whether there is more than the error.
-    Overhang sure_overhang(const LooseHull& hull) const
-    {
-        return find_overhang(mesh, hull, error / 4, error, kLastLooks);
-    }
-};
-
-// Points on the mesh, each for as much of it. A triangle has as many as the area before it and its
-// own call for, spread over it evenly by the golden ratio.
-std::vector<Sample> sample_surface(const Mesh& mesh)
-{
-    std::vector<double> areas;
-    double total = 0;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec3 across =
-            (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-        areas.push_back(across.norm() / 2);
-        total += areas.back();
-    }
-    const double each = total / kSamples;
-    std::vector<Sample> samples;
-    double owed = 0.5;
-    for (std::size_t t = 0; t < areas.size(); ++t) {
-        owed += areas[t] / each;
-        const auto& [a, b, c] = mesh.triangles[t];
-        const int count = static_cast<int>(owed);
-        for (int i = 0; i < count; ++i) {
-            // A point of the unit square, folded into the triangle below its diagonal.
-            double u = (i + 0.5) / count, v = 0.5 + 0.6180339887498949 * i;
-            v -= std::floor(v);
-            if (u + v > 1) {
-                u = 1 - u;
-                v = 1 - v;
-            }
-            samples.push_back(
-                {(1 - u - v) * mesh.vertices[a] + u * mesh.vertices[b] + v * mesh.vertices[c],
-                 mesh.normals[t], each});
-        }
-        owed -= count;
-    }
-    return samples;
-}
-
-// How far it is from a point of the surface, the way its face looks, to where the hull ends.
-double way_out(const LooseHull& hull, const Sample& sample)
-{
-    double way = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < hull.normals.size(); ++i) {
-        const double along = hull.normals[i].dot(sample.normal);
-        if (!(along > 1e-9)) continue;
-        way = std::min(way, (hull.offsets[i] - hull.normals[i].dot(sample.point)) / along);
-    }
-    return std::isfinite(way) ? std::max(0.0, way) : 0.0;
-}
-
-// A cut that was looked at.
-struct Cut {
-    Plane plane;
-    Sides<LooseHull> hulls;
-    double hollow = 0;  // m^3, see hollow_of(), and the volume of both
-    double cost = 0;
-    Sides<Overhang> over;
-
-    double outside() const { return std::max(over[0].least, over[1].least); }
-};
-
-// What is between a surface and its hulls, counted for every face that looks into it. Unlike its
-// plain volume it falls already with the first of the cuts that open a ring.
-double hollow_of(const Sides<LooseHull>& hulls, const Plane& plane, const std::vector<Sample>& all)
-{
-    const std::size_t stride = 1 + all.size() / kSamplesLooked;
-    double hollow = 0;
-    for (std::size_t i = 0; i < all.size(); i += stride) {
-        const bool beyond = plane.normal.dot(all[i].point) > plane.offset;
-        hollow += all[i].area * way_out(hulls[beyond ? 1 : 0], all[i]);
-    }
-    return hollow * static_cast<double>(stride);
-}
-
-Cut look_at(const Search& search, const Part& part, const Plane& plane)
-{
-    const auto sides = look_at_cut(search.mesh, part.piece, plane, search.slack());
-    return {plane, {loose_hull(sides[0]), loose_hull(sides[1])}, 0, 0, {}};
-}
-
-bool leaves_both(const Part& part, const Cut& cut)
-{
-    const double least = kLeast * part.hull.volume;
-    return cut.hulls[0].volume > least && cut.hulls[1].volume > least;
-}
-
-// The cuts along some planes that leave a piece least hollow, the best first.
-std::vector<Cut> least_hollow(const Search& search,
-                              const Part& part,
-                              const std::vector<Plane>& planes,
-                              std::size_t most)
-{
-    std::vector<Cut> cuts;
-    for (const Plane& plane : planes) {
-        Cut cut = look_at(search, part, plane);
-        if (!leaves_both(part, cut)) continue;
-        cut.hollow =
-            hollow_of(cut.hulls, plane, part.samples) + cut.hulls[0].volume + cut.hulls[1].volume;
-        cuts.push_back(std::move(cut));
-    }
-    std::stable_sort(cuts.begin(), cuts.end(),
-                     [](const Cut& a, const Cut& b) { return a.hollow < b.hollow; });
-    if (cuts.size() > most) cuts.resize(most);
-    return cuts;
-}
-
-// Cuts to choose from: the best of all, and of those through the point furthest outside.
-std::vector<Cut> promising_cuts(const Search& search, const Part& part)
-{
-    std::vector<Cut> cuts =
-        least_hollow(search, part, cutting_planes(part.piece, part.hull, search.edges), kFinalists);
-    std::vector<Plane> through;
-    for (const Vec3& way : cutting_directions()) through.push_back({way, way.dot(part.over.where)});
-    for (Cut& cut : least_hollow(search, part, through, kFinalists / 2))
-        cuts.push_back(std::move(cut));
-    return cuts;
-}
-
-// How clear of a point two planes through it leave the hulls of the four pieces that they make;
-// below 0 where the point is inside of one.
-double clearance(std::span<const Vec3> points, const Vec3& at, const Vec3& one, const Vec3& two)
-{
-    std::array<std::vector<Vec3>, 4> pieces;
-    for (const Vec3& point : points) {
-        const Vec3 off = point - at;
-        pieces[(one.dot(off) > 0 ? 1 : 0) + (two.dot(off) > 0 ? 2u : 0u)].push_back(point);
-    }
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto& piece : pieces) {
-        const LooseHull hull = loose_hull(piece);
-        if (!hull.empty()) least = std::min(least, height_above(hull, at));
-    }
-    return least;
-}
-
-// The first of two cuts that together clear the point furthest outside, where no single one does:
-// a ring must be cut twice before its hole is open. False where there are none.
-bool opening_cut(const Search& search, const Part& part, Plane& plane)
-{
-    std::vector<Vec3> points;
-    const std::size_t stride = 1 + part.piece.points.size() / kPointsLooked;
-    for (std::size_t i = 0; i < part.piece.points.size(); i += stride)
-        points.push_back(part.piece.points[i]);
-    points.insert(points.end(), part.piece.corners.begin(), part.piece.corners.end());
-    const std::vector<Vec3> ways = cutting_directions();
-    double best = search.error;
-    bool found = false;
-    for (std::size_t i = 0; i < ways.size(); ++i)
-        for (std::size_t k = i + 1; k < ways.size(); ++k) {
-            const double clear = clearance(points, part.over.where, ways[i], ways[k]);
-            if (!(clear > best) || clear > search.extent) continue;
-            best = clear;
-            plane = {ways[i], ways[i].dot(part.over.where)};
-            found = true;
-        }
-    return found;
-}
-
-// Cuts a part in two; its upper half goes to the end.
-void apply(const Search& search, const Cut& cut, std::size_t which, std::vector<Part>& parts)
-{
-    auto pieces = cut_piece(search.mesh, parts[which].piece, cut.plane, search.slack());
-    Sides<Part> made;
-    for (std::size_t side = 0; side < 2; ++side) {
-        made[side].piece = std::move(pieces[side]);
-        made[side].hull = cut.hulls[side];
-        made[side].over = cut.over[side];
-    }
-    for (const Sample& sample : parts[which].samples)
-        made[cut.plane.normal.dot(sample.point) > cut.plane.offset ? 1 : 0].samples.push_back(
-            sample);
-    parts[which] = std::move(made[0]);
-    parts.push_back(std::move(made[1]));
-}
-
-// Of promising cuts the best, by how far it leaves the hulls outside and how hollow.
-Cut best_cut(const Search& search, const Part& part, std::vector<Cut>& cuts)
-{
-    // What is hollow, spread over the piece's surface, is a depth.
-    double area = search.slack() * search.extent;
-    for (const Sample& sample : part.samples) area += sample.area;
-    for (Cut& cut : cuts) {
-        for (std::size_t side = 0; side < 2; ++side)
-            cut.over[side] = search.overhang(cut.hulls[side]);
-        cut.cost = cut.outside() + kHollow * cut.hollow / area;
-    }
-    return std::move(*std::min_element(cuts.begin(), cuts.end(),
-                                       [](const Cut& a, const Cut& b) { return a.cost < b.cost; }));
-}
-
-bool split(const Search& search, std::size_t which, std::vector<Part>& parts)
-{
-    std::vector<Cut> cuts = promising_cuts(search, parts[which]);
-    if (cuts.empty()) return false;
-    Cut best = best_cut(search, parts[which], cuts);
-    Plane plane;
-    const double volume = best.hulls[0].volume + best.hulls[1].volume;
-    if (best.outside() > kStalled * parts[which].over.least
-        && volume > kStalled * parts[which].hull.volume
-        && opening_cut(search, parts[which], plane)) {
-        Cut cut = look_at(search, parts[which], plane);
-        for (std::size_t side = 0; side < 2; ++side)
-            cut.over[side] = search.overhang(cut.hulls[side]);
-        if (leaves_both(parts[which], cut)) best = std::move(cut);
-    }
-    apply(search, best, which, parts);
-    return true;
-}
+// What a joint hull fills, over the square of the longest side, against how far it reaches outside.
+// With a tenth of it parts that reach far anyway are joined whatever else that fills.
+constexpr double kFilled = 10;
+// The most points of a hull to look at for the answer.
+constexpr std::size_t kLastLooks = 30000;
 
 // The part that reaches furthest outside, of those that a cut may help; as many as there are where
 // none reaches too far.
-std::size_t worst_of(const std::vector<Part>& parts, double error)
+std::size_t worst_of(const std::vector<MeshPart>& parts, double error)
 {
     std::size_t worst = parts.size();
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -289,15 +33,15 @@ std::size_t worst_of(const std::vector<Part>& parts, double error)
 }
 
 // Looks closer at the parts that seem to be good enough.
-void make_sure(const Search& search, std::vector<Part>& parts)
+void make_sure(const PartSearch& search, std::vector<MeshPart>& parts)
 {
-    for (Part& part : parts) {
+    for (MeshPart& part : parts) {
         if (!part.sure) part.over = search.sure_overhang(part.hull);
         part.sure = true;
     }
 }
 
-void cut_worst(const Search& search, std::size_t most, std::vector<Part>& parts)
+void cut_worst(const PartSearch& search, std::size_t most, std::vector<MeshPart>& parts)
 {
     while (parts.size() < most) {
         std::size_t worst = worst_of(parts, search.error);
@@ -318,7 +62,10 @@ struct Joint {
     bool known = false;
 };
 
-Joint join(const Search& search, const std::vector<Part>& parts, std::size_t a, std::size_t b)
+Joint join(const PartSearch& search,
+           const std::vector<MeshPart>& parts,
+           std::size_t a,
+           std::size_t b)
 {
     Joint joint{a, b, {}, 0, 0, false};
     std::vector<Vec3> points = parts[a].hull.vertices;
@@ -331,7 +78,7 @@ Joint join(const Search& search, const std::vector<Part>& parts, std::size_t a, 
 
 // The joint of least cost. How far it reaches outside takes long to find, so that it is looked for
 // only where the rest does not decide.
-Joint& best_joint(const Search& search, std::vector<Joint>& joints)
+Joint& best_joint(const PartSearch& search, std::vector<Joint>& joints)
 {
     while (true) {
         Joint& best =
@@ -344,7 +91,7 @@ Joint& best_joint(const Search& search, std::vector<Joint>& joints)
     }
 }
 
-void merge(const Search& search, std::size_t most, std::vector<Part>& parts)
+void merge(const PartSearch& search, std::size_t most, std::vector<MeshPart>& parts)
 {
     std::vector<Joint> joints;
     for (std::size_t a = 0; a < parts.size(); ++a)
@@ -430,7 +177,7 @@ double left_out(const LooseHull& piece, const std::vector<LooseHull>& hulls, std
 }
 
 // Hulls as contact takes them, how far they reach outside and what of the pieces they leave out.
-void finish(const Search& search,
+void finish(const PartSearch& search,
             const std::vector<LooseHull>& pieces,
             std::size_t most_vertices,
             ConvexParts& made)
@@ -462,7 +209,7 @@ void finish(const Search& search,
     made.volume_error = volume / mass_of(search.mesh).volume - 1;
 }
 
-Search search_of(const Mesh& mesh, double error)
+PartSearch search_of(const Mesh& mesh, double error)
 {
     const double extent = extent_of(mesh);
     return {mesh, extent, error > 0 ? error : kError * extent, inward_edges(mesh)};
@@ -475,8 +222,8 @@ ConvexParts split_into_parts(const Mesh& mesh, const PartsWanted& wanted)
     ConvexParts made;
     made.trouble = trouble_with(mesh);
     if (!made.trouble.empty()) return made;
-    const Search search = search_of(mesh, wanted.error);
-    std::vector<Part> parts(1);
+    const PartSearch search = search_of(mesh, wanted.error);
+    std::vector<MeshPart> parts(1);
     parts[0].piece = whole_piece(mesh);
     parts[0].hull = loose_hull(mesh.vertices);
     parts[0].samples = sample_surface(mesh);
@@ -487,7 +234,7 @@ ConvexParts split_into_parts(const Mesh& mesh, const PartsWanted& wanted)
     cut_worst(search, most == 1 ? 1 : most + most / 2, parts);
     merge(search, most, parts);
     std::vector<LooseHull> pieces;
-    for (Part& part : parts) pieces.push_back(std::move(part.hull));
+    for (MeshPart& part : parts) pieces.push_back(std::move(part.hull));
     finish(search, pieces, kMostPartVertices, made);
     if (made.error > search.error)
         made.remarks.push_back("the error is " + percent(made.error / search.extent)
@@ -501,7 +248,7 @@ ConvexParts put_into_hull(const Mesh& mesh)
     ConvexParts made;
     made.trouble = trouble_with(mesh);
     if (!made.trouble.empty()) return made;
-    const Search search = search_of(mesh, 0);
+    const PartSearch search = search_of(mesh, 0);
     const LooseHull hull = loose_hull(mesh.vertices);
     finish(search, {hull}, hull.vertices.size(), made);
     made.remarks.push_back("the hull fills " + percent(made.volume_error) + " more than the mesh");
