@@ -1,6 +1,7 @@
 #include "kernels/geometry/ray_cast.hpp"
 
 #include "kernels/geometry/mesh_distance.hpp"
+#include "kernels/geometry/ray_passage.hpp"
 #include "kernels/geometry/support.hpp"
 
 #include <algorithm>
@@ -12,145 +13,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The part of a ray's line that lies in a convex solid, and the surface's normal where it enters.
-struct Passage {
-    double enter = -kInfinity, leave = kInfinity;
-    Vec3 normal = Vec3::Zero();
-
-    bool empty() const { return !(enter <= leave); }
-    void clear()
-    {
-        enter = kInfinity;
-        leave = -kInfinity;
-    }
-};
-
-// Keeps what lies in a half-space whose plane the line's start is `above`, and which the line
-// climbs away from at `speed`.
-void keep_below(Passage& passage, double above, double speed, const Vec3& normal)
-{
-    if (speed == 0) {
-        if (above > 0) passage.clear();
-        return;
-    }
-    const double at = -above / speed;
-    if (speed > 0) {
-        passage.leave = std::min(passage.leave, at);
-    } else if (at > passage.enter) {
-        passage.enter = at;
-        passage.normal = normal;
-    }
-}
-
-void keep_between(Passage& passage, const LocalRay& ray, int axis, double half)
-{
-    Vec3 normal = Vec3::Zero();
-    normal[axis] = 1;
-    keep_below(passage, ray.from[axis] - half, ray.along[axis], normal);
-    keep_below(passage, -ray.from[axis] - half, -ray.along[axis], -normal);
-}
-
-// Both work from where the line comes closest, so that a start far away costs no digits.
-Passage through_sphere(const LocalRay& ray, const Vec3& center, double radius)
-{
-    const Vec3 from = ray.from - center;
-    const double closest = -from.dot(ray.along);
-    const Vec3 offset = from + ray.along * closest;
-    const double distance = offset.norm();
-    Passage passage;
-    if (!(distance <= radius)) {
-        passage.clear();
-        return passage;
-    }
-    const double half = std::sqrt((radius - distance) * (radius + distance));
-    passage.enter = closest - half;
-    passage.leave = closest + half;
-    passage.normal = offset - ray.along * half;
-    return passage;
-}
-
-Passage through_endless_cylinder(const LocalRay& ray, double radius)
-{
-    const double x = ray.from.x(), y = ray.from.y();
-    const double speed = std::sqrt(ray.along.x() * ray.along.x() + ray.along.y() * ray.along.y());
-    Passage passage;
-    if (!(speed > 1e-150)) {
-        if (std::sqrt(x * x + y * y) > radius) passage.clear();
-        return passage;
-    }
-    const double ux = ray.along.x() / speed, uy = ray.along.y() / speed;
-    const double side = x * uy - y * ux;
-    if (!(std::abs(side) <= radius)) {
-        passage.clear();
-        return passage;
-    }
-    const double half = std::sqrt((radius - side) * (radius + side));
-    const double closest = -(x * ux + y * uy);
-    passage.enter = (closest - half) / speed;
-    passage.leave = (closest + half) / speed;
-    passage.normal = Vec3(side * uy - half * ux, -side * ux - half * uy, 0);
-    return passage;
-}
-
-Passage through_cylinder(const LocalRay& ray, const Cylinder& cylinder)
-{
-    Passage passage = through_endless_cylinder(ray, cylinder.radius);
-    keep_between(passage, ray, 2, cylinder.half_length);
-    return passage;
-}
-
-// A cylinder and two balls. Together they are convex, so their parts of the line join to one.
-Passage through_capsule(const LocalRay& ray, const Capsule& capsule)
-{
-    const Vec3 end = Vec3::UnitZ() * capsule.half_length;
-    Passage whole = through_cylinder(ray, {capsule.radius, capsule.half_length});
-    if (whole.empty()) whole.clear();
-    for (const Vec3& center : {Vec3(-end), end}) {
-        const Passage ball = through_sphere(ray, center, capsule.radius);
-        if (ball.empty()) continue;
-        // Where a cap of the cylinder ties with the ball, the ball is the surface.
-        if (ball.enter <= whole.enter) {
-            whole.enter = ball.enter;
-            whole.normal = ball.normal;
-        }
-        whole.leave = std::max(whole.leave, ball.leave);
-    }
-    return whole;
-}
-
-Passage through_box(const LocalRay& ray, const Box& box)
-{
-    Passage passage;
-    for (int axis = 0; axis < 3; ++axis) keep_between(passage, ray, axis, box.half_extents[axis]);
-    return passage;
-}
-
-Passage through_hull(const LocalRay& ray, const Hull& hull)
-{
-    Passage passage;
-    for (std::size_t face = 0; face < hull.normals.size(); ++face) {
-        const Vec3& normal = hull.normals[face];
-        keep_below(passage, normal.dot(ray.from) - hull.offsets[face], normal.dot(ray.along),
-                   normal);
-    }
-    return passage;
-}
-
-Passage through_plane(const LocalRay& ray, const Plane& plane)
-{
-    Passage passage;
-    keep_below(passage, plane.normal.dot(ray.from) - plane.offset, plane.normal.dot(ray.along),
-               plane.normal);
-    return passage;
-}
-
-RayMeeting first_of(const Passage& passage, const LocalRay& ray)
+RayMeeting first_of(const RayPassage& passage, const LocalRay& ray)
 {
     const bool meets = !passage.empty() && passage.leave >= 0 && passage.enter <= ray.longest
         && passage.enter < kInfinity;
     if (!meets) return {};
     if (passage.enter < 0) return {0, -ray.along};
-    return {passage.enter + 0.0, unit_or(passage.normal, Vec3(-ray.along))};
+    return {passage.enter + 0.0, unit_or(passage.enter_normal, Vec3(-ray.along))};
 }
 
 // A ray against triangles, sheared so that it runs along one axis: whether it passes left or right
@@ -278,27 +147,16 @@ RayMeeting cast_ray(const Shapes& shapes, ShapeRef shape, const LocalRay& ray)
 {
     const std::size_t i = shape.index;
     switch (shape.kind) {
-    case ShapeKind::sphere:
-        return first_of(through_sphere(ray, Vec3::Zero(), shapes.spheres[i].radius), ray);
-    case ShapeKind::capsule:
-        return first_of(through_capsule(ray, shapes.capsules[i]), ray);
-    case ShapeKind::cylinder:
-        return first_of(through_cylinder(ray, shapes.cylinders[i]), ray);
-    case ShapeKind::box:
-        return first_of(through_box(ray, shapes.boxes[i]), ray);
-    case ShapeKind::hull:
-        return first_of(through_hull(ray, shapes.hulls[i]), ray);
-    case ShapeKind::plane:
-        return first_of(through_plane(ray, shapes.planes[i]), ray);
     case ShapeKind::mesh:
         return cast_at_mesh(shapes.meshes[i], ray);
     case ShapeKind::solid:
         if (signed_distance(shapes.solids[i].mesh, ray.from) <= 0) return {0, -ray.along};
         return cast_at_mesh(shapes.solids[i].mesh, ray);
     case ShapeKind::triangle:
-        break;
+        return {};
+    default:
+        return first_of(pass_through(shapes, shape, ray), ray);
     }
-    return {};
 }
 
 }  // namespace throng

@@ -1,0 +1,124 @@
+// Depth image: where parallel rays are inside a body, as intervals of depth, after the Z buffer.
+//
+// All layers of a body are kept, so that what passes through a hole is seen to. Triangles are found
+// by the mesh's own tree and drawn into the grid of rays by our own arithmetic, rather than shot at
+// through a ray tracer: bits are then the same on every machine, a ray through a shared edge
+// meets exactly one of the two triangles, so that closed meshes give no odd counts, and no second
+// tree is kept. Convex shapes have their intervals in closed form.
+//
+// Source: Heidelberger, Teschner, Gross, Detection of collisions and self-collisions using
+//         image-space techniques (2004); Woop, Benthin, Wald, Watertight Ray/Triangle Intersection
+//         (2013), for the sign of an edge.
+#pragma once
+
+#include "kernels/geometry/ray_passage.hpp"
+
+#include <limits>
+#include <span>
+
+namespace throng {
+
+/// Rays along z through an evenly spaced grid of x and y.
+///
+///   pixel   m, from one ray to the next
+///   first   of the grid's first ray, in pixels: whole numbers, by which a ray is known again
+///   shift   in pixels, added to all of them
+///   count   of rays along x and along y
+struct RayGrid {
+    double pixel = 0;
+    std::array<std::int32_t, 2> first{};
+    std::array<double, 2> shift{};
+    std::array<std::int32_t, 2> count{};
+
+    double at(std::size_t axis, std::int32_t i) const
+    {
+        return (first[axis] + i + shift[axis]) * pixel;
+    }
+    std::size_t rays() const
+    {
+        return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]);
+    }
+};
+
+/// What of a body counts as its inside.
+///
+///   all     what its surface encloses, each layer for itself. Hits need not pair up: a way in is
+///           taken with the nearest way out that no later way in has taken, and what is left over
+///           is left out. So bodies that cut themselves are whole, and where a triangle is missing
+///           the rays through it lose the layer, and no more
+///   single  from the first way in to the last way out. Half the work, and wrong wherever a ray
+///           passes through a body more than once: holes and hollows are filled
+///   sheet   of an open mesh: what lies behind a front face, as far as its next face, and some
+///           thickness at most; twice that where the next one is a back face. What hangs that close
+///           below another front face counts as inside it
+enum class Layers : std::uint8_t { all, single, sheet };
+
+/// A part of a ray inside a body.
+///
+///   enter, leave   m, z where it begins and ends; infinite for what has no end
+///   *_face         for DepthImage::normal(), of a mesh the triangle; kNoFace where there is no
+///                  surface
+struct RayInterval {
+    static constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
+
+    double enter = 0, leave = 0;
+    std::uint32_t enter_face = kNoFace, leave_face = kNoFace;
+};
+
+/// The intervals of a body along the rays of a grid, x fastest. Intervals of a ray do not overlap,
+/// and ascend. Keeps its room from one drawing to the next.
+class DepthImage {
+public:
+    /// Draws a shape of any kind but a lone triangle. Never throws but for want of memory.
+    ///
+    ///   in_view    the shape's pose in the frame of the rays
+    ///   thickness  m, of a sheet; of others not looked at
+    ///
+    /// Keep the shapes while the image is in use.
+    void draw(const Shapes& shapes,
+              ShapeRef shape,
+              const Pose& in_view,
+              const RayGrid& grid,
+              Layers layers,
+              double thickness = 0);
+
+    std::span<const RayInterval> on(std::size_t ray) const
+    {
+        return std::span(intervals_).subspan(begin_[ray], begin_[ray + 1] - begin_[ray]);
+    }
+    /// Unit, out of the body, in the frame of the rays. Of a convex shape it is worked out anew.
+    Vec3 normal(std::uint32_t face) const;
+
+private:
+    struct Hit {
+        double depth;
+        std::uint32_t ray, triangle;
+        bool enters;
+    };
+
+    RayPassage passage_of(std::int32_t column, std::int32_t row) const;
+    void draw_convex();
+    void draw_triangles();
+    void draw_triangle(std::uint32_t triangle, const std::array<Vec3, 3>& corners);
+    void draw_row(std::uint32_t triangle, const std::array<Vec3, 3>& corners, std::int32_t row);
+    void sort_hits();
+    void join_layers(std::span<const Hit> hits);
+    void join_ends(std::span<const Hit> hits);
+    void join_sheets(std::span<const Hit> hits, double thickness);
+    void append(const RayInterval& interval, std::size_t first);
+
+    RayGrid grid_;
+    const Shapes* shapes_ = nullptr;
+    const Mesh* mesh_ = nullptr;
+    ShapeRef shape_;
+    Vec3 position_ = Vec3::Zero();
+    Mat3 turn_ = Mat3::Identity();
+    std::vector<std::uint32_t> begin_;  // [rays + 1] into intervals_
+    std::vector<RayInterval> intervals_;
+
+    // Room for work.
+    std::vector<Hit> hits_, sorted_;
+    std::vector<std::uint32_t> hit_begin_, found_, open_;
+};
+
+}  // namespace throng

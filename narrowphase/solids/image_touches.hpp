@@ -1,0 +1,46 @@
+// Image touches: where a solid touches another shape, seen along rays.
+//
+// Both are drawn three times, along each axis of the solid's frame; where surfaces of the two face
+// one another along a ray, over a shared part of it or a small gap, is a touch. A ray along a
+// surface sees nothing of worth, so of each touch the view counts that its normal faces most,
+// within 55 degrees; and where two views see the same shared place, the one that sees less depth,
+// for that is the way out of a thin overlap.
+//
+// What is thinner than a pixel across all three views may be missed. A depth is that of the rays: a
+// corner that comes to its point between them is told up to some pixel less deep, a smooth surface
+// by a pixel squared over its radius.
+//
+// Source: Faure, Barbier, Allard, Falipou, Image-based collision detection and response between
+//         arbitrary volume objects (2008), which this follows in taking contacts from the ends of
+//         shared intervals.
+#pragma once
+
+#include "kernels/data/shapes.hpp"
+#include "narrowphase/solids/contact_patches.hpp"
+
+namespace throng {
+
+/// Rays along the longer side of the smaller of the two, where the solid does not say.
+inline constexpr int kAutoRays = 32;
+
+/// The most rays along a side, whatever is asked for.
+inline constexpr int kMostRays = 512;
+
+/// Appends a touch for each ray and layer along which a solid and another shape share something or
+/// come within `reach` of one another, in the solid's frame, in order of feature.
+///
+///   other  of any kind but a triangle or a solid without triangles; a mesh by its front faces
+///   reach  m, touches further apart along their normal are left out
+///
+/// The rays stay where they are in the solid's frame, whatever the other does: a pixel is the
+/// longest side of the smaller shape's own box over Solid::rays. `feature` names view, ray and
+/// layer. Never throws but for want of memory; allocates until it has met its largest pair, once a
+/// thread.
+void touch_by_depth_image(const Shapes& shapes,
+                          ShapeRef solid,
+                          ShapeRef other,
+                          const Pose& other_in_solid,
+                          double reach,
+                          std::vector<SurfaceTouch>& touches);
+
+}  // namespace throng
