@@ -1,11 +1,9 @@
 #include "pipeline/convex_query.hpp"
 
-#include "kernels/geometry/hull.hpp"
 #include "narrowphase/methods/convex_methods.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "pipeline/names.hpp"
-#include "pipeline/scene_check.hpp"
-#include "pipeline/scene_rules.hpp"
+#include "pipeline/query_shape.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,58 +14,13 @@ namespace {
 // A reach beyond all that a scene may hold, whose square is finite still.
 constexpr double kAnywhere = 1e30;
 
-struct ShapeMaker {
-    Shapes& shapes;
-
-    template <class Shape>
-    static ShapeRef append(std::vector<Shape>& kind, ShapeKind name, Shape shape)
-    {
-        kind.push_back(std::move(shape));
-        return {name, static_cast<std::uint32_t>(kind.size() - 1)};
-    }
-    ShapeRef operator()(const SphereShape& s) const
-    {
-        return append(shapes.spheres, ShapeKind::sphere, Sphere{s.radius});
-    }
-    ShapeRef operator()(const CapsuleShape& s) const
-    {
-        return append(shapes.capsules, ShapeKind::capsule, Capsule{s.radius, s.half_length});
-    }
-    ShapeRef operator()(const CylinderShape& s) const
-    {
-        return append(shapes.cylinders, ShapeKind::cylinder, Cylinder{s.radius, s.half_length});
-    }
-    ShapeRef operator()(const BoxShape& s) const
-    {
-        return append(shapes.boxes, ShapeKind::box, Box{s.half_extents});
-    }
-    ShapeRef operator()(const HullShape& s) const
-    {
-        return append(shapes.hulls, ShapeKind::hull, build_hull(s.points).hull);
-    }
-    // Refused before they come here.
-    ShapeRef operator()(const PlaneShape&) const { return {}; }
-    ShapeRef operator()(const MeshShape&) const { return {}; }
-    ShapeRef operator()(const CompoundShape&) const { return {}; }
-};
-
-std::string trouble_with(const ShapeDescription& shape)
+std::string trouble_with_convex(const ShapeDescription& shape)
 {
     if (std::holds_alternative<PlaneShape>(shape.shape)
         || std::holds_alternative<MeshShape>(shape.shape)
         || std::holds_alternative<CompoundShape>(shape.shape))
         return "wanted a sphere, capsule, cylinder, box or hull";
-    Scene scene;
-    scene.shapes.push_back({"", shape.shape});
-    try {
-        check_shapes(scene);
-    } catch (const SceneTrouble& trouble) {
-        // The path leads through a scene that nobody but us has seen.
-        const ScenePath inside(trouble.path.begin() + std::min<long>(2, std::ssize(trouble.path)),
-                               trouble.path.end());
-        return path_text(inside) + ": " + trouble.wanted;
-    }
-    return {};
+    return trouble_with(shape);
 }
 
 QueryVerdict verdict_of(Touch touch)
@@ -98,9 +51,7 @@ std::string unknown_method(std::string_view method)
 
 std::string trouble_with(const Pose& pose, double reach)
 {
-    if (!pose.position.allFinite() || pose.position.cwiseAbs().maxCoeff() > kGreatestLength)
-        return "position is not finite or too far; give a place in m";
-    if (!is_unit(pose.orientation)) return std::string(kWantedUnitQuaternion);
+    if (std::string trouble = trouble_with(pose); !trouble.empty()) return trouble;
     if (!(reach >= 0)) return "reach is below 0 or no number; give a distance in m";
     return {};
 }
@@ -130,13 +81,13 @@ ConvexQuery::ConvexQuery(const ShapeDescription& a, const ShapeDescription& b)
     : inside_(std::make_unique<Inside>())
 {
     for (const auto& [name, shape] : {std::pair("a", &a), std::pair("b", &b)}) {
-        const std::string trouble = trouble_with(*shape);
+        const std::string trouble = trouble_with_convex(*shape);
         if (trouble.empty()) continue;
         inside_->trouble = std::string("shape ") + name + ": " + trouble;
         return;
     }
-    const ShapeMaker maker{inside_->shapes};
-    const ShapeRef first = std::visit(maker, a.shape), second = std::visit(maker, b.shape);
+    const ShapeRef first = append_convex(inside_->shapes, a);
+    const ShapeRef second = append_convex(inside_->shapes, b);
     inside_->pair.emplace(inside_->shapes, first, second, Pose{});
     inside_->memories.resize(convex_methods().size());
 }

@@ -6,4 +6,5 @@
 #include "pipeline/report.hpp"
 #include "pipeline/scene.hpp"
 #include "pipeline/settings.hpp"
+#include "pipeline/volume_query.hpp"
 #include "pipeline/world.hpp"
