@@ -253,6 +253,13 @@ bool is_closed(const Mesh& mesh)
            });
 }
 
+const Mesh* mesh_of(const Shapes& shapes, ShapeRef shape)
+{
+    if (shape.kind == ShapeKind::mesh) return &shapes.meshes[shape.index];
+    if (shape.kind == ShapeKind::solid) return &shapes.solids[shape.index].mesh;
+    return nullptr;
+}
+
 Box3 triangle_box(const Mesh& mesh, std::uint32_t triangle)
 {
     const auto& [a, b, c] = mesh.triangles[triangle];

@@ -28,10 +28,13 @@ bool is_closed(const Mesh& mesh);
 
 Box3 triangle_box(const Mesh& mesh, std::uint32_t triangle);
 
-/// Visits the triangles whose boxes overlap the given one, in mesh axes. The order is that of the
-/// tree: sort where it matters.
-template <class Visit>
-void visit_triangles(const Mesh& mesh, const Box3& box, Visit visit)
+/// The triangles of a mesh or a solid; null for other kinds.
+const Mesh* mesh_of(const Shapes& shapes, ShapeRef shape);
+
+/// Visits all triangles of those nodes of the tree that are reached, as are all above them. The
+/// order is that of the tree: sort where it matters.
+template <class Reached, class Visit>
+void visit_nodes(const Mesh& mesh, Reached reached, Visit visit)
 {
     // A child holds at most three quarters of its parent's triangles: 64 levels are 2^26 triangles.
     std::array<std::uint32_t, 96> waiting;
@@ -39,16 +42,27 @@ void visit_triangles(const Mesh& mesh, const Box3& box, Visit visit)
     if (!mesh.tree.empty()) waiting[count++] = 0;
     while (count > 0) {
         const Mesh::Node& node = mesh.tree[waiting[--count]];
-        if (!box.overlaps({node.lower, node.upper})) continue;
+        if (!reached(node)) continue;
         if (node.count == 0) {
             waiting[count++] = node.first + 1;
             waiting[count++] = node.first;
         }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const std::uint32_t triangle = mesh.order[i];
-            if (box.overlaps(triangle_box(mesh, triangle))) visit(triangle);
-        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(mesh.order[i]);
     }
+}
+
+/// Visits the triangles whose boxes overlap the given one, in mesh axes, in the order of the tree.
+template <class Visit>
+void visit_triangles(const Mesh& mesh, const Box3& box, Visit visit)
+{
+    visit_nodes(
+        mesh,
+        [&](const Mesh::Node& node) {
+            return box.overlaps({node.lower, node.upper});
+        },
+        [&](std::uint32_t triangle) {
+            if (box.overlaps(triangle_box(mesh, triangle))) visit(triangle);
+        });
 }
 
 /// Appends the triangles whose boxes overlap the given one, in mesh axes, in ascending order.

@@ -66,13 +66,6 @@ rays_between(const RayGrid& grid, std::size_t axis, double low, double high)
             static_cast<std::int32_t>(std::min(to, last))};
 }
 
-const Mesh* mesh_of(const Shapes& shapes, ShapeRef shape)
-{
-    if (shape.kind == ShapeKind::mesh) return &shapes.meshes[shape.index];
-    if (shape.kind == ShapeKind::solid) return &shapes.solids[shape.index].mesh;
-    return nullptr;
-}
-
 }  // namespace
 
 void DepthImage::draw(const Shapes& shapes,
@@ -145,25 +138,23 @@ void DepthImage::draw_convex()
 void DepthImage::draw_triangles()
 {
     hits_.clear();
-    found_.clear();
-    if (mesh_->tree.empty() || grid_.rays() == 0) return;
-    const Mesh::Node& root = mesh_->tree.front();
-    const double size = (root.upper - root.lower).norm();
-    const Vec3 middle = turn_ * (0.5 * (root.lower + root.upper)) + position_;
-    const Vec3 low(grid_.at(0, 0), grid_.at(1, 0), middle.z() - size);
-    const Vec3 high(grid_.at(0, grid_.count[0] - 1), grid_.at(1, grid_.count[1] - 1),
-                    middle.z() + size);
-    const Vec3 center = turn_.transpose() * (0.5 * (low + high) - position_);
-    // A pixel more, so that rounding leaves nothing out.
-    const Vec3 half =
-        turn_.transpose().cwiseAbs() * (0.5 * (high - low) + Vec3::Constant(grid_.pixel));
-    find_triangles(*mesh_, {center - half, center + half}, found_);
-    for (const std::uint32_t triangle : found_) {
+    if (grid_.rays() == 0) return;
+    // The column and a pixel more, so that rounding leaves nothing out.
+    const Vec3 low(grid_.at(0, -1), grid_.at(1, -1), 0);
+    const Vec3 high(grid_.at(0, grid_.count[0]), grid_.at(1, grid_.count[1]), 0);
+    const Vec3 center = 0.5 * (low + high) - position_, half = 0.5 * (high - low);
+    const Mat3 reach = turn_.cwiseAbs();
+    const auto in_column = [&](const Mesh::Node& node) {
+        const Vec3 apart = (turn_ * (0.5 * (node.lower + node.upper)) - center).cwiseAbs();
+        const Vec3 near = reach * (0.5 * (node.upper - node.lower)) + half;
+        return apart.x() <= near.x() && apart.y() <= near.y();
+    };
+    visit_nodes(*mesh_, in_column, [&](std::uint32_t triangle) {
         std::array<Vec3, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = turn_ * mesh_->vertices[mesh_->triangles[triangle][i]] + position_;
         draw_triangle(triangle, corners);
-    }
+    });
 }
 
 void DepthImage::draw_triangle(std::uint32_t triangle, const std::array<Vec3, 3>& corners)

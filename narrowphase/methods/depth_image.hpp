@@ -118,7 +118,7 @@ private:
 
     // Room for work.
     std::vector<Hit> hits_, sorted_;
-    std::vector<std::uint32_t> hit_begin_, found_, open_;
+    std::vector<std::uint32_t> hit_begin_, open_;
 };
 
 }  // namespace throng

@@ -1,6 +1,6 @@
 #include "narrowphase/methods/exact_volume.hpp"
 
-#include "kernels/data/bounds.hpp"
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/support.hpp"
 #include "narrowphase/methods/cut_polyhedron.hpp"
 
@@ -12,13 +12,6 @@ namespace throng {
 namespace {
 
 using Triangle = std::array<Vec3, 3>;
-
-const Mesh* mesh_of(const Shapes& shapes, ShapeRef shape)
-{
-    if (shape.kind == ShapeKind::mesh) return &shapes.meshes[shape.index];
-    if (shape.kind == ShapeKind::solid) return &shapes.solids[shape.index].mesh;
-    return nullptr;
-}
 
 std::vector<Triangle> triangles_of(const Shapes& shapes, ShapeRef shape)
 {

@@ -1,6 +1,7 @@
 #include "narrowphase/methods/shared_volume.hpp"
 
 #include "kernels/check.hpp"
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/geometry/support.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
@@ -29,9 +30,7 @@ Box3 common(const Box3& a, const Box3& b)
 // Bounds of a mesh by its vertices, for rays are dear.
 Box3 tight_bounds(const Shapes& shapes, ShapeRef shape, const Pose& pose)
 {
-    const Mesh* mesh = nullptr;
-    if (shape.kind == ShapeKind::mesh) mesh = &shapes.meshes[shape.index];
-    if (shape.kind == ShapeKind::solid) mesh = &shapes.solids[shape.index].mesh;
+    const Mesh* const mesh = mesh_of(shapes, shape);
     if (mesh == nullptr) return shape_bounds(shapes, shape, pose);
     const Mat3 turn = pose.orientation.toRotationMatrix();
     Box3 box;

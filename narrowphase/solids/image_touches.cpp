@@ -1,5 +1,6 @@
 #include "narrowphase/solids/image_touches.hpp"
 
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/geometry/support.hpp"
 #include "narrowphase/methods/depth_image.hpp"
@@ -27,6 +28,9 @@ constexpr double kFlat = 1e-6;
 // views tell then is told twice.
 constexpr double kNearlyMost = 0.85;
 
+// How much longer a gap may be along a ray than along its normal, which leans 60 degrees at most.
+constexpr double kAlong = 2;
+
 // A pair of surfaces that face one another along a ray.
 //
 //   low, high      m, along the ray: where the lower body leaves and the upper enters, in order
@@ -52,10 +56,6 @@ struct View {
 
     int across() const { return (axis + 1) % 3; }
     int upward() const { return (axis + 2) % 3; }
-};
-
-struct Scratch {
-    std::array<View, 3> views;
 };
 
 // The axes in a circle, so that `axis` becomes z: exactly, to the last bit.
@@ -88,6 +88,30 @@ RayGrid grid_through(const Box3& box, const View& view, double pixel)
         grid.count[k] = static_cast<std::int32_t>(std::min(high - low + 1, 2.0 * kMostRays));
     }
     return grid;
+}
+
+// What of a box the triangles of a mesh come near, or all of it where there are none in it: perhaps
+// the mesh goes round it.
+Box3 part_near(const Mesh& mesh, const Pose& pose, const Box3& box, double distance)
+{
+    const Mat3 turn = pose.orientation.toRotationMatrix(), reach = turn.cwiseAbs();
+    const auto near = [&](const Mesh::Node& node) {
+        const Vec3 center = turn * (0.5 * (node.lower + node.upper)) + pose.position;
+        const Vec3 half = reach * (0.5 * (node.upper - node.lower));
+        return box.overlaps({center - half, center + half});
+    };
+    Box3 found;
+    visit_nodes(mesh, near, [&](std::uint32_t triangle) {
+        Box3 round;
+        for (const std::uint32_t corner : mesh.triangles[triangle]) {
+            const Vec3 at = turn * mesh.vertices[corner] + pose.position;
+            round = joined(round, {at, at});
+        }
+        if (box.overlaps(round)) found = joined(found, round);
+    });
+    if (found.empty()) return box;
+    const Vec3 room = Vec3::Constant(distance);
+    return {(found.lower - room).cwiseMax(box.lower), (found.upper + room).cwiseMin(box.upper)};
 }
 
 // Whether two intervals touch or nearly do, and with b above a or below: by the lesser way out.
@@ -254,6 +278,56 @@ bool is_shallower_in(const View& view, const Vec3& place, double separation)
     return false;
 }
 
+// What of the two bounds rays have to go through: only those near the surface of both can tell of
+// touches, and most of two boxes is not. Empty where nothing comes within reach.
+Box3 part_to_look_at(
+    const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pose& other_in_solid, double reach)
+{
+    const Box3 a = shape_bounds(shapes, solid, {}), b = shape_bounds(shapes, other, other_in_solid);
+    const Vec3 room = Vec3::Constant(reach);
+    Box3 part{a.lower.cwiseMax(b.lower) - room, a.upper.cwiseMin(b.upper) + room};
+    if (!(part.lower.array() <= part.upper.array()).all()) return {};
+    if (const Mesh* const mesh = mesh_of(shapes, other))
+        part = part_near(*mesh, other_in_solid, part, kAlong * reach);
+    return part_near(shapes.solids[solid.index].mesh, {}, part, kAlong * reach);
+}
+
+// The same for a pair, whatever the pose of the other: that is what makes ids last.
+double pixel_of(const Shapes& shapes, ShapeRef solid, ShapeRef other)
+{
+    double size = longest_side(shapes, solid);
+    if (other.kind != ShapeKind::mesh) size = std::min(size, longest_side(shapes, other));
+    const int wanted = shapes.solids[solid.index].rays;
+    return size / std::clamp(wanted > 0 ? wanted : kAutoRays, 2, kMostRays);
+}
+
+std::uint32_t feature_of(const View& view, const Facing& facing)
+{
+    const auto width = static_cast<std::uint32_t>(view.grid.count[0]);
+    const auto place = [&](std::size_t k, std::uint32_t ray) {
+        return (static_cast<std::uint32_t>(view.grid.first[k]) + ray) & 0x1fffU;
+    };
+    return static_cast<std::uint32_t>(view.axis) << 30 | place(1, facing.ray / width) << 17
+        | place(0, facing.ray % width) << 4 | facing.layers;
+}
+
+void append_touches(const View& view,
+                    const std::array<View, 3>& views,
+                    double reach,
+                    std::vector<SurfaceTouch>& touches)
+{
+    for (const Facing& facing : view.facings) {
+        if (!facing.kept || facing.separation > reach) continue;
+        const Vec3 shared = place_of(view, facing, facing.shared);
+        const auto sees_less = [&](const View& seen) {
+            return seen.axis != view.axis && is_shallower_in(seen, shared, facing.separation);
+        };
+        if (facing.separation < 0 && std::any_of(views.begin(), views.end(), sees_less)) continue;
+        const Vec3 place = place_of(view, facing, 0.5 * (facing.low + facing.high));
+        touches.push_back({place, facing.normal, facing.separation, feature_of(view, facing)});
+    }
+}
+
 }  // namespace
 
 void touch_by_depth_image(const Shapes& shapes,
@@ -263,53 +337,27 @@ void touch_by_depth_image(const Shapes& shapes,
                           double reach,
                           std::vector<SurfaceTouch>& touches)
 {
-    thread_local Scratch scratch;
-    const Box3 own = shape_bounds(shapes, solid, {});
-    const Box3 box = shape_bounds(shapes, other, other_in_solid);
-    const Vec3 room = Vec3::Constant(reach);
-    const Box3 common{own.lower.cwiseMax(box.lower) - room, own.upper.cwiseMin(box.upper) + room};
-    if (!(common.lower.array() <= common.upper.array()).all()) return;
-    const bool sheet = other.kind == ShapeKind::mesh;
-    const double size = sheet ? longest_side(shapes, solid)
-                              : std::min(longest_side(shapes, solid), longest_side(shapes, other));
-    const int wanted = shapes.solids[solid.index].rays;
-    const double pixel = size / std::clamp(wanted > 0 ? wanted : kAutoRays, 2, kMostRays);
-    if (!(pixel > 0)) return;
+    thread_local std::array<View, 3> views;
+    const Box3 part = part_to_look_at(shapes, solid, other, other_in_solid, reach);
+    const double pixel = pixel_of(shapes, solid, other);
+    if (part.empty() || !(pixel > 0)) return;
     // Half of the solid's thickness: what sinks deeper is past its middle.
+    const Box3 own = shape_bounds(shapes, solid, {});
     const double thickness = 0.5 * (own.upper - own.lower).minCoeff();
+    const Layers layers = other.kind == ShapeKind::mesh ? Layers::sheet : Layers::all;
 
     for (int axis = 0; axis < 3; ++axis) {
-        View& view = scratch.views[static_cast<std::size_t>(axis)];
+        View& view = views[static_cast<std::size_t>(axis)];
         view.axis = axis;
         view.from_a = turned_to(axis);
-        view.grid = grid_through(common, view, pixel);
+        view.grid = grid_through(part, view, pixel);
         view.a.draw(shapes, solid, view.from_a, view.grid, Layers::all);
-        view.b.draw(shapes, other, view.from_a * other_in_solid, view.grid,
-                    sheet ? Layers::sheet : Layers::all, thickness);
-        // A gap along a ray is longer than along a normal that leans 55 degrees.
-        collect_facings(view, 1.7321 * reach);
+        view.b.draw(shapes, other, view.from_a * other_in_solid, view.grid, layers, thickness);
+        collect_facings(view, kAlong * reach);
         find_regions(view);
         find_normals(view);
     }
-    for (const View& view : scratch.views)
-        for (const Facing& facing : view.facings) {
-            if (!facing.kept || facing.separation > reach) continue;
-            const Vec3 shared = place_of(view, facing, facing.shared);
-            const auto hidden = [&](const View& seen) {
-                return seen.axis != view.axis && is_shallower_in(seen, shared, facing.separation);
-            };
-            if (facing.separation < 0
-                && std::any_of(scratch.views.begin(), scratch.views.end(), hidden))
-                continue;
-            const auto width = static_cast<std::uint32_t>(view.grid.count[0]);
-            const auto id = [&](std::size_t k, std::uint32_t ray) {
-                return (static_cast<std::uint32_t>(view.grid.first[k]) + ray) & 0x1fffU;
-            };
-            const std::uint32_t feature = static_cast<std::uint32_t>(view.axis) << 30
-                | id(1, facing.ray / width) << 17 | id(0, facing.ray % width) << 4 | facing.layers;
-            const Vec3 place = place_of(view, facing, 0.5 * (facing.low + facing.high));
-            touches.push_back({place, facing.normal, facing.separation, feature});
-        }
+    for (const View& view : views) append_touches(view, views, reach, touches);
 }
 
 }  // namespace throng
