@@ -1,19 +1,18 @@
 #include "pipeline/solid_maker.hpp"
 
-#include "kernels/geometry/mesh.hpp"
-#include "kernels/geometry/mesh_distance.hpp"
+#include "kernels/geometry/mesh_health.hpp"
 #include "kernels/geometry/surface_points.hpp"
-#include "kernels/geometry/voxel_bricks.hpp"
-#include "narrowphase/methods/convex_parts.hpp"
+#include "narrowphase/methods/sphere_tree.hpp"
+#include "narrowphase/solids/field_cache.hpp"
+#include "narrowphase/solids/image_touches.hpp"
+#include "narrowphase/solids/parts_cache.hpp"
 #include "pipeline/dials.hpp"
+
+#include <cstdio>
 
 namespace throng {
 
 namespace {
-
-// Voxels along the longest side, and rays: details of a fortieth of the size are felt in contact.
-constexpr int kVoxels = 40, kRays = 40;
-constexpr double kBand = 3;  // voxels outside of the surface that have a distance
 
 // What the shape asks for, or else the scene.
 Settings own_settings(const MeshShape& mesh, Settings settings)
@@ -26,6 +25,18 @@ Settings own_settings(const MeshShape& mesh, Settings settings)
     return settings;
 }
 
+std::string short_text(double number)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", number);
+    return text;
+}
+
+double longest_side(const Mesh& mesh)
+{
+    return (mesh.tree.front().upper - mesh.tree.front().lower).maxCoeff();
+}
+
 // One call of make_solid.
 class SolidMaker {
 public:
@@ -35,25 +46,26 @@ public:
 
     MadeSolid make(const MeshShape& stated)
     {
-        MeshResult built = build_mesh(stated.vertices, stated.triangles);
-        if (!built.trouble.empty()) return refused(built.trouble);
-        find_vertex_normals(built.mesh);
-        made_.mass = mass_of(built.mesh);
-        const Mesh::Node& root = built.mesh.tree.front();
-        size_ = (root.upper - root.lower).maxCoeff();
+        MendedMesh mended = mend(stated.vertices, stated.triangles);
+        if (!mended.trouble.empty()) return refused(mended.trouble);
+        mesh_ = std::move(mended.mesh);
+        made_.remarks = std::move(mended.remarks);
+        sound_ = mended.health.sound();
+        if (!sound_ && !take_level_set()) return std::move(made_);
+        made_.mass = mass_of(mesh_);
         switch (settings_.nonconvex) {
-        case NonConvex::hull:
-            return as_hull(built.mesh);
-        case NonConvex::parts:
-            return as_parts(built.mesh);
-        case NonConvex::spheres:
-            return as_spheres(std::move(built.mesh));
-        case NonConvex::depth_image:
-            return as_depth_image(std::move(built.mesh));
         case NonConvex::voxels:
+            return as_voxels();
+        case NonConvex::spheres:
+            return as_spheres();
+        case NonConvex::depth_image:
+            return as_depth_image();
+        case NonConvex::parts:
+            return as_parts();
+        case NonConvex::hull:
             break;
         }
-        return as_voxels(std::move(built.mesh));
+        return as_hulls(put_into_hull(mesh_));
     }
 
 private:
@@ -63,54 +75,103 @@ private:
         return std::move(made_);
     }
 
-    MadeSolid as_voxels(Mesh mesh)
+    bool make_field(FieldSign sign)
     {
-        Solid solid;
-        solid.way = SolidWay::voxels;
-        const double voxel = settings_.voxel_size > 0 ? settings_.voxel_size : size_ / kVoxels;
-        const Mesh::Node& root = mesh.tree.front();
-        solid.field = bake_bricks({root.lower, root.upper}, voxel, kBand * voxel,
-                                  [&](const Vec3& at) { return signed_distance(mesh, at); });
-        solid.points = build_surface_points(mesh, voxel);
-        solid.error = 0.5 * voxel;
-        solid.mesh = std::move(mesh);
-        made_.shape = std::move(solid);
-        return std::move(made_);
+        FieldSettings wanted;
+        wanted.voxel = settings_.voxel_size;
+        wanted.sign = sign;
+        field_ = cached_field(mesh_, wanted, cache_folder_);
+        made_.remarks.insert(made_.remarks.end(), field_.remarks.begin(), field_.remarks.end());
+        made_.trouble = field_.trouble;
+        return field_.trouble.empty();
     }
 
-    MadeSolid as_spheres(Mesh mesh) { return as_voxels(std::move(mesh)); }
-    MadeSolid as_depth_image(Mesh mesh)
+    // A mesh that does not tell its inside from its outside is taken as the surface of what a flood
+    // from outside does not reach.
+    bool take_level_set()
+    {
+        if (!make_field(FieldSign::flood)) return false;
+        MeshResult surface = field_surface(field_.bricks);
+        made_.trouble = surface.trouble;
+        if (!surface.trouble.empty()) return false;
+        mesh_ = std::move(surface.mesh);
+        made_.remarks.push_back("taken as the surface of its level set, with voxels of "
+                                + short_text(field_.bricks.voxel) + " m");
+        return true;
+    }
+
+    MadeSolid as_voxels()
+    {
+        if (sound_ && !make_field(FieldSign::normals)) return std::move(made_);
+        Solid solid;
+        solid.way = SolidWay::voxels;
+        solid.points = build_surface_points(mesh_, field_.bricks.voxel);
+        solid.field = std::move(field_.bricks);
+        solid.error = 0.5 * solid.field.voxel;
+        const auto bricks = solid.field.values.size() / VoxelBricks::kValues;
+        made_.summary = "voxels of " + short_text(solid.field.voxel) + " m, "
+            + std::to_string(bricks) + " bricks of 8 x 8 x 8 ("
+            + short_text(static_cast<double>(solid.field.values.size()) * 4e-6) + " MB), "
+            + std::to_string(solid.points.size()) + " surface points";
+        return finished(std::move(solid));
+    }
+
+    MadeSolid as_spheres()
+    {
+        SphereTreeLimits limits;
+        if (settings_.sphere_levels > 0) limits.levels = settings_.sphere_levels;
+        Solid solid;
+        solid.way = SolidWay::spheres;
+        solid.spheres = build_sphere_tree(mesh_, limits);
+        if (solid.spheres.levels.empty()) return refused("has no inside that spheres could fill");
+        const SphereTree::Level& last = solid.spheres.levels.back();
+        solid.error = last.error;
+        made_.summary = std::to_string(last.nodes.size()) + " spheres on level "
+            + std::to_string(solid.spheres.levels.size());
+        return finished(std::move(solid));
+    }
+
+    MadeSolid as_depth_image()
     {
         Solid solid;
         solid.way = SolidWay::depth_image;
-        solid.rays = settings_.image_resolution > 0 ? settings_.image_resolution : kRays;
-        solid.error = size_ / solid.rays;
-        solid.mesh = std::move(mesh);
+        solid.rays = settings_.image_resolution > 0 ? settings_.image_resolution : kAutoRays;
+        solid.error = longest_side(mesh_) / solid.rays;
+        made_.summary = "depth images, " + std::to_string(solid.rays) + " rays along a side";
+        return finished(std::move(solid));
+    }
+
+    MadeSolid finished(Solid solid)
+    {
+        made_.summary += ", depths within " + short_text(solid.error) + " m";
+        solid.mesh = std::move(mesh_);
         made_.shape = std::move(solid);
         return std::move(made_);
     }
 
-    MadeSolid as_parts(const Mesh& mesh)
+    MadeSolid as_parts()
     {
         PartsWanted wanted;
         if (settings_.max_parts > 0) wanted.max_parts = settings_.max_parts;
-        return as_hulls(split_into_parts(mesh, wanted));
+        return as_hulls(cached_parts(mesh_, wanted, cache_folder_));
     }
-
-    MadeSolid as_hull(const Mesh& mesh) { return as_hulls(put_into_hull(mesh)); }
 
     MadeSolid as_hulls(ConvexParts parts)
     {
         if (!parts.trouble.empty()) return refused(parts.trouble);
-        for (std::string& remark : parts.remarks) made_.summary += remark + "; ";
-        made_.summary += std::to_string(parts.hulls.size()) + " convex parts";
+        const bool one = parts.hulls.size() == 1;
+        made_.summary = one ? "one hull" : std::to_string(parts.hulls.size()) + " convex parts";
+        made_.summary += ", within " + short_text(parts.error) + " m of the mesh";
+        for (const std::string& remark : parts.remarks) made_.summary += "; " + remark;
         made_.shape = std::move(parts.hulls);
         return std::move(made_);
     }
 
     const Settings& settings_;
     const std::string& cache_folder_;
-    double size_ = 0;  // m, the longest side of the mesh's box
+    Mesh mesh_;
+    bool sound_ = true;
+    FieldResult field_;
     MadeSolid made_;
 };
 
@@ -121,11 +182,6 @@ make_solid(const MeshShape& mesh, const Settings& settings, const std::string& c
 {
     const Settings own = own_settings(mesh, settings);
     return SolidMaker(own, cache_folder).make(mesh);
-}
-
-NonConvex way_of(const MeshShape& mesh, const Settings& settings)
-{
-    return own_settings(mesh, settings).nonconvex;
 }
 
 }  // namespace throng

@@ -31,7 +31,4 @@ struct MadeSolid {
 MadeSolid
 make_solid(const MeshShape& mesh, const Settings& settings, const std::string& cache_folder);
 
-/// The way that a mesh is taken: its own, or the settings'.
-NonConvex way_of(const MeshShape& mesh, const Settings& settings);
-
 }  // namespace throng

@@ -515,6 +515,12 @@ FieldResult build_field(const Mesh& mesh, const FieldSettings& settings)
     return result;
 }
 
+MeshResult field_surface(const VoxelBricks& bricks)
+{
+    start_openvdb();
+    return surface_of(*grid_of(bricks, {}));
+}
+
 std::string
 write_vdb(const std::filesystem::path& path, const VoxelBricks& bricks, const FieldNotes& notes)
 {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/data/solids.hpp"
+#include "kernels/geometry/mesh.hpp"
 
 #include <filesystem>
 #include <string>
@@ -54,6 +55,10 @@ double field_bytes(const Mesh& mesh, double voxel);
 /// The level set of a mesh, on the grid of lay_bricks(). Needs vertex normals. The same bits on
 /// every run and any number of threads.
 FieldResult build_field(const Mesh& mesh, const FieldSettings& settings);
+
+/// The surface of a level set, where it is 0 but for a thousandth of a voxel: closed, vertex normals
+/// included.
+MeshResult field_surface(const VoxelBricks& bricks);
 
 /// What a file of ours says beside the values.
 struct FieldNotes {
