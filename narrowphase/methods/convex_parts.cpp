@@ -161,19 +161,18 @@ std::string percent(double share)
         + std::to_string(rest) + " %";
 }
 
-// How far a piece's hull is outside of those that stand for the mesh: distance from what is convex
-// is greatest at a corner.
-double left_out(const LooseHull& piece, const std::vector<LooseHull>& hulls, std::size_t own)
+// How far a piece is outside of the hull that covers it best: distance from what is convex is
+// greatest at a corner. Of several hulls together that would not hold.
+double left_out(const LooseHull& piece, const std::vector<LooseHull>& hulls)
 {
-    double most = 0;
-    for (const Vec3& vertex : piece.vertices) {
-        double least = std::numeric_limits<double>::infinity();
-        if (own < hulls.size()) least = distance_outside(hulls[own], vertex);
-        for (std::size_t i = 0; i < hulls.size() && least > most; ++i)
-            least = std::min(least, distance_outside(hulls[i], vertex));
-        most = std::max(most, least);
+    double least = std::numeric_limits<double>::infinity();
+    for (const LooseHull& hull : hulls) {
+        double most = 0;
+        for (std::size_t i = 0; i < piece.vertices.size() && most < least; ++i)
+            most = std::max(most, distance_outside(hull, piece.vertices[i]));
+        least = std::min(least, most);
     }
-    return most;
+    return least;
 }
 
 // Hulls as contact takes them, how far they reach outside and what of the pieces they leave out.
@@ -183,12 +182,10 @@ void finish(const PartSearch& search,
             ConvexParts& made)
 {
     std::vector<LooseHull> hulls;
-    std::vector<std::size_t> own;
     double volume = 0;
     for (const LooseHull& piece : pieces) {
         std::vector<Vec3> points = simplified(piece, most_vertices, search.error / 8).vertices;
         HullResult built = build_hull(points);
-        own.push_back(hulls.size());
         if (!built.trouble.empty()) continue;
         hulls.push_back(loose_hull(built.hull.vertices));
         volume += mass_of(built.hull).volume;
@@ -203,8 +200,8 @@ void finish(const PartSearch& search,
         made.trouble = "encloses no volume; give a mesh that does";
         return;
     }
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-        made.uncovered = std::max(made.uncovered, left_out(pieces[i], hulls, own[i]));
+    for (const LooseHull& piece : pieces)
+        made.uncovered = std::max(made.uncovered, left_out(piece, hulls));
     made.error = std::max(made.error, made.uncovered);
     made.volume_error = volume / mass_of(search.mesh).volume - 1;
 }
