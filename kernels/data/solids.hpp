@@ -44,8 +44,9 @@ struct VoxelBricks {
 ///   x, y, z     [points] m
 ///   normals     [points] unit, outward; of an edge or a corner the mean over its faces, weighed by
 ///               their angles
-///   cones       [points] cosine of the angle to -normal within which another surface can push the
-///               point: that of its faces to its normal, and 40 degrees
+///   cones       [points] cosine of the angle to -normal within which another surface may push the
+///               point: how far the surface that it stands for leans from its normal, and 20
+///               degrees
 ///   nodes       [0] is the root
 struct SurfacePoints {
     struct Node {

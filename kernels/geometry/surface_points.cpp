@@ -22,13 +22,13 @@ constexpr std::uint32_t kLeaf = 16;
 
 struct Place {
     Vec3 position, normal;
-    double least = 1;  // cosine of the angle between the normal and the face that leans most
+    double least = 1;  // cosine of the angle to what leans most of the surface it stands for
 };
 
-// Cosine of the angle whose cosine is given, and 40 degrees more.
+// Cosine of the angle whose cosine is given, and 20 degrees more.
 double cone(double least)
 {
-    constexpr double kCos = 0.766, kSin = 0.643;
+    constexpr double kCos = 0.94, kSin = 0.342;
     return least * kCos - std::sqrt(std::max(0.0, 1 - least * least)) * kSin;
 }
 
@@ -63,13 +63,17 @@ private:
                 ^ (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[k])) & 0x1fffff);
         return key;
     }
-    bool meets(const Place& place, double radius, std::uint64_t cell) const
+    // What is kept stands for what it keeps away.
+    bool meets(const Place& place, double radius, std::uint64_t cell)
     {
         const auto first = first_.find(cell);
         if (first == first_.end()) return false;
         for (std::uint32_t i = first->second; i != kNone; i = next_[i]) {
             const bool near = (kept_[i].position - place.position).squaredNorm() < radius * radius;
-            if (near && kept_[i].normal.dot(place.normal) > kAlike) return true;
+            const double alike = kept_[i].normal.dot(place.normal);
+            if (!near || !(alike > kAlike)) continue;
+            kept_[i].least = std::min(kept_[i].least, alike);
+            return true;
         }
         return false;
     }

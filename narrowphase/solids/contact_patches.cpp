@@ -22,6 +22,9 @@ namespace {
 constexpr double kAlike = 0.857;
 // Of the angle over which the touches of a group too many join another, 45 degrees.
 constexpr double kJoins = 0.7;
+// Sine within which normals agree with one another: those of flat faces, rounding and grid
+// included.
+constexpr double kAgree = 0.05, kAll = 1e6;
 // Far more groups than directions 31 degrees apart need. What is then left over joins or is left.
 constexpr std::size_t kMostGroups = 48;
 constexpr std::uint8_t kNone = 255;
@@ -84,8 +87,12 @@ private:
     }
 
     // One more group, from the free touch that looks furthest along the odd direction: the mean of
-    // what is round it, then the mean of what is round that. The mean of directions within an angle
-    // is itself within that angle of one of them, so a group is never empty.
+    // what is round it, then the mean of what is round that, and so on to where most push, and most
+    // deeply. The mean of directions within an angle of another is itself within that angle of one
+    // of them, so a group is never empty.
+    //
+    // Source: the mean shift of Comaniciu and Meer, Mean Shift: A Robust Approach Toward Feature
+    //         Space Analysis (2002), a few steps of it.
     bool gather()
     {
         const Vec3 start = odd_axes().col(0);
@@ -99,7 +106,9 @@ private:
             seed = i;
         }
         if (seed == touches_.size()) return false;
-        const Vec3 middle = mean_round(mean_round(touches_[seed].normal));
+        Vec3 middle = touches_[seed].normal;
+        for (const double width : {kAll, kAll, kAll, kAll, kAgree, kAgree})
+            middle = mean_round(middle, width);
         groups_[count_].normal = middle;
         bool any = false;
         for (std::size_t i = 0; i < touches_.size(); ++i) {
@@ -114,14 +123,16 @@ private:
         return true;
     }
 
-    // Smooth in what comes and goes: what is just within reach hardly counts.
-    Vec3 mean_round(const Vec3& direction) const
+    // Smooth in what comes and goes: what is just within reach hardly counts, nor what is much
+    // further from the direction than `width`, so that a face on a face is not tilted by its rim.
+    Vec3 mean_round(const Vec3& direction, double width) const
     {
         Vec3 sum = Vec3::Zero();
         for (std::size_t i = 0; i < touches_.size(); ++i) {
             if (group_of_[i] != kNone || !(direction.dot(touches_[i].normal) >= kAlike)) continue;
             const double within = reach_ - touches_[i].separation + least_weight_;
-            sum += touches_[i].normal * (within * within);
+            const double off2 = (touches_[i].normal - direction).squaredNorm() + width * width;
+            sum += touches_[i].normal * (within * within / off2);
         }
         const double length = sum.norm();
         return length > 0 ? Vec3(sum / length) : direction;

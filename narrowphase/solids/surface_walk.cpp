@@ -1,5 +1,6 @@
 #include "narrowphase/solids/surface_walk.hpp"
 
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
 
 #include <algorithm>
@@ -30,21 +31,31 @@ void put(LeafSample& leaf, std::size_t i, double distance, const Vec3& gradient)
 
 Vec3 place_of(const LeafSample& leaf, std::size_t i) { return {leaf.x[i], leaf.y[i], leaf.z[i]}; }
 
-// Of the nearest triangle's front. At a corner of the mesh the triangle that was found says what is
-// in front: static meshes have no normals of their corners.
+// Static meshes keep no normals of their corners: the sum of those of the triangles there.
+Vec3 front_at(const Mesh& mesh, const MeshPoint& where)
+{
+    if (where.region < TriangleRegion::vertex0 || !mesh.vertex_normals.empty())
+        return outward_at(mesh, where);
+    const auto corner =
+        static_cast<std::size_t>(where.region) - static_cast<std::size_t>(TriangleRegion::vertex0);
+    const std::uint32_t vertex = mesh.triangles[where.triangle][corner];
+    Vec3 sum = Vec3::Zero();
+    visit_triangles(mesh, {mesh.vertices[vertex], mesh.vertices[vertex]}, [&](std::uint32_t t) {
+        const auto& [v0, v1, v2] = mesh.triangles[t];
+        if (v0 == vertex || v1 == vertex || v2 == vertex) sum += mesh.normals[t];
+    });
+    return sum.squaredNorm() > 1e-12 ? Vec3(sum.normalized()) : mesh.normals[where.triangle];
+}
+
 SurfaceDistance to_front(const Mesh& mesh, const MeshPoint& nearest, const Vec3& place)
 {
-    MeshPoint where = nearest;
-    if (where.region >= TriangleRegion::vertex0 && mesh.vertex_normals.empty())
-        where.region = TriangleRegion::face;
-    const Vec3 front = outward_at(mesh, where);
+    const Vec3 front = front_at(mesh, nearest);
     const Vec3 away = place - nearest.point;
     const double sign = front.dot(away) < 0 ? -1 : 1;
     // On a face, or so near that rounding says where from, the face says the way.
-    const bool flat =
-        where.region == TriangleRegion::face && nearest.region == TriangleRegion::face;
-    const double size = place.cwiseAbs().maxCoeff();
-    if (flat || !(nearest.distance > 1e-12 * size)) return {sign * nearest.distance, front};
+    const bool flat = nearest.region == TriangleRegion::face;
+    if (flat || !(nearest.distance > 1e-12 * place.cwiseAbs().maxCoeff()))
+        return {sign * nearest.distance, front};
     return {sign * nearest.distance, away * (sign / nearest.distance)};
 }
 

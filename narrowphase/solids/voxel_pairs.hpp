@@ -18,11 +18,15 @@ namespace throng {
 ///          plane    nothing of its own
 ///          mesh     its corners and edges; front faces only
 ///
-/// Depths are exact where the surfaces are flat and the deepest place is a point or sticks out.
-/// Else they are off by what the surfaces bend away within the spacing of the points and by what
-/// a cell cuts off edges: less than half a voxel where points are a voxel apart and the surface
-/// curves by radii of two voxels or more; for smooth surfaces a quarter of that with half the voxel
-/// (and the spacing with it).
+/// Depths are exact, to the field's rounding, where a corner or a point of one meets a flat face of
+/// the other. Else they are off by what the surfaces bend away from one another within the spacing
+/// of the points: with points a voxel apart less than a tenth of one for radii of six voxels and
+/// more, and a quarter of that with half the voxel. Two edges that cross are told the way out of
+/// each other's faces, 0.7 of what is the least, and half a voxel less where no point is at the
+/// crossing.
+///
+/// Balls that fill what is round are looked up out to the field's band less the diagonal of a
+/// cell; larger ones are left to the points of a. The band should be the reach and two voxels.
 void touch_by_voxels(const Shapes& shapes,
                      const Solid& a,
                      ShapeRef other,

@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t kLeastRim = 16, kMostRim = 256;
 // Along an edge or an axis. Those of more voxels than this are probed less closely.
 constexpr double kMostParts = 4096;
+// Of a cell, in voxels.
+constexpr double kDiagonal = 1.7321;
 
 struct Probe {
     Vec3 place = Vec3::Zero();   // in the other's frame
@@ -26,7 +28,8 @@ struct Probe {
 class Prober {
 public:
     Prober(const Solid& a, const Pose& pose, double reach, std::vector<SurfaceTouch>& out)
-        : bricks_(a.field), box_(FieldSide(a).box()), turn_(pose.orientation.toRotationMatrix()),
+        : bricks_(a.field), furthest_(a.field.band - kDiagonal * a.field.voxel),
+          box_(FieldSide(a).box()), turn_(pose.orientation.toRotationMatrix()),
           position_(pose.position), reach_(reach), out_(out)
     { }
 
@@ -41,7 +44,7 @@ public:
             return;
         const FieldSample<double> here = sample_bricks<double>(bricks_, place);
         const double separation = here.distance - probe.radius;
-        if (!(separation <= reach_) || !(here.distance < bricks_.band)) return;
+        if (!(separation <= reach_) || !(here.distance < furthest_)) return;
         const Vec3 own = turn_ * probe.normal;
         const double steep = here.gradient.norm();
         Vec3 normal = here.gradient;
@@ -85,6 +88,7 @@ private:
     }
 
     const VoxelBricks& bricks_;
+    double furthest_;  // from here on corners of a cell may be cut off at the band
     Box3 box_;
     Mat3 turn_;
     Vec3 position_;
@@ -107,11 +111,11 @@ void probe_line(
     }
 }
 
-// Cosine of the angle between two unit vectors' mean and either of them, and 40 degrees more.
+// Cosine of the angle between two unit vectors' mean and either of them, and 20 degrees more.
 double cone_of(const Vec3& mean, const Vec3& face)
 {
     const double least = std::min(1.0, mean.dot(face));
-    return least * 0.766 - std::sqrt(std::max(0.0, 1 - least * least)) * 0.643;
+    return least * 0.94 - std::sqrt(std::max(0.0, 1 - least * least)) * 0.342;
 }
 
 void probe_polytope(const Prober& prober, const PolytopeView& shape)

@@ -100,9 +100,9 @@ TEST(SurfacePoints, LieOnTheSurfaceAndLookOutward)
             ASSERT_NEAR(normal.norm(), 1, 1e-6);
             // Of a corner of a box less than 55 degrees off each of its faces.
             ASSERT_GT(normal.dot(mesh.normals[nearest.triangle]), 0.57);
-            // Its faces can be pushed straight on, and all the more by what comes from 40 degrees.
-            ASSERT_LT(points.cones[i], 0.7661F);
-            ASSERT_LT(points.cones[i], normal.dot(mesh.normals[nearest.triangle]) - 0.2);
+            // Its faces can be pushed straight on, and from a little aside as well.
+            ASSERT_LT(points.cones[i], 0.9401F);
+            ASSERT_LT(points.cones[i], normal.dot(mesh.normals[nearest.triangle]) - 0.05);
         }
     }
 }
