@@ -174,7 +174,7 @@ TEST(VoxelPairs, ACornerBelowAFaceIsNotPushedSideways)
     for (int i = 0; i < 30; ++i) {
         // The small box below, its corner up, turned about the way up.
         const double angle = dice.between(-3, 3);
-        const Quat corner = Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3::UnitZ());
+        const Quat corner = Quat(1 + std::sqrt(3.0), 1, -1, 0).normalized();
         const Quat turn = Quat(std::cos(angle), 0, 0, std::sin(angle)) * corner;
         const double separation = -1.2 * voxel;
         const Pose below{Vec3(dice.between(-0.5, 0.5), dice.between(-0.5, 0.5),
