@@ -181,6 +181,19 @@ std::string trouble_with_size(const Mesh& mesh, double voxel, double most_bytes)
         + " MB; give voxel_size at least " + short_text(high * 1.01);
 }
 
+// Where hardly anything is inside, a value here and there may still be.
+std::string trouble_with_inside(const VoxelBricks& bricks, const Worth& worth)
+{
+    // A hole of a voxel leaves values of three between them at the most.
+    if (widest_gap(bricks) > 3 * bricks.voxel)
+        return "is open wider than a voxel of " + short_text(bricks.voxel)
+            + " m, so that nothing tells its inside; give a closed mesh, or a greater voxel_size";
+    if (count_inside(bricks) > 0 && worth.thin_area < 0.5) return {};
+    return "nothing is inside at voxel size " + short_text(bricks.voxel)
+        + " m: the mesh is thinner than a voxel nearly everywhere, or open wider than one; give a "
+          "closed mesh, or a smaller voxel_size";
+}
+
 // --- Files
 
 void start_openvdb()
@@ -490,21 +503,12 @@ FieldResult build_field(const Mesh& mesh, const FieldSettings& settings)
     else
         result.bricks = fill_bricks(exposed_part(mesh, *near, laid), laid, seeds, SeedRule::sign);
 
-    if (count_inside(result.bricks) == 0) {
-        result.bricks = {};
-        result.trouble = "nothing is inside at voxel size " + short_text(voxel)
-            + " m: the mesh is thinner than a voxel everywhere, or open wider than one; give a "
-              "closed mesh, or a smaller voxel_size";
-        return result;
-    }
-    // A hole of a voxel leaves values of three between them at the most.
-    if (settings.sign == FieldSign::flood && widest_gap(result.bricks) > 3 * voxel) {
-        result.bricks = {};
-        result.trouble = "is open wider than a voxel of " + short_text(voxel)
-            + " m, so that nothing tells its inside; give a closed mesh, or a greater voxel_size";
-        return result;
-    }
     const Worth worth = worth_of(mesh, result.bricks);
+    result.trouble = trouble_with_inside(result.bricks, worth);
+    if (!result.trouble.empty()) {
+        result.bricks = {};
+        return result;
+    }
     result.error = worth.error;
     if (worth.thin_area > 0)
         result.remarks.push_back(
