@@ -21,15 +21,15 @@ struct Known {
 
 // In the order of the enumeration.
 constexpr Known kKnown[] = {
-    {"motion", true},         {"gravity", true},      {"forces", false},
-    {"drive", true},          {"rotation", true},     {"gyroscopic", true},
-    {"contact", true},        {"friction", true},     {"rolling friction", true},
-    {"restitution", true},    {"fast motion", false}, {"mesh contact", true},
-    {"voxel contact", true},  {"sphere contact", true}, {"image contact", true},
-    {"springs", false},       {"attractors", false},  {"wind", false},
-    {"drag", false},          {"pivot", false},       {"joints", false},
-    {"motors", false},        {"sleeping", true},     {"sensors", false},
-    {"events", false},        {"agents", false},
+    {"motion", true},        {"gravity", true},        {"forces", false},
+    {"drive", true},         {"rotation", true},       {"gyroscopic", true},
+    {"contact", true},       {"friction", true},       {"rolling friction", true},
+    {"restitution", true},   {"fast motion", false},   {"mesh contact", true},
+    {"voxel contact", true}, {"sphere contact", true}, {"image contact", true},
+    {"springs", false},      {"attractors", false},    {"wind", false},
+    {"drag", false},         {"pivot", false},         {"joints", false},
+    {"motors", false},       {"sleeping", true},       {"sensors", false},
+    {"events", false},       {"agents", false},
 };
 static_assert(std::size(kKnown) == kEffects);
 

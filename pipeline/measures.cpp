@@ -78,9 +78,8 @@ void measure_overlaps(const World::State& state, Measures& measures)
             const Pose b_in_a = pose_seen_from_a(shapes, shape_b, placed[a], placed[b]);
             depth[i] = shape_a.kind == ShapeKind::solid
                 ? solid_depth(shapes, shape_a, shape_b, b_in_a)
-                : shape_a.kind == ShapeKind::mesh
-                ? mesh_depth(shapes, shape_a, shape_b, b_in_a)
-                : overlap_depth(shapes, shape_a, shape_b, b_in_a);
+                : shape_a.kind == ShapeKind::mesh ? mesh_depth(shapes, shape_a, shape_b, b_in_a)
+                                                  : overlap_depth(shapes, shape_a, shape_b, b_in_a);
         }
     });
     double sum = 0;
@@ -200,8 +199,8 @@ std::string World::state_hash() const
             add_many(solids);
             for (const auto& found : solids.found.pairs)
                 for (std::uint32_t k = 0; k < found.count; ++k)
-                    add_found(FoundManifold<double>{
-                        solids.found.patches[found.first + k].manifold, found.b_in_a, found.reach});
+                    add_found(FoundManifold<double>{solids.found.patches[found.first + k].manifold,
+                                                    found.b_in_a, found.reach});
         },
         state_->step);
     return hash.text();

@@ -60,7 +60,7 @@ struct MeshShape {
     std::vector<Vec3> vertices;  // already scaled
     std::vector<std::array<std::uint32_t, 3>> triangles;
     // The dials of that way, for this shape alone; 0 for the scene's own.
-    double voxel_size = 0;     // m
+    double voxel_size = 0;  // m
     int image_resolution = 0, sphere_levels = 0, max_parts = 0;
 };
 struct CompoundShape {

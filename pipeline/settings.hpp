@@ -50,8 +50,8 @@ struct Settings {
     NarrowPhase narrowphase = NarrowPhase::auto_;
     MethodStart method_start = MethodStart::cached;
     BoundsFilter bounds_filter = BoundsFilter::none;
-    // How moving shapes that are not convex are taken, where they do not say so themselves; 0: set by
-    // the shape's size.
+    // How moving shapes that are not convex are taken, where they do not say so themselves; 0: set
+    // by the shape's size.
     NonConvex nonconvex = NonConvex::voxels;
     double voxel_size = 0;     // m
     int image_resolution = 0;  // rays along the shape's longest side

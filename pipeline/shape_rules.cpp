@@ -22,7 +22,7 @@ MassProperties turned_inside_out(const MassProperties& mass)
 struct ShapeChecker {
     const Scene& scene;
     const SceneChecker& checker;
-    bool moves;         // a body with it is dynamic
+    bool moves;        // a body with it is dynamic
     Shapes scratch{};  // for mass_of()
 
     void need_size(std::string_view kind, std::string_view key, double size) const

@@ -1,4 +1,5 @@
-// Solid maker: a stated mesh made into what a moving body collides as, by the way it is to be taken.
+// Solid maker: a stated mesh made into what a moving body collides as, by the way it is to be
+// taken.
 #pragma once
 
 #include "kernels/data/shapes.hpp"

@@ -43,7 +43,8 @@ consteval bool reads_follow_writes()
         ready = ready | row.writes;
         // What is read of scenes that may have neither meshes nor solids is then empty.
         if (row.name == "collide_convex")
-            ready = ready | data_set<Real, MeshContacts<Real>> | data_set<Real, SolidContacts<Real>>;
+            ready =
+                ready | data_set<Real, MeshContacts<Real>> | data_set<Real, SolidContacts<Real>>;
     }
     return true;
 }

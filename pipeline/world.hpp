@@ -72,7 +72,8 @@ public:
     Vec3 contact_force(BodyId body) const;
 
     const StepReport& report() const;
-    /// What was found wrong with shapes that were added and what was done about it, a sentence each.
+    /// What was found wrong with shapes that were added and what was done about it, a sentence
+    /// each.
     const std::vector<std::string>& remarks() const;
     /// How each moving mesh that was added is taken, and how exactly, a line each.
     const std::vector<std::string>& solids() const;

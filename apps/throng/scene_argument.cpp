@@ -1,6 +1,7 @@
 // Scene argument: the SCENE of a command line, with the dials that the line sets.
 #include "apps/throng/scene_argument.hpp"
 
+#include "narrowphase/solids/field_cache.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/names.hpp"
 #include "scenes/catalog.hpp"
@@ -58,6 +59,7 @@ SceneArgument read_scene_argument(const Options& options)
             argument.label += " --mesh " + mesh.file();
         }
     }
+    argument.scene.cache_folder = default_cache_folder().string();
     set_dials(argument.scene, options);
     return argument;
 }
@@ -77,7 +79,8 @@ World make_world(const SceneArgument& argument, int threads)
 {
     try {
         World world(argument.scene, threads);
-        for (const std::string& remark : world.remarks()) std::cerr << "warning: " << remark << '\n';
+        for (const std::string& remark : world.remarks())
+            std::cerr << "warning: " << remark << '\n';
         return world;
     } catch (const std::invalid_argument& error) {
         throw BadInput(argument.label + ": " + error.what());

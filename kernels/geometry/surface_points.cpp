@@ -132,14 +132,15 @@ std::vector<std::uint8_t> find_corners(const Mesh& mesh, const std::vector<doubl
     return corners;
 }
 
-void offer_corners(const Mesh& mesh,
-                   const std::vector<double>& leans,
-                   double spacing,
-                   Thinning& thinning)
+// Those that are corners, or all.
+void offer_vertices(const Mesh& mesh,
+                    const std::vector<double>& leans,
+                    const std::vector<std::uint8_t>& wanted,
+                    double spacing,
+                    Thinning& thinning)
 {
-    const std::vector<std::uint8_t> corners = find_corners(mesh, leans);
-    for (std::size_t v = 0; v < corners.size(); ++v)
-        if (corners[v] != 0)
+    for (std::size_t v = 0; v < wanted.size(); ++v)
+        if (wanted[v] != 0)
             thinning.offer({mesh.vertices[v], mesh.vertex_normals[v], leans[v]},
                            0.5 * kKept * spacing);
 }
@@ -280,8 +281,10 @@ SurfacePoints build_surface_points(const Mesh& mesh, double spacing)
     if (mesh.triangles.empty()) return points;
     Thinning thinning(kKept * spacing);
     const std::vector<double> leans = find_leans(mesh);
-    offer_corners(mesh, leans, spacing, thinning);
+    offer_vertices(mesh, leans, find_corners(mesh, leans), spacing, thinning);
     offer_edges(mesh, spacing, thinning);
+    offer_vertices(mesh, leans, std::vector<std::uint8_t>(mesh.vertices.size(), 1), spacing,
+                   thinning);
     offer_faces(mesh, leans, spacing, thinning);
     TreeBuilder{thinning.kept(), points};
     return points;

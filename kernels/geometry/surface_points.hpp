@@ -8,10 +8,11 @@ namespace throng {
 /// Points of a closed mesh such that nothing of its surface is further than `spacing` from one, and
 /// their tree. Needs vertex normals (see mesh_distance.hpp).
 ///
-/// Corners and edges that stick out come first: what touches flat things touches with these. The
-/// rest is thinned: two points that look the same way, within 60 degrees, are no nearer than four
-/// fifths of the spacing (corners half of that), so a fine mesh gives no more points than a coarse
-/// one. The two sides of a thin wall have points each. The order hangs on the mesh alone.
+/// Corners and edges that stick out come first, then all other vertices: what touches flat things
+/// touches with these. The rest is thinned: two points that look the same way, within 60 degrees,
+/// are no nearer than four fifths of the spacing (vertices half of that), so that a fine mesh does
+/// not give ever more points. The two sides of a thin wall have points each. The order hangs on the
+/// mesh alone.
 ///
 /// Source: the greedy dart throwing of Cook, Stochastic Sampling in Computer Graphics (1986), with
 ///         darts in a fixed order.

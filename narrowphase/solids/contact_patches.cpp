@@ -8,7 +8,6 @@
 #include "narrowphase/solids/contact_patches.hpp"
 
 #include "kernels/math/hash.hpp"
-#include "narrowphase/contact_points.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +24,9 @@ constexpr double kJoins = 0.7;
 // Sine within which normals agree with one another: those of flat faces, rounding and grid
 // included.
 constexpr double kAgree = 0.05, kAll = 1e6;
+// How many times a depth missing weighs as much as a distance to span. Of a ball of radius R that
+// keeps what lies within R / 20 of the deepest place.
+constexpr double kShallow = 20;
 // Far more groups than directions 31 degrees apart need. What is then left over joins or is left.
 constexpr std::size_t kMostGroups = 48;
 constexpr std::uint8_t kNone = 255;
@@ -66,9 +68,13 @@ public:
         while (count_ < kMostGroups && gather()) ++count_;
         keep_deepest();
     }
+    /// Touches that overlap and are in no group.
     std::size_t left_out() const
     {
-        return static_cast<std::size_t>(std::count(group_of_.begin(), group_of_.end(), kNone));
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < touches_.size(); ++i)
+            count += group_of_[i] == kNone && touches_[i].separation < 0 ? 1 : 0;
+        return count;
     }
     /// Visits each group that is kept, and the touches in it.
     template <class Visit>
@@ -214,6 +220,89 @@ Vec3 told_apart(const SurfaceTouch& touch, double by)
     return touch.position + by * Vec3(part(0), part(16), part(32));
 }
 
+// A direction across the normal that moves smoothly with it, but for seams far from odd axes.
+Vec3 across(const Vec3& normal)
+{
+    Eigen::Index greatest = 0;
+    (odd_axes().transpose() * normal).cwiseAbs().maxCoeff(&greatest);
+    return normal.cross(odd_axes().col((greatest + 1) % 3)).normalized();
+}
+
+// Four places that span a group: one end, the other end, and the furthest to either side of the
+// line between them, where what lies shallower than the deepest counts as so much nearer. Of a
+// round body on a floor that leaves what bears it, of a face the corners.
+class Spread {
+public:
+    using Point = LocalManifold<double>::Point;
+
+    Spread(const std::vector<Point>& points, const Vec3& normal) : points_(points)
+    {
+        deepest_ = best([](const Point&) { return 0.0; });
+        const Vec3 start = across(normal);
+        take(best([&](const Point& p) { return start.dot(p.position); }));
+        const Vec3 from = points_[chosen_[0]].position;
+        const std::size_t end = best([&](const Point& p) { return (p.position - from).norm(); });
+        take(end);
+        const Vec3 along = points_[end].position - from;
+        const double length = along.norm();
+        const Vec3 side = length > 0 ? Vec3(normal.cross(along / length)) : start;
+        take(best([&](const Point& p) { return side.dot(p.position - from); }));
+        take(best([&](const Point& p) { return -side.dot(p.position - from); }));
+        keep_deepest();
+    }
+
+    /// In the order of the points.
+    template <class Visit>
+    void visit(const Visit& visit) const
+    {
+        std::array<std::size_t, 4> order = chosen_;
+        std::sort(order.begin(), order.begin() + count_);
+        for (std::size_t k = 0; k < count_; ++k) visit(points_[order[k]]);
+    }
+
+private:
+    template <class Place>
+    std::size_t best(const Place& place) const
+    {
+        const double deepest = deepest_ < points_.size() ? points_[deepest_].separation : 0;
+        std::size_t best = 0;
+        double most = -std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const double score = place(points_[i]) - kShallow * (points_[i].separation - deepest);
+            if (!(score > most)) continue;
+            most = score;
+            best = i;
+        }
+        return best;
+    }
+    void take(std::size_t point)
+    {
+        if (std::find(chosen_.begin(), chosen_.begin() + count_, point) == chosen_.begin() + count_)
+            chosen_[count_++] = point;
+    }
+    // Where it was not chosen it takes the place of the chosen one nearest to it.
+    void keep_deepest()
+    {
+        const double depth = points_[deepest_].separation;
+        std::size_t nearest = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < count_; ++k) {
+            if (points_[chosen_[k]].separation <= depth) return;
+            const double distance =
+                (points_[chosen_[k]].position - points_[deepest_].position).norm();
+            if (!(distance < least)) continue;
+            least = distance;
+            nearest = k;
+        }
+        chosen_[nearest] = deepest_;
+    }
+
+    const std::vector<Point>& points_;
+    std::size_t deepest_ = std::numeric_limits<std::size_t>::max();
+    std::array<std::size_t, 4> chosen_{};
+    std::size_t count_ = 0;
+};
+
 // Chooses by places told apart and depths in steps, and takes the touches as they are.
 void choose_points(const Grouping& groups,
                    std::uint8_t group,
@@ -231,13 +320,11 @@ void choose_points(const Grouping& groups,
                               step > 0 ? std::round(along / step) * step : along,
                               static_cast<std::uint32_t>(i)});
     }
-    reduce_to_four<double>(candidates, manifold);
-    for (int k = 0; k < manifold.count; ++k) {
-        auto& point = manifold.points[static_cast<std::size_t>(k)];
-        const SurfaceTouch& touch = touches[point.feature];
-        point = {touch.position, touch.separation * manifold.normal.dot(touch.normal),
-                 touch.feature};
-    }
+    Spread(candidates, manifold.normal).visit([&](const LocalManifold<double>::Point& chosen) {
+        const SurfaceTouch& touch = touches[chosen.feature];
+        manifold.add(touch.position, touch.separation * manifold.normal.dot(touch.normal),
+                     touch.feature);
+    });
 }
 
 }  // namespace

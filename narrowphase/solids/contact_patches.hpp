@@ -31,7 +31,7 @@ struct PatchManifold {
 };
 
 /// The greatest number of manifolds made of one pair's touches.
-inline constexpr std::size_t kMostPatches = 12;
+inline constexpr std::size_t kMostPatches = 24;
 
 /// Groups touches that push much the same way into manifolds of up to four points that span the
 /// group. Appended to `out` in order of patch.
@@ -51,7 +51,8 @@ inline constexpr std::size_t kMostPatches = 12;
 /// deep to within a ten-thousandth of size.
 ///
 /// Where there are more groups than kMostPatches, the touches of the shallowest join those that
-/// push within 45 degrees of them, or are left out; how many were left out is what it answers.
+/// push within 45 degrees of them, or are left out; how many that overlap were left out is what it
+/// answers.
 std::size_t make_patches(std::vector<SurfaceTouch>& touches,
                          double reach,
                          double size,

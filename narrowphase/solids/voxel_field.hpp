@@ -56,8 +56,8 @@ double field_bytes(const Mesh& mesh, double voxel);
 /// every run and any number of threads.
 FieldResult build_field(const Mesh& mesh, const FieldSettings& settings);
 
-/// The surface of a level set, where it is 0 but for a thousandth of a voxel: closed, vertex normals
-/// included.
+/// The surface of a level set, where it is 0 but for a thousandth of a voxel: closed, vertex
+/// normals included.
 MeshResult field_surface(const VoxelBricks& bricks);
 
 /// What a file of ours says beside the values.

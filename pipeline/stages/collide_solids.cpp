@@ -70,8 +70,9 @@ private:
                  ContactEntries<Real>& out)
     {
         const Sides sides = sides_of(pair);
-        const Pose pose = pose_seen_from_a(shapes_, colliders_.shape[sides.other],
-                                           bounds_.placed[sides.solid], bounds_.placed[sides.other]);
+        const Pose pose =
+            pose_seen_from_a(shapes_, colliders_.shape[sides.other], bounds_.placed[sides.solid],
+                             bounds_.placed[sides.other]);
         const std::span kept = items_of(contacts_.found_before.pairs, old_place(pairs_, i));
         Finds& finds = finds_[block];
         const std::size_t first = out.size();
@@ -80,7 +81,8 @@ private:
             find_anew(sides, pose, pair.reach, block, out);
         }
         finds.pairs.back().pair = i;
-        for (std::size_t n = first; n < out.size(); ++n) carry_over(old, out[n].contact, out[n].part);
+        for (std::size_t n = first; n < out.size(); ++n)
+            carry_over(old, out[n].contact, out[n].part);
     }
 
     void find_anew(const Sides& sides,
@@ -110,8 +112,8 @@ private:
                      Finds& finds,
                      ContactEntries<Real>& out)
     {
-        const double least = std::min(colliders_.inner_extent[sides.solid],
-                                      colliders_.inner_extent[sides.other]);
+        const double least =
+            std::min(colliders_.inner_extent[sides.solid], colliders_.inner_extent[sides.other]);
         // A plane has no furthest point: what moves against it is then the solid.
         const double radius = std::min(colliders_.outer_radius[sides.other],
                                        colliders_.outer_radius[sides.solid] + pose.position.norm());
@@ -154,8 +156,8 @@ private:
         const Entry* best = nullptr;
         int most = 0;
         for (const Entry& before : old) {
-            const int shared = 2 * shared_points(before.contact, contact)
-                + (before.part == part ? 1 : 0);
+            const int shared =
+                2 * shared_points(before.contact, contact) + (before.part == part ? 1 : 0);
             if (shared > most) {
                 most = shared;
                 best = &before;
@@ -204,7 +206,7 @@ private:
     const BodyStates& states_;
     Contacts& contacts_;
     Real scale_;
-    std::vector<Finds> finds_;              // [blocks]
+    std::vector<Finds> finds_;             // [blocks]
     std::vector<std::uint64_t> left_out_;  // [blocks]
 };
 

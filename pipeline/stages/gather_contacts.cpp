@@ -50,9 +50,8 @@ public:
             std::size_t at = active_.begin[block];
             for (std::size_t i = begin; i < end; ++i)
                 if (const Contact<Real>* contact = convex.at(i))
-                    at += take(i, *contact, convex.of_pair[i].contact,
-                               ContactList::convex, meetings,
-                               active_.entries[at])
+                    at += take(i, *contact, convex.of_pair[i].contact, ContactList::convex,
+                               meetings, active_.entries[at])
                         ? 1
                         : 0;
             active_.end[block] = at;
@@ -156,7 +155,7 @@ void gather_contacts(const Pairs& pairs,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void gather_contacts<Real>(const Pairs&, const Colliders&, const Surfaces&,           \
                                         const BodyStates&, const ConvexContacts<Real>&,            \
-                                        const MeshContacts<Real>&, const SolidContacts<Real>&,             \
+                                        const MeshContacts<Real>&, const SolidContacts<Real>&,     \
                                         ActiveContacts&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

@@ -50,23 +50,24 @@ void refresh_contacts(const Conditions& conditions,
     contacts.entries.clear();
     const Real scale = static_cast<Real>(impulse_scale(conditions));
     std::vector<ContactEntries<Real>> of_block(block_count(listed.size(), grain));
-    for_each_block(listed.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        ContactEntries<Real>& out = of_block[block];
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::uint32_t i = listed[k];
-            const PairPlace pair = place_of(pairs.keys[i], colliders, bounds);
-            const std::span old = items_of(contacts.before, old_place(pairs, i));
-            const std::size_t first = out.size();
-            if (wants_contact(pair, states)) {
-                find(i, pair, old, block, out);
-            } else {
-                out.insert(out.end(), old.begin(), old.end());
-                for (std::size_t n = first; n < out.size(); ++n)
-                    scale_impulses(out[n].contact, scale);
-            }
-            for (std::size_t n = first; n < out.size(); ++n) out[n].pair = i;
-        }
-    });
+    for_each_block(listed.size(), grain,
+                   [&](std::size_t begin, std::size_t end, std::size_t block) {
+                       ContactEntries<Real>& out = of_block[block];
+                       for (std::size_t k = begin; k < end; ++k) {
+                           const std::uint32_t i = listed[k];
+                           const PairPlace pair = place_of(pairs.keys[i], colliders, bounds);
+                           const std::span old = items_of(contacts.before, old_place(pairs, i));
+                           const std::size_t first = out.size();
+                           if (wants_contact(pair, states)) {
+                               find(i, pair, old, block, out);
+                           } else {
+                               out.insert(out.end(), old.begin(), old.end());
+                               for (std::size_t n = first; n < out.size(); ++n)
+                                   scale_impulses(out[n].contact, scale);
+                           }
+                           for (std::size_t n = first; n < out.size(); ++n) out[n].pair = i;
+                       }
+                   });
     for (const ContactEntries<Real>& block : of_block)
         contacts.entries.insert(contacts.entries.end(), block.begin(), block.end());
 }

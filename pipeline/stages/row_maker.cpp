@@ -40,8 +40,8 @@ RowMaker<Real>::RowMaker(const Conditions& conditions,
                          MeshContacts<Real>& meshes,
                          SolidContacts<Real>& solids,
                          Rows<Real>& rows)
-    : layout_(layout), active_(active), convex_(convex), meshes_(meshes), solids_(solids), rows_(rows),
-      view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
+    : layout_(layout), active_(active), convex_(convex), meshes_(meshes), solids_(solids),
+      rows_(rows), view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
       turns_(conditions.has(Effect::rotation)), softness_(softness_of<Real>(conditions))
 { }
 

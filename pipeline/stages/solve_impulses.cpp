@@ -96,8 +96,7 @@ void solve_impulses(const Conditions& conditions,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(const Conditions&, const Layout&, const ActiveContacts&,    \
                                        Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,    \
-                                       SolidContacts<Real>&,                                       \
-                                       Poses&, Velocities&, Trouble&);
+                                       SolidContacts<Real>&, Poses&, Velocities&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

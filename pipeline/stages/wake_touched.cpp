@@ -72,8 +72,8 @@ void wake_touched(const Pairs& pairs,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void wake_touched<Real>(const Pairs&, const Colliders&, const Velocities&,            \
-                                     const ConvexContacts<Real>&, const SolidContacts<Real>&, Beds&,        \
-                                     BodyStates&, Rest&);
+                                     const ConvexContacts<Real>&, const SolidContacts<Real>&,      \
+                                     Beds&, BodyStates&, Rest&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE
