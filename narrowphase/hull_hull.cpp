@@ -96,7 +96,7 @@ void collide_polytopes(const PolytopePair& pair,
     cache = remember(b_leads ? Remembered::face_b : Remembered::face_a, face);
 
     const double top = std::max(face_a.separation, face_b.separation);
-    const EdgeAxis edge = best_edge_axis(pair, top, true);
+    const EdgeAxis edge = best_edge_axis(pair, top);
     const bool has_edge = !edge.normal.isZero(0);
     if (edge.separation > reach) return;
     const Vec3 normal =

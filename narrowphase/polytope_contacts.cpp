@@ -176,7 +176,7 @@ FaceAxis best_face_axis(const PolytopePair& pair, const FaceAxis& guess, double 
     return best;
 }
 
-EdgeAxis best_edge_axis(const PolytopePair& pair, double to_beat, bool measured)
+EdgeAxis best_edge_axis(const PolytopePair& pair, double to_beat)
 {
     thread_local Scratch scratch;
     const double noise = pair.noise();
@@ -206,7 +206,7 @@ EdgeAxis best_edge_axis(const PolytopePair& pair, double to_beat, bool measured)
             normal /= std::sqrt(length2);
             if (normal.dot(a.left + a.right) < 0) normal = -normal;
             double separation = normal.dot(b.on - a.on);
-            if (length2 < kNearParallel * full2 || (measured && separation > best.separation)) {
+            if (length2 < kNearParallel * full2 || separation > best.separation) {
                 separation = normal.dot(pair.shift)
                     - reach_along(pair.b, -(pair.turn.transpose() * normal))
                     - reach_along(pair.a, normal);

@@ -48,11 +48,10 @@ FaceAxis likely_face_axis(const PolytopePair& pair);
 FaceAxis best_face_axis(const PolytopePair& pair, const FaceAxis& guess, double floor);
 
 /// The best edge axis whose separation is above `to_beat`; normal zero where there is none. Looks
-/// only at edges that meet on the Gauss map: no other is a face of the Minkowski difference.
-///
-///   measured  the separation is of every vertex and not of the two edges alone: corners of a
-///             hull's face may lie a little off its plane, and then stick out beyond an edge
-EdgeAxis best_edge_axis(const PolytopePair& pair, double to_beat, bool measured = false);
+/// only at edges that meet on the Gauss map: no other is a face of the Minkowski difference. The
+/// separation is of every vertex and not of the two edges alone: corners of a hull's face may lie a
+/// little off its plane, and then stick out beyond an edge.
+EdgeAxis best_edge_axis(const PolytopePair& pair, double to_beat);
 
 /// Candidate points, in a's frame until they are turned round.
 struct PolytopePoints {

@@ -124,7 +124,7 @@ BestAxis search(const PolytopePair& pair, const BestAxis& remembered, int& round
     best.offer(of_face_b(pair, best_face_axis(turned, guess_b, best.separation)));
     if (best.separation > 0) return best;
     ++rounds;
-    const EdgeAxis edges = best_edge_axis(pair, best.separation, true);
+    const EdgeAxis edges = best_edge_axis(pair, best.separation);
     if (!edges.normal.isZero(0))
         best.offer({edges.separation, edges.normal, Axis::edges, edges.edge_a, edges.edge_b});
     return best;

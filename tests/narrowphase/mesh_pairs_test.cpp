@@ -212,6 +212,43 @@ TEST(MeshPairs, AClosedMeshPushesLikeTheHullItIs)
     EXPECT_GT(touched, 100);
 }
 
+// Boxes whose corners below are cut, aslant to the face that they still belong to, hang over the
+// rim of a floor: such an edge and the rim seem to part the two where only another corner touches.
+TEST(MeshPairs, AHullIsAsDeepAsItLiesHoweverUnevenItsFaces)
+{
+    const std::vector<Vec3> corners{{-4, -4, 0}, {0, -4, 0}, {0, 4, 0}, {-4, 4, 0}};
+    const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+    const double stray = 3.5e-5;
+    RandomShapes random(35);
+    int uneven = 0;
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 35, pose " + std::to_string(i));
+        std::vector<Vec3> points = corners_of({2, 1, 0.5});
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 out(points[k].x() > 0 ? 1 : -1, points[k].y() > 0 ? 1 : -1, 0);
+            const Vec3 cut(random.number(0, 2e-3), -random.number(1e-3, 3e-3), 0);
+            points.emplace_back(points[k].x() + out.x() * cut.x(),
+                                points[k].y() + out.y() * cut.y(), -0.5 - random.number(0, stray));
+        }
+        Shapes shapes;
+        shapes.meshes = {build_mesh(corners, triangles).mesh};
+        shapes.hulls = {build_hull(points).hull};
+        const double depth = random.number(0.002, 0.02);
+        const Pose pose{{random.number(-1, 1), random.number(-1, 1), 0.5 - depth},
+                        Quat(random.number(-1, 1), 0, 0, random.number(-1, 1)).normalized()};
+        // Elsewhere the cut corners have a face of their own below.
+        const auto& normals = shapes.hulls[0].normals;
+        const auto is_below = [](const Vec3& normal) { return normal.z() < -0.9; };
+        if (std::count_if(normals.begin(), normals.end(), is_below) != 1) continue;
+        ++uneven;
+        double least = 1;
+        for (const auto& one : touch_mesh<double>(shapes, {ShapeKind::hull, 0}, pose, 0))
+            least = std::min(least, deepest(one.manifold));
+        ASSERT_NEAR(least, -depth, 2 * stray);
+    }
+    EXPECT_GT(uneven, 1000);
+}
+
 TEST(MeshPairs, ABallCrossingAConvexRidgeIsHeldThroughout)
 {
     // A roof along y: two slopes that meet at x = 0. The ball rolls over it at constant distance.
