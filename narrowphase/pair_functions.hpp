@@ -24,6 +24,10 @@ using PairFunction = void (*)(const Shapes& shapes,
                               PairCache& cache,
                               LocalManifold<Real>& out);
 
+/// In a cache's kind, of this call alone: what `auto` asked came to its bound, and another method
+/// answered.
+inline constexpr std::uint32_t kFellBack = 1u << 31;
+
 // One declaration for each function in the table of narrowphase.cpp.
 #define THRONG_PAIR_FUNCTION(name)                                                                 \
     template <class Real>                                                                          \
@@ -44,6 +48,10 @@ THRONG_PAIR_FUNCTION(convex_plane);     // plane_pairs.cpp: any convex shape a, 
 THRONG_PAIR_FUNCTION(convex_convex);    // convex_pairs.cpp: any two, by their cores
 
 #undef THRONG_PAIR_FUNCTION
+
+/// As hull_hull(), which may ask GJK where hulls are large, by all separating axes.
+void hull_hull_by_axes(
+    const Shapes&, ShapeRef, ShapeRef, const Pose&, double, PairCache&, LocalManifold<double>&);
 
 // For the file that defines one: its instances.
 #define THRONG_PAIR_INSTANCE(name, Real)                                                           \

@@ -26,6 +26,14 @@ struct Arc {
     std::uint16_t edge;
 };
 
+Arc arc_of(const PolytopeView& shape, std::size_t index)
+{
+    const Hull::Edge& edge = shape.edges[index];
+    const Vec3& on = shape.vertices[edge.from];
+    return {shape.vertices[edge.to] - on, shape.normals[edge.left], shape.normals[edge.right], on,
+            static_cast<std::uint16_t>(index)};
+}
+
 // Edges that may leave the other's center, `other` in this one's frame, at least `least` beyond
 // them. The rest cannot part the two better than is known already, for there is a ball round that
 // center inside the other.
@@ -55,8 +63,7 @@ void collect_arcs(const PolytopeView& shape,
             if (across.dot(shape.normals[edge.left]) < 0) continue;
             if (across.dot(shape.normals[edge.right]) > 0) continue;
         }
-        arcs.push_back({along, shape.normals[edge.left], shape.normals[edge.right], on,
-                        static_cast<std::uint16_t>(i)});
+        arcs.push_back(arc_of(shape, i));
     }
 }
 
@@ -74,6 +81,65 @@ struct Scratch {
     std::vector<Arc> arcs_a, arcs_b;
 };
 
+// b's arcs as a sees them, pointing the other way.
+void turn_arcs(const PolytopePair& pair, std::vector<Arc>& arcs)
+{
+    for (Arc& arc : arcs) {
+        arc.along = pair.turn * arc.along;
+        arc.left = -(pair.turn * arc.left);
+        arc.right = -(pair.turn * arc.right);
+        arc.on = pair.turn * arc.on + pair.shift;
+    }
+}
+
+// The best axis of an arc of a and an arc of b, both as a sees them.
+EdgeAxis best_crossing(const PolytopePair& pair, const Scratch& scratch, double to_beat)
+{
+    EdgeAxis best;
+    best.separation = to_beat;
+    for (const Arc& a : scratch.arcs_a) {
+        for (const Arc& b : scratch.arcs_b) {
+            if (!arcs_cross(a, b)) continue;
+            Vec3 normal = a.along.cross(b.along);
+            const double length2 = normal.squaredNorm();
+            const double full2 = a.along.squaredNorm() * b.along.squaredNorm();
+            if (length2 <= kParallel * full2) continue;
+            normal /= std::sqrt(length2);
+            if (normal.dot(a.left + a.right) < 0) normal = -normal;
+            double separation = normal.dot(b.on - a.on);
+            if (length2 < kNearParallel * full2 || separation > best.separation) {
+                separation = normal.dot(pair.shift)
+                    - reach_along(pair.b, -(pair.turn.transpose() * normal))
+                    - reach_along(pair.a, normal);
+            }
+            if (separation > best.separation) best = {separation, normal, a.edge, b.edge};
+        }
+    }
+    return best;
+}
+
+// Calls visit(edge) for the edges at a vertex. Those of a hull are in order of their ends.
+template <class Visit>
+void visit_edges_at(const PolytopeView& shape, std::uint16_t vertex, Visit visit)
+{
+    if (!shape.guide) {
+        for (std::size_t i = 0; i < shape.edges.size(); ++i)
+            if (shape.edges[i].from == vertex || shape.edges[i].to == vertex) visit(i);
+        return;
+    }
+    const std::uint32_t end = shape.neighbor_begin[vertex + 1u];
+    for (std::uint32_t i = shape.neighbor_begin[vertex]; i < end; ++i) {
+        const auto [from, to] = std::minmax(vertex, shape.neighbors[i]);
+        const auto is_before = [](const Hull::Edge& edge,
+                                  const std::array<std::uint16_t, 2>& ends) {
+            return edge.from != ends[0] ? edge.from < ends[0] : edge.to < ends[1];
+        };
+        const auto at = std::lower_bound(shape.edges.begin(), shape.edges.end(),
+                                         std::array<std::uint16_t, 2>{from, to}, is_before);
+        visit(static_cast<std::size_t>(at - shape.edges.begin()));
+    }
+}
+
 std::uint16_t face_against(const PolytopePair& pair, std::uint16_t vertex, const Vec3& normal)
 {
     const Vec3 local = pair.turn.transpose() * normal;
@@ -87,11 +153,10 @@ std::uint16_t face_against(const PolytopePair& pair, std::uint16_t vertex, const
             best = face;
         }
     };
-    for (const Hull::Edge& edge : pair.b.edges) {
-        if (edge.from != vertex && edge.to != vertex) continue;
-        look(edge.left);
-        look(edge.right);
-    }
+    visit_edges_at(pair.b, vertex, [&](std::size_t edge) {
+        look(pair.b.edges[edge].left);
+        look(pair.b.edges[edge].right);
+    });
     return best;
 }
 
@@ -187,34 +252,45 @@ EdgeAxis best_edge_axis(const PolytopePair& pair, double to_beat)
     const Vec3 center_a = pair.turn.transpose() * (pair.a.center - pair.shift);
     collect_arcs(pair.b, center_a, to_beat + pair.a.inner_radius - noise, scratch.beyond,
                  scratch.arcs_b);
-    for (Arc& arc : scratch.arcs_b) {
-        arc.along = pair.turn * arc.along;
-        arc.left = -(pair.turn * arc.left);
-        arc.right = -(pair.turn * arc.right);
-        arc.on = pair.turn * arc.on + pair.shift;
-    }
+    turn_arcs(pair, scratch.arcs_b);
+    return best_crossing(pair, scratch, to_beat);
+}
 
-    EdgeAxis best;
-    best.separation = to_beat;
-    for (const Arc& a : scratch.arcs_a) {
-        for (const Arc& b : scratch.arcs_b) {
-            if (!arcs_cross(a, b)) continue;
-            Vec3 normal = a.along.cross(b.along);
-            const double length2 = normal.squaredNorm();
-            const double full2 = a.along.squaredNorm() * b.along.squaredNorm();
-            if (length2 <= kParallel * full2) continue;
-            normal /= std::sqrt(length2);
-            if (normal.dot(a.left + a.right) < 0) normal = -normal;
-            double separation = normal.dot(b.on - a.on);
-            if (length2 < kNearParallel * full2 || separation > best.separation) {
-                separation = normal.dot(pair.shift)
-                    - reach_along(pair.b, -(pair.turn.transpose() * normal))
-                    - reach_along(pair.a, normal);
-            }
-            if (separation > best.separation) best = {separation, normal, a.edge, b.edge};
-        }
-    }
+FaceAxis best_face_axis_at(const PolytopePair& pair, std::uint16_t corner, std::uint16_t vertex)
+{
+    FaceAxis best;
+    best.separation = -std::numeric_limits<double>::max();
+    const auto look = [&](std::uint16_t face) {
+        const FaceAxis axis = face_axis(pair, face, vertex);
+        const bool ties_lower = axis.separation == best.separation && axis.face < best.face;
+        if (axis.separation > best.separation || ties_lower) best = axis;
+    };
+    // Each face has two edges at the corner: it is the left one of one of them, seen from there.
+    visit_edges_at(pair.a, corner, [&](std::size_t index) {
+        const Hull::Edge& edge = pair.a.edges[index];
+        look(edge.from == corner ? edge.left : edge.right);
+    });
     return best;
+}
+
+EdgeAxis best_edge_axis_at(const PolytopePair& pair,
+                           std::uint16_t corner_a,
+                           std::uint16_t corner_b,
+                           double to_beat)
+{
+    thread_local Scratch scratch;
+    const auto collect = [](const PolytopeView& shape, std::uint16_t corner,
+                            std::vector<Arc>& arcs) {
+        arcs.clear();
+        visit_edges_at(shape, corner,
+                       [&](std::size_t edge) { arcs.push_back(arc_of(shape, edge)); });
+        std::sort(arcs.begin(), arcs.end(),
+                  [](const Arc& a, const Arc& b) { return a.edge < b.edge; });
+    };
+    collect(pair.a, corner_a, scratch.arcs_a);
+    collect(pair.b, corner_b, scratch.arcs_b);
+    turn_arcs(pair, scratch.arcs_b);
+    return best_crossing(pair, scratch, to_beat);
 }
 
 void clip_faces(

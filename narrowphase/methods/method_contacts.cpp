@@ -9,7 +9,7 @@ namespace throng {
 
 namespace {
 
-// The separating axes and the clipping that `auto` uses too, with a box seen as a hull.
+// The separating axes and the clipping that `auto` uses for small hulls, with a box seen as one.
 bool collide_by_axes(const Shapes& shapes,
                      ShapeRef a,
                      ShapeRef b,
@@ -21,7 +21,7 @@ bool collide_by_axes(const Shapes& shapes,
 {
     PairCache cache;
     if (start == MethodStart::cached) cache = {memory.a[0], memory.b[0], memory.kind};
-    hull_hull<double>(shapes, a, b, b_in_a, reach, cache, out);
+    hull_hull_by_axes(shapes, a, b, b_in_a, reach, cache, out);
     memory.a[0] = cache.feature_a;
     memory.b[0] = cache.feature_b;
     memory.kind = cache.kind;

@@ -12,8 +12,8 @@ namespace throng {
 /// The points of touch by a method's own answer. False where it cannot give them: it does not serve
 /// the pair, is undecided, or tells of touch alone and the two do touch.
 ///
-/// gjk gives points out to `reach`, and so does sat, whose points are those of hull_hull() unless
-/// it starts `plain`. The others know nothing of how far apart shapes are: points where they
+/// gjk gives points out to `reach`, and so does sat, whose points are those of hull_hull_by_axes()
+/// unless it starts `plain`. The others know nothing of how far apart shapes are: points where they
 /// overlap, none where they do not. The normal of clip_volume is that of the shared volume's
 /// surface, or of the face near it along which less must be moved; its depth is that move.
 ///
@@ -32,7 +32,7 @@ bool collide_by(const ConvexMethod& method,
 ///
 ///   of_pair    [pairs]
 ///   bounds     [colliders] where a k-DOP filters, of where they are now
-///   fallbacks  scratch, [blocks of pairs]: pairs that `auto` had to answer
+///   fallbacks  scratch, [blocks of pairs]: pairs that another method had to answer
 struct MethodPairs {
     std::vector<MethodMemory> of_pair;
     std::vector<KDop> bounds;

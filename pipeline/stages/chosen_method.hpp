@@ -2,6 +2,7 @@
 #pragma once
 
 #include "narrowphase/methods/method_contacts.hpp"
+#include "narrowphase/pair_functions.hpp"
 #include "pipeline/stages/collide.hpp"
 
 namespace throng {
@@ -34,7 +35,13 @@ public:
     bool
     collide(std::size_t i, const PairPlace& pair, LocalManifold<double>& out, std::size_t block);
 
-    /// How many pairs `auto` had to answer, once all blocks are through.
+    /// Counts a pair whose method within `auto` came to its bound, as its cache tells.
+    void note_fallback(const PairCache& cache, std::size_t block)
+    {
+        if ((cache.kind & kFellBack) != 0) ++memories_.fallbacks[block];
+    }
+
+    /// How many pairs took their answer from another method, once all blocks are through.
     void count_fallbacks();
 
     bool has_method() const { return method_ != nullptr; }

@@ -197,6 +197,7 @@ private:
         collide(shapes_, colliders_.shape[first], colliders_.shape[second], rounded<Real>(seen),
                 static_cast<Real>(pair.reach), cache, manifold);
         contacts_.of_pair[i].cache = cache;
+        chosen_.note_fallback(cache, block);
         take(i, pair, turned, manifold, block);
     }
 
@@ -212,6 +213,7 @@ private:
         state.cache = cache;
         take(i, pair, false, found.manifold, block);
         if (!anew) return;
+        chosen_.note_fallback(cache, block);
         if (found.manifold.count == 0)
             note_apart(pairs_.keys[i], double{cache.apart} - pair.reach, contacts_.travels,
                        contacts_.apart_until[i]);

@@ -61,6 +61,71 @@ TEST(HullHull, AgreesWithEveryAxis)
     }
 }
 
+// Beyond some hundred vertices GJK tells where to look, and axes tell the rest.
+TEST(HullHull, LargeHullsAgreeWithEveryAxis)
+{
+    RandomShapes random(27);
+    Shapes shapes;
+    shapes.boxes = {{{0.4, 0.3, 0.35}}};
+    int touched = 0;
+    for (int i = 0; i < 150; ++i) {
+        SCOPED_TRACE("seed 27, pair " + std::to_string(i));
+        const ShapeRef a = i % 5 == 0 ? kBoxA : kHullA;
+        shapes.hulls = {random.hull(96 + i % 60, 0.5), random.hull(190 + i % 43, 0.5)};
+        const Pose pose = random.pose(0.9);
+        const PolytopeShape shape_a(shapes, a);
+        const double exact =
+            polytope_separation(shape_a.view(), view_of(shapes.hulls[1]), pose, nullptr);
+        const double inner = shape_a.view().inner_radius + shapes.hulls[1].inner_radius;
+        const auto found = run<double>(hull_hull<double>, shapes, a, kHullB, pose, 0);
+        const auto rounded = run<float>(hull_hull<float>, shapes, a, kHullB, pose, 0);
+        ASSERT_TRUE(all_finite(found) && features_differ(found));
+        ASSERT_EQ(found.count > 0, exact <= 0);
+        if (exact > 0) continue;
+        ++touched;
+        ASSERT_NEAR(deepest(found), exact, 2e-3 * inner + 1e-9);
+        if (exact > -1e-5) continue;
+        ASSERT_NEAR(deepest(rounded), exact, 2e-3 * inner + 1e-5);
+    }
+    EXPECT_GT(touched, 30);
+}
+
+// Where they touch as bodies at rest do, GJK leads to the very points that all axes lead to.
+TEST(HullHull, LargeHullsTouchWhereAllAxesSayWhateverTheyRemember)
+{
+    RandomShapes random(28);
+    Shapes shapes;
+    shapes.hulls = {random.hull(120, 0.5), random.hull(150, 0.5)};
+    int same = 0, steps = 0;
+    for (int i = 0; i < 60; ++i) {
+        Pose pose = random.pose(0.8);
+        Vec3 normal;
+        const double gap =
+            polytope_separation(view_of(shapes.hulls[0]), view_of(shapes.hulls[1]), pose, &normal);
+        pose.position -= normal * gap;
+        PairCache searched, looked;
+        for (int step = 0; step < 10; ++step, ++steps) {
+            pose.position += random.vector(-0.003, 0.003);
+            LocalManifold<double> warm, by_axes;
+            const auto cold = run<double>(hull_hull<double>, shapes, kHullA, kHullB, pose, 0.02);
+            hull_hull<double>(shapes, kHullA, kHullB, pose, 0.02, searched, warm);
+            hull_hull_by_axes(shapes, kHullA, kHullB, pose, 0.02, looked, by_axes);
+            ASSERT_EQ(searched.kind & kFellBack, 0U);
+            for (const auto& found : {cold, warm}) {
+                bool agrees = found.count == by_axes.count;
+                for (int k = 0; agrees && k < found.count; ++k) {
+                    const auto at = static_cast<std::size_t>(k);
+                    agrees = found.points[at].feature == by_axes.points[at].feature
+                        && found.points[at].separation == by_axes.points[at].separation;
+                }
+                same += agrees;
+            }
+        }
+    }
+    // All but those apart whose corners are further from one another than any axis shows.
+    EXPECT_GE(same, 2 * steps * 98 / 100);
+}
+
 TEST(HullHull, ABoxIsAHull)
 {
     RandomShapes random(23);
