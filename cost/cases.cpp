@@ -131,6 +131,23 @@ ConvexAnswer CaseBench::ask(ConvexQuery& query,
                             double size,
                             MethodStart start)
 {
+    return timed(method, a, b, size,
+                 [&](const Pose& seen) { return query.ask(method, seen, start); });
+}
+
+ConvexAnswer
+CaseBench::touch_in_float(const ConvexQuery& query, const Pose& a, const Pose& b, double size)
+{
+    return timed("auto", a, b, size,
+                 [&](const Pose& seen) { return query.touch(seen, Precision::float_); });
+}
+
+ConvexAnswer CaseBench::timed(std::string_view method,
+                              const Pose& a,
+                              const Pose& b,
+                              double size,
+                              const std::function<ConvexAnswer(const Pose&)>& asked)
+{
     using Clock = std::chrono::steady_clock;
     Pose at_a = a, at_b = b;
     if (fault_ == Fault::nudge) at_b = nudged(at_b, size);
@@ -139,7 +156,7 @@ ConvexAnswer CaseBench::ask(ConvexQuery& query,
         at_b.position = rounded(at_b.position);
     }
     const auto begin = Clock::now();
-    ConvexAnswer answer = query.ask(method, seen_from(at_a, at_b), start);
+    ConvexAnswer answer = asked(seen_from(at_a, at_b));
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     const auto spent = method_ms_.find(method);
     if (spent != method_ms_.end())

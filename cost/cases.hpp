@@ -64,6 +64,10 @@ public:
                      double size,
                      MethodStart start);
 
+    /// What a step in float says of them: whether they touch.
+    ConvexAnswer
+    touch_in_float(const ConvexQuery& query, const Pose& a, const Pose& b, double size);
+
     /// Adds a line. Time is counted from the last line, or from the start.
     void report(
         std::string setting, std::string quantity, double figure, double bound, std::string unit);
@@ -81,6 +85,13 @@ public:
     std::vector<CaseResult> take_results(std::string_view name);
 
 private:
+    // Places the two, with the fault if there is one, and counts the method's time.
+    ConvexAnswer timed(std::string_view method,
+                       const Pose& a,
+                       const Pose& b,
+                       double size,
+                       const std::function<ConvexAnswer(const Pose&)>& asked);
+
     Settings settings_;
     Fault fault_;
     int threads_;

@@ -56,11 +56,29 @@ std::string trouble_with(const Pose& pose, double reach)
     return {};
 }
 
+template <class Real>
+ConvexAnswer contacts_of(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a)
+{
+    PairCache cache;
+    LocalManifold<Real> found;
+    collide<Real>(shapes, a, b,
+                  {b_in_a.position.cast<Real>(), b_in_a.orientation.normalized().cast<Real>()},
+                  Real(0), cache, found);
+    ConvexAnswer answer;
+    answer.verdict = found.count > 0 ? QueryVerdict::touching : QueryVerdict::apart;
+    for (int i = 0; i < found.count; ++i)
+        answer.separation = std::min(answer.separation,
+                                     double{found.points[static_cast<std::size_t>(i)].separation});
+    if (found.count > 0) answer.normal = found.normal.template cast<double>();
+    return answer;
+}
+
 }  // namespace
 
 struct ConvexQuery::Inside {
     std::string trouble;
     Shapes shapes;
+    ShapeRef a, b;
     std::optional<ConvexPair> pair;
     std::vector<MethodMemory> memories;  // by method, so that none sees another's
 };
@@ -88,6 +106,8 @@ ConvexQuery::ConvexQuery(const ShapeDescription& a, const ShapeDescription& b)
     }
     const ShapeRef first = append_convex(inside_->shapes, a);
     const ShapeRef second = append_convex(inside_->shapes, b);
+    inside_->a = first;
+    inside_->b = second;
     inside_->pair.emplace(inside_->shapes, first, second, Pose{});
     inside_->memories.resize(convex_methods().size());
 }
@@ -124,6 +144,16 @@ ConvexQuery::ask(std::string_view method, const Pose& b_in_a, MethodStart start,
             told.center,
             told.rounds,
             told.cut_short};
+}
+
+ConvexAnswer ConvexQuery::touch(const Pose& b_in_a, Precision precision) const
+{
+    if (!inside_->trouble.empty()) return refusal(inside_->trouble);
+    if (std::string trouble = trouble_with(b_in_a, 0); !trouble.empty())
+        return refusal(std::move(trouble));
+    return precision == Precision::float_
+        ? contacts_of<float>(inside_->shapes, inside_->a, inside_->b, b_in_a)
+        : contacts_of<double>(inside_->shapes, inside_->a, inside_->b, b_in_a);
 }
 
 }  // namespace throng

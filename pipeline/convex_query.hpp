@@ -90,6 +90,11 @@ public:
                      MethodStart start = MethodStart::cached,
                      double reach = std::numeric_limits<double>::infinity());
 
+    /// Whether a step of throng would see the two touch, by `auto` and in its number type, from
+    /// nothing remembered; refused as ask() does. Touching, the separation and the normal are those
+    /// of the deepest point of contact: a face leads where another way out is shorter by little.
+    ConvexAnswer touch(const Pose& b_in_a, Precision precision) const;
+
 private:
     struct Inside;
     std::unique_ptr<Inside> inside_;

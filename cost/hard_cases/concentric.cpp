@@ -66,6 +66,7 @@ void case_concentric(CaseBench& bench)
     const Pose placed{Vec3(0.3, -2, 1), exponential(Vec3(0.3, 0.5, -0.4))};
     const auto look_at = [&](const KnownPair& pair, const char* name, double bound) {
         judge(bench, tally, pair, name, {.value = bound});
+        judge_in_float(bench, tally, pair, name);
         judge_repeat(bench, tally, pair);
     };
     for (const double ratio : kRatios) {

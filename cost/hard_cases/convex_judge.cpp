@@ -207,4 +207,27 @@ void judge(CaseBench& bench,
     }
 }
 
+std::string in_float(std::string_view setting)
+{
+    return std::string(setting) + (setting.empty() ? "float" : ", float");
+}
+
+void judge_in_float(CaseBench& bench,
+                    MethodTally& tally,
+                    const KnownPair& pair,
+                    std::string_view setting)
+{
+    if (!(std::abs(pair.truth) > kFloat * pair.size)) return;
+    const ConvexQuery queries[] = {{pair.a, pair.b}, {pair.b, pair.a}};
+    const QueryVerdict right = pair.truth > 0 ? QueryVerdict::apart : QueryVerdict::touching;
+    for (const bool swapped : {false, true}) {
+        const ConvexAnswer answer =
+            bench.touch_in_float(queries[swapped], swapped ? pair.at_b : pair.at_a,
+                                 swapped ? pair.at_a : pair.at_b, pair.size);
+        const bool wrong = answer.verdict != right || !std::isfinite(answer.separation)
+            || !(std::abs(answer.normal.norm() - 1) < kFloat);
+        tally.count("auto", in_float(setting), "wrong or no answers", wrong ? 1 : 0);
+    }
+}
+
 }  // namespace throng

@@ -72,6 +72,19 @@ void judge(CaseBench& bench,
            std::string_view setting,
            const AnswerBounds& bounds = {});
 
+/// Asks a step in float both ways round, and tallies verdicts that are wrong though the two are
+/// further apart or deeper than kFloat of their size.
+void judge_in_float(CaseBench& bench,
+                    MethodTally& tally,
+                    const KnownPair& pair,
+                    std::string_view setting);
+
+/// How near to touching, of the size, either answer of a step in float is right.
+inline constexpr double kFloat = 1e-5;
+
+/// The line's setting for what was asked in float.
+std::string in_float(std::string_view setting);
+
 /// Whether a method serves a pair: a polytope is a box or a hull.
 bool serves(const MethodDescription& method, const ShapeDescription& a, const ShapeDescription& b);
 

@@ -73,9 +73,11 @@ void case_broken_pairs(CaseBench& bench)
 {
     MethodTally tally;
     for (const double scale : {1e-6, 1.0, 1e6})
-        for (const BrokenPair& pair : broken_pairs())
-            judge(bench, tally, scaled(pair, scale), "scale " + number_text(scale),
-                  {.rounds = kMostRounds});
+        for (const BrokenPair& pair : broken_pairs()) {
+            const std::string setting = "scale " + number_text(scale);
+            judge(bench, tally, scaled(pair, scale), setting, {.rounds = kMostRounds});
+            judge_in_float(bench, tally, scaled(pair, scale), setting);
+        }
     tally.report(bench);
 }
 
@@ -84,9 +86,11 @@ void case_scaled(CaseBench& bench)
     MethodTally tally;
     for (const BrokenPair& pair : broken_pairs()) {
         const KnownPair home = scaled(pair, 1);
-        for (const double scale : {1e-6, 1e6, 0x1p-20, 0x1p20})
+        for (const double scale : {1e-6, 1e6, 0x1p-20, 0x1p20}) {
             judge_scale(bench, tally, home, scaled(pair, scale), scale,
                         scale == 0x1p-20 || scale == 0x1p20);
+            judge_in_float(bench, tally, scaled(pair, scale), "");
+        }
     }
     tally.report(bench);
 }
@@ -100,6 +104,7 @@ void far_away_pairs(CaseBench& bench)
         for (const BrokenPair& pair : broken_pairs()) {
             const KnownPair home = moved(pair, Vec3::Zero()), away = moved(pair, by);
             judge(bench, tally, away, name, {.rounds = kMostRounds});
+            judge_in_float(bench, tally, away, name);
             for (const MethodDescription& method : known_methods()) {
                 const double here = told_separation(method, cold_answer(bench, method, home));
                 const double there = told_separation(method, cold_answer(bench, method, away));

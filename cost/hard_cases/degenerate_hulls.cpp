@@ -158,6 +158,7 @@ void judge_hull(CaseBench& bench, MethodTally& tally, const Given& given)
         pair.solid_b = quad_box(half, QuadPose(pose));
         pair.truth = quad_truth(*pair.solid_a, *pair.solid_b).separation;
         judge(bench, tally, pair, "", {.value = kBound});
+        judge_in_float(bench, tally, pair, "");
     }
 }
 

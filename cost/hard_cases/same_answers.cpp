@@ -21,6 +21,9 @@ constexpr int kShapes = 500, kPlacings = 200;  // 100,000 pairs
 constexpr MethodStart kStarts[] = {MethodStart::cached, MethodStart::cold, MethodStart::plain};
 // Methods that look at faces or edges take time with the square of their number.
 constexpr int kMostForPolytopes = 1000;
+// Of the balls inside both, as in hull_hull.cpp: contacts keep to a face where edges are better by
+// no more, so that bodies at rest do not rock, and within it a step decides neither way.
+constexpr double kFaceLead = 1e-3;
 
 /// A hull, and what a scene would state to have it.
 struct Stated {
@@ -54,6 +57,7 @@ public:
     {
         ConvexQuery query(a.shape, b.shape);
         const double size = certified_size(a.hull, b.hull);
+        const double lead = kFaceLead * (a.hull.inner_radius + b.hull.inner_radius);
         const auto most =
             static_cast<int>(std::max(a.hull.vertices.size(), b.hull.vertices.size()));
         for (int i = 0; i < placings; ++i) {
@@ -64,11 +68,16 @@ public:
                 look_at(counts_[k], pair, size,
                         bench_.ask(query, method.name, Pose{}, pair.b_in_a, size, kStarts[i % 3]));
             }
+            if (pair.gap > kFloat * size + lead)
+                look_at(in_float_, pair, size,
+                        bench_.touch_in_float(query, Pose{}, pair.b_in_a, size));
         }
     }
 
     void tally(MethodTally& tally) const
     {
+        tally.count("auto", in_float(setting_), "wrong verdicts beyond a face's lead",
+                    in_float_.wrong);
         for (std::size_t k = 0; k < methods_.size(); ++k) {
             const std::string_view method = methods_[k].name;
             const Count& count = counts_[k];
@@ -105,6 +114,7 @@ private:
     std::string_view setting_;
     std::vector<MethodDescription> methods_ = known_methods();
     std::vector<Count> counts_ = std::vector<Count>(methods_.size());
+    Count in_float_;
 };
 
 void judge_random_pairs(CaseBench& bench, MethodTally& tally)

@@ -31,6 +31,22 @@ TEST(KnownMethods, HaveNamesOfTheirOwnAndTellSomething)
     }
 }
 
+TEST(ConvexQuery, TellsWhatAStepSees)
+{
+    const ConvexQuery query(box(0.5, 0.5, 0.5), ball(0.25));
+    for (const auto& [precision, error] :
+         {std::pair(Precision::float_, 1e-6), std::pair(Precision::double_, 1e-12)}) {
+        const ConvexAnswer touching = query.touch(at(0.7, 0.1, 0.2), precision);
+        EXPECT_EQ(touching.verdict, QueryVerdict::touching);
+        EXPECT_NEAR(touching.separation, -0.05, error);
+        EXPECT_NEAR((touching.normal - Vec3::UnitX()).norm(), 0, error);
+        EXPECT_EQ(query.touch(at(0.7501, 0.1, 0.2), precision).verdict, QueryVerdict::apart);
+        EXPECT_EQ(query.touch(at(kNaN, 0, 0), precision).verdict, QueryVerdict::refused);
+    }
+    const ConvexQuery broken(box(-1, 1, 1), ball(0.25));
+    EXPECT_EQ(broken.touch(Pose{}, Precision::float_).trouble, broken.trouble());
+}
+
 TEST(ConvexQuery, TellsOfBoxesWhatEachMethodClaims)
 {
     const double shift = 0.75, gap = 0.25;
