@@ -1,6 +1,6 @@
 // Shape rules: what a shape of a scene must be, and what it then weighs.
 #include "kernels/geometry/hull.hpp"
-#include "kernels/geometry/mesh.hpp"
+#include "kernels/geometry/mesh_health.hpp"
 #include "pipeline/scene_rules.hpp"
 
 #include <cmath>
@@ -94,11 +94,11 @@ struct ShapeChecker {
             for (const std::uint32_t corner : triangle)
                 file.need(corner < mesh.vertices.size(), "wanted triangles between vertices");
         if (!moves) return {};
-        MeshResult built = build_mesh(mesh.vertices, mesh.triangles);
-        file.need(built.trouble.empty(), "wanted a mesh that can move; it " + built.trouble);
-        MassProperties mass = mass_as_if_closed(built.mesh);
+        const MendedMesh mended = mend(mesh.vertices, mesh.triangles);
+        file.need(mended.trouble.empty(), "wanted a mesh that can move; it " + mended.trouble);
+        MassProperties mass = mass_as_if_closed(mended.mesh);
         if (mass.volume < 0) mass = turned_inside_out(mass);
-        const Mesh::Node& root = built.mesh.tree.front();
+        const Mesh::Node& root = mended.mesh.tree.front();
         file.need(mass.volume > kThinnest * (root.upper - root.lower).prod(),
                   "wanted a mesh that encloses a volume, for a body that moves");
         return mass;
