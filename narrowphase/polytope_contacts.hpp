@@ -53,8 +53,8 @@ FaceAxis best_face_axis(const PolytopePair& pair, const FaceAxis& guess, double 
 /// little off its plane, and then stick out beyond an edge.
 EdgeAxis best_edge_axis(const PolytopePair& pair, double to_beat);
 
-/// The best face axis among the faces of a at one of its corners, sought from a vertex of b. Ties go
-/// to the lower index.
+/// The best face axis among the faces of a at one of its corners, sought from a vertex of b. Ties
+/// go to the lower index.
 FaceAxis best_face_axis_at(const PolytopePair& pair, std::uint16_t corner, std::uint16_t vertex);
 
 /// As best_edge_axis(), among the edges at a corner of a and those at a corner of b.

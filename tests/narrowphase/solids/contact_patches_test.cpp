@@ -283,16 +283,20 @@ TEST(ContactPatches, ANewPatchLeavesTheOthersTheirNames)
 
 TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
 {
-    // Eighteen directions 45 degrees apart or more: the axes, deep, and halfway between, shallow.
+    // Twenty-six directions 35 degrees apart or more: the axes and halfway between two of them,
+    // deep, and halfway between three of them, shallow.
     std::vector<SurfaceTouch> touches;
+    std::size_t overlapping = 0;
     for (int x = -1; x <= 1; ++x)
         for (int y = -1; y <= 1; ++y)
             for (int z = -1; z <= 1; ++z) {
                 const int odd = std::abs(x) + std::abs(y) + std::abs(z);
-                if (odd != 1 && odd != 2) continue;
+                if (odd == 0) continue;
                 const Vec3 normal = Vec3(x, y, z).normalized();
                 const auto feature = static_cast<std::uint32_t>(touches.size());
-                touches.push_back({normal, normal, odd == 1 ? -0.01 : 0.001 * x, feature});
+                const double separation = odd < 3 ? -0.01 : 0.001 * x;
+                overlapping += separation < 0 ? 1 : 0;
+                touches.push_back({normal, normal, separation, feature});
             }
     std::vector<PatchManifold> out;
     const std::size_t left_out = make_patches(touches, kReach, 1, out);
@@ -300,7 +304,10 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
     std::set<std::uint32_t> held;
     for (const PatchManifold& patch : out)
         for (const std::uint32_t feature : features(patch.manifold)) held.insert(feature);
-    EXPECT_EQ(held.size() + left_out, 18U);
+    // Of those left out only what overlaps counts; a shallow one that joined others may be behind
+    // them.
+    EXPECT_LE(left_out, overlapping);
+    EXPECT_GE(held.size() + left_out, kMostPatches);
     for (const SurfaceTouch& touch : touches) {
         EXPECT_TRUE(touch.separation > -0.01 || held.count(touch.feature) == 1);
     }

@@ -48,10 +48,10 @@ inline Solid small_solid(const TriangleSoup& soup,
     return solid;
 }
 
-/// A ball whose corners are on the sphere; its faces are within a thousandth of the radius.
+/// A ball whose corners are on the sphere; its faces are within 3e-4 of the radius.
 inline Solid small_ball(double radius, double voxel)
 {
-    return small_solid(ball_mesh(radius, 96, 48), voxel,
+    return small_solid(ball_mesh(radius, 192, 96), voxel,
                        [=](const Vec3& at) { return at.norm() - radius; });
 }
 
