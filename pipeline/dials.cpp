@@ -327,13 +327,13 @@ std::vector<Dial> make_dials()
             "time alone: tighter bounds leave fewer pairs to look at, and cost a test each"),
         choice_dial<&S::nonconvex, kNonconvex>("nonconvex",
             "finer stand-ins for a moving non-convex shape fit better, and cost more points"),
-        number_dial("voxel_size", "auto (set by the shape's size), or a length", "m", set_voxel_size, get_voxel_size,
+        number_dial("voxel_size", "auto (a 48th of the shape's longest side), or a length", "m", set_voxel_size, get_voxel_size,
             "smaller voxels fit the shape better, and cost memory with the cube"),
-        whole_dial<&S::image_resolution, 4, 1024>("image_resolution", "auto (set by the shape's size), or a whole number", "pixels",
+        whole_dial<&S::image_resolution, 4, 512>("image_resolution", "auto (32), or a whole number from 4 to 512", "rays along the smaller shape's longest side",
             "finer depth images fit the shape better, and cost time with the square"),
-        whole_dial<&S::sphere_levels, 1, 6>("sphere_levels", "auto (set by the shape's size), or a whole number", "",
+        whole_dial<&S::sphere_levels, 1, 6>("sphere_levels", "auto (5), or a whole number from 1 to 6; no level has more than 2000 spheres", "",
             "deeper sphere trees fit the shape better, and cost more tests"),
-        whole_dial<&S::max_parts, 1, 256>("max_parts", "auto (set by the shape's size), or a whole number", "",
+        whole_dial<&S::max_parts, 1, 256>("max_parts", "auto (16), or a whole number from 1 to 256", "",
             "more convex parts fit the shape better, and cost a pair each"),
         choice_dial<&S::response, kResponse>("response",
             "impulses hold overlap small; penalty forces are smooth and soft; kinematic is cheap and loses momentum"),
@@ -359,41 +359,6 @@ std::vector<Dial> make_dials()
             "bodies at rest cost nothing while asleep; off follows the slowest creep"),
     };
     // clang-format on
-}
-
-/// Why a dial does nothing under these settings; empty when it does something.
-std::string why_unused(const Settings& settings, std::string_view name)
-{
-    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
-        return std::find(names.begin(), names.end(), name) != names.end();
-    };
-    const std::string solver = dial_value(settings, "solver");
-    const std::string response = dial_value(settings, "response");
-    const std::string nonconvex = dial_value(settings, "nonconvex");
-
-    if (settings.response != Response::impulse
-        && is_one_of({"solver", "iterations", "contact_rate", "push_limit", "direct_limit",
-                      "friction_cone", "friction_at", "impact_law"}))
-        return "response " + response + " solves no rows";
-    if (settings.solver != Solver::soft_step && is_one_of({"contact_rate", "push_limit"}))
-        return "solver " + solver + " has no soft contacts";
-    if (settings.narrowphase == NarrowPhase::auto_ && name == "method_start")
-        return "narrowphase auto always begins with what a pair remembers";
-    if (settings.solver != Solver::direct && name == "direct_limit")
-        return "solver " + solver + " takes islands of any size";
-    if (settings.response != Response::penalty
-        && is_one_of({"penalty_stiffness", "penalty_damping"}))
-        return "response " + response + " has no penalty forces";
-
-    constexpr std::array<std::array<std::string_view, 2>, 4> kOwners = {
-        {{"voxel_size", "voxels"},
-         {"image_resolution", "depth_image"},
-         {"sphere_levels", "spheres"},
-         {"max_parts", "parts"}}};
-    for (const auto& [dial, owner] : kOwners)
-        if (name == dial && nonconvex != owner)
-            return "nonconvex " + nonconvex + " does not ask for it";
-    return {};
 }
 
 }  // namespace
@@ -429,17 +394,6 @@ std::string dial_value(const Settings& settings, std::string_view name)
 {
     const Dial* dial = find_dial(name);
     return dial ? dial->get(settings) : std::string();
-}
-
-std::vector<std::string> unused_dials(const Settings& settings,
-                                      std::span<const std::string> explicitly_set)
-{
-    std::vector<std::string> unused;
-    for (const std::string& name : explicitly_set) {
-        const std::string why = why_unused(settings, name);
-        if (!why.empty()) unused.push_back(name + ": unused, " + why);
-    }
-    return unused;
 }
 
 double parse_time(std::string_view text)

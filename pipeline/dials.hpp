@@ -48,11 +48,6 @@ std::string set_dial(Settings& settings, std::string_view name, std::string_view
 /// The present value of a dial, as text that set_dial() takes; empty for an unknown name.
 std::string dial_value(const Settings& settings, std::string_view name);
 
-/// Those of the dials that were set and that another makes meaningless, each with its reason:
-/// `contact_rate: unused, solver pgs has no soft contacts`.
-std::vector<std::string> unused_dials(const Settings& settings,
-                                      std::span<const std::string> explicitly_set);
-
 /// A time in seconds, as a number or a fraction: "0.01", "1/60". NaN where it is neither.
 double parse_time(std::string_view text);
 

@@ -54,7 +54,7 @@ struct Settings {
     // by the shape's size.
     NonConvex nonconvex = NonConvex::voxels;
     double voxel_size = 0;     // m
-    int image_resolution = 0;  // rays along the shape's longest side
+    int image_resolution = 0;  // rays along the longest side of the smaller of two shapes
     int sphere_levels = 0;     // of the sphere tree, from 1
     int max_parts = 0;         // convex parts of a shape
     Response response = Response::impulse;

@@ -1,6 +1,8 @@
 // Shape rules: what a shape of a scene must be, and what it then weighs.
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh_health.hpp"
+#include "pipeline/dials.hpp"
+#include "pipeline/names.hpp"
 #include "pipeline/scene_rules.hpp"
 
 #include <cmath>
@@ -36,6 +38,23 @@ struct ShapeChecker {
     {
         kind.push_back(std::move(shape));
         return mass_of(scratch, {name, 0});
+    }
+
+    // What a shape states for itself is held to what the scene's dial takes.
+    void need_dial(const SceneChecker& mesh, std::string_view dial, std::string_view value) const
+    {
+        Settings unread;
+        const std::string trouble = find_dial(dial)->set(unread, value);
+        mesh.at(dial).need(trouble.empty(), trouble);
+    }
+    void need_own_dials(const SceneChecker& here, const MeshShape& mesh) const
+    {
+        if (!mesh.nonconvex.empty()) need_dial(here, "nonconvex", mesh.nonconvex);
+        if (mesh.voxel_size != 0) need_dial(here, "voxel_size", number_text(mesh.voxel_size));
+        for (const auto& [dial, value] : {std::pair("image_resolution", mesh.image_resolution),
+                                          std::pair("sphere_levels", mesh.sphere_levels),
+                                          std::pair("max_parts", mesh.max_parts)})
+            if (value != 0) need_dial(here, dial, std::to_string(value));
     }
 
     MassProperties operator()(const SphereShape& sphere)
@@ -85,10 +104,11 @@ struct ShapeChecker {
     {
         const SceneChecker here = checker.at("mesh");
         here.at("scale").need_range(mesh.scale, kLeastLength, kGreatestLength, "a factor above 0");
+        need_own_dials(here, mesh);
         const SceneChecker file = here.at("file");
         file.need(!mesh.triangles.empty(), "wanted a mesh with triangles, not an empty one");
         for (const Vec3& vertex : mesh.vertices)
-            file.need(vertex.cwiseAbs().maxCoeff() <= kGreatestLength,
+            file.need((vertex.cwiseAbs().array() <= kGreatestLength).all(),
                       "wanted vertices of a size that a step can hold, once scaled");
         for (const auto& triangle : mesh.triangles)
             for (const std::uint32_t corner : triangle)

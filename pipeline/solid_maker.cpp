@@ -14,17 +14,6 @@ namespace throng {
 
 namespace {
 
-// What the shape asks for, or else the scene.
-Settings own_settings(const MeshShape& mesh, Settings settings)
-{
-    if (!mesh.nonconvex.empty()) set_dial(settings, "nonconvex", mesh.nonconvex);
-    if (mesh.voxel_size > 0) settings.voxel_size = mesh.voxel_size;
-    if (mesh.image_resolution > 0) settings.image_resolution = mesh.image_resolution;
-    if (mesh.sphere_levels > 0) settings.sphere_levels = mesh.sphere_levels;
-    if (mesh.max_parts > 0) settings.max_parts = mesh.max_parts;
-    return settings;
-}
-
 std::string short_text(double number)
 {
     char text[32];
@@ -126,8 +115,8 @@ private:
         if (solid.spheres.levels.empty()) return refused("has no inside that spheres could fill");
         const SphereTree::Level& last = solid.spheres.levels.back();
         solid.error = last.error;
-        made_.summary = std::to_string(last.nodes.size()) + " spheres on level "
-            + std::to_string(solid.spheres.levels.size());
+        made_.summary = "spheres in " + std::to_string(solid.spheres.levels.size()) + " levels, "
+            + std::to_string(last.nodes.size()) + " on the last";
         return finished(std::move(solid));
     }
 
@@ -137,7 +126,8 @@ private:
         solid.way = SolidWay::depth_image;
         solid.rays = settings_.image_resolution > 0 ? settings_.image_resolution : kAutoRays;
         solid.error = longest_side(mesh_) / solid.rays;
-        made_.summary = "depth images, " + std::to_string(solid.rays) + " rays along a side";
+        made_.summary = "depth images, " + std::to_string(solid.rays)
+            + " rays along the smaller shape's longest side";
         return finished(std::move(solid));
     }
 
@@ -177,10 +167,20 @@ private:
 
 }  // namespace
 
+Settings settings_of(const MeshShape& mesh, Settings scene)
+{
+    if (!mesh.nonconvex.empty()) set_dial(scene, "nonconvex", mesh.nonconvex);
+    if (mesh.voxel_size > 0) scene.voxel_size = mesh.voxel_size;
+    if (mesh.image_resolution > 0) scene.image_resolution = mesh.image_resolution;
+    if (mesh.sphere_levels > 0) scene.sphere_levels = mesh.sphere_levels;
+    if (mesh.max_parts > 0) scene.max_parts = mesh.max_parts;
+    return scene;
+}
+
 MadeSolid
 make_solid(const MeshShape& mesh, const Settings& settings, const std::string& cache_folder)
 {
-    const Settings own = own_settings(mesh, settings);
+    const Settings own = settings_of(mesh, settings);
     return SolidMaker(own, cache_folder).make(mesh);
 }
 

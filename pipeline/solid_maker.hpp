@@ -26,7 +26,10 @@ struct MadeSolid {
     std::string trouble;
 };
 
-/// By the mesh's own way and dials where it names them, else by the settings'.
+/// What a mesh is made by: its own way and dials where it states them, else the scene's.
+Settings settings_of(const MeshShape& mesh, Settings scene);
+
+/// Makes a mesh that is to move, by settings_of() it.
 ///
 ///   cache_folder  where fields and parts are kept between runs; empty: nowhere
 MadeSolid

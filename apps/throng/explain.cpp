@@ -6,6 +6,7 @@
 #include "apps/throng/scene_argument.hpp"
 #include "apps/throng/step_times.hpp"
 #include "pipeline/stages.hpp"
+#include "pipeline/unused_dials.hpp"
 #include "pipeline/world.hpp"
 
 #include <algorithm>
@@ -174,7 +175,7 @@ int explain(const Options& options)
     print_effects(effects);
     print_stages(stages, inner, stage_ms);
     print_solids(world.solids());
-    for (const std::string& sentence : idle_dials(argument.scene))
+    for (const std::string& sentence : unused_dials(argument.scene))
         std::cerr << "warning: " << sentence << '\n';
     return interrupted() ? kInterrupted : kDone;
 }

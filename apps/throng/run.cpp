@@ -8,6 +8,7 @@
 #include "apps/throng/trace_option.hpp"
 #include "pipeline/final_csv.hpp"
 #include "pipeline/run_file.hpp"
+#include "pipeline/unused_dials.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -49,7 +50,7 @@ std::int64_t standard_every(std::int64_t steps, std::size_t bodies)
 
 void warn(const SceneArgument& argument, World& world)
 {
-    for (const std::string& sentence : idle_dials(argument.scene))
+    for (const std::string& sentence : unused_dials(argument.scene))
         std::cerr << "warning: " << sentence << '\n';
     const Effects& effects = world.effects();
     for (int i = 0; i < kEffects; ++i) {

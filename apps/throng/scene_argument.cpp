@@ -1,7 +1,7 @@
 // Scene argument: the SCENE of a command line, with the dials that the line sets.
 #include "apps/throng/scene_argument.hpp"
 
-#include "narrowphase/solids/field_cache.hpp"
+#include "narrowphase/solids/kept_file.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/names.hpp"
 #include "scenes/catalog.hpp"
@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <limits>
 
 namespace throng {
@@ -97,11 +98,6 @@ std::uint64_t seed_asked(const Options& options)
 int threads_asked(const Options& options)
 {
     return static_cast<int>(options.whole("--threads", 0, 1, 1024));
-}
-
-std::vector<std::string> idle_dials(const Scene& scene)
-{
-    return unused_dials(scene.settings, scene.dials_set);
 }
 
 void print_dials(std::ostream& out)

@@ -45,9 +45,6 @@ int threads_asked(const Options& options);
 
 std::uint64_t seed_asked(const Options& options);
 
-/// Dials that were set and do nothing, one sentence each.
-std::vector<std::string> idle_dials(const Scene& scene);
-
 /// Writes all dials: values, default, unit and what they trade.
 void print_dials(std::ostream& out);
 

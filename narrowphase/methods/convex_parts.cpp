@@ -233,10 +233,11 @@ ConvexParts split_into_parts(const Mesh& mesh, const PartsWanted& wanted)
     std::vector<LooseHull> pieces;
     for (MeshPart& part : parts) pieces.push_back(std::move(part.hull));
     finish(search, pieces, kMostPartVertices, made);
-    if (made.error > search.error)
-        made.remarks.push_back("the error is " + percent(made.error / search.extent)
-                               + " of the longest side, with " + std::to_string(made.hulls.size())
-                               + " parts");
+    const std::string error = percent(made.error / search.extent);
+    const std::string asked = percent(search.error / search.extent);
+    if (made.error > search.error && error != asked)
+        made.remarks.push_back("the error is " + error + " of the longest side, more than the "
+                               + asked + " wanted");
     return made;
 }
 
@@ -248,7 +249,8 @@ ConvexParts put_into_hull(const Mesh& mesh)
     const PartSearch search = search_of(mesh, 0);
     const LooseHull hull = loose_hull(mesh.vertices);
     finish(search, {hull}, hull.vertices.size(), made);
-    made.remarks.push_back("the hull fills " + percent(made.volume_error) + " more than the mesh");
+    made.remarks.push_back("holes and hollows are filled, " + percent(made.volume_error)
+                           + " more than the mesh");
     return made;
 }
 

@@ -1,15 +1,10 @@
-// Field cache: level sets kept on disk by what they were made from.
-//
-// A file is named by a hash of the mesh and the settings, and carries a checksum of itself: what is
-// damaged or not throng's is made anew. Several programs may share a folder.
+// Field cache: level sets kept on disk by what they were made from, as files that other tools read
+// (kept_file.hpp).
 #pragma once
 
 #include "narrowphase/solids/voxel_field.hpp"
 
 namespace throng {
-
-/// $XDG_CACHE_HOME/throng, or ~/.cache/throng; empty where neither is known.
-std::filesystem::path default_cache_folder();
 
 /// What a level set is made from, as 16 hex digits: vertices, triangles, voxel, band, sign, and the
 /// version of the files.

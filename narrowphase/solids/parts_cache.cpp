@@ -1,13 +1,11 @@
 #include "narrowphase/solids/parts_cache.hpp"
 
 #include "kernels/geometry/hull.hpp"
-#include "kernels/math/hash.hpp"
+#include "narrowphase/solids/kept_file.hpp"
 
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
-#include <random>
 
 namespace throng {
 namespace {
@@ -15,17 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A change of what is computed or written is another version.
-constexpr std::uint64_t kVersion = 1;
-// Begins every file; read in the wrong order of bytes it is another word.
-constexpr std::uint64_t kMark = 0x3173747261706874;
-
-std::uint64_t checksum(std::string_view bytes)
-{
-    Hash hash;
-    for (const char byte : bytes) hash.add(std::uint64_t{static_cast<unsigned char>(byte)});
-    hash.add(std::uint64_t{bytes.size()});
-    return hash.value();
-}
+constexpr std::uint64_t kVersion = 2;
 
 class Writer {
 public:
@@ -85,7 +73,6 @@ private:
 std::string to_bytes(const ConvexParts& parts, const std::string& key)
 {
     Writer out;
-    out.word(kMark);
     out.text(key);
     for (const double value : {parts.error, parts.outside, parts.uncovered, parts.volume_error})
         out.number(value);
@@ -97,17 +84,13 @@ std::string to_bytes(const ConvexParts& parts, const std::string& key)
         for (const Vec3& point : points)
             for (const double x : point) out.number(x);
     }
-    out.word(checksum(out.bytes));
     return std::move(out.bytes);
 }
 
 std::optional<ConvexParts> from_bytes(std::string_view bytes, const std::string& key)
 {
-    if (bytes.size() < 8) return std::nullopt;
-    const std::string_view body = bytes.substr(0, bytes.size() - 8);
-    if (Reader(bytes.substr(body.size())).word() != checksum(body)) return std::nullopt;
-    Reader in(body);
-    if (in.word() != kMark || in.text() != key) return std::nullopt;
+    Reader in(bytes);
+    if (in.text() != key) return std::nullopt;
     ConvexParts parts;
     for (double* value : {&parts.error, &parts.outside, &parts.uncovered, &parts.volume_error})
         *value = in.number();
@@ -126,32 +109,12 @@ std::optional<ConvexParts> from_bytes(std::string_view bytes, const std::string&
     return parts;
 }
 
-std::optional<ConvexParts> kept_parts(const fs::path& path, const std::string& key)
+std::string write_bytes(const fs::path& path, const std::string& bytes)
 {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return std::nullopt;
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    return from_bytes(bytes, key);
-}
-
-// Under a name of its own first, so that no program ever reads half a file.
-bool keep(const fs::path& path, const std::string& bytes)
-{
-    std::error_code failed;
-    fs::create_directories(path.parent_path(), failed);
-    // Any number will do that no other program draws at the same time.
-    std::random_device draw;
-    Hash name;
-    for (int k = 0; k < 2; ++k) name.add(std::uint64_t{draw()});
-    fs::path part = path;
-    part.replace_extension("." + name.text() + ".part");
-    std::ofstream file(part, std::ios::binary);
+    std::ofstream file(path, std::ios::binary);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.close();
-    if (!file.fail()) fs::rename(part, path, failed);
-    if (!file.fail() && !failed) return true;
-    fs::remove(part, failed);
-    return false;
+    return file.fail() ? path.string() + ": cannot be written" : std::string();
 }
 
 }  // namespace
@@ -162,13 +125,7 @@ std::string parts_key(const Mesh& mesh, const PartsWanted& wanted)
     hash.add(kVersion);
     hash.add(static_cast<std::uint64_t>(wanted.max_parts));
     hash.add(wanted.error);
-    hash.add(std::uint64_t{mesh.vertices.size()});
-    for (const Vec3& vertex : mesh.vertices)
-        for (const double x : vertex) hash.add(x);
-    for (const auto& [a, b, c] : mesh.triangles) {
-        hash.add(std::uint64_t{a} << 32 | b);
-        hash.add(std::uint64_t{c});
-    }
+    add_mesh(mesh, hash);
     return hash.text();
 }
 
@@ -177,11 +134,13 @@ ConvexParts cached_parts(const Mesh& mesh, const PartsWanted& wanted, const fs::
     if (folder.empty()) return split_into_parts(mesh, wanted);
     const std::string key = parts_key(mesh, wanted);
     const fs::path path = folder / (key + ".parts");
-    if (std::optional<ConvexParts> kept = kept_parts(path, key)) return std::move(*kept);
+    if (std::optional<ConvexParts> kept = from_bytes(kept_bytes(path), key))
+        return std::move(*kept);
     ConvexParts parts = split_into_parts(mesh, wanted);
-    if (parts.trouble.empty() && !keep(path, to_bytes(parts, key)))
-        parts.remarks.push_back("not kept for the next run: " + path.string()
-                                + " cannot be written");
+    if (!parts.trouble.empty()) return parts;
+    const std::string trouble = keep_file(
+        path, [&](const fs::path& part) { return write_bytes(part, to_bytes(parts, key)); });
+    if (!trouble.empty()) parts.remarks.push_back("not kept for the next run: " + trouble);
     return parts;
 }
 

@@ -1,7 +1,4 @@
-// Parts cache: convex parts kept on disk by what they were made from.
-//
-// A file is named by a hash of the mesh and of what was wanted, and carries a checksum of itself:
-// what is damaged or not throng's is made anew. Several programs may share a folder.
+// Parts cache: convex parts kept on disk by what they were made from (kept_file.hpp).
 #pragma once
 
 #include "narrowphase/methods/convex_parts.hpp"

@@ -129,7 +129,7 @@ TEST(Dials, SayWhatWasWanted)
          "solver: wanted soft_step or pgs; \"direct\" is not available in this build"},
         {"sleep", "true", "sleep: wanted on or off, not \"true\""},
         {"voxel_size", "-1", "voxel_size: wanted auto or a length from 1e-9 to 1e9 m"},
-        {"image_resolution", "2", "image_resolution: wanted auto or a whole number from 4 to 1024"},
+        {"image_resolution", "2", "image_resolution: wanted auto or a whole number from 4 to 512"},
         {"sphere_levels", "2.5", "sphere_levels: wanted auto or a whole number from 1 to 6"},
         {"toi_tolerance", "1e-5", "toi_tolerance: wanted 1e-4, not \"1e-5\"; nothing else"},
         {"substep", "4", "substep: wanted the name of a dial, perhaps substeps"},
@@ -151,23 +151,6 @@ TEST(Dials, StayAsTheyWereWhenRefused)
         for (const Dial& other : dials())
             EXPECT_EQ(dial_value(settings, other.name), other.default_value);
     }
-}
-
-TEST(Dials, ReportThoseThatAnotherMakesMeaningless)
-{
-    Settings settings;
-    const std::vector<std::string> set = {"contact_rate", "push_limit", "iterations", "dt"};
-    EXPECT_TRUE(unused_dials(settings, set).empty());
-    settings.solver = Solver::pgs;
-    const std::vector<std::string> expected = {
-        "contact_rate: unused, solver pgs has no soft contacts",
-        "push_limit: unused, solver pgs has no soft contacts"};
-    EXPECT_EQ(unused_dials(settings, set), expected);
-    const std::vector<std::string> others = {"penalty_damping", "max_parts", "direct_limit",
-                                             "sleep", "method_start"};
-    EXPECT_EQ(unused_dials(settings, others).size(), 4u);
-    settings.narrowphase = NarrowPhase::gjk;
-    EXPECT_EQ(unused_dials(settings, others).size(), 3u);
 }
 
 TEST(ParseTime, ReadsNumbersAndFractions)

@@ -1,19 +1,10 @@
 // Closed meshes made ready: what the tests of solids are made of.
 #pragma once
 
-#include "kernels/geometry/mesh.hpp"
-#include "kernels/geometry/mesh_distance.hpp"
-#include "scenes/closed_meshes.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
+#include "tests/narrowphase/solids/closed.hpp"
 
 namespace throng {
-
-inline Mesh ready(const TriangleSoup& soup)
-{
-    Mesh mesh = build_mesh(soup.vertices, soup.triangles).mesh;
-    find_vertex_normals(mesh);
-    return mesh;
-}
 
 /// A ball whose corners are moved in and out at random.
 inline TriangleSoup noisy_ball(std::uint64_t seed, double radius, double noise)

@@ -1,12 +1,10 @@
 #include "narrowphase/methods/convex_parts.hpp"
 
 #include "kernels/geometry/mass.hpp"
-#include "kernels/geometry/mesh.hpp"
-#include "kernels/geometry/mesh_distance.hpp"
 #include "kernels/math/hash.hpp"
 #include "narrowphase/solids/loose_hull.hpp"
-#include "scenes/closed_meshes.hpp"
 #include "scenes/mesh_file.hpp"
+#include "tests/narrowphase/solids/closed.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <gtest/gtest.h>
@@ -18,15 +16,6 @@
 
 namespace throng {
 namespace {
-
-Mesh ready(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles)
-{
-    Mesh mesh = build_mesh(std::move(vertices), std::move(triangles)).mesh;
-    find_vertex_normals(mesh);
-    return mesh;
-}
-
-Mesh ready(const TriangleSoup& soup) { return ready(soup.vertices, soup.triangles); }
 
 // A solid of unit cubes: the faces that no other cube covers. Needs no two cubes that share an edge
 // or a corner alone.
@@ -57,7 +46,7 @@ Mesh of_cubes(const std::vector<std::array<int, 3>>& cubes)
                     triangles.push_back({first, first + 3, first + 2});
                 }
             }
-    return ready(std::move(vertices), std::move(triangles));
+    return closed({std::move(vertices), std::move(triangles)});
 }
 
 Mesh shared_mesh(const std::filesystem::path& path)
@@ -66,7 +55,7 @@ Mesh shared_mesh(const std::filesystem::path& path)
     std::stringstream text;
     text << in.rdbuf();
     const MeshFile file = read_mesh_text(text.str(), path.filename().string());
-    return ready(file.vertices, file.triangles);
+    return closed({file.vertices, file.triangles});
 }
 
 double longest_side(const Mesh& mesh)
@@ -120,14 +109,14 @@ void expect_sound(const Mesh& mesh, const ConvexParts& parts, int most)
 
 TEST(ConvexParts, ConvexMeshIsItsOnlyPart)
 {
-    const Mesh box = ready(box_mesh({1, 2, 3}));
+    const Mesh box = closed(box_mesh({1, 2, 3}));
     const ConvexParts parts = split_into_parts(box, {});
     expect_sound(box, parts, 1);
     EXPECT_EQ(parts.hulls[0].vertices.size(), 8u);
     EXPECT_NEAR(parts.volume_error, 0, 1e-12);
     EXPECT_NEAR(parts.outside, 0, 1e-12);
 
-    const Mesh ball = ready(ball_mesh(1, 8, 8));
+    const Mesh ball = closed(ball_mesh(1, 8, 8));
     const ConvexParts round = split_into_parts(ball, {});
     expect_sound(ball, round, 1);
     EXPECT_EQ(round.hulls[0].vertices.size(), ball.vertices.size());
@@ -164,7 +153,7 @@ TEST(ConvexParts, ShapesOfBoxesComeApartIntoThem)
 
 TEST(ConvexParts, TorusKeepsItsHole)
 {
-    const Mesh torus = ready(torus_mesh(3, 1, 16, 8));
+    const Mesh torus = closed(torus_mesh(3, 1, 16, 8));
     double last = std::numeric_limits<double>::infinity();
     for (const int most : {1, 6, 12}) {
         // An error that no number of these parts reaches.
@@ -184,7 +173,7 @@ TEST(ConvexParts, TorusKeepsItsHole)
 
 TEST(ConvexParts, ErrorIsThatOfManyPoints)
 {
-    const Mesh torus = ready(torus_mesh(3, 1, 24, 12));
+    const Mesh torus = closed(torus_mesh(3, 1, 24, 12));
     const ConvexParts parts = split_into_parts(torus, {6, 0});
     expect_sound(torus, parts, 6);
     // Points all over the faces of the hulls, by no way that the search goes.
@@ -206,7 +195,7 @@ TEST(ConvexParts, ErrorIsThatOfManyPoints)
 
 TEST(ConvexParts, SameBitsOnEveryRun)
 {
-    const Mesh torus = ready(torus_mesh(3, 1, 16, 8));
+    const Mesh torus = closed(torus_mesh(3, 1, 16, 8));
     const ConvexParts once = split_into_parts(torus, {6, 0});
     const ConvexParts again = split_into_parts(torus, {6, 0});
     EXPECT_EQ(fingerprint(once), fingerprint(again));
@@ -215,10 +204,10 @@ TEST(ConvexParts, SameBitsOnEveryRun)
 TEST(ConvexParts, SizeChangesNothing)
 {
     TriangleSoup soup = torus_mesh(3, 1, 16, 8);
-    const ConvexParts large = split_into_parts(ready(soup), {6, 0});
+    const ConvexParts large = split_into_parts(closed(soup), {6, 0});
     // By a power of two, so that not a bit of any number is another.
     for (Vec3& vertex : soup.vertices) vertex /= 1024;
-    const ConvexParts small = split_into_parts(ready(soup), {6, 0});
+    const ConvexParts small = split_into_parts(closed(soup), {6, 0});
     EXPECT_EQ(small.hulls.size(), large.hulls.size());
     EXPECT_DOUBLE_EQ(1024 * small.error, large.error);
     EXPECT_DOUBLE_EQ(small.volume_error, large.volume_error);
@@ -228,14 +217,14 @@ TEST(ConvexParts, WhatIsNotClosedIsRefused)
 {
     TriangleSoup soup = box_mesh({1, 1, 1});
     soup.triangles.pop_back();
-    EXPECT_EQ(split_into_parts(ready(soup), {}).trouble,
+    EXPECT_EQ(split_into_parts(closed(soup), {}).trouble,
               "has 3 edges that are not shared by two triangles; give a closed mesh");
-    EXPECT_FALSE(put_into_hull(ready(soup)).trouble.empty());
+    EXPECT_FALSE(put_into_hull(closed(soup)).trouble.empty());
     EXPECT_EQ(split_into_parts(Mesh(), {}).trouble, "has no triangles; give a closed mesh");
 
     soup = box_mesh({1, 1, 1});
     for (auto& triangle : soup.triangles) std::swap(triangle[0], triangle[1]);
-    EXPECT_EQ(split_into_parts(ready(soup), {}).trouble,
+    EXPECT_EQ(split_into_parts(closed(soup), {}).trouble,
               "is inside out; give triangles that turn outward");
 }
 
@@ -249,7 +238,7 @@ TEST(ConvexParts, HullTellsHowMuchItFills)
     // The middle of the slope, half of a cube off either face of the corner.
     EXPECT_NEAR(hull.outside, 0.5, 0.01);
     ASSERT_EQ(hull.remarks.size(), 1u);
-    EXPECT_EQ(hull.remarks[0], "the hull fills 17 % more than the mesh");
+    EXPECT_EQ(hull.remarks[0], "holes and hollows are filled, 17 % more than the mesh");
 }
 
 // Bounds are of the longest side and of the mesh's volume: what was measured, with a tenth of room.

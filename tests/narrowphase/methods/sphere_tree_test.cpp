@@ -19,10 +19,10 @@ const std::vector<Case>& cases()
 {
     static const std::vector<Case> all = [] {
         std::vector<Case> made;
-        made.push_back({"ball", ready(ball_mesh(0.5, 16, 8)), {}});
-        made.push_back({"box", ready(box_mesh({0.5, 0.4, 0.3})), {}});
-        made.push_back({"torus", ready(torus_mesh(0.35, 0.15, 24, 12)), {}});
-        made.push_back({"noisy ball", ready(noisy_ball(7, 0.5, 0.1)), {}});
+        made.push_back({"ball", closed(ball_mesh(0.5, 16, 8)), {}});
+        made.push_back({"box", closed(box_mesh({0.5, 0.4, 0.3})), {}});
+        made.push_back({"torus", closed(torus_mesh(0.35, 0.15, 24, 12)), {}});
+        made.push_back({"noisy ball", closed(noisy_ball(7, 0.5, 0.1)), {}});
         for (Case& one : made) one.tree = build_sphere_tree(one.mesh, {3, 64, 0, 50000});
         return made;
     }();
@@ -171,7 +171,7 @@ TEST(SphereTree, EndsWhereTheErrorIsMetAndIsEmptyOfNothing)
 TEST(SphereError, IsThatOfAKnownPair)
 {
     // One ball in a cube: corners stick out of it by sqrt(3) - 1, and it touches the faces.
-    const Mesh cube = ready(box_mesh({1, 1, 1}));
+    const Mesh cube = closed(box_mesh({1, 1, 1}));
     const std::vector<Ball> balls = {{Vec3::Zero(), 1}};
     const double far = std::sqrt(3.0) - 1;
     EXPECT_GE(sphere_error(cube, balls), far);
@@ -186,7 +186,7 @@ TEST(SphereError, FindsAHollowThatTheSurfaceDoesNotTellOf)
 {
     // Eight small balls in the corners of a cube and twelve hundred over its faces: all of the
     // surface is near to them, the middle is not.
-    const Mesh cube = ready(box_mesh({1, 1, 1}));
+    const Mesh cube = closed(box_mesh({1, 1, 1}));
     std::vector<Ball> balls;
     for (int x = 0; x <= 10; ++x)
         for (int y = 0; y <= 10; ++y)

@@ -19,7 +19,7 @@ Solid solid_of(const TriangleSoup& soup)
 {
     Solid solid;
     solid.way = SolidWay::spheres;
-    solid.mesh = ready(soup);
+    solid.mesh = closed(soup);
     solid.spheres = build_sphere_tree(solid.mesh, {3, 64, 0, 50000});
     return solid;
 }
@@ -27,7 +27,7 @@ Solid solid_of(const TriangleSoup& soup)
 Solid box_in_voxels(const Vec3& half)
 {
     Solid solid;
-    solid.mesh = ready(box_mesh(half));
+    solid.mesh = closed(box_mesh(half));
     solid.field = bake_bricks({-half, half}, kVoxel, 3 * kVoxel,
                               [&](const Vec3& at) { return signed_distance(solid.mesh, at); });
     // Near the edges, where the distance is round and its values are joined by straight lines.
@@ -44,14 +44,14 @@ const Shapes& shapes()
         const Vec3 half(0.5, 0.4, 0.3);
         all.solids.push_back(box_in_voxels(half));
         all.solids.push_back({});
-        all.solids.back().mesh = ready(box_mesh(half));
+        all.solids.back().mesh = closed(box_mesh(half));
         all.boxes = {{half}};
         all.spheres = {{0.3}};
         all.capsules = {{0.2, 0.3}};
         all.cylinders = {{0.2, 0.3}};
         all.hulls.push_back(build_hull(corners_of(half)).hull);
         all.planes = {{Vec3(1, 2, 2) / 3, 0.1}};
-        all.meshes = {ready(box_mesh(half))};
+        all.meshes = {closed(box_mesh(half))};
         return all;
     }();
     return made;

@@ -2,11 +2,9 @@
 #pragma once
 
 #include "kernels/data/shapes.hpp"
-#include "kernels/geometry/mesh.hpp"
-#include "kernels/geometry/mesh_distance.hpp"
 #include "kernels/geometry/surface_points.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
-#include "scenes/closed_meshes.hpp"
+#include "tests/narrowphase/solids/closed.hpp"
 
 #include <cmath>
 #include <functional>
@@ -39,8 +37,7 @@ inline Solid small_solid(const TriangleSoup& soup,
                          std::function<double(const Vec3&)> distance = {})
 {
     Solid solid;
-    solid.mesh = build_mesh(soup.vertices, soup.triangles).mesh;
-    find_vertex_normals(solid.mesh);
+    solid.mesh = closed(soup);
     if (!distance) distance = [&](const Vec3& at) { return signed_distance(solid.mesh, at); };
     const Mesh::Node& root = solid.mesh.tree.front();
     solid.field = bake_bricks({root.lower, root.upper}, voxel, 4 * voxel, distance);
