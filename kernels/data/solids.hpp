@@ -89,9 +89,9 @@ struct SphereTree {
 ///
 ///   field, points  way voxels; for others empty
 ///   spheres        way spheres
-///   rays           way depth_image: along the longer side of what two bounds share
-///   error          m, how far a depth that is told may be from that of the triangles, where
-///                  these have no features smaller than the way resolves
+///   rays           way depth_image: along the longest side of the smaller shape of a pair
+///   error          m, how far a depth may be from that of the triangles: half a voxel, a pixel
+///                  of this shape, or the spheres' own; smaller features may be missed
 struct Solid {
     SolidWay way = SolidWay::voxels;
     Mesh mesh;

@@ -204,6 +204,9 @@ void start_openvdb()
     }();
 }
 
+// Bricks named by what is read, stored or not: a gigabyte of places.
+constexpr double kMostBricks = 0x1p28;
+
 constexpr const char* kOurs = "throng_field";
 constexpr int kFormat = 1;
 
@@ -423,6 +426,14 @@ std::string trouble_with_grid(const FloatGrid& grid)
                        "not turned";
     if (!(grid.background() > 0)) return "has a background of 0; wanted the band's distance";
     if (grid.tree().leafCount() == 0) return "is empty; wanted values near a surface";
+    openvdb::CoordBBox box;
+    grid.tree().evalLeafBoundingBox(box);
+    double bricks = 1;
+    for (int k = 0; k < 3; ++k)
+        bricks *= (static_cast<double>(box.max()[k]) - box.min()[k]) / kCells + 1;
+    if (!(bricks <= kMostBricks))
+        return "reaches over " + short_text(bricks) + " bricks of 8 x 8 x 8 voxels; wanted at most "
+            + short_text(kMostBricks);
     return {};
 }
 

@@ -91,6 +91,20 @@ TEST(ImageTouches, OfBallsTellDepthAndGapWhereverTheyMeet)
     }
 }
 
+TEST(ImageTouches, OfTwoSolidsAreAsFineAsEitherAsksFor)
+{
+    Shapes shapes = boxes();
+    const ShapeRef other{ShapeKind::solid, 1};
+    const Pose pose = at({0.3, 0.1, 0.49});
+    shapes.solids[0].rays = 2 * kRays;
+    const std::size_t both = touch(shapes, other, pose).size();
+    shapes.solids[0].rays = 0;  // of another way
+    shapes.solids[1].rays = 2 * kRays;
+    EXPECT_EQ(touch(shapes, other, pose).size(), both);
+    shapes.solids[1].rays = kRays;
+    EXPECT_LT(touch(shapes, other, pose).size(), both / 2);
+}
+
 TEST(ImageTouches, OfBoxesAreExactAndLookTheShortWayOut)
 {
     const Shapes shapes = boxes();
