@@ -102,15 +102,7 @@ void sample(benchmark::State& state, int voxels, bool patches, const char* width
     const Points points = make_points(bricks, patches);
     const SampleKernel kernel = sample_kernel_of(width);
     if (kernel == nullptr) return state.SkipWithError("this machine has not got that width");
-    BrickView view{};
-    for (int k = 0; k < 3; ++k) {
-        view.origin[k] = static_cast<float>(bricks.origin[k]);
-        view.bricks[k] = bricks.bricks[static_cast<std::size_t>(k)];
-    }
-    view.inverse = static_cast<float>(1 / bricks.voxel);
-    view.band = static_cast<float>(bricks.band);
-    view.brick_of = bricks.brick_of.data();
-    view.values = bricks.values.data();
+    const BrickView view = view_of(bricks);
     std::vector<float> distance(kPatch), gx(kPatch), gy(kPatch), gz(kPatch);
     for ([[maybe_unused]] auto iteration : state)
         for (std::size_t i = 0; i < kPoints; i += kPatch) {

@@ -8,6 +8,8 @@
 
 namespace throng {
 
+struct VoxelBricks;
+
 /// VoxelBricks as plain numbers. At most 2^31 values.
 struct BrickView {
     float origin[3];  // m
@@ -17,6 +19,9 @@ struct BrickView {
     const std::int32_t* brick_of;
     const float* values;
 };
+
+/// Of bricks that are not empty and outlive it.
+BrickView view_of(const VoxelBricks& bricks);
 
 /// Where samples are taken and where they go; see sample_many().
 struct SampleArrays {

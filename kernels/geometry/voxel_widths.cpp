@@ -29,8 +29,6 @@ SampleKernel sample_kernel()
     return chosen;
 }
 
-namespace {
-
 BrickView view_of(const VoxelBricks& bricks)
 {
     BrickView view{};
@@ -44,8 +42,6 @@ BrickView view_of(const VoxelBricks& bricks)
     view.values = bricks.values.data();
     return view;
 }
-
-}  // namespace
 
 void sample_many(const VoxelBricks& bricks,
                  std::span<const float> x,

@@ -60,19 +60,6 @@ protected:
         }
         return out;
     }
-    BrickView view() const
-    {
-        BrickView view{};
-        for (int k = 0; k < 3; ++k) {
-            view.origin[k] = static_cast<float>(bricks_.origin[k]);
-            view.bricks[k] = bricks_.bricks[static_cast<std::size_t>(k)];
-        }
-        view.inverse = static_cast<float>(1 / bricks_.voxel);
-        view.band = static_cast<float>(bricks_.band);
-        view.brick_of = bricks_.brick_of.data();
-        view.values = bricks_.values.data();
-        return view;
-    }
 
     // A shell: outside, inside and bricks that are not stored.
     VoxelBricks bricks_ =
@@ -90,7 +77,7 @@ TEST_F(VoxelLanes, GiveTheBitsOfSingleSamplesAtEveryWidth)
         const SampleKernel kernel = sample_kernel_of(width);
         if (kernel == nullptr) continue;
         Samples got(x_.size());
-        kernel(view(),
+        kernel(view_of(bricks_),
                {x_.data(), y_.data(), z_.data(), got.distance.data(), got.gx.data(), got.gy.data(),
                 got.gz.data()},
                x_.size());
@@ -109,7 +96,7 @@ TEST_F(VoxelLanes, WriteEveryPointOfEveryLengthAndNoOther)
         if (kernel == nullptr) continue;
         for (std::size_t count = 0; count <= 70; ++count) {
             Samples got(80);
-            kernel(view(),
+            kernel(view_of(bricks_),
                    {x_.data(), y_.data(), z_.data(), got.distance.data(), got.gx.data(),
                     got.gy.data(), got.gz.data()},
                    count);

@@ -1,6 +1,8 @@
 // Contact patches: what is grouped, what of it is kept, and that it is kept from step to step.
 #include "narrowphase/solids/contact_patches.hpp"
 
+#include "tests/narrowphase/solids/small_solids.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,19 +14,6 @@ namespace throng::test {
 namespace {
 
 constexpr double kReach = 0.02;
-
-struct Dice {
-    std::mt19937_64 engine;
-    double between(double low, double high)
-    {
-        return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1p-53);
-    }
-    Vec3 point(double reach)
-    {
-        const double x = between(-reach, reach), y = between(-reach, reach);
-        return {x, y, between(-reach, reach)};
-    }
-};
 
 // Touches along a ring about z; their normals lean out of its axis by `lean` (0: along it).
 std::vector<SurfaceTouch> ring(std::uint32_t count, double lean)
