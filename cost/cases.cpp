@@ -182,10 +182,10 @@ void CaseBench::report_method(std::string_view method,
     spent = 0;
 }
 
-void CaseBench::skip(std::string quantity, std::string why)
+void CaseBench::skip(std::string setting, std::string quantity, std::string why)
 {
     CaseResult result;
-    result.setting = "all methods";
+    result.setting = std::move(setting);
     result.quantity = std::move(quantity);
     result.verdict = Verdict::skipped;
     result.why = std::move(why);

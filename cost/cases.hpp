@@ -80,7 +80,7 @@ public:
                        double bound,
                        std::string unit);
     /// Adds a line that says why there is none.
-    void skip(std::string quantity, std::string why);
+    void skip(std::string setting, std::string quantity, std::string why);
 
     std::vector<CaseResult> take_results(std::string_view name);
 

@@ -1,6 +1,7 @@
 #include "pipeline/convex_query.hpp"
 
 #include "narrowphase/methods/convex_methods.hpp"
+#include "narrowphase/methods/k_dop_tree.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "pipeline/names.hpp"
 #include "pipeline/query_shape.hpp"
@@ -81,6 +82,7 @@ struct ConvexQuery::Inside {
     ShapeRef a, b;
     std::optional<ConvexPair> pair;
     std::vector<MethodMemory> memories;  // by method, so that none sees another's
+    std::vector<KDopTree> trees;         // of a and of b, for the k asked last
 };
 
 std::vector<MethodDescription> known_methods()
@@ -144,6 +146,29 @@ ConvexQuery::ask(std::string_view method, const Pose& b_in_a, MethodStart start,
             told.center,
             told.rounds,
             told.cut_short};
+}
+
+ConvexAnswer ConvexQuery::ask_trees(const Pose& b_in_a, int k)
+{
+    if (!inside_->trouble.empty()) return refusal(inside_->trouble);
+    const PolytopePair* const pair = inside_->pair->polytopes();
+    if (pair == nullptr) return refusal("trees of k-DOPs serve boxes and hulls alone");
+    if (k != 6 && k != 14 && k != 18 && k != 26) return refusal("k is 6, 14, 18 or 26");
+    if (std::string trouble = trouble_with(b_in_a, 0); !trouble.empty())
+        return refusal(std::move(trouble));
+
+    std::vector<KDopTree>& trees = inside_->trees;
+    if (trees.empty() || trees.front().k() != k) {
+        trees.clear();
+        for (const PolytopeView* shape : {&pair->a, &pair->b}) trees.emplace_back(*shape, k);
+    }
+    inside_->pair->place({b_in_a.position, b_in_a.orientation.normalized()});
+    const MethodAnswer told = ask_k_dop_trees(*inside_->pair->polytopes(), trees[0], trees[1]);
+    ConvexAnswer answer;
+    answer.verdict = verdict_of(told.touch);
+    answer.rounds = told.rounds;
+    answer.cut_short = told.cut_short;
+    return answer;
 }
 
 ConvexAnswer ConvexQuery::touch(const Pose& b_in_a, Precision precision) const

@@ -90,6 +90,11 @@ public:
                      MethodStart start = MethodStart::cached,
                      double reach = std::numeric_limits<double>::infinity());
 
+    /// Asks the trees of k-DOPs round the faces of two boxes or hulls, built at the first question:
+    /// a filter, which is undecided of what it cannot part. Others are refused, and so is a k other
+    /// than 6, 14, 18 and 26.
+    ConvexAnswer ask_trees(const Pose& b_in_a, int k);
+
     /// Whether a step of throng would see the two touch, by `auto` and in its number type, from
     /// nothing remembered; refused as ask() does. Touching, the separation and the normal are those
     /// of the deepest point of contact: a face leads where another way out is shorter by little.

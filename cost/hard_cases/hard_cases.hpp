@@ -21,7 +21,8 @@ void far_away_pairs(CaseBench& bench);
 void case_near_parallel(CaseBench& bench);  // H34, near_parallel.cpp
 void case_concentric(CaseBench& bench);     // H35, concentric.cpp
 void case_shared_volume(CaseBench& bench);  // H36, shared_volume.cpp
-void case_same_answers(CaseBench& bench);   // H37, same_answers.cpp
+void case_same_answers(CaseBench& bench);   // H37, same_answers.cpp, and pair_finders.cpp
+void compare_pair_finders(CaseBench& bench);
 
 /// A scene under construction: shapes, materials and bodies by value, ids in order.
 class SceneParts {

@@ -147,7 +147,7 @@ void case_shared_volume(CaseBench& bench)
         for (const Shared& shared : known_volumes()) judge_volume(bench, tally, method, shared);
         judge_merely_touching(bench, tally, method);
     }
-    if (!any) bench.skip("shared volume", "no method tells it");
+    if (!any) bench.skip("all methods", "shared volume", "no method tells it");
     tally.report(bench);
 }
 

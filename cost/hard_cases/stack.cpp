@@ -100,6 +100,8 @@ void case_far_away(CaseBench& bench)
             error = std::max(error, (home[i] - away[i]).norm());
         bench.report(name, "distance from where it rests at the origin", error, 1e-3, "m");
     }
+    bench.skip("at (1e7, 0, -8e6) m", "bullet stopped by a wall",
+               "bodies that pass more than their own size in a step are not stopped yet");
     far_away_pairs(bench);
 }
 

@@ -47,6 +47,19 @@ TEST(ConvexQuery, TellsWhatAStepSees)
     EXPECT_EQ(broken.touch(Pose{}, Precision::float_).trouble, broken.trouble());
 }
 
+TEST(ConvexQuery, TreesPartWhatIsFarAndNeverWhatTouches)
+{
+    ConvexQuery query(box(0.5, 0.5, 0.5), box(0.5, 1, 1));
+    for (const int k : {6, 14, 18, 26, 6}) {
+        EXPECT_EQ(query.ask_trees(at(0.75, 0.1, 0.2), k).verdict, QueryVerdict::undecided);
+        EXPECT_EQ(query.ask_trees(at(1.25, 0.1, 0.2), k).verdict, QueryVerdict::apart);
+    }
+    EXPECT_EQ(query.ask_trees(Pose{}, 7).verdict, QueryVerdict::refused);
+    EXPECT_EQ(query.ask_trees(at(kNaN, 0, 0), 14).verdict, QueryVerdict::refused);
+    ConvexQuery round(box(0.5, 0.5, 0.5), ball(0.25));
+    EXPECT_EQ(round.ask_trees(Pose{}, 14).verdict, QueryVerdict::refused);
+}
+
 TEST(ConvexQuery, TellsOfBoxesWhatEachMethodClaims)
 {
     const double shift = 0.75, gap = 0.25;
