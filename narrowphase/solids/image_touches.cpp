@@ -298,8 +298,7 @@ double pixel_of(const Shapes& shapes, ShapeRef solid, ShapeRef other)
     double size = longest_side(shapes, solid);
     if (other.kind != ShapeKind::mesh) size = std::min(size, longest_side(shapes, other));
     int wanted = shapes.solids[solid.index].rays;
-    if (other.kind == ShapeKind::solid)
-        wanted = std::max(wanted, shapes.solids[other.index].rays);
+    if (other.kind == ShapeKind::solid) wanted = std::max(wanted, shapes.solids[other.index].rays);
     return size / std::clamp(wanted > 0 ? wanted : kAutoRays, 2, kMostRays);
 }
 
