@@ -2,6 +2,7 @@
 
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
+#include "kernels/geometry/mesh_holes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -135,6 +136,22 @@ void agree(Piece& piece, const std::vector<std::uint8_t>& turned, std::vector<Tr
     if (others) piece.turned = piece.triangles.size() - piece.turned;
 }
 
+// The pieces, their windings made to agree. Counts of edges are those of these triangles; what was
+// turned before stays counted.
+std::vector<Piece> find_agreeing_pieces(std::vector<Triangle>& triangles, MeshHealth& health)
+{
+    health.open_edges = health.crowded_edges = health.one_sided = 0;
+    const auto joints = find_joints(triangles, health);
+    std::vector<std::uint8_t> turned(triangles.size(), 0);
+    std::vector<Piece> pieces = find_pieces(joints, turned);
+    for (Piece& piece : pieces) {
+        agree(piece, turned, triangles);
+        health.turned += piece.turned;
+        health.one_sided += piece.one_sided ? 1 : 0;
+    }
+    return pieces;
+}
+
 void measure(Piece& piece,
              const std::vector<Vec3>& vertices,
              const std::vector<Triangle>& triangles)
@@ -254,6 +271,9 @@ std::vector<std::string> remarks_on(const MeshHealth& health)
         "pieces are turned inward within others: kept as hollows");
     say(health.buried, "piece lies within another: taken as one with it",
         "pieces lie within others: taken as one with them");
+    if (health.holes > 0)
+        said.push_back("closed " + counted(health.holes, "hole", "holes") + ", the longest round "
+                       + std::to_string(health.longest_hole) + " edges");
     say(health.open_edges, "edge is open: what cannot be reached from afar is taken for inside",
         "edges are open: what cannot be reached from afar is taken for inside");
     say(health.crowded_edges,
@@ -300,15 +320,12 @@ MendedMesh mend(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
     std::vector<Triangle> kept = std::move(welded.mesh.triangles);
     health.duplicates = drop_duplicates(kept);
 
-    const auto joints = find_joints(kept, health);
-    std::vector<std::uint8_t> turned(kept.size(), 0);
-    std::vector<Piece> pieces = find_pieces(joints, turned);
-    for (Piece& piece : pieces) {
-        agree(piece, turned, kept);
-        measure(piece, welded.mesh.vertices, kept);
-        health.turned += piece.turned;
-        health.one_sided += piece.one_sided ? 1 : 0;
-    }
+    std::vector<Piece> pieces = find_agreeing_pieces(kept, health);
+    const ClosedHoles closed = close_holes(welded.mesh.vertices, kept);
+    health.holes = closed.count;
+    health.longest_hole = closed.longest;
+    if (closed.count > 0) pieces = find_agreeing_pieces(kept, health);
+    for (Piece& piece : pieces) measure(piece, welded.mesh.vertices, kept);
     health.pieces = pieces.size();
     turn_outward(pieces, welded.mesh.vertices, kept, health);
 

@@ -8,10 +8,12 @@
 namespace throng {
 
 /// What was found; edges and triangles as they came, but for those of no area and identical
-/// vertices, which every mesh loses.
+/// vertices, which every mesh loses, and for holes that were closed.
 struct MeshHealth {
     std::size_t duplicates = 0;     // triangles of the same corners as one before: dropped
-    std::size_t open_edges = 0;     // of one triangle alone
+    std::size_t holes = 0;          // closed, as close_holes() says
+    std::size_t longest_hole = 0;   // edges round the longest of those
+    std::size_t open_edges = 0;     // of one triangle alone, round holes that were left
     std::size_t crowded_edges = 0;  // shared by more than two
     std::size_t turned = 0;         // triangles wound against their neighbors: turned over
     std::size_t one_sided = 0;      // pieces that have no outside, as a Moebius strip: left alone
@@ -40,8 +42,8 @@ struct MendedMesh {
     std::string trouble;
 };
 
-/// Drops duplicates, makes the windings of every piece agree, and turns over what is inside out.
-/// Holes stay holes.
+/// Drops duplicates, makes the windings of every piece agree, closes holes that are small against
+/// the piece that they are in, and turns over what is inside out. Wider holes stay holes.
 MendedMesh mend(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles);
 
 /// How many pairs of triangles that share no corner cross one another; those that lie in one plane
