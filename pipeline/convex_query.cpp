@@ -19,7 +19,8 @@ std::string trouble_with_convex(const ShapeDescription& shape)
 {
     if (std::holds_alternative<PlaneShape>(shape.shape)
         || std::holds_alternative<MeshShape>(shape.shape)
-        || std::holds_alternative<CompoundShape>(shape.shape))
+        || std::holds_alternative<CompoundShape>(shape.shape)
+        || std::holds_alternative<VoxelsShape>(shape.shape))
         return "wanted a sphere, capsule, cylinder, box or hull";
     return trouble_with(shape);
 }

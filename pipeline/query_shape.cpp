@@ -42,6 +42,7 @@ struct ShapeMaker {
     ShapeRef operator()(const PlaneShape&) const { return {}; }
     ShapeRef operator()(const MeshShape&) const { return {}; }
     ShapeRef operator()(const CompoundShape&) const { return {}; }
+    ShapeRef operator()(const VoxelsShape&) const { return {}; }
 };
 
 }  // namespace

@@ -123,7 +123,7 @@ add_array(hid_t owner, const char* name, hid_t type, std::vector<hsize_t> size, 
 
 // Kinds of shape, in the order of ShapeDescription::shape, after none.
 constexpr const char* kKinds[] = {"none", "sphere", "capsule", "cylinder", "box",
-                                  "hull", "plane",  "mesh",    "compound"};
+                                  "hull", "plane",  "mesh",    "compound", "voxels"};
 static_assert(std::size(kKinds) == 1 + std::variant_size_v<decltype(ShapeDescription::shape)>);
 
 /// What does not change in a run, an entry a body.

@@ -8,6 +8,7 @@
 #include "pipeline/settings.hpp"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -71,6 +72,12 @@ struct CompoundShape {
     std::vector<Part> parts;
 };
 
+struct LevelSet;
+struct VoxelsShape {
+    std::string file;  // as written in the scene; empty when made by a program
+    std::shared_ptr<const LevelSet> level_set;  // see level_set.hpp
+};
+
 struct ShapeDescription {
     std::string name;
     std::variant<SphereShape,
@@ -80,7 +87,8 @@ struct ShapeDescription {
                  HullShape,
                  PlaneShape,
                  MeshShape,
-                 CompoundShape>
+                 CompoundShape,
+                 VoxelsShape>
         shape;
 };
 

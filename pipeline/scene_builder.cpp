@@ -107,6 +107,7 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
         SceneBuilder& builder;
         Shapes& shapes;
         const Scene& scene;
+        const std::string& name;
         decltype(one)& single;
 
         PlacedShape operator()(const SphereShape& s) const
@@ -147,6 +148,7 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
             if (!result.trouble.empty()) throw std::invalid_argument("mesh: " + result.trouble);
             return single(append(shapes.meshes, ShapeKind::mesh, std::move(result.mesh)));
         }
+        PlacedShape operator()(const VoxelsShape& s) const { return builder.add_solid(name, s); }
         PlacedShape operator()(const CompoundShape& s) const
         {
             PlacedShape whole;
@@ -163,7 +165,7 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
             return whole;
         }
     };
-    return std::visit(Maker{*this, shapes, scene, one}, description.shape);
+    return std::visit(Maker{*this, shapes, scene, description.name, one}, description.shape);
 }
 
 PlacedShape
@@ -173,6 +175,19 @@ SceneBuilder::add_solid(const Scene& scene, const std::string& name, const MeshS
     state_.pool.run([&](std::size_t, std::size_t, std::size_t) {
         made = make_solid(mesh, state_.get<Conditions>().settings, scene.cache_folder);
     });
+    return add_made(name, std::move(made));
+}
+
+PlacedShape SceneBuilder::add_solid(const std::string& name, const VoxelsShape& voxels)
+{
+    MadeSolid made;
+    state_.pool.run(
+        [&](std::size_t, std::size_t, std::size_t) { made = make_solid(*voxels.level_set); });
+    return add_made(name, std::move(made));
+}
+
+PlacedShape SceneBuilder::add_made(const std::string& name, MadeSolid made)
+{
     const std::string who = "shape " + name + ": ";
     if (!made.trouble.empty()) throw std::invalid_argument(who + made.trouble);
     for (const std::string& remark : made.remarks) state_.remarks.push_back(who + remark);

@@ -2,6 +2,7 @@
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh_health.hpp"
 #include "pipeline/dials.hpp"
+#include "pipeline/level_set.hpp"
 #include "pipeline/names.hpp"
 #include "pipeline/scene_rules.hpp"
 
@@ -123,6 +124,26 @@ struct ShapeChecker {
                   "wanted a mesh that encloses a volume, for a body that moves");
         return mass;
     }
+    MassProperties operator()(const VoxelsShape& voxels)
+    {
+        const SceneChecker here = checker.at("voxels"), file = here.at("file");
+        file.need(voxels.level_set != nullptr && !voxels.level_set->field.empty()
+                      && !voxels.level_set->surface.tree.empty(),
+                  "wanted a level set with a surface, not an empty one");
+        const LevelSet& level_set = *voxels.level_set;
+        file.need_range(level_set.field.voxel, kLeastLength, kGreatestLength, "voxels above 0 m");
+        const Mesh::Node& root = level_set.surface.tree.front();
+        file.need_place(root.lower);
+        file.need_place(root.upper);
+        if (!moves) return {};
+        file.need(level_set.whole,
+                  "wanted a level set whose surface is closed, for a body that moves; this one is "
+                  "cut off where its values end");
+        const MassProperties mass = mass_of(level_set.surface);
+        file.need(mass.volume > kThinnest * (root.upper - root.lower).prod(),
+                  "wanted a level set that encloses a volume, for a body that moves");
+        return mass;
+    }
     MassProperties operator()(const CompoundShape& compound)
     {
         const SceneChecker parts = checker.at("compound");
@@ -136,7 +157,8 @@ struct ShapeChecker {
             const auto& shape = scene.shapes[part.shape].shape;
             const bool good = !std::holds_alternative<CompoundShape>(shape)
                 && !std::holds_alternative<PlaneShape>(shape)
-                && !std::holds_alternative<MeshShape>(shape);
+                && !std::holds_alternative<MeshShape>(shape)
+                && !std::holds_alternative<VoxelsShape>(shape);
             here.at("shape").need(
                 good, "wanted a sphere, capsule, cylinder, box or hull as part of a compound");
         }

@@ -7,6 +7,7 @@
 #include "narrowphase/solids/image_touches.hpp"
 #include "narrowphase/solids/parts_cache.hpp"
 #include "pipeline/dials.hpp"
+#include "pipeline/level_set.hpp"
 
 #include <cstdio>
 
@@ -26,7 +27,32 @@ double longest_side(const Mesh& mesh)
     return (mesh.tree.front().upper - mesh.tree.front().lower).maxCoeff();
 }
 
-// One call of make_solid.
+// Without its mesh.
+Solid voxel_solid(const Mesh& surface, VoxelBricks field)
+{
+    Solid solid;
+    solid.way = SolidWay::voxels;
+    solid.points = build_surface_points(surface, field.voxel);
+    solid.field = std::move(field);
+    solid.error = 0.5 * solid.field.voxel;
+    return solid;
+}
+
+std::string summary_of(const Solid& solid)
+{
+    const auto bricks = solid.field.values.size() / VoxelBricks::kValues;
+    return "voxels of " + short_text(solid.field.voxel) + " m, " + std::to_string(bricks)
+        + " bricks of 8 x 8 x 8 ("
+        + short_text(static_cast<double>(solid.field.values.size()) * 4e-6) + " MB), "
+        + std::to_string(solid.points.size()) + " surface points";
+}
+
+std::string error_text(const Solid& solid)
+{
+    return ", depths within " + short_text(solid.error) + " m";
+}
+
+// One call of make_solid for a mesh.
 class SolidMaker {
 public:
     SolidMaker(const Settings& settings, const std::string& cache_folder)
@@ -92,16 +118,8 @@ private:
     MadeSolid as_voxels()
     {
         if (sound_ && !make_field(FieldSign::normals)) return std::move(made_);
-        Solid solid;
-        solid.way = SolidWay::voxels;
-        solid.points = build_surface_points(mesh_, field_.bricks.voxel);
-        solid.field = std::move(field_.bricks);
-        solid.error = 0.5 * solid.field.voxel;
-        const auto bricks = solid.field.values.size() / VoxelBricks::kValues;
-        made_.summary = "voxels of " + short_text(solid.field.voxel) + " m, "
-            + std::to_string(bricks) + " bricks of 8 x 8 x 8 ("
-            + short_text(static_cast<double>(solid.field.values.size()) * 4e-6) + " MB), "
-            + std::to_string(solid.points.size()) + " surface points";
+        Solid solid = voxel_solid(mesh_, std::move(field_.bricks));
+        made_.summary = summary_of(solid);
         return finished(std::move(solid));
     }
 
@@ -133,7 +151,7 @@ private:
 
     MadeSolid finished(Solid solid)
     {
-        made_.summary += ", depths within " + short_text(solid.error) + " m";
+        made_.summary += error_text(solid);
         solid.mesh = std::move(mesh_);
         made_.shape = std::move(solid);
         return std::move(made_);
@@ -182,6 +200,17 @@ make_solid(const MeshShape& mesh, const Settings& settings, const std::string& c
 {
     const Settings own = settings_of(mesh, settings);
     return SolidMaker(own, cache_folder).make(mesh);
+}
+
+MadeSolid make_solid(const LevelSet& level_set)
+{
+    MadeSolid made;
+    Solid solid = voxel_solid(level_set.surface, level_set.field);
+    solid.mesh = level_set.surface;
+    if (level_set.whole) made.mass = mass_of(level_set.surface);
+    made.summary = summary_of(solid) + error_text(solid);
+    made.shape = std::move(solid);
+    return made;
 }
 
 }  // namespace throng

@@ -1,5 +1,5 @@
 // Solid maker: a stated mesh made into what a moving body collides as, by the way it is to be
-// taken.
+// taken; and a level set into what any body does.
 #pragma once
 
 #include "kernels/data/shapes.hpp"
@@ -12,7 +12,7 @@
 
 namespace throng {
 
-/// What a moving mesh became: one solid, or convex parts of it.
+/// What a moving mesh or a level set became: one solid, or convex parts of it.
 ///
 ///   mass     of unit density: of the mesh where it is closed, else of what its way makes of it
 ///   summary  how it is taken, and how exactly
@@ -34,5 +34,8 @@ Settings settings_of(const MeshShape& mesh, Settings scene);
 ///   cache_folder  where fields and parts are kept between runs; empty: nowhere
 MadeSolid
 make_solid(const MeshShape& mesh, const Settings& settings, const std::string& cache_folder);
+
+/// By voxels, whatever the dial says. Mass is that of its surface, and none where this is cut off.
+MadeSolid make_solid(const LevelSet& level_set);
 
 }  // namespace throng

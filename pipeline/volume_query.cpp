@@ -80,7 +80,8 @@ std::string trouble_with_mesh(const MeshShape& shape, Mesh& mesh)
 std::string make(const ShapeDescription& shape, Shapes& shapes, ShapeRef& made)
 {
     if (std::holds_alternative<PlaneShape>(shape.shape)
-        || std::holds_alternative<CompoundShape>(shape.shape))
+        || std::holds_alternative<CompoundShape>(shape.shape)
+        || std::holds_alternative<VoxelsShape>(shape.shape))
         return "wanted a sphere, capsule, cylinder, box, hull or closed mesh";
     if (std::string trouble = trouble_with(shape); !trouble.empty()) return trouble;
     const auto* const mesh = std::get_if<MeshShape>(&shape.shape);

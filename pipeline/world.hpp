@@ -75,7 +75,7 @@ public:
     /// What was found wrong with shapes that were added and what was done about it, a sentence
     /// each.
     const std::vector<std::string>& remarks() const;
-    /// How each moving mesh that was added is taken, and how exactly, a line each.
+    /// How each moving mesh and level set that was added is taken, and how exactly, a line each.
     const std::vector<std::string>& solids() const;
     std::vector<StageReport> stages() const;
     /// Measured afresh on each call; takes about as long as a step.

@@ -92,6 +92,8 @@ struct World::State {
     void choose_broad_phase();
 };
 
+struct MadeSolid;  // solid_maker.hpp
+
 /// Adds the shapes, materials and bodies of a scene.
 class SceneBuilder {
 public:
@@ -104,6 +106,8 @@ private:
     void add_materials(const Scene& scene);
     PlacedShape add_shape(const Scene& scene, const ShapeDescription& description);
     PlacedShape add_solid(const Scene& scene, const std::string& name, const MeshShape& mesh);
+    PlacedShape add_solid(const std::string& name, const VoxelsShape& voxels);
+    PlacedShape add_made(const std::string& name, MadeSolid made);
     ShapeRef sized(ShapeKind kind, const double* sizes);
     BodyId add_body(const BodyDescription& body, const PlacedShape* shape);
     std::uint32_t take_body();

@@ -41,8 +41,9 @@ Scene read_scene_text(std::string text,
 ///
 /// Instances go to bulk files beside it, `NAME.0.bin`, unless their own file holds them already;
 /// up to a thousand without one are written as bodies. So do meshes that programs made, as
-/// `NAME.SHAPE.obj`. Throws std::runtime_error where a file cannot be written or a scene cannot be
-/// told (a spring to one of many instances has no name to be told by).
+/// `NAME.SHAPE.obj`, and level sets, as `NAME.SHAPE.vdb`. Throws std::runtime_error where a file
+/// cannot be written or a scene cannot be told (a spring to one of many instances has no name to be
+/// told by).
 void write_scene(const Scene& scene, const std::string& path);
 
 }  // namespace throng

@@ -5,6 +5,7 @@
 #include "scenes/scene_reader.hpp"
 
 #include "pipeline/dials.hpp"
+#include "pipeline/level_set.hpp"
 #include "pipeline/names.hpp"
 #include "scenes/json_reader.hpp"
 #include "scenes/mesh_file.hpp"
@@ -213,7 +214,7 @@ private:
         } else if (name == "compound") {
             out.shape = read_compound(at);
         } else {
-            refuse(at, "wanted another kind of shape; voxels are not available in this build");
+            out.shape = read_voxels(at);
         }
     }
 
@@ -253,6 +254,24 @@ private:
         mesh.vertices = std::move(read.vertices);
         mesh.triangles = std::move(read.triangles);
         return mesh;
+    }
+
+    VoxelsShape read_voxels(Node node)
+    {
+        constexpr std::string_view keys[] = {"file"};
+        need_keys(node, keys);
+        const Node file = required(node, keys[0], "the name of a .vdb file");
+        VoxelsShape voxels;
+        voxels.file = text(file);
+        FileContent content = read_named(file, kGreatestMeshFile);
+        if (content.size > kGreatestMeshFile) refuse(file, "wanted a .vdb file of at most 4 GiB");
+        LevelSetResult read = read_level_set(std::move(content.bytes));
+        if (!read.trouble.empty())
+            refuse(file,
+                   "wanted a level set; " + in_quotes(voxels.file) + ' '
+                       + read.trouble);
+        voxels.level_set = std::move(read.level_set);
+        return voxels;
     }
 
     CompoundShape read_compound(Node node)

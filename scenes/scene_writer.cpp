@@ -3,6 +3,7 @@
 // What is at its default is left out. "At its default" is asked of the bits, so that even a zero
 // keeps its sign on the way through a file.
 #include "pipeline/dials.hpp"
+#include "pipeline/level_set.hpp"
 #include "pipeline/names.hpp"
 #include "pipeline/scene_check.hpp"
 #include "scenes/json.hpp"
@@ -52,6 +53,8 @@ public:
         for (const ShapeDescription& shape : scene.shapes)
             if (const auto* mesh = std::get_if<MeshShape>(&shape.shape))
                 taken_files_.insert(mesh->file);
+            else if (const auto* voxels = std::get_if<VoxelsShape>(&shape.shape))
+                taken_files_.insert(voxels->file);
         for (const Spring& spring : scene.springs) {
             for (const std::uint32_t end : {spring.a, spring.b}) {
                 if (end == kNone) continue;
@@ -93,15 +96,20 @@ private:
         if (!file) throw std::runtime_error(path.string() + ": cannot be written");
     }
 
-    /// Writes a file beside the scene under a name that no other part of the scene uses.
-    std::string
-    write_beside(const std::string& tail, const std::string& own, std::string_view bytes)
+    /// The name of a file beside the scene that no other part of the scene uses.
+    std::string name_beside(const std::string& tail, const std::string& own)
     {
         std::string name = path_.stem().string() + tail;
         const std::string extension = std::filesystem::path(tail).extension().string();
         while (name != own && taken_files_.contains(name))
             name = std::filesystem::path(name).stem().string() + '_' + extension;
         taken_files_.insert(name);
+        return name;
+    }
+    std::string
+    write_beside(const std::string& tail, const std::string& own, std::string_view bytes)
+    {
+        std::string name = name_beside(tail, own);
         write_file(path_.parent_path() / name, bytes);
         return name;
     }
@@ -250,6 +258,30 @@ private:
         } catch (const SceneError&) {
             return false;
         }
+    }
+
+    std::string shape_text(const VoxelsShape& voxels, std::size_t place)
+    {
+        std::string name = voxels.file;
+        if (!holds(voxels)) {
+            name = name_beside('.' + std::to_string(place) + ".vdb", voxels.file);
+            const std::string trouble =
+                write_level_set(*voxels.level_set, (path_.parent_path() / name).string());
+            if (!trouble.empty()) throw std::runtime_error(trouble);
+        }
+        JsonMembers members;
+        members.add("file", json_string(name));
+        return "\"voxels\": " + members.text();
+    }
+
+    bool holds(const VoxelsShape& voxels) const
+    {
+        if (voxels.file.empty()) return false;
+        FileContent content =
+            read_file((path_.parent_path() / voxels.file).string(), ~std::uint64_t{0});
+        if (!content.trouble.empty()) return false;
+        const LevelSetResult read = read_level_set(std::move(content.bytes));
+        return read.level_set != nullptr && same_level_set(*read.level_set, *voxels.level_set);
     }
 
     // Bodies.

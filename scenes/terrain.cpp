@@ -1,4 +1,6 @@
 // Terrain: hills made of triangles, and bodies of every kind dropped on them.
+#include "kernels/check.hpp"
+#include "pipeline/level_set.hpp"
 #include "scenes/noisy_balls.hpp"
 #include "scenes/parts.hpp"
 #include "scenes/recipes.hpp"
@@ -128,11 +130,12 @@ struct Ground {
         cells = 2 * static_cast<int>(std::ceil(inner + 5));
         grid = {side, spacing, kHighest + 1};
     }
-    void add_to(Scene& scene, TriangleSoup hills) const
+    template <class Shape>
+    void add_to(Scene& scene, Shape hills) const
     {
         BodyDescription ground;
         ground.name = "terrain";
-        ground.shape = add_shape(scene, "terrain", mesh_shape(std::move(hills)));
+        ground.shape = add_shape(scene, "terrain", std::move(hills));
         ground.material = 0;
         ground.motion = Motion::static_;
         scene.bodies.push_back(std::move(ground));
@@ -166,7 +169,7 @@ Scene make_meshes(int size, std::uint64_t seed)
     Scene scene = begin_scene("meshes", size);
     Random random(seed);
     const Ground ground(size);
-    ground.add_to(scene, hill_mesh(ground.cells, ground.inner, seed));
+    ground.add_to(scene, mesh_shape(hill_mesh(ground.cells, ground.inner, seed)));
 
     std::array<std::uint32_t, kKinds> shapes = {
         add_shape(scene, "sphere", SphereShape{0.5}),
@@ -210,13 +213,23 @@ Scene make_meshes(int size, std::uint64_t seed)
 
 namespace {
 
+// A quarter of the hills' cells tells all that they are. The band holds the balls that are dropped.
+// Where the ground is too wide for that, coarser: a few hundred voxels along a side.
+VoxelsShape voxels_of(const TriangleSoup& hills, int cells)
+{
+    const double voxel = std::max(0.25, cells / 400.0);
+    LevelSetResult made = make_level_set(hills.vertices, hills.triangles, voxel, 4 * voxel);
+    THRONG_CHECK(made.trouble.empty(), "hills have an inside");
+    return {{}, std::move(made.level_set)};
+}
+
 // Balls, boxes and stones in turn with solids, on hills that are solid themselves.
 Scene drop_on_hills(int size, std::uint64_t seed, std::vector<ShapeDescription> solids)
 {
     Scene scene = begin_scene("terrain", size);
     Random random(seed);
     const Ground ground(size);
-    ground.add_to(scene, hill_block(ground.cells, ground.inner, seed));
+    ground.add_to(scene, voxels_of(hill_block(ground.cells, ground.inner, seed), ground.cells));
 
     std::vector<ShapeDescription> kinds;
     kinds.push_back({"ball", SphereShape{0.4}});
@@ -232,8 +245,8 @@ constexpr double kReach = 0.6;
 
 }  // namespace
 
-// Balls, boxes, stones, tori, lumps and knots, dropped on a closed block of hills: solids against a
-// ground that is large, solid and everywhere curved.
+// Balls, boxes, stones, tori, lumps and knots, dropped on a block of hills made of voxels: solids
+// against a ground that is large, solid and everywhere curved.
 Scene make_terrain(int size, std::uint64_t seed)
 {
     return drop_on_hills(

@@ -103,7 +103,7 @@ void print_stages(const Stages& stages, const std::vector<InnerRow>& inner, cons
 void print_solids(const std::vector<std::string>& solids)
 {
     if (solids.empty()) return;
-    std::cout << "\nmoving meshes\n";
+    std::cout << "\nmoving meshes and level sets\n";
     for (const std::string& solid : solids) std::cout << "  " << solid << '\n';
 }
 

@@ -27,7 +27,7 @@ std::string field_key(const Mesh& mesh, const FieldSettings& settings)
     Hash hash;
     hash.add(kVersion);
     hash.add(settings.voxel != 0 ? settings.voxel : voxel_size_for(mesh));
-    hash.add(kBandVoxels);
+    hash.add(settings.band);
     hash.add(static_cast<std::uint64_t>(settings.sign));
     add_mesh(mesh, hash);
     return hash.text();

@@ -7,6 +7,7 @@
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/solids/field_values.hpp"
 
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToMesh.h>
@@ -14,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
+#include <stdexcept>
 
 namespace throng {
 namespace {
@@ -162,18 +165,18 @@ Worth worth_of(const Mesh& mesh, const VoxelBricks& bricks)
     return worth;
 }
 
-std::string trouble_with_size(const Mesh& mesh, double voxel, double most_bytes)
+std::string trouble_with_size(const Mesh& mesh, double voxel, const FieldSettings& settings)
 {
     if (!(voxel > 0) || !std::isfinite(voxel))
         return "voxel_size is " + short_text(voxel) + " m; give a positive one";
     // Bricks and their values are counted in 32 bits.
-    const double limit = std::min(most_bytes, 8e9);
-    const double bytes = field_bytes(mesh, voxel);
+    const double limit = std::min(settings.most_bytes, 8e9);
+    const double bytes = field_bytes(mesh, voxel, settings.band);
     if (bytes <= limit) return {};
     double low = voxel, high = 2 * longest_side(mesh);
     for (int i = 0; i < 60 && high > low * 1.001; ++i) {
         const double middle = std::sqrt(low * high);
-        (field_bytes(mesh, middle) > limit ? low : high) = middle;
+        (field_bytes(mesh, middle, settings.band) > limit ? low : high) = middle;
     }
     constexpr double kMega = 1024.0 * 1024;
     return "voxel field would need " + short_text(bytes / kMega) + " MB at voxel size "
@@ -203,9 +206,6 @@ void start_openvdb()
         return true;
     }();
 }
-
-// Bricks named by what is read, stored or not: a gigabyte of places.
-constexpr double kMostBricks = 0x1p28;
 
 constexpr const char* kOurs = "throng_field";
 constexpr int kFormat = 1;
@@ -355,11 +355,22 @@ void fill_from(const FloatTree& tree, const openvdb::Coord& first, VoxelBricks& 
     });
 }
 
+// More than this many places for bricks would not fit in memory, nor in 32 bits.
+constexpr double kMostBricks = 1 << 28;
+
+bool can_be_laid(const openvdb::Vec3d& bricks)
+{
+    // Not at all, where a number is no number.
+    return bricks.x() >= 1 && bricks.y() >= 1 && bricks.z() >= 1
+        && bricks.x() * bricks.y() * bricks.z() <= kMostBricks;
+}
+
 VoxelBricks our_bricks(const FloatGrid& grid)
 {
     VoxelBricks bricks;
     const auto origin = grid.metaValue<openvdb::Vec3d>("throng_origin");
     const auto count = grid.metaValue<openvdb::Vec3i>("throng_bricks");
+    if (!can_be_laid(openvdb::Vec3d(count))) throw std::length_error("a wrong number of bricks");
     bricks.origin = {origin.x(), origin.y(), origin.z()};
     bricks.voxel = grid.metaValue<double>("throng_voxel");
     bricks.band = grid.metaValue<double>("throng_band");
@@ -424,20 +435,32 @@ std::string trouble_with_grid(const FloatGrid& grid)
             if (!(std::abs(matrix(i, k) - (i == k ? h : 0)) <= 1e-6 * h))
                 return "has voxels that are not cubes along the axes; wanted one voxel size, "
                        "not turned";
-    if (!(grid.background() > 0)) return "has a background of 0; wanted the band's distance";
+    if (!(grid.background() > 0 && std::isfinite(grid.background())))
+        return "has no background above 0; wanted the band's distance";
     if (grid.tree().leafCount() == 0) return "is empty; wanted values near a surface";
     openvdb::CoordBBox box;
     grid.tree().evalLeafBoundingBox(box);
-    double bricks = 1;
-    for (int k = 0; k < 3; ++k)
-        bricks *= (static_cast<double>(box.max()[k]) - box.min()[k]) / kCells + 1;
-    if (!(bricks <= kMostBricks))
-        return "reaches over " + short_text(bricks) + " bricks of 8 x 8 x 8 voxels; wanted at most "
-            + short_text(kMostBricks);
+    // In double: the box may be as wide as integers go.
+    const openvdb::Vec3d sides = box.max().asVec3d() - box.min().asVec3d() + openvdb::Vec3d(1);
+    if (!can_be_laid(sides / kCells + openvdb::Vec3d(1)))
+        return "has values too far apart; wanted those of one shape";
+    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+        for (openvdb::Index i = 0; i < FloatTree::LeafNodeType::SIZE; ++i)
+            if (!std::isfinite(leaf->getValue(i)))
+                return "holds values that are no numbers; wanted distances";
     return {};
 }
 
 // The first float grid that is a level set.
+FloatGrid::Ptr level_set_in(const openvdb::GridPtrVec& grids)
+{
+    for (const openvdb::GridBase::Ptr& grid : grids)
+        if (auto found = openvdb::gridPtrCast<FloatGrid>(grid);
+            found && found->getGridClass() == openvdb::GRID_LEVEL_SET)
+            return found;
+    return nullptr;
+}
+
 FloatGrid::Ptr level_set_in(openvdb::io::File& file)
 {
     for (auto name = file.beginName(); name != file.endName(); ++name) {
@@ -469,6 +492,23 @@ VdbFile from_grid(const FloatGrid& grid, VdbWants wants)
     return result;
 }
 
+// What a file holds, by a function that gives its level set or throws.
+template <class Read>
+VdbFile read_grid(VdbWants wants, Read read)
+{
+    VdbFile result;
+    try {
+        start_openvdb();
+        const FloatGrid::Ptr grid = read();
+        if (grid != nullptr) return from_grid(*grid, wants);
+        result.trouble = "holds no float level-set grid; wanted one";
+    } catch (const std::exception& error) {
+        result.trouble = std::string("is no .vdb file that can be read (") + error.what()
+            + "); wanted one with a float level set";
+    }
+    return result;
+}
+
 }  // namespace
 
 double voxel_size_for(const Mesh& mesh, double error)
@@ -480,10 +520,10 @@ double voxel_size_for(const Mesh& mesh, double error)
 // All bricks of the box are named; those are stored that the band or the inside reach into. Making
 // them takes a working copy with a triangle and a state for each value, and a tree near the surface
 // with its points.
-double field_bytes(const Mesh& mesh, double voxel)
+double field_bytes(const Mesh& mesh, double voxel, double band_voxels)
 {
     const Box3 box = box_of(mesh);
-    const double side = kCells * voxel, band = kBandVoxels * voxel;
+    const double side = kCells * voxel, band = band_voxels * voxel;
     double all = 1, volume = 0, area = 0;
     for (int k = 0; k < 3; ++k) all *= (box.upper[k] - box.lower[k] + 2 * band) / side + 2;
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -503,10 +543,10 @@ FieldResult build_field(const Mesh& mesh, const FieldSettings& settings)
     THRONG_CHECK(mesh.vertex_normals.size() == mesh.vertices.size(), "a side needs vertex normals");
     FieldResult result;
     const double voxel = settings.voxel != 0 ? settings.voxel : voxel_size_for(mesh);
-    result.trouble = trouble_with_size(mesh, voxel, settings.most_bytes);
+    result.trouble = trouble_with_size(mesh, voxel, settings);
     if (!result.trouble.empty()) return result;
 
-    const VoxelBricks laid = lay_bricks(box_of(mesh), voxel, kBandVoxels * voxel);
+    const VoxelBricks laid = lay_bricks(box_of(mesh), voxel, settings.band * voxel);
     const FloatGrid::Ptr near = near_surface(mesh, laid, settings.sign);
     const std::vector<FieldSeed> seeds = seeds_of(*near, laid);
     if (settings.sign == FieldSign::normals)
@@ -555,26 +595,29 @@ write_vdb(const std::filesystem::path& path, const VoxelBricks& bricks, const Fi
 VdbFile read_vdb(const std::filesystem::path& path, VdbWants wants)
 {
     VdbFile result;
-    const auto refused = [&](const std::string& why) {
-        result.trouble = path.string() + ": " + why;
+    if (!std::filesystem::is_regular_file(path)) {
+        result.trouble =
+            path.string() + ": there is no such file; wanted a .vdb file with a float level set";
         return result;
-    };
-    if (!std::filesystem::is_regular_file(path))
-        return refused("there is no such file; wanted a .vdb file with a float level set");
-    try {
-        start_openvdb();
+    }
+    result = read_grid(wants, [&] {
         openvdb::io::File file(path.string());
         file.open(false);
-        const FloatGrid::Ptr grid = level_set_in(file);
-        if (grid == nullptr) return refused("holds no float level-set grid; wanted one");
-        result = from_grid(*grid, wants);
-        if (!result.trouble.empty()) return refused(result.trouble);
-    } catch (const std::exception& error) {
-        result = {};
-        return refused(std::string("is no .vdb file that can be read (") + error.what()
-                       + "); wanted one with a float level set");
-    }
+        return level_set_in(file);
+    });
+    if (!result.trouble.empty()) result.trouble = path.string() + ": " + result.trouble;
     return result;
+}
+
+VdbFile read_vdb_bytes(std::string bytes, VdbWants wants)
+{
+    std::istringstream stream(std::move(bytes));
+    return read_grid(wants, [&] {
+        // Now, and not when a value is first asked for: the bytes are gone then.
+        openvdb::io::Stream file(stream, false);
+        if (!stream) throw std::runtime_error("it ends too soon");
+        return level_set_in(*file.getGrids());
+    });
 }
 
 }  // namespace throng

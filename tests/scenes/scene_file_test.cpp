@@ -1,6 +1,9 @@
 // Scene file: what is read, and what is refused with which place and which words.
 #include "scenes/scene_file.hpp"
 
+#include "pipeline/level_set.hpp"
+#include "tests/support/vdb_files.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,8 +56,11 @@ std::string sized(double x, double y, double z)
 Files test_files()
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
+    static const std::string hill = open_ground_vdb();
     return {{{"in/tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
              {"in/empty.obj", "v 0 0 0\n"},
+             {"in/hill.vdb", hill},
+             {"in/torn.vdb", hill.substr(0, hill.size() / 2)},
              {"in/bad.obj", "v 0 0 0\nf 1 1 2\n"},
              {"in/huge.obj", "v 1e300 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
              {"in/ten.bin", records(10, 10, 0, 0)},
@@ -287,8 +293,20 @@ TEST(SceneFile, RefusesBadShapes)
          "shapes.s.mesh.max_parts: wanted auto or a whole number from 1 to 256, not \"257\""},
         {kMoving, "\"mesh\": {\"file\": @\"tri.obj\"}",
          "shapes.s.mesh.file: wanted a mesh that encloses a volume, for a body that moves"},
-        {kShape, "\"voxels\": @{\"file\": \"x.vdb\"}",
-         "shapes.s.voxels: wanted another kind of shape; voxels are not available in this build"},
+        {kShape, "\"voxels\": @{}", "shapes.s.voxels.file: wanted the name of a .vdb file"},
+        {kShape, "\"voxels\": {\"file\": @3}", "shapes.s.voxels.file: wanted text, not 3"},
+        {kShape, "\"voxels\": {\"file\": @\"\"}",
+         "shapes.s.voxels.file: wanted the name of a file, not \"\""},
+        {kShape, "\"voxels\": {\"file\": \"hill.vdb\", @\"scale\": 2}",
+         "shapes.s.voxels.scale: wanted a known key, not \"scale\""},
+        {kShape, "\"voxels\": {\"file\": @\"x.vdb\"}",
+         "shapes.s.voxels.file: wanted a file that can be read, not \"x.vdb\" (no such file)"},
+        {kShape, "\"voxels\": {\"file\": @\"tri.obj\"}",
+         "shapes.s.voxels.file: wanted a level set; \"tri.obj\" is no .vdb file that can be read"},
+        {kShape, "\"voxels\": {\"file\": @\"torn.vdb\"}",
+         "shapes.s.voxels.file: wanted a level set; \"torn.vdb\" is no .vdb file that can be read"},
+        {kMoving, "\"voxels\": {\"file\": @\"hill.vdb\"}",
+         "shapes.s.voxels.file: wanted a level set whose surface is closed, for a body that moves"},
         {kShape, "\"compound\": @[]", "shapes.s.compound: wanted at least one part"},
         {kShape, "\"compound\": @{}", "shapes.s.compound: wanted a list, not an object"},
         {kShape, "\"compound\": [@{}]", "shapes.s.compound[0].shape: wanted the name of a shape"},
@@ -559,6 +577,19 @@ TEST(SceneFile, ReadsWhatItSays)
     EXPECT_EQ(scene.pairs[0].friction, 0.09);
     EXPECT_FALSE(scene.pairs[0].restitution.has_value());
     EXPECT_EQ(scene.instances[1].stride(), 16u);
+}
+
+TEST(SceneFile, ReadsALevelSetOnceForAllBodiesThatAreOfIt)
+{
+    const Scene scene = read(
+        R"({"throng": 1, "shapes": {"hill": {"voxels": {"file": "hill.vdb"}}},
+            "bodies": [{"shape": "hill", "motion": "static"}, {"shape": "hill", "motion": "static"}]})");
+    const auto& voxels = std::get<VoxelsShape>(scene.shapes[0].shape);
+    EXPECT_EQ(voxels.file, "hill.vdb");
+    EXPECT_FALSE(voxels.level_set->whole);
+    EXPECT_DOUBLE_EQ(voxels.level_set->field.voxel, 0.1);
+    const Scene copy = scene;
+    EXPECT_EQ(std::get<VoxelsShape>(copy.shapes[0].shape).level_set, voxels.level_set);
 }
 
 // The example of the format's description, as it is printed there.

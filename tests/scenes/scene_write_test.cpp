@@ -1,4 +1,7 @@
 // Scene file, written: what is written reads back to the same bits.
+#include "pipeline/level_set.hpp"
+#include "pipeline/world.hpp"
+#include "scenes/catalog.hpp"
 #include "scenes/scene_file.hpp"
 
 #include <gtest/gtest.h>
@@ -182,6 +185,48 @@ TEST_F(WriteScene, KeepsAFileThatHoldsWhatTheGroupHolds)
     write_scene(scene, path("a.json"));
     EXPECT_FALSE(std::filesystem::exists(path("a.0.bin")));
     EXPECT_EQ(read_scene(path("a.json")).instances[0].file, "mine.bin");
+}
+
+TEST_F(WriteScene, PutsALevelSetInAFileBesideItOnce)
+{
+    const TriangleSoup torus = torus_mesh(0.4, 0.15, 24, 12);
+    const auto level_set = make_level_set(torus.vertices, torus.triangles, 0.06).level_set;
+    ASSERT_NE(level_set, nullptr);
+    Scene scene;
+    scene.shapes = {{"ball", SphereShape{1}}, {"ring", VoxelsShape{"", level_set}}};
+    write_scene(scene, path("a.json"));
+    const Scene again = read_scene(path("a.json"));
+    const auto& voxels = std::get<VoxelsShape>(again.shapes[1].shape);
+    EXPECT_EQ(voxels.file, "a.1.vdb");
+    EXPECT_TRUE(same_level_set(*voxels.level_set, *level_set));
+
+    // The file that says the same is left alone, one that does not is not written over.
+    const std::string bytes = text("a.1.vdb");
+    write_scene(again, path("b.json"));
+    EXPECT_FALSE(std::filesystem::exists(path("b.1.vdb")));
+    EXPECT_EQ(text("a.1.vdb"), bytes);
+    EXPECT_EQ(text("b.json"), text("a.json"));
+    Scene other = again;
+    const auto finer = make_level_set(torus.vertices, torus.triangles, 0.05).level_set;
+    std::get<VoxelsShape>(other.shapes[1].shape).level_set = finer;
+    write_scene(other, path("c.json"));
+    EXPECT_EQ(text("a.1.vdb"), bytes);
+    const Scene third = read_scene(path("c.json"));
+    EXPECT_TRUE(same_level_set(*std::get<VoxelsShape>(third.shapes[1].shape).level_set, *finer));
+}
+
+TEST_F(WriteScene, ATerrainOfTheCatalogueMovesOnAsItDidBefore)
+{
+    const Scene made = make_scene("terrain", 8);
+    write_scene(made, path("t.json"));
+    EXPECT_TRUE(std::filesystem::exists(path("t.0.vdb")));
+    const Scene read = read_scene(path("t.json"));
+    World a(made), b(read);
+    EXPECT_EQ(a.state_hash(), b.state_hash());
+    a.step(100);
+    b.step(100);
+    EXPECT_GT(a.report().contacts, 0u);
+    EXPECT_EQ(a.state_hash(), b.state_hash());
 }
 
 TEST_F(WriteScene, NeverWritesOverTheFileOfAnotherGroup)

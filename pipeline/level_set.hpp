@@ -1,0 +1,54 @@
+// Level set: a shape told by how far every place is from its surface, as .vdb files hold it.
+//
+// It may be large: bodies, shapes and scenes share one, and none of them changes it.
+#pragma once
+
+#include "kernels/data/solids.hpp"
+
+#include <memory>
+#include <string>
+
+namespace throng {
+
+/// A signed distance and where it is 0.
+///
+///   field    what is inside is known to any depth
+///   surface  but for a thousandth of a voxel; closed even where the level set ends before its
+///            surface does: it is cut off there. Vertex normals included
+///   whole    the surface ends nowhere but in itself, so that the shape has a volume and may move
+///   error    m, of the field against the mesh it was made from, at the greatest; 0 where none is
+///            known
+struct LevelSet {
+    VoxelBricks field;
+    Mesh surface;
+    bool whole = false;
+    double error = 0;
+};
+
+/// A level set, or what is wrong and what is wanted.
+struct LevelSetResult {
+    std::shared_ptr<const LevelSet> level_set;
+    std::string trouble;
+};
+
+/// From the bytes of a .vdb file: its first float level set. Its voxels must be cubes along the
+/// axes.
+LevelSetResult read_level_set(std::string bytes);
+
+/// Of triangles that enclose a volume, whichever way they are turned.
+///
+///   voxel  m; 0: a 48th of the longest side
+///   band   m, how far outside distances are known; at least 3 voxels. What is round and no larger
+///          than the band less 1.8 voxels touches as exactly as the field tells
+LevelSetResult make_level_set(const std::vector<Vec3>& vertices,
+                              const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                              double voxel = 0,
+                              double band = 0);
+
+/// Writes a .vdb file that reads back to the same bits. Answers what went wrong, or nothing.
+std::string write_level_set(const LevelSet& level_set, const std::string& path);
+
+/// Whether two are the same in every bit that a step could feel.
+bool same_level_set(const LevelSet& a, const LevelSet& b);
+
+}  // namespace throng
