@@ -6,7 +6,6 @@
 #include "narrowphase/solids/voxel_field.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace throng {
 namespace {
@@ -21,7 +20,8 @@ LevelSetResult with_surface(VoxelBricks field, double error)
     if (!surface.trouble.empty()) return refused("has no surface; wanted values of both signs");
     auto made = std::make_shared<LevelSet>();
     made->surface = std::move(surface.mesh);
-    made->whole = std::isfinite(widest_gap(field)) && is_closed(made->surface);
+    // Values on both sides of a surface are about a voxel apart; where it is cut off, far more.
+    made->whole = widest_gap(field) <= 3 * field.voxel && is_closed(made->surface);
     made->field = std::move(field);
     made->error = error;
     return {std::move(made), {}};

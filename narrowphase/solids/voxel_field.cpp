@@ -402,7 +402,72 @@ MeshResult surface_of(const FloatGrid& grid)
     return made;
 }
 
-// The level set of another tool's: its values, and the depth below those that it has.
+// Whether the values about a place differ by more than distances do: there the level set ends, and
+// not the shape.
+bool is_cut(const openvdb::tree::ValueAccessor<const FloatTree, false>& values,
+            const openvdb::Vec3d& place,
+            double voxel)
+{
+    const openvdb::Coord cell = openvdb::Coord::floor(place);
+    float least = values.getValue(cell), most = least;
+    for (int corner = 1; corner < 8; ++corner) {
+        const float value =
+            values.getValue(cell.offsetBy(corner & 1, corner >> 1 & 1, corner >> 2));
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+    // Along a cell's diagonal they differ by 1.8 voxels.
+    return static_cast<double>(most - least) > 3 * voxel;
+}
+
+// The surface without what only closes it where the level set ends; all of it where that is all.
+Mesh true_surface(const FloatGrid& grid, const Mesh& surface)
+{
+    const openvdb::tree::ValueAccessor<const FloatTree, false> values(grid.tree());
+    std::vector<std::array<std::uint32_t, 3>> kept;
+    for (const auto& [a, b, c] : surface.triangles) {
+        const Vec3 middle = (surface.vertices[a] + surface.vertices[b] + surface.vertices[c]) / 3;
+        const openvdb::Vec3d place =
+            grid.worldToIndex(openvdb::Vec3d(middle.x(), middle.y(), middle.z()));
+        if (!is_cut(values, place, grid.voxelSize().x())) kept.push_back({a, b, c});
+    }
+    if (kept.empty() || kept.size() == surface.triangles.size()) return surface;
+    MeshResult made = build_mesh(surface.vertices, std::move(kept));
+    return made.trouble.empty() ? std::move(made.mesh) : surface;
+}
+
+// One layer of values far outside, all round those that say anything: what is inside goes no
+// further.
+void wall_in(const FloatGrid& grid,
+             const openvdb::Coord& first,
+             const VoxelBricks& laid,
+             std::vector<FieldSeed>& seeds)
+{
+    openvdb::CoordBBox said, one;
+    for (auto value = grid.tree().cbeginValueAll(); value; ++value)
+        if (value.isValueOn() || *value < 0) {
+            value.getBoundingBox(one);
+            said.expand(one);
+        }
+    said.translate(-first);
+    said.expand(1);
+    openvdb::CoordBBox all({0, 0, 0}, {0, 0, 0});
+    for (int k = 0; k < 3; ++k) all.max()[k] = laid.bricks[static_cast<std::size_t>(k)] * kCells;
+    const openvdb::CoordBBox held(openvdb::Coord::maxComponent(said.min(), all.min()),
+                                  openvdb::Coord::minComponent(said.max(), all.max()));
+    for (int z = held.min()[2]; z <= held.max()[2]; ++z)
+        for (int y = held.min()[1]; y <= held.max()[1]; ++y)
+            for (int x = held.min()[0]; x <= held.max()[0]; ++x) {
+                const openvdb::Coord at(x, y, z);
+                bool wall = false;
+                for (int k = 0; k < 3; ++k)
+                    wall |= at[k] == said.min()[k] || at[k] == said.max()[k];
+                if (wall) seeds.push_back({{x, y, z}, grid.background()});
+            }
+}
+
+// The level set of another tool's: its values, and the depth below those that it has. Where they
+// end and its surface does not, it is cut off upright.
 VoxelBricks other_bricks(const FloatGrid& grid, const Mesh& surface)
 {
     openvdb::CoordBBox box;
@@ -422,7 +487,9 @@ VoxelBricks other_bricks(const FloatGrid& grid, const Mesh& surface)
             const openvdb::Coord at = value.getCoord() - first;
             if (*value < grid.background()) seeds.push_back({{at[0], at[1], at[2]}, *value});
         }
-    return fill_bricks(surface, bricks, seeds, SeedRule::value);
+    const Mesh known = true_surface(grid, surface);
+    if (known.triangles.size() < surface.triangles.size()) wall_in(grid, first, bricks, seeds);
+    return fill_bricks(known, bricks, seeds, SeedRule::value);
 }
 
 std::string trouble_with_grid(const FloatGrid& grid)
