@@ -17,7 +17,7 @@ constexpr int kSteps = 40;  // all have fallen on something by then
 struct How {
     int threads = 1;
     bool in_order = false;
-    std::string cache;
+    std::string cache{};  // folder; empty: none
 };
 
 std::string hash_after(Scene scene, const How& how)

@@ -98,7 +98,7 @@ TEST(VoxelTerrain, CallsForVoxelContactAndNoOtherWay)
     EXPECT_FALSE(effects.on.has(Effect::mesh_contact));
     EXPECT_FALSE(effects.on.has(Effect::sphere_contact));
     const auto collides_solids = [](World& of) {
-        const std::vector<StageInfo> stages = of.step_stages();
+        const std::vector<World::StageInfo> stages = of.step_stages();
         return std::any_of(stages.begin(), stages.end(),
                            [](const auto& stage) { return stage.name == "collide_solids"; });
     };

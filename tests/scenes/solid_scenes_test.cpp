@@ -85,8 +85,8 @@ TEST(SolidScenes, MeshesAreClosedFaceOutwardAndDoNotCutThemselves)
             EXPECT_GT(mass_of(mesh).volume, 0);
             EXPECT_EQ(count_crossings(mesh), 0u);
             // The dial says how they are taken.
-            if (const auto* stated = std::get_if<MeshShape>(&scene.shapes[shape].shape))
-                EXPECT_EQ(stated->nonconvex, "");
+            const auto* stated = std::get_if<MeshShape>(&scene.shapes[shape].shape);
+            EXPECT_EQ(stated != nullptr ? stated->nonconvex : "", "");
         }
     }
 }
