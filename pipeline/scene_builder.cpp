@@ -200,7 +200,7 @@ PlacedShape SceneBuilder::add_made(const std::string& name, MadeSolid made)
     else
         for (Hull& hull : std::get<std::vector<Hull>>(made.shape))
             placed.parts.push_back(append(shapes.hulls, ShapeKind::hull, std::move(hull)));
-    placed.poses.resize(placed.parts.size());
+    placed.poses.assign(placed.parts.size(), Pose{made.at, Quat::Identity()});
     return placed;
 }
 

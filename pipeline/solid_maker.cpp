@@ -10,6 +10,7 @@
 #include "pipeline/level_set.hpp"
 
 #include <cstdio>
+#include <limits>
 
 namespace throng {
 
@@ -20,6 +21,21 @@ std::string short_text(double number)
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", number);
     return text;
+}
+
+// The middle of a mesh that lies further from its origin than a few of its sides, else 0. Fields
+// and points are in float: about the middle they lose nothing to the distance.
+Vec3 far_center(const std::vector<Vec3>& vertices)
+{
+    constexpr double kFar = 4;
+    Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
+    for (const Vec3& vertex : vertices) {
+        lower = lower.cwiseMin(vertex);
+        upper = upper.cwiseMax(vertex);
+    }
+    const Vec3 middle = 0.5 * lower + 0.5 * upper;
+    const bool far = middle.cwiseAbs().maxCoeff() > kFar * (upper - lower).maxCoeff();
+    return far ? middle : Vec3(Vec3::Zero());
 }
 
 double longest_side(const Mesh& mesh)
@@ -61,13 +77,17 @@ public:
 
     MadeSolid make(const MeshShape& stated)
     {
-        MendedMesh mended = mend(stated.vertices, stated.triangles);
+        made_.at = far_center(stated.vertices);
+        std::vector<Vec3> vertices = stated.vertices;
+        for (Vec3& vertex : vertices) vertex -= made_.at;
+        MendedMesh mended = mend(std::move(vertices), stated.triangles);
         if (!mended.trouble.empty()) return refused(mended.trouble);
         mesh_ = std::move(mended.mesh);
         made_.remarks = std::move(mended.remarks);
         sound_ = mended.health.sound();
         if (!sound_ && !take_level_set()) return std::move(made_);
         made_.mass = mass_of(mesh_);
+        made_.mass.center += made_.at;
         switch (settings_.nonconvex) {
         case NonConvex::voxels:
             return as_voxels();
