@@ -145,7 +145,7 @@ int run_cases(const Options& options)
     OutputFile json("--json", options.text("--json"));
     note_interrupts();
 
-    std::size_t passed = 0, failed = 0;
+    std::size_t passed = 0, failed = 0, skipped = 0;
     std::string lines;
     MethodTable methods;
     for (const HardCase* one : cases) {
@@ -156,6 +156,7 @@ int run_cases(const Options& options)
             lines += (lines.empty() ? "  " : ",\n  ") + json_line(result);
             passed += result.verdict == Verdict::pass ? 1 : 0;
             failed += result.verdict == Verdict::fail ? 1 : 0;
+            skipped += result.verdict == Verdict::skipped ? 1 : 0;
         }
         if (interrupted()) break;
     }
@@ -164,7 +165,9 @@ int run_cases(const Options& options)
         json.keep();
     }
     methods.print(std::cout);
-    std::cout << passed << " passed, " << failed << " failed" << std::endl;
+    std::cout << passed << " passed, " << failed << " failed";
+    if (skipped > 0) std::cout << ", " << skipped << " skipped";
+    std::cout << std::endl;
     if (interrupted()) return kInterrupted;
     return failed == 0 ? kDone : kCaseFailed;
 }

@@ -194,7 +194,7 @@ std::string trouble_with_inside(const VoxelBricks& bricks, const Worth& worth)
     if (count_inside(bricks) > 0 && worth.thin_area < 0.5) return {};
     return "nothing is inside at voxel size " + short_text(bricks.voxel)
         + " m: the mesh is thinner than a voxel nearly everywhere, or open wider than one; give a "
-          "closed mesh, or a smaller voxel_size";
+          "closed mesh, a smaller voxel_size where it is thin or a greater one where it is open";
 }
 
 // --- Files
