@@ -33,9 +33,9 @@ inline constexpr int kMostRays = 512;
 ///   reach  m, touches further apart along their normal are left out
 ///
 /// The rays stay where they are in the solid's frame, whatever the other does: a pixel is the
-/// longest side of the smaller shape's own box over Solid::rays, the greater of two. `feature` names
-/// view, ray and layer. Never throws but for want of memory; allocates until it has met its largest pair, once a
-/// thread.
+/// longest side of the smaller shape's own box over Solid::rays, the greater of two. `feature`
+/// names view, ray and layer. Never throws but for want of memory; allocates until it has met its
+/// largest pair, once a thread.
 void touch_by_depth_image(const Shapes& shapes,
                           ShapeRef solid,
                           ShapeRef other,
