@@ -214,10 +214,10 @@ Scene make_meshes(int size, std::uint64_t seed)
 namespace {
 
 // A quarter of the hills' cells tells all that they are. The band holds the balls that are dropped.
-// Where the ground is too wide for that, coarser: a few hundred voxels along a side.
+// Where the ground is too wide for that, coarser, so that it is made in a second.
 VoxelsShape voxels_of(const TriangleSoup& hills, int cells)
 {
-    const double voxel = std::max(0.25, cells / 400.0);
+    const double voxel = std::max(0.25, cells / 128.0);
     LevelSetResult made = make_level_set(hills.vertices, hills.triangles, voxel, 4 * voxel);
     THRONG_CHECK(made.trouble.empty(), "hills have an inside");
     return {{}, std::move(made.level_set)};

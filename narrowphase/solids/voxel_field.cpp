@@ -680,9 +680,10 @@ VdbFile read_vdb_bytes(std::string bytes, VdbWants wants)
 {
     std::istringstream stream(std::move(bytes));
     return read_grid(wants, [&] {
+        // What ends too soon must not go unseen: OpenVDB would go by counts that it never read.
+        stream.exceptions(std::ios::eofbit | std::ios::failbit | std::ios::badbit);
         // Now, and not when a value is first asked for: the bytes are gone then.
         openvdb::io::Stream file(stream, false);
-        if (!stream) throw std::runtime_error("it ends too soon");
         return level_set_in(*file.getGrids());
     });
 }
