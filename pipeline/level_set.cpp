@@ -3,6 +3,7 @@
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_health.hpp"
 #include "narrowphase/solids/field_values.hpp"
+#include "narrowphase/solids/file_seal.hpp"
 #include "narrowphase/solids/voxel_field.hpp"
 
 #include <algorithm>
@@ -31,6 +32,8 @@ LevelSetResult with_surface(VoxelBricks field, double error)
 
 LevelSetResult read_level_set(std::string bytes)
 {
+    if (seal_of(bytes) == Seal::broken)
+        return refused("is damaged, by its checksum; wanted it as it was written");
     VdbFile file = read_vdb_bytes(std::move(bytes), VdbWants::bricks);
     if (!file.trouble.empty()) return refused(std::move(file.trouble));
     return with_surface(std::move(file.bricks), file.notes.error);
@@ -56,7 +59,9 @@ std::string write_level_set(const LevelSet& level_set, const std::string& path)
 {
     FieldNotes notes;
     notes.error = level_set.error;
-    return write_vdb(path, level_set.field, notes);
+    std::string trouble = write_vdb(path, level_set.field, notes);
+    if (trouble.empty() && !seal_file(path)) trouble = path + ": cannot be written";
+    return trouble;
 }
 
 bool same_level_set(const LevelSet& a, const LevelSet& b)

@@ -32,7 +32,8 @@ struct LevelSetResult {
 };
 
 /// From the bytes of a .vdb file: its first float level set. Its voxels must be cubes along the
-/// axes.
+/// axes. Damage is told of files that throng wrote; OpenVDB, which reads those of other tools, sees
+/// little of it.
 LevelSetResult read_level_set(std::string bytes);
 
 /// Of triangles that enclose a volume, whichever way they are turned.
@@ -45,7 +46,8 @@ LevelSetResult make_level_set(const std::vector<Vec3>& vertices,
                               double voxel = 0,
                               double band = 0);
 
-/// Writes a .vdb file that reads back to the same bits. Answers what went wrong, or nothing.
+/// Writes a .vdb file that reads back to the same bits, with a checksum behind it. Answers what
+/// went wrong, or nothing.
 std::string write_level_set(const LevelSet& level_set, const std::string& path);
 
 /// Whether two are the same in every bit that a step could feel.

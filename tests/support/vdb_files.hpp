@@ -2,21 +2,14 @@
 #pragma once
 
 #include "kernels/geometry/voxel_bricks.hpp"
+#include "narrowphase/solids/file_seal.hpp"
 #include "narrowphase/solids/voxel_field.hpp"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <stdexcept>
 
 namespace throng {
-
-inline std::string bytes_of_file(const std::filesystem::path& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// By way of a passing file of the test's own.
 inline std::string vdb_bytes(const VoxelBricks& bricks)
