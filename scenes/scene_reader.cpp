@@ -267,9 +267,7 @@ private:
         if (content.size > kGreatestMeshFile) refuse(file, "wanted a .vdb file of at most 4 GiB");
         LevelSetResult read = read_level_set(std::move(content.bytes));
         if (!read.trouble.empty())
-            refuse(file,
-                   "wanted a level set; " + in_quotes(voxels.file) + ' '
-                       + read.trouble);
+            refuse(file, "wanted a level set; " + in_quotes(voxels.file) + ' ' + read.trouble);
         voxels.level_set = std::move(read.level_set);
         return voxels;
     }
