@@ -35,7 +35,29 @@ constexpr HardCase kCases[] = {
     {"H35", "shapes about one center leave by the shortest way", case_concentric, Fault::nudge},
     {"H36", "the volume that two polytopes share", case_shared_volume, Fault::nudge},
     {"H37", "accelerations change the time and never the answer", case_same_answers, Fault::nudge},
+    {"H43", "holes are gone through, chains hold and a bolt turns down its nut", case_through_hole,
+     Fault::shrink},
+    {"H44", "heaps of scans and lumps come to rest and hardly overlap", case_solid_heap,
+     Fault::shrink},
+    {"H45", "shared volumes and depths converge as they should", case_convergence, Fault::shrink},
 };
+
+constexpr double kShrunk = 0.9;
+
+void shrink(ShapeDescription& shape)
+{
+    if (auto* mesh = std::get_if<MeshShape>(&shape.shape))
+        for (Vec3& vertex : mesh->vertices) vertex *= kShrunk;
+}
+
+// Where a question is asked of them, not what stands in a scene.
+ShapeDescription shrunk(ShapeDescription shape)
+{
+    shrink(shape);
+    if (auto* sphere = std::get_if<SphereShape>(&shape.shape)) sphere->radius *= kShrunk;
+    if (auto* box = std::get_if<BoxShape>(&shape.shape)) box->half_extents *= kShrunk;
+    return shape;
+}
 
 void plant(Fault fault, Scene& scene)
 {
@@ -48,6 +70,9 @@ void plant(Fault fault, Scene& scene)
     case Fault::mass:
         for (BodyDescription& body : scene.bodies)
             if (body.mass) *body.mass *= 1.1;
+        break;
+    case Fault::shrink:
+        for (ShapeDescription& shape : scene.shapes) shrink(shape);
         break;
     default:
         break;
@@ -75,8 +100,8 @@ Pose nudged(const Pose& pose, double size)
 
 }  // namespace
 
-CaseBench::CaseBench(Settings settings, Fault fault, int threads)
-    : settings_(settings), fault_(fault), threads_(threads)
+CaseBench::CaseBench(Settings settings, Fault fault, int threads, Extent extent)
+    : settings_(settings), fault_(fault), threads_(threads), extent_(extent)
 { }
 
 Scene CaseBench::scene() const
@@ -103,6 +128,16 @@ void CaseBench::run(const Scene& scene,
         if (!watch(world, step * dt)) break;
     }
     lost_ += world.report().bodies_quarantined;
+    spent_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+void CaseBench::look_at(const Scene& scene, const std::function<void(const World&)>& look)
+{
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    Scene planted = scene;
+    plant(fault_, planted);
+    look(World(planted, threads_));
     spent_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
@@ -140,6 +175,21 @@ CaseBench::touch_in_float(const ConvexQuery& query, const Pose& a, const Pose& b
 {
     return timed("auto", a, b, size,
                  [&](const Pose& seen) { return query.touch(seen, Precision::float_); });
+}
+
+VolumeAnswer CaseBench::ask_volume(std::string_view way,
+                                   const ShapeDescription& a,
+                                   const ShapeDescription& b,
+                                   const Pose& b_in_a,
+                                   int resolution)
+{
+    using Clock = std::chrono::steady_clock;
+    const bool small = fault_ == Fault::shrink;
+    VolumeQuery query(small ? shrunk(a) : a, small ? shrunk(b) : b);
+    const auto begin = Clock::now();
+    VolumeAnswer answer = query.ask(way, b_in_a, resolution);
+    spent_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    return answer;
 }
 
 ConvexAnswer CaseBench::timed(std::string_view method,
@@ -212,9 +262,10 @@ const HardCase* find_case(std::string_view name)
     return nullptr;
 }
 
-std::vector<CaseResult> run_case(const HardCase& which, Settings settings, Fault fault, int threads)
+std::vector<CaseResult>
+run_case(const HardCase& which, Settings settings, Fault fault, int threads, Extent extent)
 {
-    CaseBench bench(settings, fault, threads);
+    CaseBench bench(settings, fault, threads, extent);
     which.run(bench);
     return bench.take_results(which.name);
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "pipeline/convex_query.hpp"
+#include "pipeline/volume_query.hpp"
 
 #include <functional>
 #include <map>
@@ -39,14 +40,22 @@ enum class Fault : std::uint8_t {
     mass,         // bodies 10 % too heavy
     float_poses,  // poses rounded to float after every step, and before a method sees them
     nudge,        // pairs handed to a method off by a millionth of their size, and of a radian
+    shrink,       // meshes a tenth too small, and all that is asked for its shared volume
 };
+
+/// How much of a case is run: all of it, or what a test has time for.
+enum class Extent : std::uint8_t { brief, whole };
 
 /// What a case runs on: it makes the worlds, so that settings and faults reach all of them.
 class CaseBench {
 public:
-    explicit CaseBench(Settings settings = {}, Fault fault = Fault::none, int threads = 1);
+    explicit CaseBench(Settings settings = {},
+                       Fault fault = Fault::none,
+                       int threads = 1,
+                       Extent extent = Extent::whole);
 
     const Settings& settings() const { return settings_; }
+    bool brief() const { return extent_ == Extent::brief; }
 
     /// A scene with the bench's settings, ready to be filled.
     Scene scene() const;
@@ -55,6 +64,9 @@ public:
     void run(const Scene& scene,
              double time,
              const std::function<bool(class World&, double now)>& watch);
+
+    /// Shows a scene's world before its first step.
+    void look_at(const Scene& scene, const std::function<void(const class World&)>& look);
 
     /// What a method says of two shapes, placed in the world.
     ConvexAnswer ask(ConvexQuery& query,
@@ -67,6 +79,13 @@ public:
     /// What a step in float says of them: whether they touch.
     ConvexAnswer
     touch_in_float(const ConvexQuery& query, const Pose& a, const Pose& b, double size);
+
+    /// What a way says that two shapes share; its time counts towards the next line.
+    VolumeAnswer ask_volume(std::string_view way,
+                            const ShapeDescription& a,
+                            const ShapeDescription& b,
+                            const Pose& b_in_a,
+                            int resolution);
 
     /// Adds a line. Time is counted from the last line, or from the start.
     void report(
@@ -95,6 +114,7 @@ private:
     Settings settings_;
     Fault fault_;
     int threads_;
+    Extent extent_;
     double spent_ms_ = 0;
     std::size_t lost_ = 0;  // bodies quarantined since the last line
     std::map<std::string, double, std::less<>> method_ms_;
@@ -114,7 +134,10 @@ std::span<const HardCase> hard_cases();
 /// The case of that name (any case of letters), or null.
 const HardCase* find_case(std::string_view name);
 
-std::vector<CaseResult>
-run_case(const HardCase& which, Settings settings = {}, Fault fault = Fault::none, int threads = 1);
+std::vector<CaseResult> run_case(const HardCase& which,
+                                 Settings settings = {},
+                                 Fault fault = Fault::none,
+                                 int threads = 1,
+                                 Extent extent = Extent::whole);
 
 }  // namespace throng

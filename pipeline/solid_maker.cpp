@@ -85,7 +85,7 @@ public:
         mesh_ = std::move(mended.mesh);
         made_.remarks = std::move(mended.remarks);
         sound_ = mended.health.sound();
-        if (!sound_ && !take_level_set()) return std::move(made_);
+        if (!sound_ && !take_level_set()) return refused(made_.trouble);
         made_.mass = mass_of(mesh_);
         made_.mass.center += made_.at;
         switch (settings_.nonconvex) {
@@ -104,8 +104,11 @@ public:
     }
 
 private:
+    // With what was found before: it is mostly the cause.
     MadeSolid refused(std::string why)
     {
+        for (std::size_t i = 0; i < made_.remarks.size(); ++i)
+            why += (i == 0 ? ". Found: " : "; ") + made_.remarks[i];
         made_.trouble = std::move(why);
         return std::move(made_);
     }
@@ -137,7 +140,7 @@ private:
 
     MadeSolid as_voxels()
     {
-        if (sound_ && !make_field(FieldSign::normals)) return std::move(made_);
+        if (sound_ && !make_field(FieldSign::normals)) return refused(made_.trouble);
         Solid solid = voxel_solid(mesh_, std::move(field_.bricks));
         made_.summary = summary_of(solid);
         return finished(std::move(solid));

@@ -24,6 +24,11 @@ void case_shared_volume(CaseBench& bench);  // H36, shared_volume.cpp
 void case_same_answers(CaseBench& bench);   // H37, same_answers.cpp, and pair_finders.cpp
 void compare_pair_finders(CaseBench& bench);
 
+// Shapes that are not convex.
+void case_through_hole(CaseBench& bench);  // H43, through_hole.cpp
+void case_solid_heap(CaseBench& bench);    // H44, solid_heap.cpp
+void case_convergence(CaseBench& bench);   // H45, convergence.cpp
+
 /// A scene under construction: shapes, materials and bodies by value, ids in order.
 class SceneParts {
 public:

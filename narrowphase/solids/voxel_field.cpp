@@ -129,7 +129,8 @@ struct Worth {
     double thin_area = 0;  // of all, where half a voxel below the surface is outside already
 };
 
-Worth worth_of(const Mesh& mesh, const VoxelBricks& bricks)
+// Where a flood told the inside, normals may look either way, and what is on either side counts.
+Worth worth_of(const Mesh& mesh, const VoxelBricks& bricks, FieldSign sign)
 {
     constexpr std::size_t kGrain = 1024;
     struct Part {
@@ -149,9 +150,14 @@ Worth worth_of(const Mesh& mesh, const VoxelBricks& bricks)
                 const Vec3 middle = (va + vb + vc) / 3;
                 for (const Vec3& at : {va, vb, vc, middle}) off(at);
                 const double area = (vb - va).cross(vc - va).norm();
-                const Vec3 below = middle - mesh.normals[i] * (bricks.voxel / 2);
+                const Vec3 up = mesh.normals[i] * (bricks.voxel / 2);
+                const auto inside = [&](const Vec3& at) {
+                    return sample_bricks<double>(bricks, at).distance < 0;
+                };
                 part.all += area;
-                if (!(sample_bricks<double>(bricks, below).distance < 0)) part.thin += area;
+                const bool thick =
+                    inside(middle - up) || (sign == FieldSign::flood && inside(middle + up));
+                if (!thick) part.thin += area;
             }
         });
     Worth worth;
@@ -621,7 +627,7 @@ FieldResult build_field(const Mesh& mesh, const FieldSettings& settings)
     else
         result.bricks = fill_bricks(exposed_part(mesh, *near, laid), laid, seeds, SeedRule::sign);
 
-    const Worth worth = worth_of(mesh, result.bricks);
+    const Worth worth = worth_of(mesh, result.bricks, settings.sign);
     result.trouble = trouble_with_inside(result.bricks, worth);
     if (!result.trouble.empty()) {
         result.bricks = {};

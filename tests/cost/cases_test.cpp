@@ -10,6 +10,11 @@ namespace {
 
 class HardCases : public testing::TestWithParam<HardCase> { };
 
+std::vector<CaseResult> run(const HardCase& which, Fault fault = Fault::none, int threads = 1)
+{
+    return run_case(which, {}, fault, threads, Extent::brief);
+}
+
 std::string told(const CaseResult& result)
 {
     return result.name + ", " + result.setting + ": " + result.quantity + " is "
@@ -18,7 +23,7 @@ std::string told(const CaseResult& result)
 
 TEST_P(HardCases, KeepsItsBounds)
 {
-    const std::vector<CaseResult> results = run_case(GetParam());
+    const std::vector<CaseResult> results = run(GetParam());
     ASSERT_FALSE(results.empty());
     for (const CaseResult& result : results) {
         EXPECT_NE(result.verdict, Verdict::fail) << told(result);
@@ -29,7 +34,7 @@ TEST_P(HardCases, KeepsItsBounds)
 // A method that measures, and whose lines a fault leaves alone, is not looked at by its case.
 TEST_P(HardCases, NoticesAPlantedFaultInEveryMethod)
 {
-    const std::vector<CaseResult> results = run_case(GetParam(), {}, GetParam().shown_by);
+    const std::vector<CaseResult> results = run(GetParam(), GetParam().shown_by);
     std::size_t failed = 0, skipped = 0;
     std::map<std::string, bool> measures, noticed;
     for (const CaseResult& result : results) {
@@ -50,8 +55,8 @@ TEST_P(HardCases, NoticesAPlantedFaultInEveryMethod)
 
 TEST_P(HardCases, GivesTheSameFiguresOnThreeThreads)
 {
-    const std::vector<CaseResult> one = run_case(GetParam());
-    const std::vector<CaseResult> three = run_case(GetParam(), {}, Fault::none, 3);
+    const std::vector<CaseResult> one = run(GetParam());
+    const std::vector<CaseResult> three = run(GetParam(), Fault::none, 3);
     ASSERT_EQ(one.size(), three.size());
     for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].figure, three[i].figure);
 }

@@ -1,0 +1,97 @@
+// Solid heap: H44, scans and lumps dropped in a bin.
+//
+// Answer: at rest by ten seconds, and what the bodies share, told by fine depth images of their own
+// triangles and not by the way that the step takes, is a ten-thousandth of their volume at most.
+#include "cost/hard_cases/hard_cases.hpp"
+#include "cost/hard_cases/solid_parts.hpp"
+#include "cost/shared_meshes.hpp"
+#include "pipeline/world.hpp"
+#include "scenes/catalog.hpp"
+#include "scenes/noisy_balls.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace throng {
+
+namespace {
+
+// As far as the catalogue's bodies reach from their middles, m.
+constexpr double kReach = 0.5;
+constexpr double kTime = 10;
+constexpr int kRays = 48;
+
+struct HeapEnd {
+    double speed = 0;
+    double energy = 0;  // J / kg
+    SharedInHeap shared;
+};
+
+HeapEnd drop_heap(CaseBench& bench, const Scene& scene)
+{
+    HeapEnd end;
+    bench.run(scene, kTime, [&](World& world, double now) {
+        if (now < kTime - 1e-9) return true;
+        double mass = 0;
+        for (const BodyId body : world.bodies()) mass += world.mass(body);
+        end.speed = greatest_speed(world);
+        end.energy = world.measure().kinetic_energy / mass;
+        end.shared = shared_in_heap(scene, world, kReach, kRays);
+        return true;
+    });
+    return end;
+}
+
+void judge_heap(CaseBench& bench,
+                const std::string& kind,
+                const TriangleSoup& mesh,
+                int count,
+                const SolidWayName& way)
+{
+    const Scene scene = taken(bench, find_scene("knots")->make_of(count, 1, mesh), way);
+    const HeapEnd end = drop_heap(bench, scene);
+    const std::string setting = std::to_string(count) + " " + kind + ", " + std::string(way.name);
+    bench.report(setting, "speed after 10 s", end.speed, 1e-2, "m/s");
+    bench.report(setting, "kinetic energy after 10 s", end.energy, 5e-5, "J/kg");
+    if (end.shared.trouble.empty())
+        bench.report(setting, "shared volume, of the bodies'", end.shared.volume / end.shared.body,
+                     1e-4, "1");
+    else
+        bench.skip(setting, "shared volume, of the bodies'", end.shared.trouble);
+}
+
+void judge_file(CaseBench& bench, const std::string& kind, int count, const SolidWayName& way)
+{
+    const std::string setting = std::to_string(count) + " " + kind + ", " + std::string(way.name);
+    const auto mesh = shared_mesh(kind + ".obj");
+    if (!mesh) {
+        bench.skip(setting, "rest and shared volume",
+                   "meshes/" + kind + ".obj is not in the shared data");
+        return;
+    }
+    try {
+        judge_heap(bench, kind, *mesh, count, way);
+    } catch (const std::invalid_argument& refusal) {
+        bench.skip(setting, "rest and shared volume", refusal.what());
+    }
+}
+
+}  // namespace
+
+void case_solid_heap(CaseBench& bench)
+{
+    const SolidWayName& voxels = kSolidWays[0];
+    if (bench.brief()) {
+        judge_heap(bench, "lumps", noisy_ball(kReach, 0.3, 320, 7), 6, voxels);
+        return;
+    }
+    // Lumps need no data, so that there is always something to see.
+    for (const SolidWayName& way : kSolidWays)
+        judge_heap(bench, "lumps", noisy_ball(kReach, 0.3, 500, 7), 20, way);
+    for (const SolidWayName& way : kSolidWays) judge_file(bench, "bunny", 20, way);
+    judge_file(bench, "bunny", 200, voxels);
+    for (const char* kind : {"spot", "snowflake", "kettle", "torus", "cube_cup"})
+        judge_file(bench, kind, 50, voxels);
+}
+
+}  // namespace throng
