@@ -224,6 +224,14 @@ TEST(VoxelField, FloodClosesHolesUpToAVoxelAndRefusesWiderOnes)
     EXPECT_NE(trouble.find("open wider than"), std::string::npos) << trouble;
 }
 
+TEST(VoxelField, FloodAsksNoWindingWhatIsThick)
+{
+    const FieldResult field =
+        field_of(closed(turned_inward(box_mesh({0.5, 0.5, 0.5}))), 0.06, FieldSign::flood);
+    EXPECT_EQ(field.trouble, "");
+    EXPECT_TRUE(field.remarks.empty());
+}
+
 TEST(VoxelField, RefusesWhatNeedsMoreThanIsGranted)
 {
     const Mesh mesh = closed(box_mesh({1, 1, 1}));
