@@ -128,6 +128,9 @@ bool face(const RayInterval& a, const RayInterval& b, double reach, Facing& faci
     facing.low = facing.up ? std::min(a.leave, b.enter) : std::min(a.enter, b.leave);
     facing.high = facing.up ? std::max(a.leave, b.enter) : std::max(a.enter, b.leave);
     facing.shared = 0.5 * (std::max(a.enter, b.enter) + std::min(a.leave, b.leave));
+    // Past a layer whose back is not seen there is no depth, only another side.
+    const bool apart = a.enter > b.leave || b.enter > a.leave;
+    if (apart && facing.separation < 0) return false;
     return facing.separation > -kInfinity && facing.separation <= reach;
 }
 

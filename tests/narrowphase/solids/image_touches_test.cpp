@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace throng {
@@ -232,6 +233,20 @@ TEST(ImageTouches, SeeThroughTheHoleOfATorus)
     for (const SurfaceTouch& one : touches) {
         EXPECT_GT(one.position.x(), 0.3);
         EXPECT_LT(one.normal.x(), -0.6);  // 0.1 - 0.12 of it is a gap of 0.02
+    }
+}
+
+// Where rays run along a static mesh, the back of its layers is further than they are thick.
+TEST(ImageTouches, NoneOfALinkAndTheMeshOfThatThroughIt)
+{
+    const TriangleSoup link = torus_mesh(0.4, 0.1, 32, 16);
+    Shapes shapes;
+    shapes.solids = {solid_of(link)};
+    shapes.meshes = {build_mesh(link.vertices, link.triangles).mesh};
+    const Quat upright(std::sqrt(0.5), std::sqrt(0.5), 0, 0);
+    for (const double place : {-0.55, 0.5499, 0.553}) {
+        const Pose pose{{place, 0.001, -0.002}, upright};
+        EXPECT_TRUE(touch(shapes, {ShapeKind::mesh, 0}, pose).empty()) << place;
     }
 }
 
