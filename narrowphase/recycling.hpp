@@ -27,4 +27,21 @@ bool recycle(const FoundManifold<Real>& found,
              Real bound,
              LocalManifold<Real>& out);
 
+/// The manifold at another pose, however far that is.
+template <class Real>
+void move_manifold(const FoundManifold<Real>& found,
+                   const PoseT<Real>& b_in_a,
+                   Real reach,
+                   LocalManifold<Real>& out);
+
+/// No point of b that is where a is has moved further from one pose to the other, seen from a, m.
+///
+///   radius_a  m, of a ball about a's origin with all of a in it, or what of it matters
+///   radius_b  m, the same of b
+template <class Real>
+Real furthest_moved_near(const PoseT<Real>& then,
+                         const PoseT<Real>& b_in_a,
+                         Real radius_a,
+                         Real radius_b);
+
 }  // namespace throng

@@ -8,9 +8,20 @@
 namespace throng {
 namespace {
 
-double distance_to(const Mesh::Node& node, const Vec3& point)
+// Rounding of the distance from a triangle's plane, and more.
+constexpr double kSlack = 1 + 1e-9;
+
+double distance2_to(const Mesh::Node& node, const Vec3& point)
 {
-    return (point - point.cwiseMax(node.lower).cwiseMin(node.upper)).norm();
+    return (point - point.cwiseMax(node.lower).cwiseMin(node.upper)).squaredNorm();
+}
+
+// Most triangles of a leaf are ruled out by their planes alone.
+bool plane_is_beyond(const Mesh& mesh, std::uint32_t triangle, const Vec3& point, double distance2)
+{
+    const Vec3& corner = mesh.vertices[mesh.triangles[triangle][0]];
+    const double height = mesh.normals[triangle].dot(point - corner);
+    return height * height > distance2 * kSlack;
 }
 
 MeshPoint on_triangle(const Mesh& mesh, std::uint32_t triangle, const Vec3& point)
@@ -39,33 +50,60 @@ double angle_between(const Vec3& a, const Vec3& b)
 }  // namespace
 
 // Down the tree, the nearer child first.
-MeshPoint nearest_on_mesh(const Mesh& mesh, const Vec3& point, double limit)
+MeshPoint nearest_on_mesh(const Mesh& mesh, const Vec3& point, double limit, std::uint32_t beside)
 {
     struct Visit {
         std::uint32_t node;
-        double distance;
+        double distance2;
     };
     // As deep as visit_triangles() in mesh.hpp, which says why.
     std::array<Visit, 96> waiting;
     std::size_t count = 0;
-    if (!mesh.tree.empty()) waiting[count++] = {0, distance_to(mesh.tree.front(), point)};
+    if (!mesh.tree.empty()) waiting[count++] = {0, distance2_to(mesh.tree.front(), point)};
     MeshPoint nearest;
+    double within2 = limit * limit;
+    const auto look_at = [&](std::uint32_t triangle) {
+        if (plane_is_beyond(mesh, triangle, point, within2)) return;
+        const MeshPoint now = on_triangle(mesh, triangle, point);
+        if (!(now.distance < nearest.distance)) return;
+        nearest = now;
+        within2 = std::min(within2, now.distance * now.distance);
+    };
+    if (beside < mesh.triangles.size()) look_at(beside);
     while (count > 0) {
         const Visit visit = waiting[--count];
-        if (visit.distance > std::min(nearest.distance, limit)) continue;
+        if (visit.distance2 > within2 * kSlack) continue;
         const Mesh::Node& node = mesh.tree[visit.node];
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const MeshPoint now = on_triangle(mesh, mesh.order[i], point);
-            if (now.distance < nearest.distance) nearest = now;
-        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) look_at(mesh.order[i]);
         if (node.count > 0) continue;
-        Visit near{node.first, distance_to(mesh.tree[node.first], point)};
-        Visit far{node.first + 1, distance_to(mesh.tree[node.first + 1], point)};
-        if (far.distance < near.distance) std::swap(near, far);
+        Visit near{node.first, distance2_to(mesh.tree[node.first], point)};
+        Visit far{node.first + 1, distance2_to(mesh.tree[node.first + 1], point)};
+        if (far.distance2 < near.distance2) std::swap(near, far);
         waiting[count++] = far;
         waiting[count++] = near;
     }
     return nearest;
+}
+
+bool comes_within(const Mesh& mesh, const Vec3& point, double distance)
+{
+    const double distance2 = distance * distance;
+    if (!(distance >= 0)) return false;
+    std::array<std::uint32_t, 96> waiting;
+    std::size_t count = 0;
+    if (!mesh.tree.empty()) waiting[count++] = 0;
+    while (count > 0) {
+        const Mesh::Node& node = mesh.tree[waiting[--count]];
+        if (distance2_to(node, point) > distance2 * kSlack) continue;
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+            if (!plane_is_beyond(mesh, mesh.order[i], point, distance2)
+                && on_triangle(mesh, mesh.order[i], point).distance <= distance)
+                return true;
+        if (node.count > 0) continue;
+        waiting[count++] = node.first + 1;
+        waiting[count++] = node.first;
+    }
+    return false;
 }
 
 void find_vertex_normals(Mesh& mesh)

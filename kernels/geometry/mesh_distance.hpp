@@ -17,12 +17,19 @@ struct MeshPoint {
     TriangleRegion region = TriangleRegion::face;
 };
 
+inline constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
+
 /// The nearest point of a mesh.
 ///
-///   limit  m, what lies further away need not be found
+///   limit   m, what lies further away need not be found
+///   beside  a triangle that is likely near, looked at first: the search is then shorter
 MeshPoint nearest_on_mesh(const Mesh& mesh,
                           const Vec3& point,
-                          double limit = std::numeric_limits<double>::infinity());
+                          double limit = std::numeric_limits<double>::infinity(),
+                          std::uint32_t beside = kNoTriangle);
+
+/// Whether anything of a mesh is no further from a point than this, m.
+bool comes_within(const Mesh& mesh, const Vec3& point, double distance);
 
 /// Fills in the mesh's vertex_normals: what it turns outward at its corners, the sum of the normals
 /// that meet there, each weighed by the angle that its triangle takes.

@@ -79,8 +79,19 @@ void sample_some(const BrickView& view, const SampleArrays& to, L x, L y, L z)
     select(known, slope[2] * inverse, L(0.0F)).store(to.gz);
 }
 
+// Clears the upper halves of the registers, which GCC 12 forgets here with 512 bits: else all plain
+// arithmetic after this takes two to three times as long until somebody does.
+struct LeavesWide {
+#if THRONG_LANE_BYTES > 0
+    ~LeavesWide() { _mm256_zeroupper(); }
+#else
+    ~LeavesWide() = default;
+#endif
+};
+
 void sample(const BrickView& view, const SampleArrays& arrays, std::size_t count)
 {
+    [[maybe_unused]] const LeavesWide leaves_wide;
     std::size_t at = 0;
     for (; at + kWidth <= count; at += kWidth)
         sample_some(view,

@@ -23,7 +23,9 @@ constexpr double kAlike = 0.857;
 constexpr double kJoins = 0.7;
 // Sine within which normals agree with one another: those of flat faces, rounding and grid
 // included.
-constexpr double kAgree = 0.05, kAll = 1e6;
+constexpr double kAgree = 0.05;
+// How often a group's middle is sought anew at most.
+constexpr int kRounds = 4;
 // How many times a depth missing weighs as much as a distance to span. Of a ball of radius R that
 // keeps what lies within R / 20 of the deepest place.
 constexpr double kShallow = 20;
@@ -62,9 +64,15 @@ const Mat3& odd_axes()
 class Grouping {
 public:
     Grouping(const std::vector<SurfaceTouch>& touches, double reach, double size)
-        : touches_(touches), reach_(reach), least_weight_(1e-6 * size), group_of_(groups_of())
+        : touches_(touches), group_of_(groups_of()), free_(free_ones())
     {
         group_of_.assign(touches.size(), kNone);
+        // What is just within reach hardly counts.
+        const double least_weight = 1e-6 * size;
+        for (std::uint32_t i = 0; i < touches.size(); ++i) {
+            const double within = reach - touches[i].separation + least_weight;
+            free_.push_back({touches[i].normal, within * within, i});
+        }
         while (count_ < kMostGroups && gather()) ++count_;
         keep_deepest();
     }
@@ -92,6 +100,19 @@ private:
         return scratch;
     }
 
+    // A touch that is in no group yet.
+    struct Free {
+        Vec3 normal;
+        double weight;
+        std::uint32_t touch;
+    };
+    static std::vector<Free>& free_ones()
+    {
+        thread_local std::vector<Free> scratch;
+        scratch.clear();
+        return scratch;
+    }
+
     // One more group, from the free touch that looks furthest along the odd direction: the mean of
     // what is round it, then the mean of what is round that, and so on to where most push, and most
     // deeply. The mean of directions within an angle of another is itself within that angle of one
@@ -101,44 +122,53 @@ private:
     //         Space Analysis (2002), a few steps of it.
     bool gather()
     {
+        if (free_.empty()) return false;
         const Vec3 start = odd_axes().col(0);
-        std::size_t seed = touches_.size();
+        const Free* seed = nullptr;
         double furthest = -2;
-        for (std::size_t i = 0; i < touches_.size(); ++i) {
-            if (group_of_[i] != kNone) continue;
-            const double along = start.dot(touches_[i].normal);
+        for (const Free& one : free_) {
+            const double along = start.dot(one.normal);
             if (!(along > furthest)) continue;
             furthest = along;
-            seed = i;
+            seed = &one;
         }
-        if (seed == touches_.size()) return false;
-        Vec3 middle = touches_[seed].normal;
-        for (const double width : {kAll, kAll, kAll, kAll, kAgree, kAgree})
-            middle = mean_round(middle, width);
+        if (seed == nullptr) return false;
+        const std::uint32_t first = seed->touch;
+        Vec3 middle = seed->normal;
+        for (int round = 0; round < kRounds; ++round) {
+            const Vec3 before = middle;
+            middle = mean_round(middle, [](double) { return 1.0; });
+            if (middle == before) break;  // the same touches, and so from here on
+        }
+        // Less of what is much further from the direction than others are, so that a face on a face
+        // is not tilted by its rim.
+        for (int round = 0; round < 2; ++round)
+            middle = mean_round(middle, [](double off2) { return 1 / (off2 + kAgree * kAgree); });
         groups_[count_].normal = middle;
-        bool any = false;
-        for (std::size_t i = 0; i < touches_.size(); ++i) {
-            if (group_of_[i] != kNone || !(middle.dot(touches_[i].normal) >= kAlike)) continue;
-            take(i);
-            any = true;
-        }
-        if (any) return true;
+        const std::size_t were = free_.size();
+        std::erase_if(free_, [&](const Free& one) {
+            const bool taken = middle.dot(one.normal) >= kAlike;
+            if (taken) take(one.touch);
+            return taken;
+        });
+        if (free_.size() < were) return true;
         // Rounding.
-        groups_[count_].normal = touches_[seed].normal;
-        take(seed);
+        groups_[count_].normal = touches_[first].normal;
+        take(first);
+        std::erase_if(free_, [&](const Free& one) { return one.touch == first; });
         return true;
     }
 
-    // Smooth in what comes and goes: what is just within reach hardly counts, nor what is much
-    // further from the direction than `width`, so that a face on a face is not tilted by its rim.
-    Vec3 mean_round(const Vec3& direction, double width) const
+    // Smooth in what comes and goes.
+    //
+    //   share  of a normal, by the square of how far it is from the direction
+    template <class Share>
+    Vec3 mean_round(const Vec3& direction, const Share& share) const
     {
         Vec3 sum = Vec3::Zero();
-        for (std::size_t i = 0; i < touches_.size(); ++i) {
-            if (group_of_[i] != kNone || !(direction.dot(touches_[i].normal) >= kAlike)) continue;
-            const double within = reach_ - touches_[i].separation + least_weight_;
-            const double off2 = (touches_[i].normal - direction).squaredNorm() + width * width;
-            sum += touches_[i].normal * (within * within / off2);
+        for (const Free& one : free_) {
+            if (!(direction.dot(one.normal) >= kAlike)) continue;
+            sum += one.normal * (one.weight * share((one.normal - direction).squaredNorm()));
         }
         const double length = sum.norm();
         return length > 0 ? Vec3(sum / length) : direction;
@@ -180,8 +210,8 @@ private:
     }
 
     const std::vector<SurfaceTouch>& touches_;
-    double reach_, least_weight_;
     std::vector<std::uint8_t>& group_of_;
+    std::vector<Free>& free_;
     std::array<Group, kMostGroups> groups_;
     std::size_t count_ = 0;
 };

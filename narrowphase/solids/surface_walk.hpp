@@ -16,13 +16,15 @@
 
 namespace throng {
 
-/// Points of a leaf in the frame of the other shape, and what it says of them. Empty places hold
-/// whatever they hold: `count` come first.
+/// Places in the frame of the other shape, and what it says of them. Empty places hold whatever
+/// they hold: `count` come first.
+template <class Number>
 struct LeafSample {
     static constexpr std::size_t kPoints = 16;
     std::size_t count = 0;
-    double x[kPoints], y[kPoints], z[kPoints];
-    double distance[kPoints], gx[kPoints], gy[kPoints], gz[kPoints];  // gradient 0: not told
+    Number x[kPoints], y[kPoints], z[kPoints];
+    Number within[kPoints];  // m, asked of bound(): whether a surface point is this near
+    Number distance[kPoints], gx[kPoints], gy[kPoints], gz[kPoints];  // gradient 0: not told
 };
 
 /// Features of touches: which side's points they are, and which of them.
@@ -35,34 +37,37 @@ inline std::uint32_t touch_feature(TouchSide side, std::size_t index)
 /// Gradients shorter than this are of no use: somewhere inside, where two ways out are as near.
 inline constexpr double kNoGradient = 0.25;
 
-/// A solid by its field. To be walked against: `at_least` m, which no surface point is nearer than
-/// to a place (below 0 inside), and `sample`, which fills in distances out to `furthest()`.
+/// A solid by its field. To be walked against: `bound` fills in distances that no surface point is
+/// nearer than to the places (below 0 inside; no more than `within` need be told), and `sample`
+/// distances and gradients, out to `furthest()`. Told in float: to a ten-millionth of the solid.
 class FieldSide {
 public:
+    using Real = float;
+
     explicit FieldSide(const Solid& solid);
 
-    double furthest() const { return bricks_.band; }
-    double at_least(const Vec3& place) const;
-    void sample(LeafSample& leaf) const;
+    float furthest() const { return furthest_; }
+    void bound(LeafSample<float>& places) const;
+    void sample(LeafSample<float>& leaf) const;
     /// Where all of its surface is.
     const Box3& box() const { return box_; }
 
 private:
     const VoxelBricks& bricks_;
+    float furthest_;  // the band
     Box3 box_;
 };
 
 /// A convex shape or a plane, by its exact distance.
 class ConvexSide {
 public:
+    using Real = double;
+
     ConvexSide(const Shapes& shapes, ShapeRef shape) : shapes_(shapes), shape_(shape) { }
 
     double furthest() const { return std::numeric_limits<double>::infinity(); }
-    double at_least(const Vec3& place) const
-    {
-        return distance_to(shapes_, shape_, place).distance;
-    }
-    void sample(LeafSample& leaf) const;
+    void bound(LeafSample<double>& places) const;
+    void sample(LeafSample<double>& leaf) const;
 
 private:
     const Shapes& shapes_;
@@ -72,12 +77,14 @@ private:
 /// The front of a static mesh. What lies deeper behind it than `deepest` m does not touch.
 class MeshSide {
 public:
+    using Real = double;
+
     MeshSide(const Mesh& mesh, double reach, double deepest)
         : mesh_(mesh), reach_(reach), deepest_(deepest)
     { }
     double furthest() const { return std::numeric_limits<double>::infinity(); }
-    double at_least(const Vec3& place) const;
-    void sample(LeafSample& leaf) const;
+    void bound(LeafSample<double>& places) const;
+    void sample(LeafSample<double>& leaf) const;
 
 private:
     const Mesh& mesh_;
@@ -94,13 +101,15 @@ struct PointTouch {
 };
 
 /// Appends the points that `other` touches, out to `reach`, in order of point. For the sides above.
+/// Answers a distance that no point is nearer than to the other shape, which may be less than it is
+/// by much: where nothing comes within reach it is no less than the reach.
 ///
 ///   pose  of the other shape in the frame of the points
 template <class Other>
-void walk_surface(const SurfacePoints& points,
-                  const Other& other,
-                  const Pose& pose,
-                  double reach,
-                  std::vector<PointTouch>& out);
+double walk_surface(const SurfacePoints& points,
+                    const Other& other,
+                    const Pose& pose,
+                    double reach,
+                    std::vector<PointTouch>& out);
 
 }  // namespace throng

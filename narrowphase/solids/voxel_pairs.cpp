@@ -23,33 +23,35 @@ std::vector<PointTouch>& scratch()
 
 // Points of a: out of the other shape is from b to a.
 template <class Other>
-void touch_points_of_a(const Solid& a,
-                       const Other& other,
-                       const Pose& other_in_a,
-                       double reach,
-                       std::vector<SurfaceTouch>& out)
+double touch_points_of_a(const Solid& a,
+                         const Other& other,
+                         const Pose& other_in_a,
+                         double reach,
+                         std::vector<SurfaceTouch>& out)
 {
     std::vector<PointTouch>& found = scratch();
-    walk_surface(a.points, other, other_in_a, reach, found);
+    const double apart = walk_surface(a.points, other, other_in_a, reach, found);
     for (const PointTouch& touch : found)
         out.push_back({touch.position - touch.outward * (touch.distance / 2), -touch.outward,
                        touch.distance, touch_feature(TouchSide::a, touch.point)});
+    return apart;
 }
 
-void touch_points_of_b(const Solid& a,
-                       const Solid& b,
-                       const Pose& b_in_a,
-                       double reach,
-                       std::vector<SurfaceTouch>& out)
+double touch_points_of_b(const Solid& a,
+                         const Solid& b,
+                         const Pose& b_in_a,
+                         double reach,
+                         std::vector<SurfaceTouch>& out)
 {
     std::vector<PointTouch>& found = scratch();
-    walk_surface(b.points, FieldSide(a), inverse(b_in_a), reach, found);
+    const double apart = walk_surface(b.points, FieldSide(a), inverse(b_in_a), reach, found);
     const Mat3 turn = b_in_a.orientation.toRotationMatrix();
     for (const PointTouch& touch : found) {
         const Vec3 between = touch.position - touch.outward * (touch.distance / 2);
         out.push_back({turn * between + b_in_a.position, turn * touch.outward, touch.distance,
                        touch_feature(TouchSide::b, touch.point)});
     }
+    return apart;
 }
 
 // Behind a static mesh nothing says how thick it is: no deeper than half of the solid, and than
@@ -62,34 +64,38 @@ double deepest_behind(const Solid& a, const FieldSide& field)
 
 }  // namespace
 
-void touch_by_voxels(const Shapes& shapes,
-                     const Solid& a,
-                     ShapeRef other,
-                     const Pose& other_in_a,
-                     double reach,
-                     std::vector<SurfaceTouch>& out)
+double touch_by_voxels(const Shapes& shapes,
+                       const Solid& a,
+                       ShapeRef other,
+                       const Pose& other_in_a,
+                       double reach,
+                       std::vector<SurfaceTouch>& out)
 {
     const bool has_field = !a.field.empty();
+    double apart = std::numeric_limits<double>::infinity();
     switch (other.kind) {
     case ShapeKind::solid: {
         const Solid& b = shapes.solids[other.index];
-        if (!b.field.empty()) touch_points_of_a(a, FieldSide(b), other_in_a, reach, out);
-        if (has_field) touch_points_of_b(a, b, other_in_a, reach, out);
-        return;
+        if (!b.field.empty()) apart = touch_points_of_a(a, FieldSide(b), other_in_a, reach, out);
+        if (has_field) apart = std::min(apart, touch_points_of_b(a, b, other_in_a, reach, out));
+        return apart;
     }
     case ShapeKind::mesh: {
         const Mesh& mesh = shapes.meshes[other.index];
         const FieldSide field(a);
-        touch_points_of_a(a, MeshSide(mesh, reach, deepest_behind(a, field)), other_in_a, reach,
-                          out);
+        const MeshSide side(mesh, reach, deepest_behind(a, field));
+        apart = touch_points_of_a(a, side, other_in_a, reach, out);
         if (has_field) probe_mesh(a, mesh, other_in_a, reach, out);
-        return;
+        break;
     }
     default:
-        touch_points_of_a(a, ConvexSide(shapes, other), other_in_a, reach, out);
-        if (has_field && other.kind != ShapeKind::plane)
-            probe_convex(shapes, a, other, other_in_a, reach, out);
+        apart = touch_points_of_a(a, ConvexSide(shapes, other), other_in_a, reach, out);
+        // A plane has nothing of its own.
+        if (!has_field || other.kind == ShapeKind::plane) return apart;
+        probe_convex(shapes, a, other, other_in_a, reach, out);
     }
+    // What sticks out of the other may be between the points, and is told by the field.
+    return apart - a.points.spacing - a.field.voxel;
 }
 
 }  // namespace throng

@@ -27,11 +27,14 @@ namespace throng {
 ///
 /// Balls that fill what is round are looked up out to the field's band less the diagonal of a
 /// cell; larger ones are left to the points of a. The band should be the reach and two voxels.
-void touch_by_voxels(const Shapes& shapes,
-                     const Solid& a,
-                     ShapeRef other,
-                     const Pose& other_in_a,
-                     double reach,
-                     std::vector<SurfaceTouch>& out);
+///
+/// Answers a distance: where nothing is told, nothing will be before points of the two have come
+/// closer by what it is more than the reach.
+double touch_by_voxels(const Shapes& shapes,
+                       const Solid& a,
+                       ShapeRef other,
+                       const Pose& other_in_a,
+                       double reach,
+                       std::vector<SurfaceTouch>& out);
 
 }  // namespace throng

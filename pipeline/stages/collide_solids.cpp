@@ -93,11 +93,14 @@ private:
     {
         static thread_local std::vector<PatchManifold> patches;
         patches.clear();
-        left_out_[block] += collide_solid(shapes_, colliders_.shape[sides.solid],
-                                          colliders_.shape[sides.other], pose, reach, patches);
+        const SolidAnswer answer =
+            collide_solid(shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
+                          pose, reach, patches);
+        left_out_[block] += answer.left_out;
         Finds& finds = finds_[block];
         finds.pairs.push_back({0, static_cast<std::uint32_t>(finds.patches.size()),
-                               static_cast<std::uint32_t>(patches.size()), pose, reach});
+                               static_cast<std::uint32_t>(patches.size()), pose, reach,
+                               answer.apart});
         for (const PatchManifold& patch : patches) {
             finds.patches.push_back({patch.patch, patch.manifold});
             add(sides, patch.patch, patch.manifold, out);
@@ -112,24 +115,33 @@ private:
                      Finds& finds,
                      ContactEntries<Real>& out)
     {
-        const double least =
-            std::min(colliders_.inner_extent[sides.solid], colliders_.inner_extent[sides.other]);
-        // A plane has no furthest point: what moves against it is then the solid.
-        const double radius = std::min(colliders_.outer_radius[sides.other],
-                                       colliders_.outer_radius[sides.solid] + pose.position.norm());
+        const double near = colliders_.outer_radius[sides.solid] + std::max(reach, kept.reach);
+        const double moved =
+            furthest_moved_near(kept.b_in_a, pose, near, colliders_.outer_radius[sides.other]);
+        double most = kRecycled * least_extent(sides);
+        if (kept.count == 0) most = std::max(most, kept.apart - kept.reach);
+        // What was out of reach then may be within a greater reach now.
+        if (!(moved + std::max(0.0, reach - kept.reach) <= most)) return false;
         FoundManifold<double> found{{}, kept.b_in_a, kept.reach};
         LocalManifold<double> now;
-        if (!recycle(found, pose, reach, radius, kRecycled * least, now)) return false;
         const auto begin = contacts_.found_before.patches.begin() + kept.first;
         const auto first = static_cast<std::uint32_t>(finds.patches.size());
         for (auto patch = begin; patch != begin + kept.count; ++patch) {
             found.manifold = patch->manifold;
-            recycle(found, pose, reach, radius, kRecycled * least, now);
+            move_manifold(found, pose, reach, now);
             finds.patches.push_back(*patch);
             if (now.count > 0) add(sides, patch->part, now, out);
         }
-        finds.pairs.push_back({0, first, kept.count, kept.b_in_a, kept.reach});
+        finds.pairs.push_back({0, first, kept.count, kept.b_in_a, kept.reach, kept.apart});
         return true;
+    }
+
+    // A mesh is as thick as whatever lies behind it.
+    double least_extent(const Sides& sides) const
+    {
+        const double own = colliders_.inner_extent[sides.solid];
+        if (colliders_.shape[sides.other].kind == ShapeKind::mesh) return own;
+        return std::min(own, colliders_.inner_extent[sides.other]);
     }
 
     void add(const Sides& sides,

@@ -38,7 +38,7 @@ std::vector<PatchManifold>
 patches(const Shapes& shapes, ShapeRef other, const Pose& pose, double reach)
 {
     std::vector<PatchManifold> out;
-    EXPECT_EQ(collide_solid(shapes, kFirst, other, pose, reach, out), 0U);
+    EXPECT_EQ(collide_solid(shapes, kFirst, other, pose, reach, out).left_out, 0U);
     return out;
 }
 
@@ -286,11 +286,14 @@ TEST(VoxelPairs, CullingMissesNothing)
     const auto count = [&](const auto& side, const Pose& pose, double reach) {
         std::size_t all = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            LeafSample leaf;
+            using Real = typename std::decay_t<decltype(side)>::Real;
+            LeafSample<Real> leaf{};
             leaf.count = 1;
             const Vec3 place = Vec3T<float>(points.x[i], points.y[i], points.z[i]).cast<double>();
             const Vec3 seen = pose.to_local(place);
-            leaf.x[0] = seen.x(), leaf.y[0] = seen.y(), leaf.z[0] = seen.z();
+            leaf.x[0] = static_cast<Real>(seen.x());
+            leaf.y[0] = static_cast<Real>(seen.y());
+            leaf.z[0] = static_cast<Real>(seen.z());
             side.sample(leaf);
             if (!(leaf.distance[0] <= reach) || !(leaf.distance[0] < side.furthest())) continue;
             const Vec3 gradient(leaf.gx[0], leaf.gy[0], leaf.gz[0]);
