@@ -114,7 +114,9 @@ Box3 part_near(const Mesh& mesh, const Pose& pose, const Box3& box, double dista
     return {(found.lower - room).cwiseMax(box.lower), (found.upper + room).cwiseMin(box.upper)};
 }
 
-// Whether two intervals touch or nearly do, and with b above a or below: by the lesser way out.
+// Whether two intervals touch or nearly do, and with b above a or below: by the lesser way out. A
+// layer of a mesh has one face or both: who is beyond the one it has not shares nothing with it,
+// though the way out by the other would be long.
 bool face(const RayInterval& a, const RayInterval& b, double reach, Facing& facing)
 {
     const double up = a.leave_face == RayInterval::kNoFace || b.enter_face == RayInterval::kNoFace
@@ -127,10 +129,10 @@ bool face(const RayInterval& a, const RayInterval& b, double reach, Facing& faci
     facing.separation = -std::min(up, down);
     facing.low = facing.up ? std::min(a.leave, b.enter) : std::min(a.enter, b.leave);
     facing.high = facing.up ? std::max(a.leave, b.enter) : std::max(a.enter, b.leave);
-    facing.shared = 0.5 * (std::max(a.enter, b.enter) + std::min(a.leave, b.leave));
+    const double from = std::max(a.enter, b.enter), to = std::min(a.leave, b.leave);
+    facing.shared = 0.5 * (from + to);
     // Past a layer whose back is not seen there is no depth, only another side.
-    const bool apart = a.enter > b.leave || b.enter > a.leave;
-    if (apart && facing.separation < 0) return false;
+    if (facing.separation < 0 && from > to) return false;
     return facing.separation > -kInfinity && facing.separation <= reach;
 }
 

@@ -181,6 +181,25 @@ TEST(ImageTouches, OfAPlaneAndOfAnOpenMeshAreThoseOfABox)
     EXPECT_TRUE(touch(shapes, {ShapeKind::mesh, 0}, at({0.1, 0, 0.65}), 0.02).empty());
 }
 
+// Its bottom and its upright sides are far, and none of them pushes through to where it looks.
+TEST(ImageTouches, OfAThickBlockOnlyTheSideThatIsNearIsMet)
+{
+    Shapes shapes;
+    shapes.solids = {solid_of(box_mesh({0.5, 0.4, 0.3}))};
+    const TriangleSoup block = box_mesh({20, 16, 2});
+    shapes.meshes = {build_mesh(block.vertices, block.triangles).mesh};
+    for (const Vec3& beside : {Vec3(0, 0, 0), Vec3(13, -9, 0), Vec3(-18, 14, 0)})
+        for (const double depth : {-0.01, 0.002, 0.05, 0.13}) {
+            const Pose pose = at(beside + Vec3(0, 0, -2.3 + depth));
+            const auto touches = touch(shapes, {ShapeKind::mesh, 0}, pose, 0.02);
+            ASSERT_FALSE(touches.empty());
+            for (const SurfaceTouch& one : touches) {
+                ASSERT_NEAR(one.separation, -depth, 1e-12);
+                ASSERT_LT((one.normal + Vec3::UnitZ()).norm(), 1e-12);
+            }
+        }
+}
+
 TEST(ImageTouches, KeepTheirIdsWhileTheOtherTrembles)
 {
     const Shapes shapes = balls();

@@ -323,6 +323,37 @@ TEST(VoxelPairs, CullingMissesNothing)
     EXPECT_GT(total, 300U);
 }
 
+// What is told to be apart may come closer by that, in any way, and has no touch yet.
+TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
+{
+    const double voxel = 1.0 / 10, reach = 0.5 * voxel;
+    Shapes shapes;
+    shapes.solids = {small_torus(0.6, 0.3, voxel), small_torus(0.6, 0.3, voxel)};
+    shapes.capsules = {{0.3, 0.5}};
+    shapes.boxes = {{Vec3(0.3, 0.2, 0.5)}};
+    Dice dice{std::mt19937_64(101)};
+    std::size_t known = 0;
+    for (int i = 0; i < 300; ++i) {
+        const ShapeRef kinds[] = {kSecond, {ShapeKind::capsule, 0}, {ShapeKind::box, 0}};
+        const ShapeRef other = kinds[i % 3];
+        const Pose pose{dice.point(2), dice.turn()};
+        std::vector<PatchManifold> out;
+        const SolidAnswer answer = collide_solid(shapes, kFirst, other, pose, reach, out);
+        const double free = answer.apart - reach;
+        if (!out.empty() || !(free > 0)) continue;
+        ++known;
+        // Straight on, and turned about its own middle: none of them reaches further than 1 m.
+        const Pose closer{pose.position - free * pose.position.normalized(), pose.orientation};
+        const double angle = 0.999 * free;
+        const Quat turn(Eigen::AngleAxisd(angle, dice.point(1).normalized()));
+        const Pose turned{pose.position, turn * pose.orientation};
+        for (const Pose& moved : {closer, turned})
+            collide_solid(shapes, kFirst, other, moved, reach, out);
+        ASSERT_TRUE(out.empty()) << "seed 101, pose " << i << " apart " << answer.apart;
+    }
+    EXPECT_GT(known, 100U);
+}
+
 TEST(VoxelPairs, NothingSmallFallsThroughBetweenThePoints)
 {
     const double voxel = 1.0 / 8, small = 0.2 * voxel;
