@@ -53,17 +53,23 @@ Span row_span(const std::array<Vec3, 3>& corners, double y, double pixel)
     return span;
 }
 
-// The rays of an axis from low to high, one more at either end for rounding.
+// In pixels: more than rounding moves a place, or where a row crosses an edge.
+constexpr double kSlack = 1.0 / 64;
+
+// The rays of an axis from low to high, and those that only rounding leaves out. Of the triangles
+// of a fine mesh most lie between two rays.
 std::array<std::int32_t, 2>
 rays_between(const RayGrid& grid, std::size_t axis, double low, double high)
 {
-    const double last = grid.count[axis] - 1;
+    const std::int32_t last = grid.count[axis] - 1;
     const double start = grid.first[axis] + grid.shift[axis];
-    const double from = std::floor(low / grid.pixel - start),
-                 to = std::ceil(high / grid.pixel - start);
+    const double from = low / grid.pixel - start - kSlack;
+    const double to = high / grid.pixel - start + kSlack;
     if (!(to >= 0 && from <= last)) return {0, -1};
-    return {static_cast<std::int32_t>(std::max(from, 0.0)),
-            static_cast<std::int32_t>(std::min(to, last))};
+    // Below the count now, so that they fit.
+    std::int32_t first = from > 0 ? static_cast<std::int32_t>(from) : 0;
+    if (first < from) ++first;
+    return {first, to < last ? static_cast<std::int32_t>(to) : last};
 }
 
 }  // namespace
@@ -161,6 +167,10 @@ void DepthImage::draw_triangle(std::uint32_t triangle, const std::array<Vec3, 3>
 {
     const auto [lower, upper] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
     const auto [first, last] = rays_between(grid_, 1, lower, upper);
+    if (first > last) return;
+    const auto [left, right] = std::minmax({corners[0].x(), corners[1].x(), corners[2].x()});
+    const auto [begin, end] = rays_between(grid_, 0, left, right);
+    if (begin > end) return;
     for (std::int32_t row = first; row <= last; ++row) draw_row(triangle, corners, row);
 }
 
