@@ -149,7 +149,7 @@ struct SolidContacts : ManyContacts<Real> {
         std::uint32_t first = 0, count = 0;  // among the manifolds
         PoseT<double> b_in_a;                // of the other in the solid's frame
         double reach = 0;                    // m
-        double apart = 0;  // m, where nothing was found: see SolidAnswer
+        double apart = 0;                    // m, where nothing was found: see SolidAnswer
     };
     struct Patch {
         std::uint32_t part = 0;
