@@ -164,6 +164,32 @@ TYPED_TEST(RecycleOf, WhoeverMovedFurtherIsFoundAnew)
     }
 }
 
+// b may reach as far as it will, or have no end: what of it is near a has not moved further.
+TYPED_TEST(RecycleOf, NothingOfBThatIsNearAMovedFurtherThanIsTold)
+{
+    using Real = TypeParam;
+    RandomShapes random(66);
+    const double slack = 1e3 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    for (int i = 0; i < 100; ++i) {
+        const Touching pair = touching(random);
+        const Pose then{pair.pose.position + Vec3(20, 0, 0), pair.pose.orientation};
+        const Pose now = nudged(random, {{}, then, pair.radius_b}, kBound);
+        for (const Real radius_b : {Real(30), std::numeric_limits<Real>::infinity()}) {
+            const auto told = static_cast<double>(
+                furthest_moved_near(cast<Real>(then), cast<Real>(now), Real(2), radius_b));
+            for (int k = 0; k < 20; ++k) {
+                const Vec3 place = random.vector(-1, 1).normalized() * 2;
+                const double moved = (now * then.to_local(place) - place).norm();
+                ASSERT_LE(moved, told + slack) << "seed 66, pair " << i;
+            }
+        }
+        const Pose same = then;
+        EXPECT_LE(furthest_moved_near(cast<Real>(then), cast<Real>(same), Real(2),
+                                      std::numeric_limits<Real>::infinity()),
+                  static_cast<Real>(slack));
+    }
+}
+
 TYPED_TEST(RecycleOf, PointsOutOfReachAreLeftOut)
 {
     RandomShapes random(65);

@@ -354,6 +354,21 @@ TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
     EXPECT_GT(known, 100U);
 }
 
+// Whichever way float rounds the band: up for the one, down for the other.
+TEST(VoxelPairs, WhereTheFieldEndsNothingIsTold)
+{
+    for (const double voxel : {0.1, 0.03}) {
+        Shapes shapes;
+        shapes.solids = {small_ball(0.3, voxel), small_ball(0.2, voxel)};
+        const double band = shapes.solids[0].field.band;
+        const Pose pose{Vec3(0.05, 0.02, 0.5 + 0.6 * band), Quat::Identity()};
+        const auto touches = touches_of(shapes, kFirst, kSecond, pose, 2 * band);
+        ASSERT_FALSE(touches.empty());
+        for (const SurfaceTouch& touch : touches)
+            ASSERT_LT(touch.separation, double{static_cast<float>(band)}) << "voxel " << voxel;
+    }
+}
+
 TEST(VoxelPairs, NothingSmallFallsThroughBetweenThePoints)
 {
     const double voxel = 1.0 / 8, small = 0.2 * voxel;
