@@ -128,6 +128,7 @@ test_preset() {
 test_sanitized() {
     local which=(-LE "slow|tree") steady=()
     export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
+    export LSAN_OPTIONS=print_suppressions=0:suppressions=$root/tools/leaks.supp
     export TSAN_OPTIONS=halt_on_error=1
     if [[ $1 == tsan ]]; then
         which+=(-R "Thread|Blocks|Graph|Sort|SameBits/|Determinism" -E "Lanes|Catalogue/HardCases")
