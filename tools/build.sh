@@ -131,7 +131,9 @@ test_sanitized() {
     export LSAN_OPTIONS=print_suppressions=0:suppressions=$root/tools/leaks.supp
     export TSAN_OPTIONS=halt_on_error=1
     if [[ $1 == tsan ]]; then
-        which+=(-R "Thread|Blocks|Graph|Sort|SameBits/|Determinism" -E "Lanes|Catalogue/HardCases")
+        # OpenVDB makes fields on oneTBB, which the checker cannot see into.
+        which+=(-R "Thread|Blocks|Graph|Sort|SameBits/|Determinism"
+            -E "Lanes|Catalogue/HardCases|SolidBits.*/voxels")
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi
     fi
