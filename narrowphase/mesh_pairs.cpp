@@ -143,20 +143,6 @@ void touch(const Shapes& shapes,
     }
 }
 
-template <class Real>
-TriangleManifold<Real> rounded(std::uint32_t triangle, const LocalManifold<double>& found)
-{
-    TriangleManifold<Real> result;
-    result.triangle = triangle;
-    result.manifold.normal = found.normal.template cast<Real>();
-    for (int i = 0; i < found.count; ++i) {
-        const auto& point = found.points[static_cast<std::size_t>(i)];
-        result.manifold.add(point.position.template cast<Real>(),
-                            static_cast<Real>(point.separation), point.feature);
-    }
-    return result;
-}
-
 }  // namespace
 
 template <class Real>
@@ -180,7 +166,7 @@ void collide_mesh(const Shapes& shapes,
     LocalManifold<double> found;
     for (const std::uint32_t index : near) {
         touch(shapes, b, MeshTriangle(surface, index), pose, double{reach}, found);
-        if (found.count > 0) out.push_back(rounded<Real>(index, found));
+        if (found.count > 0) out.push_back({index, found.cast<Real>()});
     }
 }
 

@@ -48,13 +48,6 @@ PairFunction<Real> function_for(ShapeKind a, ShapeKind b)
     return row < kTabled && column < kTabled ? kTable<Real>[row][column] : apart<Real>;
 }
 
-template <class Real>
-PoseT<Real> inverse(const PoseT<Real>& pose)
-{
-    const QuatT<Real> back = pose.orientation.conjugate();
-    return {-(back * pose.position), back};
-}
-
 double
 separation_from_plane(const Shapes& shapes, ShapeRef a, const Plane& plane, const Pose& b_in_a)
 {
@@ -79,7 +72,7 @@ void collide(const Shapes& shapes,
         function_for<Real>(a.kind, b.kind)(shapes, a, b, b_in_a, reach, cache, out);
         return;
     }
-    function_for<Real>(b.kind, a.kind)(shapes, b, a, inverse(b_in_a), reach, cache, out);
+    function_for<Real>(b.kind, a.kind)(shapes, b, a, b_in_a.inverse(), reach, cache, out);
     out.normal = b_in_a.orientation * -out.normal;
     for (int i = 0; i < out.count; ++i) {
         auto& position = out.points[static_cast<std::size_t>(i)].position;
@@ -91,7 +84,7 @@ THRONG_PAIR_INSTANCES(collide)
 
 double overlap_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a)
 {
-    if (a.kind > b.kind) return overlap_depth(shapes, b, a, inverse(b_in_a));
+    if (a.kind > b.kind) return overlap_depth(shapes, b, a, b_in_a.inverse());
     const auto is_polytope = [](ShapeRef shape) {
         return shape.kind == ShapeKind::box || shape.kind == ShapeKind::hull;
     };

@@ -25,7 +25,7 @@ bool reaches_plane(const Shapes& shapes, ShapeRef a, const Plane& plane, const P
 
 bool touches_mesh(const Shapes& shapes, ShapeRef a, const Mesh& mesh, const Pose& mesh_in_a)
 {
-    const Pose a_in_mesh{mesh_in_a.to_local(Vec3::Zero()), mesh_in_a.orientation.conjugate()};
+    const Pose a_in_mesh = mesh_in_a.inverse();
     // A triangle is seen as a hull of three corners: a core needs no faces.
     Hull triangle;
     triangle.vertices.resize(3);

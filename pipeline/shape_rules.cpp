@@ -1,5 +1,6 @@
 // Shape rules: what a shape of a scene must be, and what it then weighs.
 #include "kernels/geometry/hull.hpp"
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_health.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/level_set.hpp"
@@ -119,8 +120,8 @@ struct ShapeChecker {
         file.need(mended.trouble.empty(), "wanted a mesh that can move; it " + mended.trouble);
         MassProperties mass = mass_as_if_closed(mended.mesh);
         if (mass.volume < 0) mass = turned_inside_out(mass);
-        const Mesh::Node& root = mended.mesh.tree.front();
-        file.need(mass.volume > kThinnest * (root.upper - root.lower).prod(),
+        const Box3 box = box_of(mended.mesh);
+        file.need(mass.volume > kThinnest * (box.upper - box.lower).prod(),
                   "wanted a mesh that encloses a volume, for a body that moves");
         return mass;
     }
@@ -132,15 +133,15 @@ struct ShapeChecker {
                   "wanted a level set with a surface, not an empty one");
         const LevelSet& level_set = *voxels.level_set;
         file.need_range(level_set.field.voxel, kLeastLength, kGreatestLength, "voxels above 0 m");
-        const Mesh::Node& root = level_set.surface.tree.front();
-        file.need_place(root.lower);
-        file.need_place(root.upper);
+        const Box3 box = box_of(level_set.surface);
+        file.need_place(box.lower);
+        file.need_place(box.upper);
         if (!moves) return {};
         file.need(level_set.whole,
                   "wanted a level set whose surface is closed, for a body that moves; this one is "
                   "cut off where its values end");
         const MassProperties mass = mass_of(level_set.surface);
-        file.need(mass.volume > kThinnest * (root.upper - root.lower).prod(),
+        file.need(mass.volume > kThinnest * (box.upper - box.lower).prod(),
                   "wanted a level set that encloses a volume, for a body that moves");
         return mass;
     }

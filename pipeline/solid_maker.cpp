@@ -1,27 +1,21 @@
 #include "pipeline/solid_maker.hpp"
 
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_health.hpp"
 #include "kernels/geometry/surface_points.hpp"
 #include "narrowphase/methods/sphere_tree.hpp"
 #include "narrowphase/solids/field_cache.hpp"
 #include "narrowphase/solids/image_touches.hpp"
 #include "narrowphase/solids/parts_cache.hpp"
+#include "narrowphase/solids/short_text.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/level_set.hpp"
 
-#include <cstdio>
 #include <limits>
 
 namespace throng {
 
 namespace {
-
-std::string short_text(double number)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", number);
-    return text;
-}
 
 // The middle of a mesh that lies further from its origin than a few of its sides, else 0. Fields
 // and points are in float: about the middle they lose nothing to the distance.
@@ -36,11 +30,6 @@ Vec3 far_center(const std::vector<Vec3>& vertices)
     const Vec3 middle = 0.5 * lower + 0.5 * upper;
     const bool far = middle.cwiseAbs().maxCoeff() > kFar * (upper - lower).maxCoeff();
     return far ? middle : Vec3(Vec3::Zero());
-}
-
-double longest_side(const Mesh& mesh)
-{
-    return (mesh.tree.front().upper - mesh.tree.front().lower).maxCoeff();
 }
 
 // Without its mesh.

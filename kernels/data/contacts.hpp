@@ -134,6 +134,7 @@ struct ManyContacts {
     };
     std::vector<Entry> entries;
     std::vector<Entry> before;
+    BlockLists<Entry> of_block;  // scratch
 };
 
 /// Contacts of convex colliders with meshes; a part is a triangle.
@@ -150,17 +151,16 @@ struct SolidContacts : ManyContacts<Real> {
         PoseT<double> b_in_a;                // of the other in the solid's frame
         double reach = 0;                    // m
         double apart = 0;                    // m, where nothing was found: see SolidAnswer
-    };
-    struct Patch {
-        std::uint32_t part = 0;
-        LocalManifold<double> manifold;
+        std::size_t left_out = 0;            // touches found in this step that no manifold holds
     };
     struct Finds {
         std::vector<Found> pairs;  // ascending
-        std::vector<Patch> patches;
+        std::vector<PatchManifold> patches;
     };
     Finds found, found_before;
-    std::uint64_t left_out = 0;  // touches of this step that no manifold has room for
+    std::uint64_t left_out = 0;                  // of all pairs
+    BlockLists<Found> found_of_block;            // scratch
+    BlockLists<PatchManifold> patches_of_block;  // scratch
 };
 
 /// Which list a contact is kept in.

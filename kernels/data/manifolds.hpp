@@ -46,6 +46,15 @@ struct LocalManifold {
     }
 };
 
+/// One of the manifolds of a pair of which at least one is a solid.
+///
+///   patch  the same from step to step while the same part of the surfaces touches: where the
+///          normal looks in a's frame, so other patches that come and go leave it as it is
+struct PatchManifold {
+    std::uint32_t patch = 0;
+    LocalManifold<double> manifold;
+};
+
 /// A manifold as it was found, and what for: while the two have hardly moved against one another
 /// since, where its points are now says as much as a new one (see recycle()).
 ///

@@ -143,7 +143,8 @@ MassProperties mass_of(const Mesh& mesh)
 MassProperties mass_as_if_closed(const Mesh& mesh)
 {
     if (mesh.tree.empty()) return {};
-    const Vec3 middle = 0.5 * (mesh.tree.front().lower + mesh.tree.front().upper);
+    const Box3 box = box_of(mesh);
+    const Vec3 middle = 0.5 * (box.lower + box.upper);
     const Moments moments = moments_about(mesh, middle);
     return moments.volume == 0 ? MassProperties{} : about_center(moments, middle);
 }

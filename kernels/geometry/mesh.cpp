@@ -267,6 +267,14 @@ Box3 triangle_box(const Mesh& mesh, std::uint32_t triangle)
     return {va.cwiseMin(vb).cwiseMin(vc), va.cwiseMax(vb).cwiseMax(vc)};
 }
 
+Box3 box_of(const Mesh& mesh) { return {mesh.tree.front().lower, mesh.tree.front().upper}; }
+
+double longest_side(const Mesh& mesh)
+{
+    const Box3 box = box_of(mesh);
+    return (box.upper - box.lower).maxCoeff();
+}
+
 void find_triangles(const Mesh& mesh, const Box3& box, std::vector<std::uint32_t>& found)
 {
     const auto begin = static_cast<std::ptrdiff_t>(found.size());

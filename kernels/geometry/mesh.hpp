@@ -28,6 +28,10 @@ bool is_closed(const Mesh& mesh);
 
 Box3 triangle_box(const Mesh& mesh, std::uint32_t triangle);
 
+/// Of a mesh with triangles: the box round it, and that box's longest side.
+Box3 box_of(const Mesh& mesh);
+double longest_side(const Mesh& mesh);
+
 /// The triangles of a mesh or a solid; null for other kinds.
 const Mesh* mesh_of(const Shapes& shapes, ShapeRef shape);
 

@@ -1,5 +1,7 @@
 #include "kernels/geometry/shape_bounds.hpp"
 
+#include "kernels/geometry/mesh.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,9 +52,9 @@ double farthest(const std::vector<Vec3>& vertices)
 Box3 box_round_mesh(const Mesh& mesh, const Pose& pose)
 {
     if (mesh.tree.empty()) return {};
-    const Mesh::Node& root = mesh.tree.front();
-    return box_round(pose * Vec3(0.5 * (root.lower + root.upper)),
-                     turned_reach(pose.orientation, 0.5 * (root.upper - root.lower)));
+    const Box3 own = box_of(mesh);
+    return box_round(pose * Vec3(0.5 * (own.lower + own.upper)),
+                     turned_reach(pose.orientation, 0.5 * (own.upper - own.lower)));
 }
 
 }  // namespace
@@ -137,8 +139,8 @@ double inner_extent(const Shapes& shapes, ShapeRef shape)
         return 0;
     case ShapeKind::solid: {
         // Of its thinnest part nothing is known; the box is no thinner than the whole.
-        const Mesh::Node& root = shapes.solids[i].mesh.tree.front();
-        return 0.5 * (root.upper - root.lower).minCoeff();
+        const Box3 box = box_of(shapes.solids[i].mesh);
+        return 0.5 * (box.upper - box.lower).minCoeff();
     }
     case ShapeKind::plane:
     case ShapeKind::triangle:

@@ -39,6 +39,12 @@ struct PoseT {
     {
         return orientation.conjugate() * (world - position);
     }
+    /// This frame's world as seen from inside of it.
+    PoseT inverse() const
+    {
+        const QuatT<Real> back = orientation.conjugate();
+        return {-(back * position), back};
+    }
 };
 using Pose = PoseT<double>;
 

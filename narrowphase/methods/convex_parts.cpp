@@ -126,16 +126,6 @@ void merge(const PartSearch& search, std::size_t most, std::vector<MeshPart>& pa
     parts.resize(kept);
 }
 
-double extent_of(const Mesh& mesh)
-{
-    Vec3 lower = mesh.vertices[0], upper = lower;
-    for (const Vec3& vertex : mesh.vertices) {
-        lower = lower.cwiseMin(vertex);
-        upper = upper.cwiseMax(vertex);
-    }
-    return (upper - lower).maxCoeff();
-}
-
 // Why a mesh has no parts.
 std::string trouble_with(const Mesh& mesh)
 {
@@ -208,7 +198,7 @@ void finish(const PartSearch& search,
 
 PartSearch search_of(const Mesh& mesh, double error)
 {
-    const double extent = extent_of(mesh);
+    const double extent = longest_side(mesh);
     return {mesh, extent, error > 0 ? error : kError * extent, inward_edges(mesh)};
 }
 

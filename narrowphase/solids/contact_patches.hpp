@@ -21,15 +21,6 @@ struct SurfaceTouch {
     std::uint32_t feature = 0;
 };
 
-/// One of the manifolds of a pair of which at least one is a solid.
-///
-///   patch  the same from step to step while the same part of the surfaces touches: where the
-///          normal looks in a's frame, so other patches that come and go leave it as it is
-struct PatchManifold {
-    std::uint32_t patch = 0;
-    LocalManifold<double> manifold;
-};
-
 /// The greatest number of manifolds made of one pair's touches.
 inline constexpr std::size_t kMostPatches = 24;
 

@@ -31,12 +31,6 @@ double gap_between(const Box3& a, const Box3& b)
     return std::max((a.lower - b.upper).maxCoeff(), (b.lower - a.upper).maxCoeff());
 }
 
-Pose inverse(const Pose& pose)
-{
-    const Quat back = pose.orientation.conjugate();
-    return {back * -pose.position, back};
-}
-
 // How far the two are apart at least: their boxes as each sees the other's.
 double least_gap(const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pose& other_in_solid)
 {
@@ -45,7 +39,7 @@ double least_gap(const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pos
     if (other.kind != ShapeKind::solid && other.kind != ShapeKind::box) return gap;
     return std::max(gap,
                     gap_between(shape_bounds(shapes, other, Pose{}),
-                                shape_bounds(shapes, solid, inverse(other_in_solid))));
+                                shape_bounds(shapes, solid, other_in_solid.inverse())));
 }
 
 // The other's spheres against this one, told from this one.
@@ -56,7 +50,7 @@ void touch_from_other(const Shapes& shapes,
                       double reach,
                       std::vector<SurfaceTouch>& touches)
 {
-    touch_by_spheres(shapes, other, solid, inverse(other_in_solid), reach, {}, touches);
+    touch_by_spheres(shapes, other, solid, other_in_solid.inverse(), reach, {}, touches);
     for (SurfaceTouch& touch : touches) {
         touch.position = other_in_solid * touch.position;
         touch.normal = other_in_solid.orientation * -touch.normal;

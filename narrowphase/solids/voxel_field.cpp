@@ -6,15 +6,18 @@
 #include "kernels/geometry/voxel_bricks.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/solids/field_values.hpp"
+#include "narrowphase/solids/short_text.hpp"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToMesh.h>
+#ifdef THRONG_PLAIN_THREADS
+#include <tbb/global_control.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <stdexcept>
 
@@ -25,19 +28,17 @@ using openvdb::FloatGrid;
 using openvdb::FloatTree;
 constexpr int kCells = VoxelBricks::kCells, kSide = VoxelBricks::kSide;
 
-Box3 box_of(const Mesh& mesh) { return {mesh.tree.front().lower, mesh.tree.front().upper}; }
-
-double longest_side(const Mesh& mesh)
+// Before anything is asked of OpenVDB. The plain-threads build, which has no use for oneTBB, keeps
+// it on the calling thread.
+void start_openvdb()
 {
-    const Box3 box = box_of(mesh);
-    return (box.upper - box.lower).maxCoeff();
-}
-
-std::string short_text(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
+#ifdef THRONG_PLAIN_THREADS
+    static const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+#endif
+    [[maybe_unused]] static const bool started = [] {
+        openvdb::initialize();
+        return true;
+    }();
 }
 
 // --- Near the surface
@@ -63,6 +64,7 @@ GridMesh on_grid(const Mesh& mesh, const VoxelBricks& laid)
 FloatGrid::Ptr near_surface(const Mesh& mesh, const VoxelBricks& laid, FieldSign sign)
 {
     using namespace openvdb::tools;
+    start_openvdb();
     const GridMesh made = on_grid(mesh, laid);
     const QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(made.points,
                                                                              made.triangles);
@@ -204,14 +206,6 @@ std::string trouble_with_inside(const VoxelBricks& bricks, const Worth& worth)
 }
 
 // --- Files
-
-void start_openvdb()
-{
-    [[maybe_unused]] static const bool started = [] {
-        openvdb::initialize();
-        return true;
-    }();
-}
 
 constexpr const char* kOurs = "throng_field";
 constexpr int kFormat = 1;

@@ -8,12 +8,6 @@
 namespace throng {
 namespace {
 
-Pose inverse(const Pose& pose)
-{
-    const Quat back = pose.orientation.conjugate();
-    return {back * -pose.position, back};
-}
-
 std::vector<PointTouch>& scratch()
 {
     thread_local std::vector<PointTouch> found;
@@ -44,7 +38,7 @@ double touch_points_of_b(const Solid& a,
                          std::vector<SurfaceTouch>& out)
 {
     std::vector<PointTouch>& found = scratch();
-    const double apart = walk_surface(b.points, FieldSide(a), inverse(b_in_a), reach, found);
+    const double apart = walk_surface(b.points, FieldSide(a), b_in_a.inverse(), reach, found);
     const Mat3 turn = b_in_a.orientation.toRotationMatrix();
     for (const PointTouch& touch : found) {
         const Vec3 between = touch.position - touch.outward * (touch.distance / 2);

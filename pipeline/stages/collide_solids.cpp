@@ -22,7 +22,7 @@ template <class Real>
 class SolidCollision {
 public:
     using Contacts = SolidContacts<Real>;
-    using Finds = typename Contacts::Finds;
+    using Found = typename Contacts::Found;
     using Entry = typename Contacts::Entry;
 
     SolidCollision(const Conditions& conditions,
@@ -42,8 +42,8 @@ public:
     {
         std::swap(contacts_.found, contacts_.found_before);
         const std::size_t blocks = block_count(pairs_.on_solid.size(), kGrain);
-        finds_.assign(blocks, {});
-        left_out_.assign(blocks, 0);
+        contacts_.found_of_block.start(blocks);
+        contacts_.patches_of_block.start(blocks);
         const auto find = [&](auto&&... all) { look_at(all...); };
         refresh_contacts<Real>(conditions_, pairs_, pairs_.on_solid, colliders_, bounds_, states_,
                                kGrain, contacts_, find);
@@ -74,13 +74,12 @@ private:
             pose_seen_from_a(shapes_, colliders_.shape[sides.other], bounds_.placed[sides.solid],
                              bounds_.placed[sides.other]);
         const std::span kept = items_of(contacts_.found_before.pairs, old_place(pairs_, i));
-        Finds& finds = finds_[block];
         const std::size_t first = out.size();
-        if (kept.empty() || !recycle_all(kept.front(), sides, pose, pair.reach, finds, out)) {
-            out.resize(first);
-            find_anew(sides, pose, pair.reach, block, out);
-        }
-        finds.pairs.back().pair = i;
+        Found found;
+        if (kept.empty() || !recycle_all(kept.front(), sides, pose, pair.reach, block, found, out))
+            find_anew(sides, pose, pair.reach, block, found, out);
+        found.pair = i;
+        contacts_.found_of_block[block].push_back(found);
         for (std::size_t n = first; n < out.size(); ++n)
             carry_over(old, out[n].contact, out[n].part);
     }
@@ -89,30 +88,30 @@ private:
                    const Pose& pose,
                    double reach,
                    std::size_t block,
+                   Found& found,
                    ContactEntries<Real>& out)
     {
-        static thread_local std::vector<PatchManifold> patches;
-        patches.clear();
+        std::vector<PatchManifold>& patches = contacts_.patches_of_block[block];
+        const std::size_t first = patches.size();
         const SolidAnswer answer =
             collide_solid(shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
                           pose, reach, patches);
-        left_out_[block] += answer.left_out;
-        Finds& finds = finds_[block];
-        finds.pairs.push_back({0, static_cast<std::uint32_t>(finds.patches.size()),
-                               static_cast<std::uint32_t>(patches.size()), pose, reach,
-                               answer.apart});
-        for (const PatchManifold& patch : patches) {
-            finds.patches.push_back({patch.patch, patch.manifold});
-            add(sides, patch.patch, patch.manifold, out);
-        }
+        for (std::size_t k = first; k < patches.size(); ++k)
+            add(sides, patches[k].patch, patches[k].manifold, out);
+        found.count = static_cast<std::uint32_t>(patches.size() - first);
+        found.b_in_a = pose;
+        found.reach = reach;
+        found.apart = answer.apart;
+        found.left_out = answer.left_out;
     }
 
     // False where the two have moved too much.
-    bool recycle_all(const typename Contacts::Found& kept,
+    bool recycle_all(const Found& kept,
                      const Sides& sides,
                      const Pose& pose,
                      double reach,
-                     Finds& finds,
+                     std::size_t block,
+                     Found& found,
                      ContactEntries<Real>& out)
     {
         const double near = colliders_.outer_radius[sides.solid] + std::max(reach, kept.reach);
@@ -122,17 +121,17 @@ private:
         if (kept.count == 0) most = std::max(most, kept.apart - kept.reach);
         // What was out of reach then may be within a greater reach now.
         if (!(moved + std::max(0.0, reach - kept.reach) <= most)) return false;
-        FoundManifold<double> found{{}, kept.b_in_a, kept.reach};
+        FoundManifold<double> then{{}, kept.b_in_a, kept.reach};
         LocalManifold<double> now;
         const auto begin = contacts_.found_before.patches.begin() + kept.first;
-        const auto first = static_cast<std::uint32_t>(finds.patches.size());
         for (auto patch = begin; patch != begin + kept.count; ++patch) {
-            found.manifold = patch->manifold;
-            move_manifold(found, pose, reach, now);
-            finds.patches.push_back(*patch);
-            if (now.count > 0) add(sides, patch->part, now, out);
+            then.manifold = patch->manifold;
+            move_manifold(then, pose, reach, now);
+            contacts_.patches_of_block[block].push_back(*patch);
+            if (now.count > 0) add(sides, patch->patch, now, out);
         }
-        finds.pairs.push_back({0, first, kept.count, kept.b_in_a, kept.reach, kept.apart});
+        found = kept;
+        found.left_out = 0;
         return true;
     }
 
@@ -190,22 +189,20 @@ private:
         return shared;
     }
 
-    // Blocks in order, so that the list is in order of pair.
+    // Blocks in order, so that the list is in order of pair, and patches in that of their pairs.
     void join_finds()
     {
-        Finds& all = contacts_.found;
-        all.pairs.clear();
-        all.patches.clear();
+        auto& [pairs, patches] = contacts_.found;
+        pairs.clear();
+        patches.clear();
+        contacts_.found_of_block.append_to(pairs);
+        contacts_.patches_of_block.append_to(patches);
         contacts_.left_out = 0;
-        for (std::size_t block = 0; block < finds_.size(); ++block) {
-            const auto before = static_cast<std::uint32_t>(all.patches.size());
-            for (typename Contacts::Found found : finds_[block].pairs) {
-                found.first += before;
-                all.pairs.push_back(found);
-            }
-            all.patches.insert(all.patches.end(), finds_[block].patches.begin(),
-                               finds_[block].patches.end());
-            contacts_.left_out += left_out_[block];
+        std::uint32_t first = 0;
+        for (Found& found : pairs) {
+            found.first = first;
+            first += found.count;
+            contacts_.left_out += found.left_out;
         }
     }
 
@@ -218,8 +215,6 @@ private:
     const BodyStates& states_;
     Contacts& contacts_;
     Real scale_;
-    std::vector<Finds> finds_;             // [blocks]
-    std::vector<std::uint64_t> left_out_;  // [blocks]
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "narrowphase/methods/convex_parts.hpp"
 
 #include "kernels/geometry/mass.hpp"
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/math/hash.hpp"
 #include "narrowphase/solids/loose_hull.hpp"
 #include "scenes/mesh_file.hpp"
@@ -56,12 +57,6 @@ Mesh shared_mesh(const std::filesystem::path& path)
     text << in.rdbuf();
     const MeshFile file = read_mesh_text(text.str(), path.filename().string());
     return closed({file.vertices, file.triangles});
-}
-
-double longest_side(const Mesh& mesh)
-{
-    const Mesh::Node& root = mesh.tree.front();
-    return (root.upper - root.lower).maxCoeff();
 }
 
 // The least height above any hull: below 0 inside of one.

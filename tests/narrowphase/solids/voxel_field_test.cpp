@@ -17,8 +17,6 @@
 namespace throng {
 namespace {
 
-Box3 box_of(const Mesh& mesh) { return {mesh.tree.front().lower, mesh.tree.front().upper}; }
-
 FieldResult field_of(const Mesh& mesh, double voxel, FieldSign sign = FieldSign::normals)
 {
     FieldSettings settings;
