@@ -30,7 +30,8 @@ BEHIND_THE_DOOR = {
 # Which files may include a library: the one file that meets it hides its types. What the machine's
 # threads offer counts as one, so that a loop goes through blocks.hpp.
 LIBRARIES = {
-    r"(tbb|oneapi)/": ["*_tbb.cpp", "broadphase/embree_tree.cpp", "kernels/parallel/sort_keys.cpp"],
+    r"(tbb|oneapi)/": ["*_tbb.cpp", "broadphase/embree_tree.cpp", "kernels/parallel/sort_keys.cpp",
+                       "narrowphase/solids/voxel_field.cpp"],
     r"embree\d*/": ["broadphase/embree_tree.cpp"],
     r"(hdf5|H5)": ["pipeline/run_file*.cpp", "tests/pipeline/run_file*.cpp"],
     r"(openvdb|nanovdb)/": ["narrowphase/solids/voxel_field.cpp"],
