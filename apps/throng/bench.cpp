@@ -26,11 +26,16 @@ std::vector<Option> all_options()
     return options;
 }
 
-/// Throng on each number of threads, then the peers that are to be had; the plan's are those.
+/// Throng on each number of threads, with each value of a dial that is varied, then the peers that
+/// are to be had; the plan's are those.
 std::vector<EngineKind> engines_of(Plan& plan, TraceOption* trace)
 {
     std::vector<EngineKind> kinds;
-    for (const int threads : plan.threads) kinds.push_back(bench::throng_engine(threads, trace));
+    for (const int threads : plan.threads) {
+        if (plan.varied.values.empty()) kinds.push_back(bench::throng_engine(threads, trace));
+        for (const std::string& value : plan.varied.values)
+            kinds.push_back(bench::throng_engine(threads, trace, plan.varied.dial, value));
+    }
     std::vector<EngineKind> peers = bench::peer_engines(plan.peers, plan.peers_asked_for);
     plan.peers.clear();
     for (EngineKind& peer : peers) {
@@ -43,9 +48,12 @@ std::vector<EngineKind> engines_of(Plan& plan, TraceOption* trace)
 int run_bench(const Options& options)
 {
     Plan plan = bench::read_plan(options);
-    if (options.has("--trace") && plan.scenes.size() * plan.sizes.size() * plan.threads.size() != 1)
-        throw BadInput(
-            "--trace: is of one run; give one scene, one of --sizes and one of --threads");
+    if (options.has("--trace")
+        && plan.scenes.size() * plan.sizes.size() * plan.threads.size()
+                * std::max<std::size_t>(1, plan.varied.values.size())
+            != 1)
+        throw BadInput("--trace: is of one run; give one scene, one of --sizes, one of --threads "
+                       "and no more than one value to --vary");
     const MeshOption mesh(options);
     for (const CatalogEntry* entry : plan.scenes) mesh.check(*entry);
     plan.mesh = mesh.file();

@@ -4,6 +4,7 @@
 // triangles and not by the way that the step takes, is a ten-thousandth of their volume at most.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/hard_cases/solid_parts.hpp"
+#include "cost/shared_in_heap.hpp"
 #include "cost/shared_meshes.hpp"
 #include "pipeline/world.hpp"
 #include "scenes/catalog.hpp"
@@ -16,8 +17,8 @@ namespace throng {
 
 namespace {
 
-// As far as the catalogue's bodies reach from their middles, m.
-constexpr double kReach = 0.5;
+// Radius of the lumps, m.
+constexpr double kLump = 0.5;
 constexpr double kTime = 10;
 constexpr int kRays = 48;
 
@@ -36,7 +37,7 @@ HeapEnd drop_heap(CaseBench& bench, const Scene& scene)
         for (const BodyId body : world.bodies()) mass += world.mass(body);
         end.speed = greatest_speed(world);
         end.energy = world.measure().kinetic_energy / mass;
-        end.shared = shared_in_heap(scene, world, kReach, kRays);
+        end.shared = shared_in_heap(scene, world, kRays);
         return true;
     });
     return end;
@@ -82,12 +83,12 @@ void case_solid_heap(CaseBench& bench)
 {
     const SolidWayName& voxels = kSolidWays[0];
     if (bench.brief()) {
-        judge_heap(bench, "lumps", noisy_ball(kReach, 0.3, 320, 7), 6, voxels);
+        judge_heap(bench, "lumps", noisy_ball(kLump, 0.3, 320, 7), 6, voxels);
         return;
     }
     // Lumps need no data, so that there is always something to see.
     for (const SolidWayName& way : kSolidWays)
-        judge_heap(bench, "lumps", noisy_ball(kReach, 0.3, 500, 7), 20, way);
+        judge_heap(bench, "lumps", noisy_ball(kLump, 0.3, 500, 7), 20, way);
     for (const SolidWayName& way : kSolidWays) judge_file(bench, "bunny", 20, way);
     judge_file(bench, "bunny", 200, voxels);
     for (const char* kind : {"spot", "snowflake", "kettle", "torus", "cube_cup"})

@@ -22,21 +22,4 @@ Scene taken(const CaseBench& bench, Scene scene, const SolidWayName& way);
 /// m/s, of any body.
 double greatest_speed(const class World& world);
 
-/// What all pairs of a scene's bodies share, where the world now has them.
-///
-///   volume   m3
-///   body     m3, of all moving bodies
-///   pairs    that share any
-///   trouble  empty, or why it cannot be told
-struct SharedInHeap {
-    double volume = 0;
-    double body = 0;
-    int pairs = 0;
-    std::string trouble;
-};
-
-/// By depth images with so many rays along the longest side of what two bounds share. Bodies are
-/// meshes that are closed and reach no further than `reach` from their origins, and static boxes.
-SharedInHeap shared_in_heap(const Scene& scene, const World& world, double reach, int rays);
-
 }  // namespace throng

@@ -84,6 +84,24 @@ TEST(BenchFigures, HashesOfEqualStepsHaveToAgree)
     EXPECT_TRUE(hashes_agree(made));
     made.runs[2].state_hash = "c";
     EXPECT_FALSE(hashes_agree(made));
+    made.runs[2].setting = "substeps=8";  // comes to what it may
+    EXPECT_TRUE(hashes_agree(made));
+}
+
+TEST(BenchFigures, SettingsAreAsEnginesOfTheirOwn)
+{
+    Case made = case_of(100,
+                        {run_of("throng", 1, 0, {1, 1}), run_of("throng", 1, 0, {4, 4}),
+                         run_of("throng", 2, 0, {2, 2}), run_of("bullet", 1, 0, {8, 8})});
+    made.runs[0].setting = "substeps=2";
+    made.runs[1].setting = made.runs[2].setting = "substeps=8";
+    const std::vector<Figure> figures = figures_of(made);
+    ASSERT_EQ(figures.size(), 4u);
+    ASSERT_EQ(figures[2].against.size(), 2u);
+    EXPECT_DOUBLE_EQ(figures[2].against[0].times.median,
+                     2);  // on one thread, with the same setting
+    EXPECT_EQ(figures[2].against[1].engine, "bullet");
+    EXPECT_DOUBLE_EQ(figures[0].against[0].times.median, 8);
 }
 
 TEST(BenchFigures, GrowthFindsThePower)

@@ -10,16 +10,6 @@
 namespace throng::bench {
 namespace {
 
-std::vector<perf::PeerState> states_of(const World& world)
-{
-    std::vector<perf::PeerState> states;
-    for (const BodyId body : world.bodies())
-        states.push_back({{world.center_of_mass(body), world.pose(body).orientation},
-                          world.velocity(body),
-                          world.angular_velocity(body)});
-    return states;
-}
-
 class EveryPeerScene : public ::testing::TestWithParam<const char*> { };
 
 TEST_P(EveryPeerScene, ThrongsOwnStateIsJudgedAsItsWorldIs)
@@ -27,7 +17,7 @@ TEST_P(EveryPeerScene, ThrongsOwnStateIsJudgedAsItsWorldIs)
     const Scene scene = make_scene(GetParam(), 60);
     World world(scene);
     world.step(90);
-    const Quality own = quality_of(world), judged = quality_of(scene, states_of(world));
+    const Quality own = quality_of(scene, world), judged = quality_of(scene, peer_states(world));
     EXPECT_EQ(judged.overlapping_pairs, own.overlapping_pairs);
     EXPECT_NEAR(judged.mean_overlap, own.mean_overlap, 1e-9);
     EXPECT_NEAR(judged.greatest_overlap, own.greatest_overlap, 1e-9);
@@ -87,10 +77,30 @@ TEST(PeerScene, AHullHasItsTrianglesOutward)
     }
 }
 
+TEST(PeerScene, MeshesThatMoveAreGivenAsTheirConvexParts)
+{
+    Scene scene = make_scene("knots", 3);
+    scene.settings.max_parts = 6;
+    const Scene taken = scene_of_peers(scene);
+    const World world(taken);
+    const perf::PeerScene given = peer_scene(world, taken);
+    std::size_t compounds = 0;
+    for (const perf::PeerBody& body : given.bodies) {
+        if (body.motion != Motion::dynamic) continue;
+        EXPECT_LE(body.shapes, 6u);
+        compounds += body.shapes > 1 ? 1 : 0;
+        for (std::uint32_t k = 0; k < body.shapes; ++k)
+            EXPECT_EQ(given.shapes[body.first_shape + k].kind, ShapeKind::hull);
+    }
+    EXPECT_EQ(compounds, 3u);
+    scene.settings.nonconvex = NonConvex::hull;
+    EXPECT_EQ(scene_of_peers(scene).settings.nonconvex, NonConvex::hull);
+}
+
 TEST(PeerScene, AStateThatIsNotFiniteIsInfinitelyBad)
 {
     const Scene scene = make_scene("pile", 5);
-    std::vector<perf::PeerState> states = states_of(World(scene));
+    std::vector<perf::PeerState> states = peer_states(World(scene));
     states.back().pose.position.x() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(quality_of(scene, states).mean_overlap, std::numeric_limits<double>::infinity());
 }

@@ -1,13 +1,17 @@
 // Engine: throng as one of the engines that a benchmark runs.
 #include "apps/throng/bench/engine.hpp"
 
+#include "apps/throng/bench/peer_scene.hpp"
+#include "pipeline/dials.hpp"
+
 namespace throng::bench {
 namespace {
 
 class ThrongEngine final : public Engine {
 public:
-    ThrongEngine(const Scene& scene, int threads, TraceOption* trace)
-        : world_(scene, threads), trace_(trace)
+    /// Judged by `given`, which outlives it, where it steps another scene than that.
+    ThrongEngine(const Scene& stepped, const Scene& given, int threads, TraceOption* trace)
+        : world_(stepped, threads), given_(given), varied_(&stepped != &given), trace_(trace)
     {
         if (trace_ != nullptr) trace_->watch(world_);
     }
@@ -23,7 +27,10 @@ public:
         if (trace_ != nullptr) trace_->write(world_, label);
     }
     std::size_t contacts() const override { return world_.report().contacts; }
-    Quality judge() override { return quality_of(world_); }
+    Quality judge() override
+    {
+        return varied_ ? quality_of(given_, peer_states(world_)) : quality_of(given_, world_);
+    }
     std::vector<StageReport> stages() const override { return world_.stages(); }
     std::string state_hash() const override { return world_.state_hash(); }
     std::size_t state_bytes() const override { return world_.memory_bytes(); }
@@ -31,6 +38,8 @@ public:
 
 private:
     World world_;
+    const Scene& given_;
+    bool varied_;
     TraceOption* trace_;
 };
 
@@ -38,8 +47,20 @@ private:
 
 EngineKind throng_engine(int threads, TraceOption* trace)
 {
-    return {"throng", threads, [=](const Scene& scene) {
-                return std::make_unique<ThrongEngine>(scene, threads, trace);
+    return {"throng", "", threads, [=](const Scene& scene) {
+                return std::make_unique<ThrongEngine>(scene, scene, threads, trace);
+            }};
+}
+
+EngineKind
+throng_engine(int threads, TraceOption* trace, std::string_view dial, std::string_view value)
+{
+    const std::string name(dial), wanted(value);
+    return {"throng", name + '=' + wanted, threads, [=](const Scene& scene) {
+                Scene varied = scene;
+                set_dial(varied.settings, name, wanted);
+                varied.dials_set.push_back(name);
+                return std::make_unique<ThrongEngine>(varied, scene, threads, trace);
             }};
 }
 

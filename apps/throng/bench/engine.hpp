@@ -30,13 +30,26 @@ public:
 };
 
 /// An engine that can be made, again for each repeat.
+///
+///   setting  of a dial that is varied, as `name=value`; else empty
 struct EngineKind {
     std::string name;
+    std::string setting;
     int threads = 1;
     std::function<std::unique_ptr<Engine>(const Scene&)> make;
 };
 
+/// As tables tell an engine.
+inline std::string name_of(const std::string& engine, const std::string& setting)
+{
+    return setting.empty() ? engine : engine + ' ' + setting;
+}
+
 /// Throng on so many threads; its steps go to the trace where one is asked for.
 EngineKind throng_engine(int threads, TraceOption* trace);
+
+/// The same with another value of a dial. What it comes to is judged by the scene as given.
+EngineKind
+throng_engine(int threads, TraceOption* trace, std::string_view dial, std::string_view value);
 
 }  // namespace throng::bench

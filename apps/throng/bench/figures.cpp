@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <set>
+#include <tuple>
 
 namespace throng::bench {
 namespace {
@@ -51,7 +54,9 @@ std::vector<std::vector<const Run*>> by_engine(const Case& made)
     for (const Run& run : made.runs) {
         if (run.steps() == 0) continue;
         const auto same = [&](const std::vector<const Run*>& runs) {
-            return runs.front()->engine == run.engine && runs.front()->threads == run.threads;
+            const Run& first = *runs.front();
+            return first.engine == run.engine && first.setting == run.setting
+                && first.threads == run.threads;
         };
         const auto found = std::find_if(engines.begin(), engines.end(), same);
         if (found == engines.end())
@@ -73,6 +78,7 @@ Comparison compare(const std::vector<const Run*>& ours, const std::vector<const 
 {
     Comparison made;
     made.engine = theirs.front()->engine;
+    made.setting = theirs.front()->setting;
     made.threads = theirs.front()->threads;
     made.steps = std::min(common_steps(ours), common_steps(theirs));
     std::vector<double> times, cpu_times;
@@ -122,6 +128,7 @@ Figure figure_of(const Case& made, const std::vector<const Run*>& runs)
     const auto bodies = static_cast<double>(std::max<std::size_t>(1, made.bodies_dynamic));
     Figure figure;
     figure.engine = first.engine;
+    figure.setting = first.setting;
     figure.settings = first.settings;
     figure.threads = first.threads;
     figure.threads_met = first.threads_met;
@@ -202,25 +209,29 @@ equal_state(const Case& small, const Run& of_small, const Case& large, const Run
 }
 
 // The repeat of throng whose mean time is least: the one that others disturbed least.
-const Run* calmest(const Case& made, int threads)
+const Run* calmest(const Case& made, const std::string& setting, int threads)
 {
     const Run* found = nullptr;
     const auto cost = [](const Run& run) { return mean(steady_ms(run), 0, run.steps()); };
     for (const Run& run : made.runs) {
-        if (run.engine != "throng" || run.threads != threads || run.steps() == 0) continue;
+        if (run.engine != "throng" || run.setting != setting || run.threads != threads
+            || run.steps() == 0)
+            continue;
         if (found == nullptr || cost(run) < cost(*found)) found = &run;
     }
     return found;
 }
 
-Growth growth_of_scene(const std::vector<const Case*>& cases, int threads)
+Growth
+growth_of_scene(const std::vector<const Case*>& cases, const std::string& setting, int threads)
 {
     Growth made;
     made.scene = cases.front()->scene->name;
+    made.setting = setting;
     made.threads = threads;
     std::vector<const Run*> runs(cases.size());
     std::transform(cases.begin(), cases.end(), runs.begin(),
-                   [&](const Case* one) { return calmest(*one, threads); });
+                   [&](const Case* one) { return calmest(*one, setting, threads); });
     made.steps = common_steps(runs);
     for (std::size_t i = 0; i < cases.size(); ++i) {
         made.bodies.push_back(cases[i]->bodies_dynamic);
@@ -243,7 +254,8 @@ std::vector<Figure> figures_of(const Case& made)
         if (runs.front()->engine != "throng") continue;
         for (const std::vector<const Run*>& others : engines) {
             const Run& other = *others.front();
-            const bool serial = other.engine == "throng" && other.threads == 1;
+            const bool serial = other.engine == "throng" && other.threads == 1
+                && other.setting == runs.front()->setting;
             if (other.engine != "throng" || (serial && runs.front()->threads > 1))
                 figures.back().against.push_back(compare(runs, others));
         }
@@ -253,12 +265,11 @@ std::vector<Figure> figures_of(const Case& made)
 
 bool hashes_agree(const Case& made)
 {
-    std::vector<std::pair<std::size_t, std::string>> seen;
+    std::map<std::pair<std::string, std::size_t>, std::string> seen;  // by setting and steps
     for (const Run& run : made.runs) {
         if (run.state_hash.empty()) continue;
-        for (const auto& [steps, hash] : seen)
-            if (steps == run.steps() && hash != run.state_hash) return false;
-        seen.emplace_back(run.steps(), run.state_hash);
+        const auto [known, first] = seen.try_emplace({run.setting, run.steps()}, run.state_hash);
+        if (!first && known->second != run.state_hash) return false;
     }
     return true;
 }
@@ -266,18 +277,16 @@ bool hashes_agree(const Case& made)
 std::vector<Growth> growth_of(const std::vector<Case>& cases)
 {
     std::vector<Growth> all;
-    std::vector<std::pair<const CatalogEntry*, int>> done;  // scenes and numbers of threads
+    std::set<std::tuple<const CatalogEntry*, std::string, int>> done;  // scene, setting, threads
     for (const Case& one : cases)
         for (const Run& run : one.runs) {
-            const std::pair<const CatalogEntry*, int> key(one.scene, run.threads);
-            const bool known = std::find(done.begin(), done.end(), key) != done.end();
-            if (known || run.engine != "throng") continue;
-            done.push_back(key);
+            if (run.engine != "throng") continue;
+            if (!done.emplace(one.scene, run.setting, run.threads).second) continue;
             std::vector<const Case*> sizes;
             for (const Case& other : cases)
-                if (other.scene == one.scene && calmest(other, run.threads) != nullptr)
+                if (other.scene == one.scene && calmest(other, run.setting, run.threads) != nullptr)
                     sizes.push_back(&other);
-            if (sizes.size() > 1) all.push_back(growth_of_scene(sizes, run.threads));
+            if (sizes.size() > 1) all.push_back(growth_of_scene(sizes, run.setting, run.threads));
         }
     return all;
 }

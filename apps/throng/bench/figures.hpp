@@ -17,7 +17,7 @@ struct Spread {
 
 /// How many times faster than another engine, over equal steps.
 struct Comparison {
-    std::string engine;
+    std::string engine, setting;
     int threads = 1;
     std::size_t steps = 0;  // that both have done
     Spread times;           // by the clock
@@ -31,7 +31,7 @@ struct StageFigure {
 
 /// One engine on one scene of one size.
 struct Figure {
-    std::string engine, settings;
+    std::string engine, setting, settings;
     int threads = 1, threads_met = 1;
     std::size_t steps = 0;
     Spread ms_mean;
@@ -55,7 +55,7 @@ bool hashes_agree(const Case& made);
 /// How the cost of a scene grows with its size, for one number of threads: of one by the
 /// processor's time, of more by the clock.
 struct Growth {
-    std::string scene;
+    std::string scene, setting;
     int threads = 1;
     std::size_t steps = 0;  // that all sizes have done
     std::vector<std::size_t> bodies;

@@ -58,6 +58,7 @@ std::string json_of(const Quality& quality)
         .add("overlapping_pairs", number(quality.overlapping_pairs))
         .add("kinetic_energy_j_per_body", quality.kinetic_energy)
         .add("mean_height_m", quality.mean_height)
+        .add("shared_volume", quality.shared_volume)
         .text();
 }
 
@@ -65,6 +66,7 @@ std::string json_of(const Comparison& other)
 {
     return Members()
         .add_text("engine", other.engine)
+        .add_text("setting", other.setting)
         .add("threads", other.threads)
         .add("steps", number(other.steps))
         .add("times_faster", json_of(other.times))
@@ -76,6 +78,7 @@ std::string json_of(const Figure& figure)
 {
     Members made;
     made.add_text("engine", figure.engine)
+        .add_text("setting", figure.setting)
         .add_text("settings", figure.settings)
         .add("threads", figure.threads)
         .add("threads_used", figure.threads_met)
@@ -113,6 +116,7 @@ std::string json_of(const Run& run)
 {
     Members made;
     made.add_text("engine", run.engine)
+        .add_text("setting", run.setting)
         .add("threads", run.threads)
         .add("repeat", run.repeat)
         .add_text("state_hash", run.state_hash)
@@ -152,6 +156,7 @@ std::string json_of(const Growth& growth)
 {
     return Members()
         .add_text("scene", growth.scene)
+        .add_text("setting", growth.setting)
         .add("threads", growth.threads)
         .add("steps", number(growth.steps))
         .add("bodies", array(growth.bodies, [](std::size_t n) { return std::to_string(n); }))

@@ -86,6 +86,15 @@ bool is_finite(const PeerState& state)
 
 }  // namespace
 
+Scene scene_of_peers(Scene scene)
+{
+    if (scene.settings.nonconvex != NonConvex::hull) scene.settings.nonconvex = NonConvex::parts;
+    for (ShapeDescription& shape : scene.shapes)
+        if (auto* const mesh = std::get_if<MeshShape>(&shape.shape))
+            if (mesh->nonconvex != "hull") mesh->nonconvex.clear();
+    return scene;
+}
+
 PeerScene peer_scene(const World& world, const Scene& scene)
 {
     const World::State& state = world.state();
@@ -125,6 +134,16 @@ PeerScene peer_scene(const World& world, const Scene& scene)
     return made;
 }
 
+std::vector<PeerState> peer_states(const World& world)
+{
+    std::vector<PeerState> states;
+    for (const BodyId body : world.bodies())
+        states.push_back({{world.center_of_mass(body), world.pose(body).orientation},
+                          world.velocity(body),
+                          world.angular_velocity(body)});
+    return states;
+}
+
 Quality quality_of(const Scene& scene, const std::vector<PeerState>& states)
 {
     for (const PeerState& state : states) {
@@ -157,7 +176,7 @@ Quality quality_of(const Scene& scene, const std::vector<PeerState>& states)
             if (group.common.lock_rotation) state.angular_velocity.setZero();
             write_pose(&group.records[i * group.stride()], poses[at], state);
         }
-    return quality_of(World(now));
+    return quality_of(now, World(now));
 }
 
 }  // namespace throng::bench

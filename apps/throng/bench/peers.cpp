@@ -16,9 +16,10 @@ class PeerEngine final : public Engine {
 public:
     PeerEngine(const perf::PeerEntry& entry, const Scene& scene) : scene_(scene)
     {
-        const World world(scene);
+        const Scene taken = scene_of_peers(scene);
+        const World world(taken);
         dt_ = world.settings().dt;
-        peer_ = entry.make(peer_scene(world, scene));
+        peer_ = entry.make(peer_scene(world, taken));
     }
     void step() override { peer_->step(dt_); }
     std::size_t contacts() const override { return peer_->contacts(); }
@@ -64,7 +65,7 @@ std::vector<EngineKind> peer_engines(const std::vector<std::string>& names, bool
                            + ", whose Debian package was not there; install it and build throng "
                              "again, or leave it out");
         }
-        kinds.push_back({name, 1, [entry](const Scene& scene) {
+        kinds.push_back({name, "", 1, [entry](const Scene& scene) {
                              return std::make_unique<PeerEngine>(*entry, scene);
                          }});
     }

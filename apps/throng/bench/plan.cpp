@@ -2,6 +2,7 @@
 #include "apps/throng/bench/plan.hpp"
 
 #include "apps/throng/scene_argument.hpp"
+#include "pipeline/dials.hpp"
 #include "pipeline/names.hpp"
 
 #include <algorithm>
@@ -32,6 +33,9 @@ constexpr Option kPlanOptions[] = {
     {"--peers", "A,B",
      "other engines to run in turn: bullet, ode, or none (default: those that were found when "
      "throng was built)"},
+    {"--vary", "DIAL=A,B",
+     "throng with each of these values of a dial, side by side; all ends are then judged with the "
+     "scene's own value"},
     kSeedOption,
     kMeshOption,
     kSetOption,
@@ -96,6 +100,25 @@ std::vector<std::string> peers_of(std::string_view text)
     return peers;
 }
 
+Variation variation_of(std::string_view text)
+{
+    Variation varied;
+    if (text.empty()) return varied;
+    const std::size_t equals = text.find('=');
+    if (equals == std::string_view::npos)
+        throw BadInput("--vary: wanted DIAL=VALUE,VALUE, not " + in_quotes(text));
+    varied.dial = text.substr(0, equals);
+    for (const std::string_view value : parts_of("--vary", text.substr(equals + 1))) {
+        Settings unused;
+        const std::string trouble = set_dial(unused, varied.dial, value);
+        if (!trouble.empty()) throw BadInput("--vary: " + trouble);
+        if (std::find(varied.values.begin(), varied.values.end(), value) != varied.values.end())
+            throw BadInput("--vary: " + in_quotes(value) + " is given twice");
+        varied.values.emplace_back(value);
+    }
+    return varied;
+}
+
 std::string all_cores()
 {
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
@@ -132,6 +155,7 @@ Plan read_plan(const Options& options)
     plan.threads = numbers_of("--threads", text_or(options, "--threads", all_cores()), 1024);
     plan.peers_asked_for = options.has("--peers");
     plan.peers = peers_of(text_or(options, "--peers", "bullet,ode"));
+    plan.varied = variation_of(options.text("--vary"));
     plan.steps = options.whole("--steps", kStandardSteps, 1, kMostBenchSteps);
     plan.repeats = static_cast<int>(options.whole("--repeat", 2, 1, 1000));
     plan.max_seconds = seconds_of(text_or(options, "--max-seconds", kStandardSeconds));

@@ -9,10 +9,17 @@
 
 namespace throng::bench {
 
+/// A dial whose values are run side by side; without values, none is.
+struct Variation {
+    std::string dial;
+    std::vector<std::string> values;
+};
+
 struct Plan {
     std::vector<const CatalogEntry*> scenes;
     std::vector<int> sizes, threads;  // ascending, each once
     std::vector<std::string> peers;
+    Variation varied;
     bool peers_asked_for = false;  // by name; else those that are there
     std::int64_t steps = 0;
     int repeats = 0;

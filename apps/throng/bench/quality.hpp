@@ -11,8 +11,10 @@ struct Quality {
     std::size_t overlapping_pairs = 0;
     double kinetic_energy = 0;  // J a dynamic body
     double mean_height = 0;     // m, of dynamic bodies' centers of mass
+    double shared_volume = 0;   // of the volume of bodies that are meshes; NaN where none moves
 };
 
-Quality quality_of(const World& world);
+/// Of a world made of that scene.
+Quality quality_of(const Scene& scene, const World& world);
 
 }  // namespace throng::bench

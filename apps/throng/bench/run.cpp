@@ -28,6 +28,7 @@ public:
         : cpu_clock_(kind.threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID)
     {
         run_.engine = kind.name;
+        run_.setting = kind.setting;
         run_.threads = kind.threads;
         run_.repeat = repeat;
         memory_.begin();
@@ -142,7 +143,8 @@ Case run_case(const Plan& plan,
             for (Contestant& contestant : contestants) {
                 contestant.take_turn(plan, [&](const Run& run) {
                     progress.show(++steps_done,
-                                  label + ' ' + run.engine + " on " + std::to_string(run.threads));
+                                  label + ' ' + name_of(run.engine, run.setting) + " on "
+                                      + std::to_string(run.threads));
                 });
                 going = going || !contestant.is_done(plan);
             }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <map>
 
 namespace throng::bench {
 namespace {
@@ -54,7 +56,7 @@ void print_times(const Plan& plan, const std::vector<Figure>& figures, std::ostr
         head.insert(head.end(), {"x_" + peer, "cpu_x_" + peer});
     std::vector<Row> rows = {head};
     for (const Figure& figure : figures) {
-        Row row = {figure.engine,
+        Row row = {name_of(figure.engine, figure.setting),
                    std::to_string(figure.threads_met),
                    std::to_string(figure.steps),
                    text_of(figure.ms_mean.median),
@@ -79,29 +81,29 @@ void print_times(const Plan& plan, const std::vector<Figure>& figures, std::ostr
 void print_states(const std::vector<Figure>& figures, std::ostream& out)
 {
     std::vector<Row> rows = {{"engine", "threads", "mean_overlap_mm", "max_overlap_mm", "overlaps",
-                              "J/body", "height_m", "state_B/body", "heap_B/body", "rss_B/body",
-                              "state_hash"}};
+                              "shared_volume", "J/body", "height_m", "state_B/body", "heap_B/body",
+                              "rss_B/body", "state_hash"}};
     for (const Figure& figure : figures) {
         const Quality& quality = figure.quality;
-        rows.push_back(
-            {figure.engine, std::to_string(figure.threads_met), text_of(quality.mean_overlap * 1e3),
-             text_of(quality.greatest_overlap * 1e3), std::to_string(quality.overlapping_pairs),
-             text_of(quality.kinetic_energy), text_of(quality.mean_height),
-             figure.state_bytes > 0 ? text_of(figure.state_bytes, "%.0f") : "-",
-             text_of(figure.heap_bytes, "%.0f"), text_of(figure.resident_bytes, "%.0f"),
-             figure.state_hash.empty() ? "-" : figure.state_hash});
+        rows.push_back({name_of(figure.engine, figure.setting), std::to_string(figure.threads_met),
+                        text_of(quality.mean_overlap * 1e3),
+                        text_of(quality.greatest_overlap * 1e3),
+                        std::to_string(quality.overlapping_pairs),
+                        std::isnan(quality.shared_volume) ? "-" : text_of(quality.shared_volume),
+                        text_of(quality.kinetic_energy), text_of(quality.mean_height),
+                        figure.state_bytes > 0 ? text_of(figure.state_bytes, "%.0f") : "-",
+                        text_of(figure.heap_bytes, "%.0f"), text_of(figure.resident_bytes, "%.0f"),
+                        figure.state_hash.empty() ? "-" : figure.state_hash});
     }
     print_rows(rows, out);
 }
 
 // Stages of throng side by side for each number of threads, and their parts beside the budget.
-void print_stages(const Case& made, const std::vector<Figure>& figures, std::ostream& out)
+void print_stages(const Case& made, const std::vector<const Figure*>& ours, std::ostream& out)
 {
-    std::vector<const Figure*> ours;
-    for (const Figure& figure : figures)
-        if (figure.engine == "throng") ours.push_back(&figure);
-    if (ours.empty() || ours.front()->stages.empty()) return;
-    Row head = {"stage"};
+    if (ours.front()->stages.empty()) return;
+    out << '\n';
+    Row head = {ours.front()->setting.empty() ? "stage" : "stage, " + ours.front()->setting};
     for (const Figure* figure : ours)
         head.insert(head.end(), {"ms(" + std::to_string(figure->threads_met) + ")", "share"});
     std::vector<Row> rows = {head};
@@ -133,6 +135,14 @@ void print_stages(const Case& made, const std::vector<Figure>& figures, std::ost
     print_rows(rows, out);
 }
 
+void print_all_stages(const Case& made, const std::vector<Figure>& figures, std::ostream& out)
+{
+    std::map<std::string, std::vector<const Figure*>> by_setting;
+    for (const Figure& figure : figures)
+        if (figure.engine == "throng") by_setting[figure.setting].push_back(&figure);
+    for (const auto& [setting, ours] : by_setting) print_stages(made, ours, out);
+}
+
 }  // namespace
 
 void print_heading(const Plan& plan, std::ostream& out)
@@ -143,7 +153,9 @@ void print_heading(const Plan& plan, std::ostream& out)
         << " of each, of which the median is told. x_NAME: how many times\nfaster than that "
            "engine over the steps that both have done, cpu_x_NAME by processor time,\nwhich a "
            "busy machine disturbs less. Overlap, energy and height are of the last poses, by the "
-           "same\ngeometry for all.\n";
+           "same\ngeometry for all; shared_volume is that of pairs, of the volume of the bodies "
+           "that "
+           "are meshes.\n";
 }
 
 void print_case(const Plan& plan, const Case& made, std::ostream& out)
@@ -155,8 +167,7 @@ void print_case(const Plan& plan, const Case& made, std::ostream& out)
     print_times(plan, figures, out);
     out << '\n';
     print_states(figures, out);
-    out << '\n';
-    print_stages(made, figures, out);
+    print_all_stages(made, figures, out);
     out.flush();
 }
 
@@ -171,12 +182,13 @@ void print_growth(const std::vector<Growth>& all, std::ostream& out)
                               "ns_from", "ns_to", "ratio", "contacts_from", "contacts_to"}};
     for (const Growth& growth : all)
         for (const Growth::EqualState& step : growth.steps_up)
-            rows.push_back(
-                {growth.scene, std::to_string(growth.threads), std::to_string(growth.steps),
-                 text_of(growth.exponent, "%.3f"), std::to_string(step.small),
-                 std::to_string(step.large), step.by_contact ? "contact" : "body",
-                 text_of(step.ns_small), text_of(step.ns_large), text_of(step.ratio(), "%.3f"),
-                 text_of(step.contacts_small, "%.2f"), text_of(step.contacts_large, "%.2f")});
+            rows.push_back({name_of(growth.scene, growth.setting), std::to_string(growth.threads),
+                            std::to_string(growth.steps), text_of(growth.exponent, "%.3f"),
+                            std::to_string(step.small), std::to_string(step.large),
+                            step.by_contact ? "contact" : "body", text_of(step.ns_small),
+                            text_of(step.ns_large), text_of(step.ratio(), "%.3f"),
+                            text_of(step.contacts_small, "%.2f"),
+                            text_of(step.contacts_large, "%.2f")});
     print_rows(rows, out);
 }
 
