@@ -2,33 +2,12 @@
 #pragma once
 
 #include "broadphase/overlap_query.hpp"
+#include "tests/support/dice.hpp"
 
 #include <random>
 #include <string>
 
 namespace throng::test {
-
-/// Random numbers without the library's distributions, which differ between libraries.
-class Dice {
-public:
-    explicit Dice(std::uint64_t seed) : engine_(seed) { }
-    double between(double low, double high)
-    {
-        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-    }
-    std::uint32_t below(std::uint32_t count)
-    {
-        return static_cast<std::uint32_t>(engine_() % count);
-    }
-    bool chance(double share) { return between(0, 1) < share; }
-    Vec3 point(double half)
-    {
-        return {between(-half, half), between(-half, half), between(-half, half)};
-    }
-
-private:
-    std::mt19937_64 engine_;
-};
 
 inline Box3 box_around(const Vec3& center, const Vec3& half)
 {

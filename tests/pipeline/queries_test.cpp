@@ -1,5 +1,6 @@
 // Queries: every answer against all bodies asked in turn by distances written down afresh.
 #include "pipeline/throng.hpp"
+#include "tests/support/dice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,33 +8,12 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <random>
 #include <stdexcept>
 
 namespace throng::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct Dice {
-    std::mt19937_64 engine;
-    double between(double low, double high)
-    {
-        return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1p-53);
-    }
-    Vec3 point(double reach)
-    {
-        const double x = between(-reach, reach), y = between(-reach, reach);
-        return {x, y, between(-reach, reach)};
-    }
-    Quat turn()
-    {
-        const double w = between(-1, 1), x = between(-1, 1), y = between(-1, 1);
-        Quat turn(w, x, y, between(-1, 1));
-        turn.coeffs() /= turn.coeffs().norm();
-        return turn;
-    }
-};
 
 // Distance to a shape in its own frame: exact outside, below 0 inside.
 using Distance = std::function<double(const Vec3&)>;
@@ -129,7 +109,7 @@ struct Strewn {
 
     Strewn(std::uint64_t seed, const Vec3& middle, std::size_t count)
     {
-        Dice dice{std::mt19937_64(seed)};
+        Dice dice(seed);
         add_shapes(scene);
         for (std::size_t i = 0; i < count; ++i) {
             const auto next = static_cast<Kind>(i % 8);
@@ -175,7 +155,7 @@ TEST(Queries, RaysAgreeWithAMarchThroughAllBodies)
         const Strewn strewn(5, middle, 60);
         const World world(strewn.scene);
         const std::vector<BodyId> ids = world.bodies();
-        Dice dice{std::mt19937_64(6)};
+        Dice dice(6);
         std::vector<RayQuery> rays;
         for (int i = 0; i < 1500; ++i) rays.push_back(random_ray(dice, middle, i));
         std::vector<RayHit> hits(rays.size());
@@ -223,7 +203,7 @@ TEST(Queries, NearestAgreesWithTheLeastOfAllDistances)
     const Strewn strewn(8, Vec3::Zero(), 60);
     const World world(strewn.scene);
     const std::vector<BodyId> ids = world.bodies();
-    Dice dice{std::mt19937_64(9)};
+    Dice dice(9);
     std::vector<PointQuery> points;
     for (int i = 0; i < 2000; ++i) {
         PointQuery point;
@@ -301,7 +281,7 @@ TEST(Queries, OverlapsAgreeWithPointsWithinTheShape)
     const Strewn strewn(12, Vec3::Zero(), 150);
     const World world(strewn.scene);
     const std::vector<BodyId> ids = world.bodies();
-    Dice dice{std::mt19937_64(13)};
+    Dice dice(13);
     const std::vector<QueryShape> kinds_asked = {SphereShape{0.6}, SphereShape{0.0},
                                                  CapsuleShape{0.3, 0.7}, CylinderShape{0.5, 0.4},
                                                  BoxShape{Vec3(0.7, 0.2, 0.5)}};
@@ -349,7 +329,7 @@ TEST(Queries, OverlapsAgreeWithPointsWithinTheShape)
 // Balls from 1 mm to 100 m, some far from all others: searches that go on for many rounds.
 TEST(Queries, FindAmongAllSizesWhatTheFormulaOfABallFinds)
 {
-    Dice dice{std::mt19937_64(31)};
+    Dice dice(31);
     Scene scene;
     std::vector<double> radius;
     for (std::uint32_t i = 0; i < 1500; ++i) {
@@ -403,7 +383,7 @@ TEST(Queries, FindAmongAllSizesWhatTheFormulaOfABallFinds)
 TEST(Queries, AnswersDoNotDependOnThreads)
 {
     const Strewn strewn(15, Vec3::Zero(), 200);
-    Dice dice{std::mt19937_64(16)};
+    Dice dice(16);
     std::vector<RayQuery> rays;
     for (int i = 0; i < 3000; ++i) rays.push_back(random_ray(dice, Vec3::Zero(), i));
     std::vector<std::vector<double>> numbers;

@@ -3,28 +3,15 @@
 
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh.hpp"
+#include "tests/support/dice.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
-#include <random>
 
 namespace throng::test {
 namespace {
-
-struct Dice {
-    std::mt19937_64 engine;
-    double between(double low, double high)
-    {
-        return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1p-53);
-    }
-    Vec3 point(double reach)
-    {
-        const double x = between(-reach, reach), y = between(-reach, reach);
-        return {x, y, between(-reach, reach)};
-    }
-};
 
 // How far a solid reaches along a direction, and whether it holds a point give or take a margin.
 struct Solid {
@@ -77,7 +64,7 @@ TEST(NearestPoint, LiesInTheSolidAndAPlaneThroughItPartsTheTwo)
     for (const double size : {1e-6, 1.0, 1e6}) {
         Shapes shapes;
         for (const Solid& solid : solids(shapes, size)) {
-            Dice dice{std::mt19937_64(21)};
+            Dice dice(21);
             for (int i = 0; i < 3000; ++i) {
                 SCOPED_TRACE(std::string(solid.name) + ", point " + std::to_string(i));
                 const double away = (i % 5 == 0 ? 1e3 : 2) * size;
@@ -120,7 +107,7 @@ TEST(NearestPoint, OfAMeshIsNoFurtherThanAnyPointOfItsTriangles)
             for (int k = 0; i + k <= 16; ++k)
                 samples.push_back(vertices[a] + (vertices[b] - vertices[a]) * i / 16.0
                                   + (vertices[c] - vertices[a]) * k / 16.0);
-    Dice dice{std::mt19937_64(22)};
+    Dice dice(22);
     for (int i = 0; i < 300; ++i) {
         const Vec3 point = Vec3(3, 3, 0) + dice.point(i % 3 == 0 ? 30 : 4);
         const NearestPoint nearest = nearest_point(shapes, {ShapeKind::mesh, 0}, point, 1e300);

@@ -3,13 +3,13 @@
 
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh.hpp"
+#include "tests/support/dice.hpp"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
-#include <random>
 
 namespace throng::test {
 namespace {
@@ -63,20 +63,6 @@ struct Solids {
                            return 0.6 * p.x() + 0.8 * p.z() - 0.3 * size;
                        }});
     }
-};
-
-struct Dice {
-    std::mt19937_64 engine;
-    double between(double low, double high)
-    {
-        return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1p-53);
-    }
-    Vec3 point(double reach)
-    {
-        const double x = between(-reach, reach), y = between(-reach, reach);
-        return {x, y, between(-reach, reach)};
-    }
-    Vec3 direction() { return (point(1) + Vec3(1e-3, 0, 0)).normalized(); }
 };
 
 struct March {
@@ -135,7 +121,7 @@ TEST(RayCast, AgreesWithAMarchThroughDistances)
     for (const double size : {1e-6, 1.0, 1e6}) {
         const Solids solids(size);
         for (const Solid& solid : solids.all) {
-            Dice dice{std::mt19937_64(7)};
+            Dice dice(7);
             for (int i = 0; i < 4000; ++i) {
                 LocalRay ray;
                 ray.from = dice.point((i % 2 == 0 ? 1.5 : 6.0) * size);
@@ -223,7 +209,7 @@ TEST(RayCast, RaysThroughEdgesAndCornersMeet)
 TEST(RayCast, FromFarAwayKeepsItsDigits)
 {
     const Solids solids;
-    Dice dice{std::mt19937_64(11)};
+    Dice dice(11);
     for (const Solid& solid : solids.all)
         for (int i = 0; i < 200; ++i) {
             // Towards the middle, from the plane's open side, and not along it.
@@ -271,7 +257,7 @@ TEST(RayCast, MeshAgreesWithEveryTriangleAskedInTurn)
         Shapes shapes;
         shapes.meshes.push_back(field(9, size, 0.8));
         const Mesh& mesh = shapes.meshes[0];
-        Dice dice{std::mt19937_64(3)};
+        Dice dice(3);
         int hits = 0;
         for (int i = 0; i < 2000; ++i) {
             LocalRay ray{Vec3(4.5, 4.5, 0) * size + dice.point(8 * size), dice.direction()};

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <random>
 #include <set>
 
 namespace throng::test {
@@ -142,7 +141,7 @@ TEST(ContactPatches, OppositeSidesAreNotJoined)
 
 TEST(ContactPatches, NormalsOfAPatchAreWithin31DegreesOfItsOwn)
 {
-    Dice dice{std::mt19937_64(61)};
+    Dice dice(61);
     for (int i = 0; i < 200; ++i) {
         std::vector<SurfaceTouch> touches;
         for (std::uint32_t k = 0; k < 60; ++k) {
@@ -164,7 +163,7 @@ TEST(ContactPatches, NormalsOfAPatchAreWithin31DegreesOfItsOwn)
 
 TEST(ContactPatches, TheDeepestOfEachGroupIsKept)
 {
-    Dice dice{std::mt19937_64(62)};
+    Dice dice(62);
     for (int i = 0; i < 200; ++i) {
         const std::vector<SurfaceTouch> touches = clusters(dice);
         const auto found = patches(touches);
@@ -185,16 +184,15 @@ TEST(ContactPatches, TheDeepestOfEachGroupIsKept)
 
 TEST(ContactPatches, TheOrderOfTouchesDoesNotMatter)
 {
-    Dice dice{std::mt19937_64(63)};
+    Dice dice(63);
     for (int i = 0; i < 100; ++i) {
         std::vector<SurfaceTouch> touches = clusters(dice);
         for (int k = 0; k < 40; ++k)
             touches.push_back({dice.point(1), dice.point(1).normalized(),
-                               dice.between(-0.01, kReach),
-                               static_cast<std::uint32_t>(dice.engine() % 60)});
+                               dice.between(-0.01, kReach), dice.below(60)});
         std::vector<PatchManifold> first, second;
         std::vector<SurfaceTouch> shuffled = touches;
-        std::shuffle(shuffled.begin(), shuffled.end(), dice.engine);
+        dice.shuffle(shuffled);
         const std::size_t left_out = make_patches(touches, kReach, 1, first);
         ASSERT_EQ(make_patches(shuffled, kReach, 1, second), left_out);
         ASSERT_TRUE(same(first, second)) << "seed 63, set " << i;
@@ -206,7 +204,7 @@ TEST(ContactPatches, TheOrderOfTouchesDoesNotMatter)
 
 TEST(ContactPatches, AFrameTurnedByRightAnglesTurnsTheGroups)
 {
-    Dice dice{std::mt19937_64(64)};
+    Dice dice(64);
     Mat3 turn;
     turn << 0, -1, 0, 0, 0, -1, 1, 0, 0;
     for (int i = 0; i < 100; ++i) {
@@ -241,7 +239,7 @@ TEST(ContactPatches, TremblingKeepsPointsAndNames)
     sets.push_back(grid(8, Vec3(0, 1, 1).normalized(), 0));
     for (const SurfaceTouch& touch : grid(5, -Vec3::UnitY(), 200)) sets.back().push_back(touch);
 
-    Dice dice{std::mt19937_64(65)};
+    Dice dice(65);
     for (std::size_t s = 0; s < sets.size(); ++s) {
         const auto still = patches(sets[s]);
         for (int i = 0; i < 50; ++i) {

@@ -18,7 +18,7 @@ Shapes some_shapes(double size)
     shapes.cylinders = {{0.6 * size, 0.5 * size}};
     shapes.boxes = {{Vec3(0.5, 1.1, 0.8) * size}};
     shapes.planes = {{Vec3(0.6, 0, 0.8), 0.3 * size}};
-    Dice dice{std::mt19937_64(80)};
+    Dice dice(80);
     std::vector<Vec3> points;
     for (int i = 0; i < 20; ++i) points.push_back(dice.point(1).normalized() * size);
     shapes.hulls = {build_hull(points).hull};
@@ -33,7 +33,7 @@ TEST(ShapeDistance, TheWayOutLeadsToTheNearestPointOfTheSurface)
     for (const double size : {1e-3, 1.0, 1e3}) {
         const Shapes shapes = some_shapes(size);
         for (const ShapeKind kind : kKinds) {
-            Dice dice{std::mt19937_64(81)};
+            Dice dice(81);
             for (int i = 0; i < 1000; ++i) {
                 Vec3 point = dice.point(2 * size);
                 if (i % 7 == 0) point[i % 3] = 0;
@@ -54,7 +54,7 @@ TEST(ShapeDistance, InsideABallOfItsSizeFitsIn)
 {
     const Shapes shapes = some_shapes(1);
     for (const ShapeKind kind : kKinds) {
-        Dice dice{std::mt19937_64(82)};
+        Dice dice(82);
         int inside = 0;
         for (int i = 0; i < 3000; ++i) {
             const Vec3 point = dice.point(0.8);

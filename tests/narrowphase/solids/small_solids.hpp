@@ -5,30 +5,12 @@
 #include "kernels/geometry/surface_points.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
 #include "tests/narrowphase/solids/closed.hpp"
+#include "tests/support/dice.hpp"
 
 #include <cmath>
 #include <functional>
-#include <random>
 
 namespace throng::test {
-
-struct Dice {
-    std::mt19937_64 engine;
-    double between(double low, double high)
-    {
-        return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1p-53);
-    }
-    Vec3 point(double reach)
-    {
-        const double x = between(-reach, reach), y = between(-reach, reach);
-        return {x, y, between(-reach, reach)};
-    }
-    Quat turn()
-    {
-        const Vec3 axis = point(1);
-        return Quat(between(-1, 1), axis.x(), axis.y(), axis.z()).normalized();
-    }
-};
 
 /// Points a voxel apart and a band of four. `distance` of the shape that the mesh is of, or that of
 /// the mesh itself where none is given.

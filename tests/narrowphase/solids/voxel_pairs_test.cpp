@@ -66,7 +66,7 @@ Errors ball_errors(int voxels_in_radius, bool solid)
     Shapes shapes;
     shapes.solids = {small_ball(1, voxel), small_ball(0.75, voxel)};
     shapes.spheres = {{0.75}};
-    Dice dice{std::mt19937_64(91)};
+    Dice dice(91);
     Errors worst;
     for (int i = 0; i < 60; ++i) {
         const Vec3 way = dice.point(1).normalized();
@@ -102,7 +102,7 @@ TEST(VoxelPairs, ABallOnAPlaneIsAsDeepAsItsPointsAreClose)
     Shapes shapes;
     shapes.solids = {small_ball(1, 0.125)};
     shapes.planes = {{Vec3::UnitZ(), 0}};
-    Dice dice{std::mt19937_64(92)};
+    Dice dice(92);
     for (int i = 0; i < 100; ++i) {
         const Quat turn = dice.turn();
         const double separation = dice.between(-0.3, 0.04);
@@ -131,7 +131,7 @@ TEST(VoxelPairs, BoxOnBoxIsExactWhereACornerOrAnEdgeMeetsAFace)
     for (int c = 0; c < 8; ++c)
         corners.emplace_back(c & 1 ? 0.4 : -0.4, c & 2 ? 0.3 : -0.3, c & 4 ? 0.5 : -0.5);
     shapes.hulls = {build_hull(corners).hull};
-    Dice dice{std::mt19937_64(93)};
+    Dice dice(93);
     for (int i = 0; i < 60; ++i) {
         const double angle = dice.between(-3, 3);
         Quat turn(std::cos(angle), 0, 0, std::sin(angle));
@@ -170,7 +170,7 @@ TEST(VoxelPairs, ACornerBelowAFaceIsNotPushedSideways)
     const double voxel = 1.0 / 12;
     Shapes shapes;
     shapes.solids = {small_box({1, 1, 0.5}, voxel), small_box({0.5, 0.5, 0.5}, voxel)};
-    Dice dice{std::mt19937_64(94)};
+    Dice dice(94);
     for (int i = 0; i < 30; ++i) {
         // The small box below, its corner up, turned about the way up.
         const double angle = dice.between(-3, 3);
@@ -197,7 +197,7 @@ TEST(VoxelPairs, CrossedEdgesAreToldTheWayOutOfAFaceWithinHalfAVoxel)
     shapes.boxes = {{Vec3(0.5, 1, 0.5)}};
     const Quat about_x = Quat(std::cos(std::numbers::pi / 8), std::sin(std::numbers::pi / 8), 0, 0);
     const Quat about_y = Quat(std::cos(std::numbers::pi / 8), 0, std::sin(std::numbers::pi / 8), 0);
-    Dice dice{std::mt19937_64(95)};
+    Dice dice(95);
     for (int i = 0; i < 40; ++i) {
         // Both stand on an edge; in the frame of the first.
         const double separation = dice.between(-1.5, 0.5) * voxel;
@@ -252,7 +252,7 @@ TEST(VoxelPairs, SwappedTheyTouchTheSame)
     const double voxel = 1.0 / 12;
     Shapes shapes;
     shapes.solids = {small_box({0.6, 0.4, 0.5}, voxel), small_torus(0.6, 0.3, voxel)};
-    Dice dice{std::mt19937_64(96)};
+    Dice dice(96);
     std::size_t compared = 0;
     for (int i = 0; i < 20; ++i) {
         const Pose pose{dice.point(0.5) + Vec3(0.7, 0, 0), dice.turn()};
@@ -306,7 +306,7 @@ TEST(VoxelPairs, CullingMissesNothing)
         }
         return all;
     };
-    Dice dice{std::mt19937_64(97)};
+    Dice dice(97);
     std::size_t total = 0;
     for (int i = 0; i < 60; ++i) {
         const Pose pose{dice.point(1.2), dice.turn()};
@@ -331,7 +331,7 @@ TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
     shapes.solids = {small_torus(0.6, 0.3, voxel), small_torus(0.6, 0.3, voxel)};
     shapes.capsules = {{0.3, 0.5}};
     shapes.boxes = {{Vec3(0.3, 0.2, 0.5)}};
-    Dice dice{std::mt19937_64(101)};
+    Dice dice(101);
     std::size_t known = 0;
     for (int i = 0; i < 300; ++i) {
         const ShapeRef kinds[] = {kSecond, {ShapeKind::capsule, 0}, {ShapeKind::box, 0}};
@@ -378,7 +378,7 @@ TEST(VoxelPairs, NothingSmallFallsThroughBetweenThePoints)
     shapes.capsules = {{small, 2 * small}};
     shapes.cylinders = {{small, small}};
     shapes.boxes = {{Vec3::Constant(small)}};
-    Dice dice{std::mt19937_64(98)};
+    Dice dice(98);
     for (int i = 0; i < 100; ++i) {
         const Vec3 at(dice.between(-0.8, 0.8), dice.between(-0.8, 0.8), 0);
         const double sunk = dice.between(-0.5, 0.5) * small;
@@ -412,7 +412,7 @@ TEST(VoxelPairs, BodiesThatTrembleKeepTheirPoints)
         {{ShapeKind::plane, 0}, {}},
         {{ShapeKind::cylinder, 0}, {Vec3(0.01, 0, 0), Quat::Identity()}},
         {kSecond, {Vec3(0.2, 0.1, -0.75), Quat::Identity()}}};
-    Dice dice{std::mt19937_64(100)};
+    Dice dice(100);
     for (const auto& [other, pose] : pairs) {
         const auto still = patches(shapes, other, pose, 0.3 * voxel);
         int kept = 0;
@@ -446,7 +446,7 @@ TEST(VoxelPairs, AStaticMeshIsTouchedInFrontAlone)
         {-0.5, -0.5, -2}, {0.5, -0.5, -2}, {0.5, 0.5, -2}, {-0.5, 0.5, -2}, {0, 0, 0}};
     shapes.meshes = {build_mesh(square, {{0, 1, 2}, {0, 2, 3}}).mesh,
                      build_mesh(spike, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}).mesh};
-    Dice dice{std::mt19937_64(99)};
+    Dice dice(99);
     for (int i = 0; i < 40; ++i) {
         const double separation = dice.between(-1, 0.5) * voxel;
         const Quat turn = dice.turn();
