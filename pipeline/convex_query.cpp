@@ -58,6 +58,24 @@ std::string trouble_with(const Pose& pose, double reach)
     return {};
 }
 
+// What the points of a manifold span. Of four, in whatever order, the most that two diagonals or
+// one triangle of them give.
+template <class Real>
+double spanned_area(const LocalManifold<Real>& found)
+{
+    const auto at = [&](int i) -> Vec3 {
+        return found.points[static_cast<std::size_t>(i)].position.template cast<double>();
+    };
+    const auto crossed = [&](int a, int c, int b, int d) {
+        return 0.5 * (at(c) - at(a)).cross(at(d) - at(b)).norm();
+    };
+    const auto triangle = [&](int a, int b, int c) { return crossed(a, b, a, c); };
+    if (found.count < 3) return 0;
+    if (found.count == 3) return triangle(0, 1, 2);
+    return std::max({crossed(0, 1, 2, 3), crossed(0, 2, 1, 3), crossed(0, 3, 1, 2),
+                     triangle(0, 1, 2), triangle(0, 1, 3), triangle(0, 2, 3), triangle(1, 2, 3)});
+}
+
 template <class Real>
 ConvexAnswer contacts_of(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a)
 {
@@ -72,6 +90,7 @@ ConvexAnswer contacts_of(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pos
         answer.separation = std::min(answer.separation,
                                      double{found.points[static_cast<std::size_t>(i)].separation});
     if (found.count > 0) answer.normal = found.normal.template cast<double>();
+    answer.surface = spanned_area(found);
     return answer;
 }
 

@@ -97,7 +97,8 @@ public:
 
     /// Whether a step of throng would see the two touch, by `auto` and in its number type, from
     /// nothing remembered; refused as ask() does. Touching, the separation and the normal are those
-    /// of the deepest point of contact: a face leads where another way out is shorter by little.
+    /// of the deepest point of contact, and the surface is what the points of contact span: a face
+    /// leads where another way out is shorter by little.
     ConvexAnswer touch(const Pose& b_in_a, Precision precision) const;
 
 private:

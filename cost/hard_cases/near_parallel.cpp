@@ -49,6 +49,23 @@ void judge_faces(CaseBench& bench, MethodTally& tally)
             }
 }
 
+// The contact of two faces: what it spans may change with the tilt, not jump.
+void judge_area(CaseBench& bench)
+{
+    const Vec3 shift(0.1, 0.05, 0.598);  // deeper than any of these tilts lifts a corner
+    const double whole = (2 * kHalf.x() - shift.x()) * (2 * kHalf.y() - shift.y());
+    for (const Axes& axes : kAxes) {
+        double worst = 0;
+        for (double tilt = 1e-9; tilt < 2e-3; tilt *= 10) {
+            const Pose pose{shift, exponential(tilt * axes.about)};
+            const KnownPair pair = known_boxes(kHalf, Pose{}, kHalf, pose);
+            const ConvexAnswer answer = ConvexQuery(pair.a, pair.b).touch(pose, Precision::double_);
+            worst = std::max(worst, std::abs(answer.surface / whole - 1) / tilt);
+        }
+        bench.report(axes.name, "area lost by the contact, of it / tilt", worst, 10, "1");
+    }
+}
+
 // Edge upon edge: two cubes turned on their edges, all but parallel along x.
 void judge_edges(CaseBench& bench, MethodTally& tally)
 {
@@ -95,6 +112,7 @@ void case_near_parallel(CaseBench& bench)
     judge_faces(bench, tally);
     judge_edges(bench, tally);
     tally.report(bench);
+    judge_area(bench);
     judge_contact(bench);
 }
 

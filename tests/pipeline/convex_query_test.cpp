@@ -40,6 +40,9 @@ TEST(ConvexQuery, TellsWhatAStepSees)
         EXPECT_EQ(touching.verdict, QueryVerdict::touching);
         EXPECT_NEAR(touching.separation, -0.05, error);
         EXPECT_NEAR((touching.normal - Vec3::UnitX()).norm(), 0, error);
+        EXPECT_EQ(touching.surface, 0);  // of one point
+        const ConvexQuery faces(box(0.5, 0.5, 0.5), box(0.3, 0.4, 0.2));
+        EXPECT_NEAR(faces.touch(at(0.35, 0.2, 0.69), precision).surface, 0.45 * 0.7, error);
         EXPECT_EQ(query.touch(at(0.7501, 0.1, 0.2), precision).verdict, QueryVerdict::apart);
         EXPECT_EQ(query.touch(at(kNaN, 0, 0), precision).verdict, QueryVerdict::refused);
     }
