@@ -114,16 +114,26 @@ private:
     }
 
     // A mesh that does not tell its inside from its outside is taken as the surface of what a flood
-    // from outside does not reach.
+    // from outside does not reach; where that is nothing, as a sheet.
     bool take_level_set()
     {
-        if (!make_field(FieldSign::flood)) return false;
+        if (!make_field(FieldSign::flood) && !(field_.hollow && take_sheet())) return false;
         MeshResult surface = field_surface(field_.bricks);
         made_.trouble = surface.trouble;
         if (!surface.trouble.empty()) return false;
         mesh_ = std::move(surface.mesh);
         made_.remarks.push_back("taken as the surface of its level set, with voxels of "
                                 + short_text(field_.bricks.voxel) + " m");
+        return true;
+    }
+
+    bool take_sheet()
+    {
+        if (!make_field(FieldSign::sheet)) return false;
+        made_.remarks.push_back("nothing tells its inside from its outside: taken as a sheet "
+                                + short_text(2 * field_.bricks.voxel)
+                                + " m thick; for a solid give a closed mesh, or a voxel_size that "
+                                  "is wider than its holes");
         return true;
     }
 

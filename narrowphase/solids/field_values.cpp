@@ -159,6 +159,7 @@ private:
         if (rule == SeedRule::distance) value = signed_distance(mesh_, at, nearest);
         if (rule == SeedRule::sign)
             value = std::signbit(seed.guess) ? -nearest.distance : nearest.distance;
+        if (rule == SeedRule::sheet) value = nearest.distance;
         blocks_.values[slot] = static_cast<float>(value);
         blocks_.triangles[slot] = nearest.triangle;
         blocks_.states[slot] = State::known;

@@ -24,6 +24,7 @@ struct FieldSeed {
 enum class SeedRule : std::uint8_t {
     distance,  // neither: distance and sign are worked out; the mesh is closed and cuts itself not
     sign,      // the sign; the distance is worked out
+    sheet,     // neither: the distance is worked out, and nothing is inside
     value      // the guess as it is
 };
 

@@ -69,7 +69,7 @@ FloatGrid::Ptr near_surface(const Mesh& mesh, const VoxelBricks& laid, FieldSign
     const QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(made.points,
                                                                              made.triangles);
     int flags = DISABLE_RENORMALIZATION | DISABLE_NARROW_BAND_TRIMMING;
-    if (sign == FieldSign::normals) flags |= UNSIGNED_DISTANCE_FIELD;
+    if (sign != FieldSign::flood) flags |= UNSIGNED_DISTANCE_FIELD;
     openvdb::util::NullInterrupter never;
     const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
     return meshToVolume<FloatGrid>(never, adapter, *unit, 2.0F, 2.0F, flags);
@@ -124,6 +124,29 @@ Mesh exposed_part(const Mesh& mesh, const FloatGrid& grid, const VoxelBricks& la
     return build_mesh(mesh.vertices, std::move(triangles)).mesh;
 }
 
+// What lies that near to the surface becomes inside.
+void thicken(VoxelBricks& bricks, double by)
+{
+    for (float& value : bricks.values) value -= static_cast<float>(by);
+    bricks.band -= by;
+}
+
+VoxelBricks filled(const Mesh& mesh, const FloatGrid& near, const VoxelBricks& laid, FieldSign sign)
+{
+    const std::vector<FieldSeed> seeds = seeds_of(near, laid);
+    switch (sign) {
+    case FieldSign::normals:
+        return fill_bricks(mesh, laid, seeds, SeedRule::distance);
+    case FieldSign::flood:
+        return fill_bricks(exposed_part(mesh, near, laid), laid, seeds, SeedRule::sign);
+    case FieldSign::sheet:
+        break;
+    }
+    VoxelBricks bricks = fill_bricks(mesh, laid, seeds, SeedRule::sheet);
+    thicken(bricks, laid.voxel);
+    return bricks;
+}
+
 // --- What a level set is worth
 
 struct Worth {
@@ -158,7 +181,7 @@ Worth worth_of(const Mesh& mesh, const VoxelBricks& bricks, FieldSign sign)
                 };
                 part.all += area;
                 const bool thick =
-                    inside(middle - up) || (sign == FieldSign::flood && inside(middle + up));
+                    inside(middle - up) || (sign != FieldSign::normals && inside(middle + up));
                 if (!thick) part.thin += area;
             }
         });
@@ -605,26 +628,25 @@ double field_bytes(const Mesh& mesh, double voxel, double band_voxels)
     return 8 * all + stored * (2 * kStored + 2 * kWorking) + near_bytes;
 }
 
-FieldResult build_field(const Mesh& mesh, const FieldSettings& settings)
+FieldResult build_field(const Mesh& mesh, const FieldSettings& wanted)
 {
     THRONG_CHECK(mesh.vertex_normals.size() == mesh.vertices.size(), "a side needs vertex normals");
     FieldResult result;
+    FieldSettings settings = wanted;
+    if (settings.sign == FieldSign::sheet) settings.band += 1;  // which thickening it takes
     const double voxel = settings.voxel != 0 ? settings.voxel : voxel_size_for(mesh);
     result.trouble = trouble_with_size(mesh, voxel, settings);
     if (!result.trouble.empty()) return result;
 
     const VoxelBricks laid = lay_bricks(box_of(mesh), voxel, settings.band * voxel);
     const FloatGrid::Ptr near = near_surface(mesh, laid, settings.sign);
-    const std::vector<FieldSeed> seeds = seeds_of(*near, laid);
-    if (settings.sign == FieldSign::normals)
-        result.bricks = fill_bricks(mesh, laid, seeds, SeedRule::distance);
-    else
-        result.bricks = fill_bricks(exposed_part(mesh, *near, laid), laid, seeds, SeedRule::sign);
+    result.bricks = filled(mesh, *near, laid, settings.sign);
 
     const Worth worth = worth_of(mesh, result.bricks, settings.sign);
     result.trouble = trouble_with_inside(result.bricks, worth);
     if (!result.trouble.empty()) {
         result.bricks = {};
+        result.hollow = true;
         return result;
     }
     result.error = worth.error;

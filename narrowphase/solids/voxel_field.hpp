@@ -23,7 +23,8 @@ inline constexpr double kWorstVoxels = 0.8660254037844387;
 ///   normals  those of the nearest triangle: right for closed meshes that do not cut themselves
 ///   flood    what cannot be reached from afar is inside. Mends what cuts itself, holes up to a
 ///            voxel and loose triangles; closed hollows are filled, and what is buried is left out
-enum class FieldSign : std::uint8_t { normals, flood };
+///   sheet    what lies within a voxel of any triangle is inside: for sheets, which enclose nothing
+enum class FieldSign : std::uint8_t { normals, flood, sheet };
 
 struct FieldSettings {
     double voxel = 0;  // m; 0: as voxel_size_for() has it
@@ -38,11 +39,13 @@ struct FieldSettings {
 ///            in truth all are 0
 ///   remarks  what a user should know, in plain words
 ///   trouble  empty, or what is wrong and what is wanted
+///   hollow   the trouble is that nothing tells an inside
 struct FieldResult {
     VoxelBricks bricks;
     double error = 0;
     std::vector<std::string> remarks;
     std::string trouble;
+    bool hollow = false;
 };
 
 /// The voxel for a wanted error, m: no depth is then further off than that, edges and corners

@@ -1,11 +1,13 @@
 // Voxel field: against distances asked for one by one, the truth of balls and tori, and its files.
 #include "narrowphase/solids/voxel_field.hpp"
 
+#include "kernels/geometry/mass.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/solids/field_values.hpp"
 #include "scenes/random.hpp"
 #include "tests/narrowphase/solids/closed.hpp"
+#include "tests/support/dice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -220,6 +222,44 @@ TEST(VoxelField, FloodClosesHolesUpToAVoxelAndRefusesWiderOnes)
     find_vertex_normals(bowl.mesh);
     const std::string trouble = field_of(bowl.mesh, 0.05, FieldSign::flood).trouble;
     EXPECT_NE(trouble.find("open wider than"), std::string::npos) << trouble;
+}
+
+// Of a bowl the distance is known: to its sphere above the rim's cone, to the rim elsewhere.
+TEST(VoxelField, SheetIsAVoxelThickToEitherSide)
+{
+    constexpr double kVoxel = 0.05;
+    TriangleSoup bowl = ball_mesh(1, 120, 80);
+    std::erase_if(bowl.triangles, [&](const auto& triangle) {
+        return std::any_of(triangle.begin(), triangle.end(),
+                           [&](std::uint32_t corner) { return bowl.vertices[corner].z() > 1e-9; });
+    });
+    MeshResult open = build_mesh(bowl.vertices, bowl.triangles);
+    find_vertex_normals(open.mesh);
+    const FieldResult field = field_of(open.mesh, kVoxel, FieldSign::sheet);
+    ASSERT_EQ(field.trouble, "");
+    EXPECT_FALSE(field.hollow);
+    EXPECT_NEAR(field.bricks.band, kBandVoxels * kVoxel, 1e-12);
+    EXPECT_NEAR(field.error, kVoxel, 0.1 * kVoxel);
+    const double known = field.bricks.band - std::sqrt(3) * kVoxel;  // by all corners of a cell
+    test::Dice dice(41);
+    int inside = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Vec3 at = dice.point(1.2);
+        const double across = std::hypot(at.x(), at.y());
+        const double to_sheet =
+            at.z() <= 0 ? std::abs(at.norm() - 1) : std::hypot(across - 1, at.z());
+        const double truth = std::min(to_sheet - kVoxel, known);
+        // A cell with corners on both sides of the sheet does not see where it is least.
+        const double error = to_sheet < 2 * kVoxel ? 0.9 * kVoxel : 0.1 * kVoxel;
+        const double told = sample_bricks<double>(field.bricks, at).distance;
+        ASSERT_NEAR(std::min(told, known), truth, error) << at.transpose();
+        inside += told < 0 ? 1 : 0;
+    }
+    EXPECT_GT(inside, 200);
+    const MeshResult surface = field_surface(field.bricks);
+    ASSERT_EQ(surface.trouble, "");
+    // Of a half shell of two voxels, its rim rounded.
+    EXPECT_NEAR(mass_of(surface.mesh).volume / (2 * std::numbers::pi * 2 * kVoxel), 1, 0.06);
 }
 
 TEST(VoxelField, FloodAsksNoWindingWhatIsThick)
