@@ -160,17 +160,31 @@ std::uint16_t face_against(const PolytopePair& pair, std::uint16_t vertex, const
     return best;
 }
 
-Polygon<double> face_polygon(const PolytopePair& pair, std::uint16_t face)
+// Room is left for the corners that cuts add; a face of very many corners is nearly round and keeps
+// every few of them, and the one that is nearest to a's face wherever all others are further off by
+// more than the slack: flat faces keep the same corners from step to step.
+Polygon<double>
+face_polygon(const PolytopePair& pair, std::uint16_t face, const FaceAxis& axis, double slack)
 {
     const auto corners = pair.b.face(face);
-    // Room is left for the corners that cuts add; a face of very many corners is nearly round and
-    // keeps every few of them.
     const std::size_t step = (corners.size() + kMaxCorners / 2 - 1) / (kMaxCorners / 2);
-    Polygon<double> polygon;
-    for (std::size_t i = 0; i < corners.size(); i += step) {
-        polygon.add(pair.turn * pair.b.vertices[corners[i]] + pair.shift,
-                    static_cast<std::uint16_t>(i % 2048));
+    const auto place = [&](std::size_t i) {
+        return Vec3(pair.turn * pair.b.vertices[corners[i]] + pair.shift);
+    };
+    std::size_t nearest = corners.size();
+    if (step > 1) {
+        const Vec3& normal = pair.a.normals[axis.face];
+        double least = std::numeric_limits<double>::max();
+        for (std::size_t i = 0; i < corners.size(); i += step)
+            least = std::min(least, normal.dot(place(i)) - pair.a.offsets[axis.face]);
+        if (axis.separation < least - slack)
+            nearest = static_cast<std::size_t>(
+                std::find(corners.begin(), corners.end(), axis.vertex) - corners.begin());
     }
+    Polygon<double> polygon;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        if (i % step == 0 || i == nearest)
+            polygon.add(place(i), static_cast<std::uint16_t>(i % 2048));
     return polygon;
 }
 
@@ -298,7 +312,7 @@ void clip_faces(
 {
     const Vec3& normal = pair.a.normals[axis.face];
     const std::uint16_t against = face_against(pair, axis.vertex, normal);
-    Polygon<double> polygon = face_polygon(pair, against);
+    Polygon<double> polygon = face_polygon(pair, against, axis, slack);
     const auto sides = pair.a.face(axis.face);
     for (std::size_t i = 0; i < sides.size() && polygon.count > 0; ++i) {
         const Vec3& from = pair.a.vertices[sides[i]];

@@ -1,4 +1,5 @@
 #include "cost/hard_cases/broken_pairs.hpp"
+#include "kernels/math/rotation.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
@@ -227,6 +228,27 @@ TEST(HullHull, ManyCorneredFacesKeepFourSpreadPoints)
         high = high.cwiseMax(point.position);
     }
     EXPECT_GT((high - low).head<2>().minCoeff(), 0.6);
+}
+
+// Not all corners of so round a face are looked at, but the deepest is.
+TEST(HullHull, ADrumTippedOverIsAsDeepAsItsLowestCorner)
+{
+    std::vector<Vec3> rim;
+    for (int i = 0; i < 120; ++i) {
+        const SinCos turn = sin_cos(i * 0.052359877559829887);
+        for (const double z : {-0.2, 0.2}) rim.emplace_back(turn.cos, turn.sin, z);
+    }
+    Shapes shapes;
+    shapes.hulls = {build_hull(corners_of({3, 3, 0.2})).hull, build_hull(rim).hull};
+    const double bias = bias_of(shapes.hulls[0], shapes.hulls[1]);
+    for (int i = 0; i < 12; ++i) {
+        const Quat tip = exponential(Vec3(0.35, 0, 0)), roll = exponential(Vec3(0, 0, 0.02 * i));
+        const Pose pose{{0.1, 0.2, 0.7}, tip * roll};
+        const double exact =
+            polytope_separation(view_of(shapes.hulls[0]), view_of(shapes.hulls[1]), pose, nullptr);
+        const auto found = run<double>(hull_hull<double>, shapes, kHullA, kHullB, pose, 0);
+        ASSERT_NEAR(deepest(found), exact, bias + 1e-9) << "roll " << i;
+    }
 }
 
 // a's face leads by the bias alone, and nothing of b's face lies over it.
