@@ -170,11 +170,11 @@ ConvexAnswer CaseBench::ask(ConvexQuery& query,
                  [&](const Pose& seen) { return query.ask(method, seen, start); });
 }
 
-ConvexAnswer
-CaseBench::touch_in_float(const ConvexQuery& query, const Pose& a, const Pose& b, double size)
+ConvexAnswer CaseBench::touch(
+    const ConvexQuery& query, Precision precision, const Pose& a, const Pose& b, double size)
 {
     return timed("auto", a, b, size,
-                 [&](const Pose& seen) { return query.touch(seen, Precision::float_); });
+                 [&](const Pose& seen) { return query.touch(seen, precision); });
 }
 
 VolumeAnswer CaseBench::ask_volume(std::string_view way,

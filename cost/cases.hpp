@@ -76,9 +76,9 @@ public:
                      double size,
                      MethodStart start);
 
-    /// What a step in float says of them: whether they touch.
+    /// What a step of that precision says of them: whether they touch, and how deep.
     ConvexAnswer
-    touch_in_float(const ConvexQuery& query, const Pose& a, const Pose& b, double size);
+    touch(const ConvexQuery& query, Precision precision, const Pose& a, const Pose& b, double size);
 
     /// What a way says that two shapes share; its time counts towards the next line.
     VolumeAnswer ask_volume(std::string_view way,

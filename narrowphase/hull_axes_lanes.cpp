@@ -235,7 +235,8 @@ bool Search::find_axes(HullGuess& guess)
 {
     const bool near = find_faces();
     if (near) {
-        find_edges((b_leads() ? best_b_ : best_a_).separation + pair_.bias);
+        // A face that leads tells where they touch, but not whether: edges may still part them.
+        find_edges(least((b_leads() ? best_b_ : best_a_).separation + pair_.bias, pair_.reach));
         const bool others =
             static_cast<int>(guess.a) != edge_.a || static_cast<int>(guess.b) != edge_.b;
         if (known_ == HullGuess::edges && others && edges_have_alike()) {
@@ -333,13 +334,11 @@ void Search::touch(HullTouch& out)
     const float unlike = at_depth - edge_.separation;
     const bool agrees = unlike <= 2 * bias && unlike >= -2 * bias;
     if (edge_.a >= 0 && !(agrees && alike())) cross_edges(out);
-    // A face that leads by its bias alone may have nothing over it. At rest others bear the body,
-    // and a contact that comes and goes would rock it.
-    if (out.count == 0 && face.separation < -4 * bias) {
-        const bool other_known = (by_b ? best_a_ : best_b_).separation > kNever;
-        if (other_known) clip_face(!by_b, out);
-        if (out.count == 0) touch_vertex(by_b, out);
-    }
+    // A face that leads by its bias alone may have nothing over it.
+    if (out.count > 0 || face.separation >= 0) return;
+    const bool by_best = best_b_.separation >= best_a_.separation;
+    if (by_best != by_b) clip_face(by_best, out);
+    if (out.count == 0) touch_vertex(by_best, out);
 }
 
 float Search::apart() const

@@ -204,7 +204,6 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
     const bool b_leads = axes.b_leads(sides);
     const EdgeAxis& edge = axes.edge;
     const FaceAxis& face = b_leads ? axes.face_b : axes.face_a;
-    const FaceAxis& other = b_leads ? axes.face_a : axes.face_b;
     const bool has_edge = !edge.normal.isZero(0);
     const Vec3 normal =
         b_leads ? Vec3(-(pair.turn * pair.b.normals[face.face])) : pair.a.normals[face.face];
@@ -222,12 +221,13 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
     const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
     const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
     if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
-    // A face that leads by its bias alone may have nothing over it. At rest others bear the body,
-    // and a contact that comes and goes would rock it.
-    if (out.count > 0 || face.separation >= -4 * bias) return;
-    face_manifold(b_leads ? pair : turned, other, reach, bias, out, least);
-    if (out.count == 0) touch_vertex(b_leads ? pair : turned, other, out);
-    if (!b_leads) turn_round(pair, out);
+    // A face that leads by its bias alone may have nothing over it.
+    if (out.count > 0 || face.separation >= 0) return;
+    const bool by_b = axes.face_b.separation >= axes.face_a.separation;
+    const FaceAxis& best = by_b ? axes.face_b : axes.face_a;
+    if (by_b != b_leads) face_manifold(by_b ? turned : pair, best, reach, bias, out, least);
+    if (out.count == 0) touch_vertex(by_b ? turned : pair, best, out);
+    if (by_b) turn_round(pair, out);
 }
 
 void collide_polytopes(const PolytopePair& pair,

@@ -222,8 +222,8 @@ void judge_in_float(CaseBench& bench,
     const QueryVerdict right = pair.truth > 0 ? QueryVerdict::apart : QueryVerdict::touching;
     for (const bool swapped : {false, true}) {
         const ConvexAnswer answer =
-            bench.touch_in_float(queries[swapped], swapped ? pair.at_b : pair.at_a,
-                                 swapped ? pair.at_a : pair.at_b, pair.size);
+            bench.touch(queries[swapped], Precision::float_, swapped ? pair.at_b : pair.at_a,
+                        swapped ? pair.at_a : pair.at_b, pair.size);
         const bool wrong = answer.verdict != right || !std::isfinite(answer.separation)
             || !(std::abs(answer.normal.norm() - 1) < kFloat);
         tally.count("auto", in_float(setting), "wrong or no answers", wrong ? 1 : 0);

@@ -2,8 +2,9 @@
 //
 // Answer: pairs certified apart or touching by how they were made, a hundred thousand of them, and
 // hulls of 10 to 10,000 vertices, with rims and fans where climbing to a furthest vertex could come
-// to rest too early; the pairs of H28 once more, each start against the plain one. Filters are held
-// to never part what touches, finders to the pairs of all_pairs.
+// to rest too early; the pairs of H28 once more, each start against the plain one. What a step says
+// of them, depths in float too, is held to the same. Filters are held to never part what touches,
+// finders to the pairs of all_pairs.
 #include "cost/hard_cases/broken_pairs.hpp"
 #include "cost/hard_cases/certified_pairs.hpp"
 #include "cost/hard_cases/convex_judge.hpp"
@@ -22,9 +23,11 @@ constexpr int kShapes = 500, kPlacings = 200;  // 100,000 pairs
 constexpr MethodStart kStarts[] = {MethodStart::cached, MethodStart::cold, MethodStart::plain};
 // Methods that look at faces or edges take time with the square of their number.
 constexpr int kMostForPolytopes = 1000;
-// Of the balls inside both, as in hull_hull.cpp: contacts keep to a face where edges are better by
-// no more, so that bodies at rest do not rock, and within it a step decides neither way.
+// Of the balls inside both, as in hull_hull.cpp: contacts keep to a face where edges are less deep
+// by no more, so that bodies at rest do not rock.
 constexpr double kFaceLead = 1e-3;
+// Of random pairs that touch: so seldom are edges less deep by so little.
+constexpr double kMostByLead = 0.05;
 
 /// A hull, and what a scene would state to have it.
 struct Stated {
@@ -63,22 +66,40 @@ public:
             static_cast<int>(std::max(a.hull.vertices.size(), b.hull.vertices.size()));
         for (int i = 0; i < placings; ++i) {
             const CertifiedPair pair = certified_pair(a.hull, b.hull, random);
+            double depth = 0;
             for (std::size_t k = 0; k < methods_.size(); ++k) {
                 const MethodDescription& method = methods_[k];
                 if (!method.touch || (method.polytopes_only && most > kMostForPolytopes)) continue;
-                look_at(counts_[k], pair, size,
-                        bench_.ask(query, method.name, Pose{}, pair.b_in_a, size, kStarts[i % 3]));
+                const ConvexAnswer answer =
+                    bench_.ask(query, method.name, Pose{}, pair.b_in_a, size, kStarts[i % 3]);
+                look_at(counts_[k], pair, size, answer);
+                if (method.name == "gjk") depth = -told_separation(method, answer);
             }
-            if (pair.gap > kFloat * size + lead)
-                look_at(in_float_, pair, size,
-                        bench_.touch_in_float(query, Pose{}, pair.b_in_a, size));
+            const auto touch = [&](Precision precision) {
+                return bench_.touch(query, precision, Pose{}, pair.b_in_a, size);
+            };
+            look_at(in_double_, pair, size, touch(Precision::double_));
+            if (pair.gap <= kFloat * size) continue;
+            const ConvexAnswer answer = touch(Precision::float_);
+            look_at(in_float_, pair, size, answer);
+            if (answer.verdict == QueryVerdict::touching && depth > 0)
+                look_at_depth(std::abs(answer.separation + depth), lead, size);
         }
     }
 
     void tally(MethodTally& tally) const
     {
-        tally.count("auto", in_float(setting_), "wrong verdicts beyond a face's lead",
-                    in_float_.wrong);
+        tally.count("auto", setting_, "wrong verdicts", in_double_.wrong);
+        tally.count("auto", in_float(setting_), "wrong verdicts", in_float_.wrong);
+        if (depths_ > 0) {
+            tally.worst("auto", in_float(setting_), "depth error beyond a face's lead / size",
+                        beyond_lead_, kFloat);
+            tally.worst("auto", in_float(setting_), "depth error, by a face's lead / size",
+                        depth_error_, 2 * kFaceLead);
+        }
+        if (depths_ >= kPlacings)
+            tally.worst("auto", in_float(setting_), "share of depths told by a face's lead",
+                        by_lead_ / depths_, kMostByLead);
         for (std::size_t k = 0; k < methods_.size(); ++k) {
             const std::string_view method = methods_[k].name;
             const Count& count = counts_[k];
@@ -111,11 +132,21 @@ private:
         count.undecided_far += undecided && !pair.touching && pair.gap >= kFarGap * size ? 1 : 0;
     }
 
+    // A face that leads is deeper than the true depth, by up to its lead.
+    void look_at_depth(double error, double lead, double size)
+    {
+        depths_ += 1;
+        by_lead_ += error > kFloat * size ? 1 : 0;
+        depth_error_ = std::max(depth_error_, error / size);
+        beyond_lead_ = std::max(beyond_lead_, (error - lead) / size);
+    }
+
     CaseBench& bench_;
     std::string_view setting_;
     std::vector<MethodDescription> methods_ = known_methods();
     std::vector<Count> counts_ = std::vector<Count>(methods_.size());
-    Count in_float_;
+    Count in_float_, in_double_;  // a step's pair functions
+    double depths_ = 0, by_lead_ = 0, depth_error_ = 0, beyond_lead_ = 0;
 };
 
 void judge_random_pairs(CaseBench& bench, MethodTally& tally)

@@ -98,6 +98,48 @@ TEST(WideHull, AgreesWithEveryAxisAtEverySize)
     }
 }
 
+// Faces are favored over edges that are a little better, and a's faces over b's; but that tells
+// where they touch, and not whether.
+TEST(WideHull, TellsWhoTouchesHoweverLittleAnAxisLeads)
+{
+    RandomShapes random(37);
+    int apart = 0, deep = 0, too_many = 0, missed = 0;
+    for (int i = 0; i < 4000; ++i) {
+        Shapes shapes;
+        shapes.hulls = {random.hull(8 + i % 5, 1), random.hull(6 + i % 7, 1)};
+        shapes.boxes = {{random.vector(0.2, 1)}};
+        const ShapeRef first = i % 3 == 0 ? kBox : kHullA;
+        const PolytopeShape a_shape(shapes, first), b_shape(shapes, kHullB);
+        const PolytopeView &a = a_shape.view(), &b = b_shape.view();
+        const double size = std::max(a.outer_radius, b.outer_radius);
+        const double reach = i % 2 == 0 ? 0 : 0.02;
+        const double beyond = random.number(-6e-4, 3e-4) * size;
+        Pose pose = random.pose(2);
+        // A face all but along a face.
+        const Quat tilt(1, random.number(-1e-2, 1e-2), random.number(-1e-2, 1e-2), 0);
+        if (i % 4 < 2)
+            pose.orientation = tilt.normalized()
+                * Quat::FromTwoVectors(b.normals[static_cast<std::size_t>(i) % b.normals.size()],
+                                       -a.normals.back());
+        pose = parted_by(a, b, pose, beyond > 0 ? reach + beyond : beyond);
+        const double exact = polytope_separation(a, b, pose, nullptr);
+        const auto coarse = run<float>(hull_hull<float>, shapes, first, kHullB, pose, reach);
+        const auto fine = run<double>(hull_hull<double>, shapes, first, kHullB, pose, reach);
+        // Within reach and apart, edges may still pass one another by further.
+        if (exact > reach + 1e-5 * size) {
+            ++apart;
+            too_many += (coarse.count > 0) + (fine.count > 0);
+        } else if (exact < -1e-5 * size) {
+            ++deep;
+            missed += (coarse.count == 0) + (fine.count == 0);
+        }
+    }
+    EXPECT_GT(apart, 1000);
+    EXPECT_GT(deep, 2000);
+    EXPECT_EQ(too_many, 0) << "seed 37";
+    EXPECT_EQ(missed, 0) << "seed 37";
+}
+
 TEST(WideHull, SameNormalAsInDoubleWhereOneFeatureLeads)
 {
     RandomShapes random(32);
