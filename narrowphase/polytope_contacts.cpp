@@ -310,8 +310,18 @@ EdgeAxis best_edge_axis_at(const PolytopePair& pair,
 void clip_faces(
     const PolytopePair& pair, const FaceAxis& axis, double reach, double slack, PolytopePoints& out)
 {
+    const std::uint16_t against = face_against(pair, axis.vertex, pair.a.normals[axis.face]);
+    clip_faces(pair, axis, against, reach, slack, out);
+}
+
+void clip_faces(const PolytopePair& pair,
+                const FaceAxis& axis,
+                std::uint16_t against,
+                double reach,
+                double slack,
+                PolytopePoints& out)
+{
     const Vec3& normal = pair.a.normals[axis.face];
-    const std::uint16_t against = face_against(pair, axis.vertex, normal);
     Polygon<double> polygon = face_polygon(pair, against, axis, slack);
     const auto sides = pair.a.face(axis.face);
     for (std::size_t i = 0; i < sides.size() && polygon.count > 0; ++i) {

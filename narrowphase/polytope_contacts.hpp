@@ -78,6 +78,14 @@ void clip_faces(const PolytopePair& pair,
                 double slack,
                 PolytopePoints& out);
 
+/// The same with a face of b that is known.
+void clip_faces(const PolytopePair& pair,
+                const FaceAxis& axis,
+                std::uint16_t against,
+                double reach,
+                double slack,
+                PolytopePoints& out);
+
 /// The point midway between two edges. None where edges that are apart pass one another by further
 /// than `limit`.
 void cross_edges(const PolytopePair& pair,

@@ -17,6 +17,9 @@ constexpr double kLevel = 1e-9;
 // rounding on a seam never lets both triangles take it for the other's.
 constexpr double kSeam = 1e-4;
 
+// Cosine beyond which faces are alike: a fiftieth of a radian.
+constexpr double kAlike = 0.9998;
+
 bool rises(const Vec3& from, const Vec3& to, const Vec3& direction)
 {
     const Vec3 step = to - from;
@@ -161,6 +164,20 @@ void try_faces(const MeshTriangle& triangle,
     }
 }
 
+// Where the polytope's face at its deepest corner is a sliver beside the triangle: the first that
+// is all but along it and has anything over the triangle.
+void clip_like_faces(const PolytopePair& pair,
+                     const FaceAxis& front,
+                     double reach,
+                     double slack,
+                     PolytopePoints& found)
+{
+    const Vec3 against = pair.turn.transpose() * -pair.a.normals[front.face];
+    for (std::size_t i = 0; i < pair.b.normals.size() && found.count == 0; ++i)
+        if (pair.b.normals[i].dot(against) > kAlike)
+            clip_faces(pair, front, static_cast<std::uint16_t>(i), reach, slack, found);
+}
+
 // The normal on the far side of an edge that sticks out: a rim pushes sideways too, and a little
 // further, so that directions straight out of it are well inside.
 Vec3 far_normal(const MeshTriangle& triangle, std::size_t edge, const Vec3& rim)
@@ -169,6 +186,31 @@ Vec3 far_normal(const MeshTriangle& triangle, std::size_t edge, const Vec3& rim)
     if (next >= 0) return triangle.mesh.normals[static_cast<std::size_t>(next)];
     return (rim - 0.05 * triangle.normal).normalized();
 }
+
+// The triangle with the edges that stick out alone; their arcs end where the next triangle's begin.
+struct OutwardEdges {
+    OutwardEdges(const MeshTriangle& triangle, const TrianglePolytope& flat, const PolytopePair& of)
+        : normals(flat.normals), offsets(flat.offsets), pair(of)
+    {
+        std::size_t count = 0;
+        for (std::size_t e = 0; e < 3; ++e) {
+            if ((triangle.mesh.convex_edges[triangle.index] >> e & 1) == 0) continue;
+            normals[2 + e] = far_normal(triangle, e, flat.normals[2 + e]);
+            offsets[2 + e] = normals[2 + e].dot(triangle.corners[e]);
+            edges[count++] = of.a.edges[2 * e];
+        }
+        pair.a.normals = normals;
+        pair.a.offsets = offsets;
+        pair.a.edges = {edges.data(), count};
+    }
+    OutwardEdges(const OutwardEdges&) = delete;  // the pair looks at the arrays
+    OutwardEdges& operator=(const OutwardEdges&) = delete;
+
+    std::array<Vec3, 5> normals;
+    std::array<double, 5> offsets;
+    std::array<Hull::Edge, 3> edges{};
+    PolytopePair pair;
+};
 
 }  // namespace
 
@@ -288,33 +330,23 @@ void touch_polytope(const MeshTriangle& triangle,
     // Any edge at all may show that the two are apart.
     if (best_edge_axis(pair, reach).separation > reach) return;
 
-    // Edges of the triangle that stick out; their arcs end where the next triangle's begin.
-    PolytopePair edged = pair;
-    std::array<Vec3, 5> normals = flat.normals;
-    std::array<double, 5> offsets = flat.offsets;
-    std::array<Hull::Edge, 3> edges{};
-    std::size_t edge_count = 0;
-    for (std::size_t e = 0; e < 3; ++e) {
-        if ((triangle.mesh.convex_edges[triangle.index] >> e & 1) == 0) continue;
-        normals[2 + e] = far_normal(triangle, e, flat.normals[2 + e]);
-        offsets[2 + e] = normals[2 + e].dot(corners[e]);
-        edges[edge_count++] = pair.a.edges[2 * e];
-    }
-    edged.a.normals = normals;
-    edged.a.offsets = offsets;
-    edged.a.edges = {edges.data(), edge_count};
-    const EdgeAxis edge = best_edge_axis(edged, best.separation + bias);
+    const OutwardEdges outward(triangle, flat, pair);
+    const EdgeAxis edge = best_edge_axis(outward.pair, best.separation + bias);
     if (!edge.normal.isZero(0)) {
-        if (edge.separation <= reach) cross_edges(edged, edge, reach + bias, out);
+        if (edge.separation <= reach) cross_edges(outward.pair, edge, reach + bias, out);
         return;
     }
-
     const bool by_front = best.kind == TriangleAxis::Kind::front;
     PolytopePoints found;
     clip_faces(by_front ? pair : turned, by_front ? front : best.face, reach, bias, found);
+    if (by_front) clip_like_faces(pair, front, reach, bias, found);
     out.normal = by_front ? triangle.normal : turned.a.normals[best.face.face];
     reduce_to_four<double>({found.points.data(), found.count}, out);
     if (!by_front) turn_round(pair, out);
+    // What leads by its bias alone may have nothing over it.
+    if (out.count > 0 || best.separation >= 0) return;
+    const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
+    if (!better.normal.isZero(0)) cross_edges(outward.pair, better, reach + bias, out);
 }
 
 }  // namespace throng

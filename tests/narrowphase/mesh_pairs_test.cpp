@@ -220,7 +220,7 @@ TEST(MeshPairs, AHullIsAsDeepAsItLiesHoweverUnevenItsFaces)
     const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
     const double stray = 3.5e-5;
     RandomShapes random(35);
-    int uneven = 0;
+    int uneven = 0, slivers = 0;
     for (int i = 0; i < 2000; ++i) {
         SCOPED_TRACE("seed 35, pose " + std::to_string(i));
         std::vector<Vec3> points = corners_of({2, 1, 0.5});
@@ -236,17 +236,18 @@ TEST(MeshPairs, AHullIsAsDeepAsItLiesHoweverUnevenItsFaces)
         const double depth = random.number(0.002, 0.02);
         const Pose pose{{random.number(-1, 1), random.number(-1, 1), 0.5 - depth},
                         Quat(random.number(-1, 1), 0, 0, random.number(-1, 1)).normalized()};
-        // Elsewhere the cut corners have a face of their own below.
+        // Some cut corners have a sliver of a face of their own below, beside the floor at times.
         const auto& normals = shapes.hulls[0].normals;
         const auto is_below = [](const Vec3& normal) { return normal.z() < -0.9; };
-        if (std::count_if(normals.begin(), normals.end(), is_below) != 1) continue;
-        ++uneven;
+        const auto below = std::count_if(normals.begin(), normals.end(), is_below);
+        ++(below == 1 ? uneven : slivers);
         double least = 1;
         for (const auto& one : touch_mesh<double>(shapes, {ShapeKind::hull, 0}, pose, 0))
             least = std::min(least, deepest(one.manifold));
         ASSERT_NEAR(least, -depth, 2 * stray);
     }
     EXPECT_GT(uneven, 1000);
+    EXPECT_GT(slivers, 300);
 }
 
 TEST(MeshPairs, ABallCrossingAConvexRidgeIsHeldThroughout)
