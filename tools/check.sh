@@ -36,7 +36,7 @@ if [[ ${1:-} == all ]]; then
         name=$(basename "$fuzzer" _fuzz)
         say "fuzzing $name for 30 s"
         mkdir -p "build/fuzz/found/$name"
-        "$fuzzer" -max_total_time=30 -artifact_prefix="build/fuzz/found/$name-" \
+        "$fuzzer" -max_total_time=30 -entropic=0 -artifact_prefix="build/fuzz/found/$name-" \
             "build/fuzz/found/$name" "tests/fuzz/corpus/$name"
     done
 fi

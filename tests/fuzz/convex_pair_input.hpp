@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <span>
 
 namespace throng {
@@ -50,11 +51,30 @@ private:
     std::size_t at_ = 0;
 };
 
+/// Some 200 points on an ellipsoid, from few bytes: so many that corners are sought by GJK.
+inline HullShape large_hull_of(FuzzBytes& bytes, double scale)
+{
+    const std::uint32_t count = 192 + bytes.below(64);
+    const Vec3 axes(1, bytes.small(2), bytes.small(2));
+    std::minstd_rand random(1 + bytes.byte());
+    HullShape hull;
+    while (hull.points.size() < count) {
+        Vec3 point;
+        for (double& number : point) number = static_cast<double>(random()) / (1U << 30) - 1;
+        const double square = point.squaredNorm();
+        if (square > 0.01 && square < 1)
+            hull.points.push_back(scale * axes.cwiseProduct(point.normalized()));
+    }
+    return hull;
+}
+
 /// 4 to 40 points: on a coarse grid, beside one by a hair, slender, or anywhere; now and then far
-/// from their origin.
+/// from their origin. One hull in fifty is large.
 inline HullShape hull_of(FuzzBytes& bytes, double scale)
 {
-    const std::uint32_t count = 4 + bytes.below(37), form = bytes.below(5);
+    const std::uint32_t first = bytes.byte();
+    if (first > 250) return large_hull_of(bytes, scale);
+    const std::uint32_t count = 4 + first % 37, form = bytes.below(5);
     const double hair = bytes.small(15), thin = bytes.small(6);
     const double away = std::array{0.0, 0.0, 1.0, 10.0}[bytes.below(4)];
     const Vec3 offset = away == 0 ? Vec3(Vec3::Zero()) : Vec3(bytes.vector() * away);
