@@ -21,11 +21,12 @@ struct SurfaceTouch {
     std::uint32_t feature = 0;
 };
 
-/// The greatest number of manifolds made of one pair's touches.
-inline constexpr std::size_t kMostPatches = 24;
+/// The greatest number of groups that one pair's touches are put in, and of manifolds made of them.
+inline constexpr std::size_t kMostPatches = 24, kMostManifolds = 4 * kMostPatches;
 
-/// Groups touches that push much the same way into manifolds of up to four points that span the
-/// group. Appended to `out` in order of patch.
+/// Groups touches that push much the same way, and chooses of each group up to four that span it.
+/// Those whose normals are within 8 degrees of the group's are one manifold with that normal; of
+/// the others each is a manifold of one point with its own. Appended to `out` in order of patch.
 ///
 ///   touches  sorted by this, and those further apart than `reach` taken out; the answer does not
 ///            hang on their order. Features are to differ from one another
@@ -33,9 +34,9 @@ inline constexpr std::size_t kMostPatches = 24;
 ///   size     m, of the smaller of the two shapes
 ///
 /// Normals of a group's touches are within 31 degrees of the group's: their mean, weighed by how
-/// far within reach each is. Separations are what of them lies along it. The places of touches do
-/// not part them: bodies are rigid, so what pushes one way holds by the four that span the most
-/// wherever they are, as a table stands on four legs.
+/// far within reach each is. Separations are what of them lies along their manifold's. The places
+/// of touches do not part them: bodies are rigid, so what pushes one way holds by the four that
+/// span the most wherever they are, as a table stands on four legs.
 ///
 /// What is chosen hangs on directions and places rather than on small differences in depth, so that
 /// bodies at rest keep the same points. The deepest of each group is among them, or one that is as

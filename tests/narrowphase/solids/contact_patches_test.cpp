@@ -39,13 +39,13 @@ std::vector<SurfaceTouch> grid(int side, const Vec3& normal, std::uint32_t featu
     return touches;
 }
 
-// Groups that lean apart by more than the angle that one takes in.
+// Groups that lean apart by more than the angle that one takes in, of normals that agree.
 std::vector<SurfaceTouch> clusters(Dice& dice)
 {
     std::vector<SurfaceTouch> touches;
     for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(-0.8, 0, -0.6)})
         for (int i = 0; i < 12; ++i) {
-            const Vec3 normal = (axis + dice.point(0.08)).normalized();
+            const Vec3 normal = (axis + dice.point(0.06)).normalized();
             const auto feature = static_cast<std::uint32_t>(touches.size());
             touches.push_back(
                 {axis + dice.point(0.3), normal, dice.between(-0.01, 0.019), feature});
@@ -139,9 +139,10 @@ TEST(ContactPatches, OppositeSidesAreNotJoined)
     EXPECT_NEAR(found[0].manifold.normal.dot(found[1].manifold.normal), -1, 1e-14);
 }
 
-TEST(ContactPatches, NormalsOfAPatchAreWithin31DegreesOfItsOwn)
+TEST(ContactPatches, NormalsOfAPatchAreWithin8DegreesOfItsOwn)
 {
     Dice dice(61);
+    std::size_t alone = 0;
     for (int i = 0; i < 200; ++i) {
         std::vector<SurfaceTouch> touches;
         for (std::uint32_t k = 0; k < 60; ++k) {
@@ -153,12 +154,39 @@ TEST(ContactPatches, NormalsOfAPatchAreWithin31DegreesOfItsOwn)
             for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k) {
                 const auto& point = patch.manifold.points[k];
                 const SurfaceTouch& touch = touches[point.feature];
-                const double along = patch.manifold.normal.dot(touch.normal);
-                ASSERT_GT(along, std::cos(31.1 * std::numbers::pi / 180)) << "seed 61, set " << i;
-                ASSERT_EQ(point.separation, touch.separation * along);
                 ASSERT_EQ(point.position, touch.position);
+                const bool own = patch.manifold.normal == touch.normal;
+                const double along = own ? 1 : patch.manifold.normal.dot(touch.normal);
+                alone += own && patch.manifold.count == 1 ? 1 : 0;
+                ASSERT_GT(along, std::cos(8.1 * std::numbers::pi / 180)) << "seed 61, set " << i;
+                ASSERT_DOUBLE_EQ(point.separation, touch.separation * along);
             }
     }
+    EXPECT_GT(alone, 200U);
+}
+
+// A bolt in its nut: the flanks touch all round, and let it turn as its thread runs.
+TEST(ContactPatches, AFlankAllRoundDoesNotStopAScrew)
+{
+    constexpr double kLead = 0.08;  // rise over the way round
+    std::vector<SurfaceTouch> touches;
+    for (std::uint32_t i = 0; i < 400; ++i) {
+        const double angle = 8 * std::numbers::pi * i / 400;
+        const Vec3 out(std::cos(angle), std::sin(angle), 0), round(-out.y(), out.x(), 0);
+        const Vec3 normal = Vec3(Vec3::UnitZ() - kLead * round + out / std::sqrt(3)).normalized();
+        touches.push_back({out + kLead * angle * Vec3::UnitZ(), normal, 0, i});
+    }
+    std::size_t points = 0;
+    for (const PatchManifold& patch : patches(touches))
+        for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k) {
+            const Vec3 moves =
+                Vec3::UnitZ().cross(patch.manifold.points[k].position) + kLead * Vec3::UnitZ();
+            EXPECT_NEAR(patch.manifold.normal.dot(moves), 0,
+                        std::sin(8.1 * std::numbers::pi / 180));
+            if (patch.manifold.count == 1) EXPECT_NEAR(patch.manifold.normal.dot(moves), 0, 1e-14);
+            ++points;
+        }
+    EXPECT_GE(points, 8U);
 }
 
 TEST(ContactPatches, TheDeepestOfEachGroupIsKept)
@@ -196,7 +224,7 @@ TEST(ContactPatches, TheOrderOfTouchesDoesNotMatter)
         const std::size_t left_out = make_patches(touches, kReach, 1, first);
         ASSERT_EQ(make_patches(shuffled, kReach, 1, second), left_out);
         ASSERT_TRUE(same(first, second)) << "seed 63, set " << i;
-        ASSERT_LE(first.size(), kMostPatches);
+        ASSERT_LE(first.size(), kMostManifolds);
         for (std::size_t k = 1; k < first.size(); ++k)
             ASSERT_LT(first[k - 1].patch, first[k].patch);
     }
@@ -287,7 +315,9 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
             }
     std::vector<PatchManifold> out;
     const std::size_t left_out = make_patches(touches, kReach, 1, out);
-    ASSERT_EQ(out.size(), kMostPatches);
+    // One that joins others may keep its normal to itself.
+    ASSERT_GE(out.size(), kMostPatches);
+    ASSERT_LE(out.size(), touches.size());
     std::set<std::uint32_t> held;
     for (const PatchManifold& patch : out)
         for (const std::uint32_t feature : features(patch.manifold)) held.insert(feature);
