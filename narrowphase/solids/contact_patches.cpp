@@ -25,17 +25,19 @@ namespace {
 constexpr double kAlike = 0.857;
 // Of the angle over which the touches of a group too many join another, 45 degrees.
 constexpr double kJoins = 0.7;
-// Cosine of the angle up to which a chosen place goes by its group's normal, 8 degrees. With 5 or
-// 12 bolts run too, with 15 those of spheres stand still; heaps rest with any.
-constexpr double kOneNormal = 0.9903;
+// Cosines of the angles up to which a chosen place goes by its group's normal, 8 degrees, and from
+// which it goes by its own, 12; by some of either between them, so that what trembles does not
+// jump. By the group's up to 15 bolts made of spheres do not turn.
+constexpr double kGroupNormal = 0.9903, kOwnNormal = 0.9781;
 // Sine within which normals agree with one another: those of flat faces, rounding and grid
 // included.
 constexpr double kAgree = 0.05;
 // How often a group's middle is sought anew at most.
 constexpr int kRounds = 4;
 // How many times a depth missing weighs as much as a distance to span. Of a ball of radius R that
-// keeps what lies within R / 20 of the deepest place.
-constexpr double kShallow = 20;
+// keeps what lies within R / 20 of the deepest place. Less where the reach is more than this part
+// of size, as then bodies are fast, and what is far apart yet may be the first to touch.
+constexpr double kShallow = 20, kShortReach = 0.1;
 // Far more groups than directions 31 degrees apart need. What is then left over joins or is left.
 constexpr std::size_t kMostGroups = 48;
 constexpr std::uint8_t kNone = 255;
@@ -274,7 +276,9 @@ class Spread {
 public:
     using Point = LocalManifold<double>::Point;
 
-    Spread(const std::vector<Point>& points, const Vec3& normal) : points_(points)
+    /// How much a depth missing weighs: see kShallow.
+    Spread(const std::vector<Point>& points, const Vec3& normal, double shallow)
+        : points_(points), shallow_(shallow)
     {
         deepest_ = best([](const Point&) { return 0.0; });
         const Vec3 start = across(normal);
@@ -308,7 +312,7 @@ private:
         std::size_t best = 0;
         double most = -std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const double score = place(points_[i]) - kShallow * (points_[i].separation - deepest);
+            const double score = place(points_[i]) - shallow_ * (points_[i].separation - deepest);
             if (!(score > most)) continue;
             most = score;
             best = i;
@@ -338,10 +342,17 @@ private:
     }
 
     const std::vector<Point>& points_;
+    double shallow_;
     std::size_t deepest_ = std::numeric_limits<std::size_t>::max();
     std::array<std::size_t, 4> chosen_{};
     std::size_t count_ = 0;
 };
+
+double weight_of_depth(double reach, double size)
+{
+    const double fast = reach / (kShortReach * size);
+    return fast > 1 ? kShallow / (fast * fast) : kShallow;
+}
 
 // Chooses by places told apart and depths in steps, and takes the touches as they are.
 //
@@ -351,6 +362,7 @@ void choose_points(const Grouping& groups,
                    std::uint8_t group,
                    const Vec3& normal,
                    const std::vector<SurfaceTouch>& touches,
+                   double reach,
                    double size,
                    const Visit& visit)
 {
@@ -364,9 +376,16 @@ void choose_points(const Grouping& groups,
                               step > 0 ? std::round(along / step) * step : along,
                               static_cast<std::uint32_t>(i)});
     }
-    Spread(candidates, normal).visit([&](const auto& chosen, std::uint32_t end) {
-        visit(touches[chosen.feature], end);
-    });
+    Spread(candidates, normal, weight_of_depth(reach, size))
+        .visit([&](const auto& chosen, std::uint32_t end) { visit(touches[chosen.feature], end); });
+}
+
+// Of a place whose normal does not agree with its group's: see kOwnNormal.
+Vec3 normal_between(const Vec3& group, const Vec3& own, double cosine)
+{
+    if (cosine <= kOwnNormal) return own;
+    const double part = (kGroupNormal - cosine) / (kGroupNormal - kOwnNormal);
+    return (part * own + (1 - part) * group).normalized();
 }
 
 // What agrees with the group's normal together, and the rest each by itself.
@@ -374,6 +393,7 @@ void add_manifolds(const Grouping& groups,
                    std::uint8_t group,
                    const Vec3& normal,
                    const std::vector<SurfaceTouch>& touches,
+                   double reach,
                    double size,
                    std::size_t first,
                    std::vector<PatchManifold>& out)
@@ -383,15 +403,15 @@ void add_manifolds(const Grouping& groups,
     together.manifold.normal = normal;
     const auto place = [&](const SurfaceTouch& touch, std::uint32_t end) {
         const double along = normal.dot(touch.normal);
-        if (along >= kOneNormal) {
-            together.manifold.add(touch.position, touch.separation * along, touch.feature);
-            return;
-        }
-        PatchManifold& alone = out.emplace_back(PatchManifold{kNames * (end + 1) + name, {}});
-        alone.manifold.normal = touch.normal;
-        alone.manifold.add(touch.position, touch.separation, touch.feature);
+        const bool agrees = along >= kGroupNormal;
+        PatchManifold alone{kNames * (end + 1) + name, {}};
+        LocalManifold<double>& manifold = agrees ? together.manifold : alone.manifold;
+        if (!agrees) manifold.normal = normal_between(normal, touch.normal, along);
+        manifold.add(touch.position, touch.separation * manifold.normal.dot(touch.normal),
+                     touch.feature);
+        if (!agrees) out.push_back(alone);
     };
-    choose_points(groups, group, normal, touches, size, place);
+    choose_points(groups, group, normal, touches, reach, size, place);
     if (together.manifold.count > 0) out.push_back(together);
 }
 
@@ -412,7 +432,7 @@ std::size_t make_patches(std::vector<SurfaceTouch>& touches,
     const std::size_t first = out.size();
     const Grouping groups(touches, reach, size);
     groups.visit([&](const Vec3& normal, std::uint8_t group) {
-        add_manifolds(groups, group, normal, touches, size, first, out);
+        add_manifolds(groups, group, normal, touches, reach, size, first, out);
     });
     std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
               [](const PatchManifold& a, const PatchManifold& b) { return a.patch < b.patch; });

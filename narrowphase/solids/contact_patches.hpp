@@ -25,8 +25,9 @@ struct SurfaceTouch {
 inline constexpr std::size_t kMostPatches = 24, kMostManifolds = 4 * kMostPatches;
 
 /// Groups touches that push much the same way, and chooses of each group up to four that span it.
-/// Those whose normals are within 8 degrees of the group's are one manifold with that normal; of
-/// the others each is a manifold of one point with its own. Appended to `out` in order of patch.
+/// Those whose normals are within 8 degrees of the group's are one manifold with that normal; each
+/// of the others is a manifold of one point, from 12 degrees on with its own. Appended to `out` in
+/// order of patch.
 ///
 ///   touches  sorted by this, and those further apart than `reach` taken out; the answer does not
 ///            hang on their order. Features are to differ from one another
@@ -40,7 +41,8 @@ inline constexpr std::size_t kMostPatches = 24, kMostManifolds = 4 * kMostPatche
 ///
 /// What is chosen hangs on directions and places rather than on small differences in depth, so that
 /// bodies at rest keep the same points. The deepest of each group is among them, or one that is as
-/// deep to within a ten-thousandth of size.
+/// deep to within a ten-thousandth of size. What lies shallower counts for less; the less so the
+/// further the reach is beyond a tenth of size, as of fast bodies what is far may touch first.
 ///
 /// Where there are more groups than kMostPatches, the touches of the shallowest join those that
 /// push within 45 degrees of them, or are left out; how many that overlap were left out is what it
