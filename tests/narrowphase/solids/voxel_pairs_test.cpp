@@ -154,13 +154,18 @@ TEST(VoxelPairs, BoxOnBoxIsExactWhereACornerOrAnEdgeMeetsAFace)
                 << "seed 93, box " << i;
             ASSERT_GT(depth, std::min(separation, 0.94 * separation) - 2e-3 * voxel)
                 << "seed 93, box " << i;
-            // Nothing is pushed sideways, and a flat face is held by its four corners.
-            ASSERT_EQ(found.size(), 1U) << "seed 93, box " << i;
+            // Nothing is pushed sideways: what leans is round a rim, by its 20 degrees and the
+            // grid's share. A flat face is held by its four corners.
+            int points = 0;
+            for (const PatchManifold& one : found) {
+                ASSERT_GT(one.manifold.normal.z(), 0.92) << "seed 93, box " << i;
+                points += one.manifold.count;
+            }
             // Cells at the rim of a face mix what is round the edge into its normal; the fewer
             // points touch, the more that counts: of a face, an edge, a corner.
             const double tilt[] = {0.002, 0.01, 0.1};
             ASSERT_LT((patch.manifold.normal - Vec3::UnitZ()).norm(), tilt[i % 3]);
-            ASSERT_GE(patch.manifold.count, i % 3 == 0 ? 4 : 1);
+            ASSERT_GE(points, i % 3 == 0 ? 4 : 1);
         }
     }
 }
