@@ -112,10 +112,10 @@ void case_solid_heap(CaseBench& bench)
         judge_heap(bench, "lumps", noisy_ball(kLump, 0.3, 500, 7), 20, way);
     for (const SolidWayName& way : kSolidWays) judge_file(bench, "bunny", 20, way);
     judge_file(bench, "bunny", 200, voxels);
-    for (const char* kind : {"spot", "kettle", "torus", "cube_cup"})
+    for (const char* kind : {"spot", "snowflake", "kettle", "torus", "cube_cup"})
         judge_file(bench, kind, 50, voxels);
-    // 0.032 thick, and falls five times that in a step: whatever the voxels, plates then come to
-    // lie through one another, and the nearest way out is to either side. Steps of about its
+    // 0.032 m thick, and falls five times that in a step: plates then come to lie through one
+    // another, whatever the voxels, and the nearest way out is to either side. Steps of about its
     // thickness and three voxels across it will do; parts do without.
     judge_file(bench, "snowflake", 50, voxels, {1.0 / 240, 0.01});
     judge_file(bench, "snowflake", 50, kSolidWays[1]);
