@@ -1,6 +1,7 @@
 #include "kernels/geometry/mesh_distance.hpp"
 
 #include "kernels/check.hpp"
+#include "kernels/geometry/mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,14 @@ namespace {
 // Rounding of the distance from a triangle's plane, and more.
 constexpr double kSlack = 1 + 1e-9;
 
+double distance2_to(const Vec3& lower, const Vec3& upper, const Vec3& point)
+{
+    return (point - point.cwiseMax(lower).cwiseMin(upper)).squaredNorm();
+}
+
 double distance2_to(const Mesh::Node& node, const Vec3& point)
 {
-    return (point - point.cwiseMax(node.lower).cwiseMin(node.upper)).squaredNorm();
+    return distance2_to(node.lower, node.upper, point);
 }
 
 // Most triangles of a leaf are ruled out by their planes alone.
@@ -22,6 +28,14 @@ bool plane_is_beyond(const Mesh& mesh, std::uint32_t triangle, const Vec3& point
     const Vec3& corner = mesh.vertices[mesh.triangles[triangle][0]];
     const double height = mesh.normals[triangle].dot(point - corner);
     return height * height > distance2 * kSlack;
+}
+
+// And most others by their boxes: far cheaper than to find the nearest point.
+bool is_beyond(const Mesh& mesh, std::uint32_t triangle, const Vec3& point, double distance2)
+{
+    if (plane_is_beyond(mesh, triangle, point, distance2)) return true;
+    const Box3 box = triangle_box(mesh, triangle);
+    return distance2_to(box.lower, box.upper, point) > distance2 * kSlack;
 }
 
 MeshPoint on_triangle(const Mesh& mesh, std::uint32_t triangle, const Vec3& point)
@@ -63,7 +77,7 @@ MeshPoint nearest_on_mesh(const Mesh& mesh, const Vec3& point, double limit, std
     MeshPoint nearest;
     double within2 = limit * limit;
     const auto look_at = [&](std::uint32_t triangle) {
-        if (plane_is_beyond(mesh, triangle, point, within2)) return;
+        if (is_beyond(mesh, triangle, point, within2)) return;
         const MeshPoint now = on_triangle(mesh, triangle, point);
         if (!(now.distance < nearest.distance)) return;
         nearest = now;
@@ -96,7 +110,7 @@ bool comes_within(const Mesh& mesh, const Vec3& point, double distance)
         const Mesh::Node& node = mesh.tree[waiting[--count]];
         if (distance2_to(node, point) > distance2 * kSlack) continue;
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-            if (!plane_is_beyond(mesh, mesh.order[i], point, distance2)
+            if (!is_beyond(mesh, mesh.order[i], point, distance2)
                 && on_triangle(mesh, mesh.order[i], point).distance <= distance)
                 return true;
         if (node.count > 0) continue;
