@@ -2,6 +2,7 @@
 
 #include "kernels/data/bounds.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
+#include "kernels/parallel/blocks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,14 +21,6 @@ double need(const CoverPoint& point, double gap)
     return point.depth > 0 ? 2 * std::min(gap, point.depth) : gap;
 }
 
-double depth_of(const Mesh& mesh, const Vec3& at) { return -signed_distance(mesh, at); }
-
-// Which ball a place is nearest to, and how far it is from that and from the next.
-struct Served {
-    std::uint32_t by = 0;
-    double gap = kFar, next = kFar;
-};
-
 // Places that lie side by side, in a ball; most balls of a cover have to do with few of them.
 struct Block {
     std::size_t begin = 0, end = 0;
@@ -39,10 +32,13 @@ struct Block {
 
 constexpr std::size_t kBlock = 32;
 
+// Of radii, more than rounding takes from them.
+constexpr double kRoom = 1 + 1e-9;
+
 class Cover {
 public:
-    Cover(const Mesh& mesh, std::span<const CoverPoint> points)
-        : mesh_(mesh), points_(points.begin(), points.end())
+    Cover(MeshCells& cells, std::span<const CoverPoint> points)
+        : cells_(cells), points_(points.begin(), points.end())
     {
         sort_into_blocks();
         serve_all();
@@ -69,6 +65,8 @@ public:
     }
 
 private:
+    const Mesh& mesh() const { return cells_.mesh(); }
+
     // Halves across the longest side, over and over.
     void sort_into_blocks()
     {
@@ -132,12 +130,19 @@ private:
 
     void serve_point(std::size_t i, std::uint32_t ball)
     {
-        const double gap = (points_[i].at - balls_[ball].center).norm() - balls_[ball].radius;
-        Served& served = served_[i];
-        if (gap < served.gap)
-            served = {ball, gap, served.gap};
-        else
-            served.next = std::min(served.next, gap);
+        served_[i].offer(ball, gap_to(balls_[ball], points_[i].at));
+    }
+    NearestBalls nearest_of(std::span<const std::uint32_t> balls, const Vec3& place) const
+    {
+        NearestBalls found;
+        for (const std::uint32_t which : balls) {
+            const Ball& ball = balls_[which];
+            // Most are not worth a root.
+            const double reach = (found.next + ball.radius) * kRoom;
+            if (reach > 0 && (place - ball.center).squaredNorm() > reach * reach) continue;
+            found.offer(which, gap_to(ball, place));
+        }
+        return found;
     }
     void serve(std::uint32_t which)
     {
@@ -149,22 +154,36 @@ private:
             update(block);
         }
     }
+    // Of a place in a block none but those are nearest or next that are so for its middle, to
+    // within the block.
     void serve_all()
     {
-        served_.assign(points_.size(), Served{});
-        for (Block& block : blocks_) update(block);
-        for (std::uint32_t ball = 0; ball < balls_.size(); ++ball) serve(ball);
+        served_.resize(points_.size());
+        const BallTree tree(balls_);
+        for_each_block(blocks_.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+            std::vector<std::uint32_t> near;
+            for (std::size_t b = begin; b < end; ++b) {
+                Block& block = blocks_[b];
+                const double next = tree.nearest(block.center).next;
+                near.clear();
+                tree.find_within(block.center, next + 2 * block.radius * kRoom, near);
+                for (std::size_t i = block.begin; i < block.end; ++i)
+                    served_[i] = nearest_of(near, points_[i].at);
+                update(block);
+            }
+        });
     }
 
-    // Steps along axes and diagonals, halved where none betters the ball, as `value` has it. The
-    // places that the ball was found to touch tell of most steps that they are no good.
+    // Steps along axes and diagonals, halved where none betters the ball, as `value` has it, which
+    // need not tell values above the one it is given from that one. The places that the ball was
+    // found to touch tell of most steps that they are no good.
     template <class Value>
     void climb(Ball& ball, double step, int halvings, const Value& value) const
     {
-        double now = value(ball);
+        double now = value(ball, kFar);
         std::array<Vec3, 12> touched;
         std::size_t count = 0;
-        touched[count++] = nearest_on_mesh(mesh_, ball.center).point;
+        touched[count++] = nearest_on_mesh(mesh(), ball.center).point;
         for (int round = 0; round < 40 && halvings > 0; ++round) {
             Ball best = ball;
             double least = now;
@@ -176,13 +195,13 @@ private:
                 Ball tried{ball.center + way * length, kFar};
                 for (std::size_t k = 0; k < std::min(count, touched.size()); ++k)
                     tried.radius = std::min(tried.radius, (tried.center - touched[k]).norm());
-                if (!(value(tried) < least)) continue;  // even if it could be that large
+                if (!(value(tried, least) < least)) continue;  // even if it could be that large
                 const MeshPoint nearest =
-                    nearest_on_mesh(mesh_, tried.center, tried.radius * (1 + 1e-9));
+                    nearest_on_mesh(mesh(), tried.center, tried.radius * kRoom);
                 if (nearest.distance == kFar) continue;
                 touched[count++ % touched.size()] = nearest.point;
-                tried.radius = -signed_distance(mesh_, tried.center, nearest);
-                const double then = value(tried);
+                tried.radius = -signed_distance(mesh(), tried.center, nearest);
+                const double then = value(tried, least);
                 if (!(then < least)) continue;
                 least = then;
                 best = tried;
@@ -204,7 +223,7 @@ private:
         Ball ball{point.at, point.depth};
         const bool first = balls_.empty();
         const double near = first ? kFar : worst() / 2, step = first ? point.depth : worst();
-        climb(ball, step, 5, [&](const Ball& tried) {
+        climb(ball, step, 5, [&](const Ball& tried, double) {
             const double off = (tried.center - point.at).norm() - tried.radius;
             return off <= near ? -tried.radius : kFar;
         });
@@ -218,16 +237,17 @@ private:
     void add_hollows()
     {
         const double gap = worst();
+        const BallTree tree(balls_);
         std::vector<CoverPoint> found;
         for (std::size_t i = 0; i < points_.size(); ++i) {
             if (points_[i].depth > 0) continue;
             for (const double step : {0.75, 1.5, 3.0, 6.0, 12.0}) {
                 const double below = step * gap;
                 const Vec3 at = points_[i].at + points_[i].inward * below;
-                const Ball& by = balls_[served_[i].by];
-                if ((at - by.center).norm() - by.radius <= gap / 2) continue;
-                if (distance_to_balls(balls_, at) <= gap / 2) continue;
-                const double depth = depth_of(mesh_, at);
+                if (gap_to(balls_[served_[i].by], at) <= gap / 2) continue;
+                if (cells_.depth_bound(at) <= gap / 2) continue;
+                if (tree.least_gap(at, gap / 2) <= gap / 2) continue;
+                const double depth = -signed_distance(mesh(), at);
                 if (depth > gap / 2) found.push_back({at, depth, Vec3::Zero()});
             }
         }
@@ -243,24 +263,30 @@ private:
     {
         std::vector<std::vector<std::uint32_t>> own(balls_.size());
         for (std::uint32_t i = 0; i < points_.size(); ++i) own[served_[i].by].push_back(i);
-        for (std::size_t b = 0; b < balls_.size(); ++b) {
-            double widest = 0;
-            for (const std::uint32_t i : own[b]) widest = std::max(widest, served_[i].gap);
-            if (!(widest > 0)) continue;
-            climb(balls_[b], 2 * widest, 5, [&](const Ball& tried) {
-                double most = -kFar;
-                for (const std::uint32_t i : own[b]) {
-                    const double gap = (points_[i].at - tried.center).norm() - tried.radius;
-                    most = std::max(most, need(points_[i], gap));
-                }
-                return most;
-            });
-        }
+        for_each_block(balls_.size(), 8, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t b = begin; b < end; ++b) move(balls_[b], own[b]);
+        });
+    }
+
+    void move(Ball& ball, std::span<const std::uint32_t> own) const
+    {
+        double widest = 0;
+        for (const std::uint32_t i : own) widest = std::max(widest, served_[i].gap);
+        if (!(widest > 0)) return;
+        climb(ball, 2 * widest, 5, [&](const Ball& tried, double enough) {
+            double most = -kFar;
+            for (const std::uint32_t i : own) {
+                most = std::max(most, need(points_[i], gap_to(tried, points_[i].at)));
+                if (most >= enough) break;
+            }
+            return most;
+        });
     }
 
     // Takes out the balls whose places others come as near to as the worst place has it.
     void drop_spare()
     {
+        const BallTree tree(balls_);
         const double most = 0.9 * worst();
         std::vector<double> alone(balls_.size(), -kFar);
         for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -272,24 +298,21 @@ private:
             const auto spare = std::min_element(alone.begin(), alone.end());
             if (!(*spare < most) || balls_.size() < 2) break;
             const auto which = static_cast<std::uint32_t>(spare - alone.begin());
-            remove(which, alone);
+            remove(which, tree, alone);
         }
         serve_all_again();
     }
 
-    void remove(std::uint32_t which, std::vector<double>& alone)
+    void remove(std::uint32_t which, const BallTree& tree, std::vector<double>& alone)
     {
-        // Its places go to the next best; what that is was not kept, so look through all.
+        // Its places go to the next best; what that is was not kept.
         gone_.resize(balls_.size(), 0);
         gone_[which] = 1;
         alone[which] = kFar;
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const bool second = served_[i].next
-                == (points_[i].at - balls_[which].center).norm() - balls_[which].radius;
+            const bool second = served_[i].next == gap_to(balls_[which], points_[i].at);
             if (served_[i].by != which && !second) continue;
-            served_[i] = {};
-            for (std::uint32_t b = 0; b < balls_.size(); ++b)
-                if (gone_[b] == 0) serve_point(i, b);
+            served_[i] = tree.nearest(points_[i].at, gone_);
             double& without = alone[served_[i].by];
             without = std::max(without, need(points_[i], served_[i].next));
         }
@@ -306,10 +329,10 @@ private:
         serve_all();
     }
 
-    const Mesh& mesh_;
+    MeshCells& cells_;
     std::vector<CoverPoint> points_;
     std::vector<Block> blocks_;
-    std::vector<Served> served_;
+    std::vector<NearestBalls> served_;
     std::vector<Ball> balls_;
     std::vector<std::uint8_t> gone_;
 };
@@ -363,19 +386,24 @@ std::vector<CoverPoint> cover_points(const Mesh& mesh, std::size_t wanted)
     const Vec3 size = box.upper - box.lower;
     const double inner = std::cbrt(size.prod() / (count + 8));
     for (double z = box.lower.z() + inner / 2; z < box.upper.z(); z += inner)
-        for (double y = box.lower.y() + inner / 2; y < box.upper.y(); y += inner)
+        for (double y = box.lower.y() + inner / 2; y < box.upper.y(); y += inner) {
+            // No further than that of the last one, and the way from there.
+            double limit = kFar;
             for (double x = box.lower.x() + inner / 2; x < box.upper.x(); x += inner) {
                 const Vec3 at(x, y, z);
-                if (const double depth = depth_of(mesh, at); depth > 0)
+                const MeshPoint nearest = nearest_on_mesh(mesh, at, limit);
+                limit = (nearest.distance + inner) * kRoom;
+                if (const double depth = -signed_distance(mesh, at, nearest); depth > 0)
                     points.push_back({at, depth, Vec3::Zero()});
             }
+        }
     return points;
 }
 
 std::vector<Ball>
-cover_mesh(const Mesh& mesh, std::span<const CoverPoint> points, std::size_t count, double& gap)
+cover_mesh(MeshCells& cells, std::span<const CoverPoint> points, std::size_t count, double& gap)
 {
-    return Cover(mesh, points).choose(count, gap);
+    return Cover(cells, points).choose(count, gap);
 }
 
 }  // namespace throng

@@ -1,7 +1,8 @@
 // Sphere cover: few balls inside a mesh that together come near to all of its surface.
 #pragma once
 
-#include "narrowphase/methods/sphere_error.hpp"
+#include "narrowphase/methods/ball_tree.hpp"
+#include "narrowphase/methods/mesh_cells.hpp"
 
 namespace throng {
 
@@ -30,6 +31,6 @@ std::vector<CoverPoint> cover_points(const Mesh& mesh, std::size_t wanted);
 ///   gap  m, out: how far the furthest of the places is from the balls, those inside counted
 ///        double, and no further than they are below the surface
 std::vector<Ball>
-cover_mesh(const Mesh& mesh, std::span<const CoverPoint> points, std::size_t count, double& gap);
+cover_mesh(MeshCells& cells, std::span<const CoverPoint> points, std::size_t count, double& gap);
 
 }  // namespace throng

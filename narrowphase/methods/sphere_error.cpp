@@ -14,10 +14,17 @@ constexpr int kRounds = 40;
 
 using Ids = std::vector<std::uint32_t>;
 
-// What is known of the worst place: a value that was met, and what none is above.
+// What is known of the worst place: a value that was met, and what none is above. `sure` was met
+// as well and is exact but for rounding, where others only hold a distance from above.
 struct Worst {
-    double met = 0, bound = 0;
+    double met = 0, sure = 0, bound = 0;
     double slack = 0;
+
+    void meet(double exact)
+    {
+        met = std::max(met, exact);
+        sure = std::max(sure, exact);
+    }
 
     // Whether values to `most` may be left at that; if so the bound knows of them.
     bool settles(double most)
@@ -33,15 +40,10 @@ struct Near {
     std::size_t begin = 0, end = 0;
 };
 
-double gap(const Ball& ball, const Vec3& point)
-{
-    return (point - ball.center).norm() - ball.radius;
-}
-
 double least_gap(std::span<const Ball> balls, std::span<const std::uint32_t> ids, const Vec3& point)
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t i : ids) least = std::min(least, gap(balls[i], point));
+    for (const std::uint32_t i : ids) least = std::min(least, gap_to(balls[i], point));
     return least;
 }
 
@@ -54,7 +56,7 @@ Near keep_near(std::span<const Ball> balls,
 {
     const std::size_t begin = kept.size();
     for (const std::uint32_t i : ids)
-        if (gap(balls[i], point) <= reach) kept.push_back(i);
+        if (gap_to(balls[i], point) <= reach) kept.push_back(i);
     return {begin, kept.size()};
 }
 
@@ -94,7 +96,7 @@ Vec3 exit_by_pushing(std::span<const Ball> balls,
         const Ball* deepest = nullptr;
         double least = 0;
         for (const std::uint32_t i : ids)
-            if (const double here = gap(balls[i], at); here < least) {
+            if (const double here = gap_to(balls[i], at); here < least) {
                 least = here;
                 deepest = &balls[i];
             }
@@ -112,8 +114,12 @@ Vec3 exit_by_pushing(std::span<const Ball> balls,
 
 class Measure {
 public:
-    Measure(const Mesh& mesh, std::span<const Ball> balls, double slack, std::size_t looks)
-        : mesh_(mesh), balls_(balls), looks_(looks)
+    Measure(const Mesh& mesh,
+            std::span<const Ball> balls,
+            double slack,
+            std::size_t looks,
+            double enough)
+        : mesh_(mesh), balls_(balls), looks_(looks), enough_(enough)
     {
         worst_.slack = slack;
         for (std::uint32_t i = 0; i < balls.size(); ++i) all_.push_back(i);
@@ -128,7 +134,7 @@ public:
         worst_.bound = out_;
         look_at_surface();
         look_inside();
-        return worst_.bound;
+        return is_enough() ? std::max(worst_.bound, worst_.sure) : worst_.bound;
     }
 
 private:
@@ -141,13 +147,22 @@ private:
         Vec3 middle;
         double half;
         Near near;
+        double within = std::numeric_limits<double>::infinity();  // so near to middle is the mesh
     };
 
     // What a look at a cell has told.
     struct Look {
-        double most;
+        double most = -1;
         Near near;
+        double distance = 0;  // of the middle from the mesh
     };
+
+    // Whether the answer cannot be less than that.
+    bool is_enough() const
+    {
+        constexpr double kRoom = 1 - 1e-9;
+        return std::max(worst_.bound, worst_.sure * kRoom) >= enough_;
+    }
 
     // Those that may hold the worst place, split; or, where that would take too many looks, none.
     template <class Part>
@@ -155,7 +170,7 @@ private:
     {
         next.clear();
         for (std::size_t i = 0; i < open.size(); ++i)
-            if (!worst_.settles(found[i].most)) split(open[i], found[i].near, next);
+            if (!worst_.settles(found[i].most)) split(open[i], found[i], next);
         spent_ += next.size();
         if (spent_ > looks_ || ++rounds_ > kRounds) {
             for (const Look& look : found) worst_.bound = std::max(worst_.bound, look.most);
@@ -196,7 +211,7 @@ private:
         while (height > last && height <= 2 * out_) {
             last = height;
             for (const std::uint32_t i : ids) {
-                if (gap(balls_[i], middle) > radius + last) continue;
+                if (gap_to(balls_[i], middle) > radius + last) continue;
                 height =
                     std::max(height, (balls_[i].center - middle).dot(normal) + balls_[i].radius);
             }
@@ -220,7 +235,8 @@ private:
         for (const std::uint32_t i : ids)
             most = std::min(most, furthest(balls_[i].center) - balls_[i].radius);
         const Vec3 way = outside < 0 ? way_out(patch, middle, ids) : Vec3(Vec3::Zero());
-        worst_.met = std::max({worst_.met, outside, way.norm()});
+        worst_.meet(outside);
+        worst_.met = std::max(worst_.met, way.norm());
         const double least = std::min(furthest(middle + way), height_over(patch, middle, ids));
         return std::max(most, least);
     }
@@ -234,7 +250,7 @@ private:
             open.push_back(
                 {{mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]}, t, {0, all_.size()}});
         }
-        while (!open.empty()) {
+        while (!open.empty() && !is_enough()) {
             std::vector<Look> found;
             kept.clear();
             for (const Patch& patch : open) {
@@ -246,15 +262,16 @@ private:
                 const double outside = least_gap(balls_, of, middle);
                 const double reach = std::max(outside, 2 * out_) + 2 * radius;
                 const Near near = keep_near(balls_, of, middle, reach, kept);
-                found.push_back({most_of(patch, middle, outside, of_cell(kept, near)), near});
+                found.push_back({most_of(patch, middle, outside, of_cell(kept, near)), near, 0});
             }
             split_on(open, found, next);
             ids.swap(kept);
         }
     }
 
-    static void split(const Patch& patch, Near near, std::vector<Patch>& into)
+    static void split(const Patch& patch, const Look& look, std::vector<Patch>& into)
     {
+        const Near near = look.near;
         const auto& [a, b, c] = patch.corners;
         const Vec3 ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
         into.push_back({{a, ab, ca}, patch.triangle, near});
@@ -278,24 +295,25 @@ private:
         Ids ids = all_, kept;
         spent_ = 0;
         rounds_ = 0;
-        while (!open.empty()) {
+        while (!open.empty() && !is_enough()) {
             std::vector<Look> found;
             kept.clear();
             for (const Cell& cell : open) {
                 const double radius = cell.half * 1.7320508075688774;
                 const auto of = of_cell(ids, cell.near);
                 const double outside = least_gap(balls_, of, cell.middle);
-                found.push_back({-1, {}});
+                found.emplace_back();
                 if (outside < -radius) continue;
                 const double furthest = furthest_gap(cell, of);
                 if (furthest < 0) continue;
-                const MeshPoint nearest = nearest_on_mesh(mesh_, cell.middle);
+                const MeshPoint nearest = nearest_on_mesh(mesh_, cell.middle, cell.within);
                 const double side = signed_distance(mesh_, cell.middle, nearest);
                 if (side > radius) continue;
-                if (outside >= 0 && side <= 0) worst_.met = std::max({worst_.met, outside, -side});
+                if (outside >= 0 && side <= 0) worst_.meet(std::max(outside, -side));
                 const double deepest = far_corner(cell, nearest.point);
                 found.back() = {std::max(std::min(furthest, outside + radius), deepest),
-                                keep_near(balls_, of, cell.middle, outside + 2 * radius, kept)};
+                                keep_near(balls_, of, cell.middle, outside + 2 * radius, kept),
+                                nearest.distance};
             }
             split_on(open, found, next);
             ids.swap(kept);
@@ -317,13 +335,15 @@ private:
         return least;
     }
 
-    static void split(const Cell& cell, Near near, std::vector<Cell>& into)
+    static void split(const Cell& cell, const Look& look, std::vector<Cell>& into)
     {
         const double half = cell.half / 2;
+        // And a bit more than rounding takes.
+        const double within = look.distance + 1.75 * half;
         for (int i = 0; i < 8; ++i) {
             const Vec3 side((i & 1) != 0 ? half : -half, (i & 2) != 0 ? half : -half,
                             (i & 4) != 0 ? half : -half);
-            into.push_back({cell.middle + side, half, near});
+            into.push_back({cell.middle + side, half, look.near, within});
         }
     }
 
@@ -335,6 +355,7 @@ private:
     const Mesh& mesh_;
     std::span<const Ball> balls_;
     std::size_t looks_, spent_ = 0;
+    double enough_;
     int rounds_ = 0;
     Ids all_;
     Worst worst_;
@@ -346,14 +367,15 @@ private:
 double distance_to_balls(std::span<const Ball> balls, const Vec3& point)
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const Ball& ball : balls) least = std::min(least, gap(ball, point));
+    for (const Ball& ball : balls) least = std::min(least, gap_to(ball, point));
     return least;
 }
 
-double sphere_error(const Mesh& mesh, std::span<const Ball> balls, double slack, std::size_t looks)
+double sphere_error(
+    const Mesh& mesh, std::span<const Ball> balls, double slack, std::size_t looks, double enough)
 {
     if (mesh.tree.empty() || balls.empty()) return std::numeric_limits<double>::infinity();
-    return Measure(mesh, balls, slack, looks).answer();
+    return Measure(mesh, balls, slack, looks, enough).answer();
 }
 
 }  // namespace throng

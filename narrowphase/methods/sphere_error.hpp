@@ -2,16 +2,9 @@
 #pragma once
 
 #include "kernels/data/mesh.hpp"
-
-#include <span>
-#include <vector>
+#include "narrowphase/methods/ball_tree.hpp"
 
 namespace throng {
-
-struct Ball {
-    Vec3 center = Vec3::Zero();
-    double radius = 0;
-};
 
 /// How far a point is from the balls taken together, m: right outside of them, and below 0 inside,
 /// where their surface is at least so far. Infinite where there are none.
@@ -25,12 +18,14 @@ double distance_to_balls(std::span<const Ball> balls, const Vec3& point);
 ///   slack  as part of the answer: how much more than the least such bound it may be ...
 ///   looks  ... unless that takes more looks than this (about 1 microsecond each), when it is
 ///          looser
+///   enough whether it is more is not of interest: any number from there on may be told
 ///
 /// Triangles and the cells of an octree are split where they may hold the worst place: a value
 /// that changes no faster than the place does is known in a cell to within its radius.
 double sphere_error(const Mesh& mesh,
                     std::span<const Ball> balls,
                     double slack = 0.1,
-                    std::size_t looks = 1000000);
+                    std::size_t looks = 1000000,
+                    double enough = std::numeric_limits<double>::infinity());
 
 }  // namespace throng

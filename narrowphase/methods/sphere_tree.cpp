@@ -2,6 +2,7 @@
 
 #include "kernels/geometry/mesh_distance.hpp"
 #include "narrowphase/methods/sphere_cover.hpp"
+#include "narrowphase/methods/sphere_error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,8 @@ void find_bounds(SphereTree& tree)
 SphereTree build_sphere_tree(const Mesh& mesh, const SphereTreeLimits& limits)
 {
     SphereTree tree;
+    if (mesh.tree.empty()) return tree;
+    MeshCells cells(mesh);
     double last = std::numeric_limits<double>::infinity();
     std::size_t count = 1;
     // One level may miss; where the next does too, no more spheres will help.
@@ -84,9 +87,9 @@ SphereTree build_sphere_tree(const Mesh& mesh, const SphereTreeLimits& limits)
         const auto points = cover_points(mesh, std::clamp(kPlaces * count, kFewest, kMost));
         if (points.empty()) break;
         double gap = 0;
-        const std::vector<Ball> cover = cover_mesh(mesh, points, count, gap);
+        const std::vector<Ball> cover = cover_mesh(cells, points, count, gap);
         const std::vector<Ball> balls = rounded(cover, gap / 2);
-        const double error = sphere_error(mesh, balls, kSlack, limits.looks);
+        const double error = sphere_error(mesh, balls, kSlack, limits.looks, kBetter * last);
         if (!(error < kBetter * last)) {
             ++missed;
             continue;

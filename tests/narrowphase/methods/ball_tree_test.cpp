@@ -1,0 +1,92 @@
+#include "narrowphase/methods/ball_tree.hpp"
+
+#include "tests/narrowphase/methods/closed_meshes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+// Some of one size and place, so that several are equally near.
+std::vector<Ball> some_balls(RandomShapes& random, std::size_t count)
+{
+    std::vector<Ball> balls;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i % 7 == 6)
+            balls.push_back(balls[i - 3]);
+        else
+            balls.push_back({random.vector(-1, 1), random.number(0.01, 0.2)});
+    }
+    return balls;
+}
+
+// In and about the balls, and every few in the middle of one.
+Vec3 some_place(RandomShapes& random, const std::vector<Ball>& balls, std::size_t i)
+{
+    if (i % 5 == 4 && !balls.empty()) return balls[i % balls.size()].center;
+    return random.vector(-2, 2);
+}
+
+constexpr std::array<std::size_t, 9> kCounts = {0, 1, 2, 7, 8, 9, 17, 100, 1000};
+
+TEST(BallTree, FindsTheGapThatALookAtEveryBallFinds)
+{
+    RandomShapes random(1);
+    for (const std::size_t count : kCounts) {
+        const std::vector<Ball> balls = some_balls(random, count);
+        const BallTree tree(balls);
+        for (std::size_t i = 0; i < 50; ++i) {
+            const Vec3 place = some_place(random, balls, i);
+            double least = std::numeric_limits<double>::infinity();
+            for (const Ball& ball : balls) least = std::min(least, gap_to(ball, place));
+            EXPECT_EQ(tree.least_gap(place), least);
+            EXPECT_EQ(tree.least_gap(place, 0.1) < 0.1, least < 0.1);
+        }
+    }
+}
+
+TEST(BallTree, FindsTheTwoThatALookAtEveryBallFinds)
+{
+    RandomShapes random(2);
+    for (const std::size_t count : kCounts) {
+        const std::vector<Ball> balls = some_balls(random, count);
+        const BallTree tree(balls);
+        std::vector<std::uint8_t> gone(count);
+        for (std::uint8_t& one : gone) one = random.number(0, 1) < 0.3;
+        for (std::size_t i = 0; i < 50; ++i) {
+            const Vec3 place = some_place(random, balls, i);
+            NearestBalls wanted, wanted_left;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                wanted.offer(k, gap_to(balls[k], place));
+                if (gone[k] == 0) wanted_left.offer(k, gap_to(balls[k], place));
+            }
+            const NearestBalls all = tree.nearest(place), left = tree.nearest(place, gone);
+            EXPECT_EQ(std::tuple(all.by, all.gap, all.next),
+                      std::tuple(wanted.by, wanted.gap, wanted.next));
+            EXPECT_EQ(std::tuple(left.by, left.gap, left.next),
+                      std::tuple(wanted_left.by, wanted_left.gap, wanted_left.next));
+        }
+    }
+}
+
+TEST(BallTree, FindsThoseWithinReachInOrder)
+{
+    RandomShapes random(3);
+    for (const std::size_t count : kCounts) {
+        const std::vector<Ball> balls = some_balls(random, count);
+        const BallTree tree(balls);
+        for (std::size_t i = 0; i < 50; ++i) {
+            const Vec3 place = some_place(random, balls, i);
+            // As far as one of them, exactly.
+            const double reach = count > 0 ? gap_to(balls[i % count], place) : random.number(0, 1);
+            std::vector<std::uint32_t> wanted, found;
+            for (std::uint32_t k = 0; k < count; ++k)
+                if (gap_to(balls[k], place) <= reach) wanted.push_back(k);
+            tree.find_within(place, reach, found);
+            EXPECT_EQ(found, wanted);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace throng
