@@ -3,11 +3,11 @@
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_health.hpp"
 #include "kernels/geometry/surface_points.hpp"
-#include "narrowphase/methods/sphere_tree.hpp"
 #include "narrowphase/solids/field_cache.hpp"
 #include "narrowphase/solids/image_touches.hpp"
 #include "narrowphase/solids/parts_cache.hpp"
 #include "narrowphase/solids/short_text.hpp"
+#include "narrowphase/solids/spheres_cache.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/level_set.hpp"
 
@@ -151,7 +151,9 @@ private:
         if (settings_.sphere_levels > 0) limits.levels = settings_.sphere_levels;
         Solid solid;
         solid.way = SolidWay::spheres;
-        solid.spheres = build_sphere_tree(mesh_, limits);
+        CachedSpheres made = cached_spheres(mesh_, limits, cache_folder_);
+        if (!made.remark.empty()) made_.remarks.push_back(made.remark);
+        solid.spheres = std::move(made.tree);
         if (solid.spheres.levels.empty()) return refused("has no inside that spheres could fill");
         const SphereTree::Level& last = solid.spheres.levels.back();
         solid.error = last.error;

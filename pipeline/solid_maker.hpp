@@ -33,7 +33,7 @@ Settings settings_of(const MeshShape& mesh, Settings scene);
 
 /// Makes a mesh that is to move, by settings_of() it.
 ///
-///   cache_folder  where fields and parts are kept between runs; empty: nowhere
+///   cache_folder  where fields, parts and spheres are kept between runs; empty: nowhere
 MadeSolid
 make_solid(const MeshShape& mesh, const Settings& settings, const std::string& cache_folder);
 

@@ -2,9 +2,8 @@
 
 #include "kernels/geometry/hull.hpp"
 #include "narrowphase/solids/kept_file.hpp"
+#include "narrowphase/solids/kept_words.hpp"
 
-#include <cstring>
-#include <fstream>
 #include <optional>
 
 namespace throng {
@@ -15,64 +14,9 @@ namespace fs = std::filesystem;
 // A change of what is computed or written is another version.
 constexpr std::uint64_t kVersion = 2;
 
-class Writer {
-public:
-    void word(std::uint64_t value) { append(&value); }
-    void number(double value) { append(&value); }
-    void text(const std::string& value)
-    {
-        word(value.size());
-        bytes += value;
-    }
-
-    std::string bytes;
-
-private:
-    void append(const void* eight) { bytes.append(static_cast<const char*>(eight), 8); }
-};
-
-// Once it has run out of bytes everything it reads is 0 and `good` is false.
-class Reader {
-public:
-    explicit Reader(std::string_view bytes) : rest_(bytes) { }
-    std::uint64_t word() { return take<std::uint64_t>(); }
-    double number() { return take<double>(); }
-    // A count of things of so many bytes, no more than there can be.
-    std::size_t count(std::size_t bytes_each)
-    {
-        const std::uint64_t value = word();
-        if (value > rest_.size() / bytes_each) good = false;
-        return good ? static_cast<std::size_t>(value) : 0;
-    }
-    std::string text()
-    {
-        const std::size_t size = count(1);
-        std::string value(rest_.substr(0, size));
-        rest_.remove_prefix(size);
-        return value;
-    }
-    bool at_end() const { return good && rest_.empty(); }
-
-    bool good = true;
-
-private:
-    template <class Word>
-    Word take()
-    {
-        Word value{};
-        if (rest_.size() < sizeof value) good = false;
-        if (!good) return value;
-        std::memcpy(&value, rest_.data(), sizeof value);
-        rest_.remove_prefix(sizeof value);
-        return value;
-    }
-
-    std::string_view rest_;
-};
-
-std::string to_bytes(const ConvexParts& parts, const std::string& key)
+WordWriter words_of(const ConvexParts& parts, const std::string& key)
 {
-    Writer out;
+    WordWriter out;
     out.text(key);
     for (const double value : {parts.error, parts.outside, parts.uncovered, parts.volume_error})
         out.number(value);
@@ -84,12 +28,12 @@ std::string to_bytes(const ConvexParts& parts, const std::string& key)
         for (const Vec3& point : points)
             for (const double x : point) out.number(x);
     }
-    return std::move(out.bytes);
+    return out;
 }
 
 std::optional<ConvexParts> from_bytes(std::string_view bytes, const std::string& key)
 {
-    Reader in(bytes);
+    WordReader in(bytes);
     if (in.text() != key) return std::nullopt;
     ConvexParts parts;
     for (double* value : {&parts.error, &parts.outside, &parts.uncovered, &parts.volume_error})
@@ -107,14 +51,6 @@ std::optional<ConvexParts> from_bytes(std::string_view bytes, const std::string&
     }
     if (!in.at_end() || parts.hulls.empty()) return std::nullopt;
     return parts;
-}
-
-std::string write_bytes(const fs::path& path, const std::string& bytes)
-{
-    std::ofstream file(path, std::ios::binary);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    return file.fail() ? path.string() + ": cannot be written" : std::string();
 }
 
 }  // namespace
@@ -138,8 +74,7 @@ ConvexParts cached_parts(const Mesh& mesh, const PartsWanted& wanted, const fs::
         return std::move(*kept);
     ConvexParts parts = split_into_parts(mesh, wanted);
     if (!parts.trouble.empty()) return parts;
-    const std::string trouble = keep_file(
-        path, [&](const fs::path& part) { return write_bytes(part, to_bytes(parts, key)); });
+    const std::string trouble = keep_words(path, words_of(parts, key));
     if (!trouble.empty()) parts.remarks.push_back("not kept for the next run: " + trouble);
     return parts;
 }
