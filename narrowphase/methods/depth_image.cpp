@@ -53,26 +53,15 @@ Span row_span(const std::array<Vec3, 3>& corners, double y, double pixel)
     return span;
 }
 
-// In pixels: more than rounding moves a place, or where a row crosses an edge.
-constexpr double kSlack = 1.0 / 64;
-
-// The rays of an axis from low to high, and those that only rounding leaves out. Of the triangles
-// of a fine mesh most lie between two rays.
-std::array<std::int32_t, 2>
-rays_between(const RayGrid& grid, std::size_t axis, double low, double high)
-{
-    const std::int32_t last = grid.count[axis] - 1;
-    const double start = grid.first[axis] + grid.shift[axis];
-    const double from = low / grid.pixel - start - kSlack;
-    const double to = high / grid.pixel - start + kSlack;
-    if (!(to >= 0 && from <= last)) return {0, -1};
-    // Below the count now, so that they fit.
-    std::int32_t first = from > 0 ? static_cast<std::int32_t>(from) : 0;
-    if (first < from) ++first;
-    return {first, to < last ? static_cast<std::int32_t>(to) : last};
-}
+// So few rays are tried at once: where an edge crosses a row costs more to find.
+constexpr std::int32_t kFew = 3;
 
 }  // namespace
+
+RayAxis::RayAxis(const RayGrid& grid, std::size_t axis)
+    : per_pixel_(1 / grid.pixel), start_(grid.first[axis] + grid.shift[axis]),
+      last_(grid.count[axis] - 1)
+{ }
 
 void DepthImage::draw(const Shapes& shapes,
                       ShapeRef shape,
@@ -82,6 +71,20 @@ void DepthImage::draw(const Shapes& shapes,
                       double thickness)
 {
     THRONG_CHECK(shape.kind != ShapeKind::triangle, "a triangle has no inside");
+    begin(shapes, shape, in_view, grid);
+    if (mesh_ == nullptr) {
+        draw_convex();
+        return;
+    }
+    draw_triangles();
+    finish(layers, thickness);
+}
+
+void DepthImage::begin(const Shapes& shapes,
+                       ShapeRef shape,
+                       const Pose& in_view,
+                       const RayGrid& grid)
+{
     grid_ = grid;
     shapes_ = &shapes;
     shape_ = shape;
@@ -90,13 +93,13 @@ void DepthImage::draw(const Shapes& shapes,
     turn_ = in_view.orientation.toRotationMatrix();
     intervals_.clear();
     begin_.assign(1, 0);
-    if (mesh_ == nullptr) {
-        draw_convex();
-        return;
-    }
-    draw_triangles();
+    hits_.clear();
+}
+
+void DepthImage::finish(Layers layers, double thickness)
+{
     sort_hits();
-    for (std::size_t ray = 0; ray < grid.rays(); ++ray) {
+    for (std::size_t ray = 0; ray < grid_.rays(); ++ray) {
         const auto hits = std::span<const Hit>(sorted_).subspan(
             hit_begin_[ray], hit_begin_[ray + 1] - hit_begin_[ray]);
         if (layers == Layers::all) join_layers(hits);
@@ -143,8 +146,8 @@ void DepthImage::draw_convex()
 // whether a ray is inside hangs on all that it has met before.
 void DepthImage::draw_triangles()
 {
-    hits_.clear();
     if (grid_.rays() == 0) return;
+    const RayAxis across(grid_, 0), upward(grid_, 1);
     // The column and a pixel more, so that rounding leaves nothing out.
     const Vec3 low(grid_.at(0, -1), grid_.at(1, -1), 0);
     const Vec3 high(grid_.at(0, grid_.count[0]), grid_.at(1, grid_.count[1]), 0);
@@ -159,30 +162,34 @@ void DepthImage::draw_triangles()
         std::array<Vec3, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = turn_ * mesh_->vertices[mesh_->triangles[triangle][i]] + position_;
-        draw_triangle(triangle, corners);
+        const auto [left, right] = std::minmax({corners[0].x(), corners[1].x(), corners[2].x()});
+        const auto [lower, upper] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
+        add(triangle, corners, {across.between(left, right), upward.between(lower, upper)});
     });
 }
 
-void DepthImage::draw_triangle(std::uint32_t triangle, const std::array<Vec3, 3>& corners)
+void DepthImage::add(std::uint32_t triangle,
+                     const std::array<Vec3, 3>& corners,
+                     const RayWindow& rays)
 {
-    const auto [lower, upper] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
-    const auto [first, last] = rays_between(grid_, 1, lower, upper);
-    if (first > last) return;
-    const auto [left, right] = std::minmax({corners[0].x(), corners[1].x(), corners[2].x()});
-    const auto [begin, end] = rays_between(grid_, 0, left, right);
-    if (begin > end) return;
-    for (std::int32_t row = first; row <= last; ++row) draw_row(triangle, corners, row);
+    if (rays.columns.empty()) return;
+    for (std::int32_t row = rays.rows.first; row <= rays.rows.last; ++row)
+        draw_row(triangle, corners, row, rays.columns);
 }
 
 void DepthImage::draw_row(std::uint32_t triangle,
                           const std::array<Vec3, 3>& corners,
-                          std::int32_t row)
+                          std::int32_t row,
+                          const RayRange& columns)
 {
     const double y = grid_.at(1, row);
-    const Span span = row_span(corners, y, grid_.pixel);
-    if (!(span.low <= span.high)) return;
-    const auto [first, last] = rays_between(grid_, 0, span.low, span.high);
-    for (std::int32_t i = first; i <= last; ++i) {
+    RayRange range = columns;
+    if (columns.last - columns.first >= kFew) {
+        const Span span = row_span(corners, y, grid_.pixel);
+        if (!(span.low <= span.high)) return;
+        range = RayAxis(grid_, 0).between(span.low, span.high);
+    }
+    for (std::int32_t i = range.first; i <= range.last; ++i) {
         const Vec3 start(grid_.at(0, i), y, 0);
         const Vec3 a = corners[0] - start, b = corners[1] - start, c = corners[2] - start;
         const double u = area_of(b, c), v = area_of(c, a), w = area_of(a, b);

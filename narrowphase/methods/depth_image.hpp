@@ -40,6 +40,39 @@ struct RayGrid {
     }
 };
 
+/// The rays of an axis from low to high, and those that only rounding leaves out.
+struct RayRange {
+    std::int32_t first = 0, last = -1;
+
+    bool empty() const { return first > last; }
+};
+
+/// Finds them for an axis of a grid.
+class RayAxis {
+public:
+    RayAxis(const RayGrid& grid, std::size_t axis);
+    RayRange between(double low, double high) const
+    {
+        // In pixels: more than rounding moves a place, or where a row crosses an edge.
+        constexpr double kSlack = 1.0 / 64;
+        const double from = low * per_pixel_ - start_ - kSlack;
+        const double to = high * per_pixel_ - start_ + kSlack;
+        if (!(to >= 0 && from <= last_)) return {};
+        // Below the count now, so that they fit.
+        std::int32_t first = from > 0 ? static_cast<std::int32_t>(from) : 0;
+        if (first < from) ++first;
+        return {first, static_cast<std::int32_t>(to < last_ ? to : last_)};
+    }
+
+private:
+    double per_pixel_, start_, last_;
+};
+
+/// Of a grid.
+struct RayWindow {
+    RayRange columns, rows;
+};
+
 /// What of a body counts as its inside.
 ///
 ///   all     what its surface encloses, each layer for itself. Hits need not pair up: a way in is
@@ -82,6 +115,14 @@ public:
               Layers layers,
               double thickness = 0);
 
+    /// The same of a mesh or a solid, triangle by triangle, for one who draws several images of it
+    /// at once: begin, add all that any ray may meet, finish.
+    void begin(const Shapes& shapes, ShapeRef shape, const Pose& in_view, const RayGrid& grid);
+    /// Corners in the frame of the rays, the same bits wherever triangles share one; and the rays
+    /// that may meet it.
+    void add(std::uint32_t triangle, const std::array<Vec3, 3>& corners, const RayWindow& rays);
+    void finish(Layers layers, double thickness = 0);
+
     std::span<const RayInterval> on(std::size_t ray) const
     {
         return std::span(intervals_).subspan(begin_[ray], begin_[ray + 1] - begin_[ray]);
@@ -99,8 +140,10 @@ private:
     RayPassage passage_of(std::int32_t column, std::int32_t row) const;
     void draw_convex();
     void draw_triangles();
-    void draw_triangle(std::uint32_t triangle, const std::array<Vec3, 3>& corners);
-    void draw_row(std::uint32_t triangle, const std::array<Vec3, 3>& corners, std::int32_t row);
+    void draw_row(std::uint32_t triangle,
+                  const std::array<Vec3, 3>& corners,
+                  std::int32_t row,
+                  const RayRange& columns);
     void sort_hits();
     void join_layers(std::span<const Hit> hits);
     void join_ends(std::span<const Hit> hits);
