@@ -1,5 +1,6 @@
 #include "narrowphase/methods/touch_spheres.hpp"
 
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
 #include "narrowphase/methods/sphere_cover.hpp"
 #include "narrowphase/methods/sphere_tree.hpp"
@@ -7,6 +8,8 @@
 #include "tests/narrowphase/methods/closed_meshes.hpp"
 
 #include <gtest/gtest.h>
+
+#include <set>
 
 namespace throng {
 namespace {
@@ -159,6 +162,43 @@ TEST(TouchSpheres, EachTouchHasItsOwnFeatureAndAUnitNormal)
             EXPECT_EQ(std::adjacent_find(features.begin(), features.end()), features.end());
         }
     }
+}
+
+// A floor of 180,000 triangles and 2000 spheres over it: more pairs than features of a level.
+TEST(TouchSpheres, FeaturesStayApartAndOnTheirLevelOnALargeMesh)
+{
+    constexpr std::uint32_t kCells = 300;
+    TriangleSoup floor;
+    for (std::uint32_t i = 0; i <= kCells; ++i)
+        for (std::uint32_t k = 0; k <= kCells; ++k) floor.vertices.emplace_back(i, k, 0);
+    for (std::uint32_t i = 0; i < kCells; ++i)
+        for (std::uint32_t k = 0; k < kCells; ++k) {
+            const std::uint32_t at = i * (kCells + 1) + k, next = at + kCells + 1;
+            floor.triangles.push_back({at, next, next + 1});
+            floor.triangles.push_back({at, next + 1, at + 1});
+        }
+    Shapes all;
+    all.meshes.push_back(build_mesh(floor.vertices, floor.triangles).mesh);
+    all.solids.resize(1);
+    RandomShapes random(21);
+    SphereTree::Level level;
+    level.error = 0.01;
+    for (int i = 0; i < 2000; ++i)
+        level.nodes.push_back(
+            {Vec3(random.number(1, 299), random.number(1, 299), 0.09).cast<float>(), 0.1F, 0.1F,
+             static_cast<std::uint32_t>(i), 1});
+    // The second is the first, so that there is a level to be told.
+    all.solids[0].spheres.levels = {level, level};
+
+    std::vector<SurfaceTouch> touches;
+    touch_by_spheres(all, kRing, {ShapeKind::mesh, 0}, {}, 0, {}, touches);
+    ASSERT_GE(touches.size(), 2000U);
+    std::set<std::uint32_t> features;
+    for (const SurfaceTouch& touch : touches) {
+        EXPECT_EQ(touch.feature >> 28, 1U);
+        features.insert(touch.feature);
+    }
+    EXPECT_EQ(features.size(), touches.size());
 }
 
 TEST(TouchSpheres, StaysWithinItsTestsAndSaysWhatItReached)
