@@ -4,7 +4,7 @@
 #include "kernels/geometry/mesh_health.hpp"
 #include "kernels/geometry/surface_points.hpp"
 #include "narrowphase/solids/field_cache.hpp"
-#include "narrowphase/solids/image_touches.hpp"
+#include "narrowphase/solids/image_views.hpp"
 #include "narrowphase/solids/parts_cache.hpp"
 #include "narrowphase/solids/short_text.hpp"
 #include "narrowphase/solids/spheres_cache.hpp"
@@ -177,6 +177,7 @@ private:
     {
         made_.summary += error_text(solid);
         solid.mesh = std::move(mesh_);
+        if (solid.way == SolidWay::depth_image) solid.layers = layers_of(solid);
         made_.shape = std::move(solid);
         return std::move(made_);
     }

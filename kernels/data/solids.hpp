@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/data/mesh.hpp"
+#include "kernels/data/ray_layers.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -90,6 +91,8 @@ struct SphereTree {
 ///   field, points  way voxels; for others empty
 ///   spheres        way spheres
 ///   rays           way depth_image: along the longest side of the smaller shape of a pair
+///   layers         way depth_image: along each axis, what the rays of pairs meet in which this is
+///                  the smaller one; empty where that would take much room
 ///   error          m, how far a depth may be from that of the triangles: half a voxel, a pixel
 ///                  of this shape, or the spheres' own; smaller features may be missed
 struct Solid {
@@ -99,6 +102,7 @@ struct Solid {
     SurfacePoints points;
     SphereTree spheres;
     int rays = 0;
+    std::array<RayLayers, 3> layers;
     double error = 0;
 };
 

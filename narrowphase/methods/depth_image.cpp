@@ -96,6 +96,27 @@ void DepthImage::begin(const Shapes& shapes,
     hits_.clear();
 }
 
+void DepthImage::begin_from(const Shapes& shapes,
+                            ShapeRef shape,
+                            const Pose& in_view,
+                            const RayGrid& grid,
+                            const RayLayers& drawn)
+{
+    begin(shapes, shape, in_view, grid);
+    const RayGrid& from = drawn.grid;
+    for (std::int32_t row = 0; row < grid.count[1]; ++row)
+        for (std::int32_t i = 0; i < grid.count[0]; ++i) {
+            const std::int32_t x = grid.first[0] - from.first[0] + i;
+            const std::int32_t y = grid.first[1] - from.first[1] + row;
+            if (x >= 0 && x < from.count[0] && y >= 0 && y < from.count[1]) {
+                const auto ray = static_cast<std::size_t>(y * from.count[0] + x);
+                for (std::uint32_t k = drawn.begin[ray]; k < drawn.begin[ray + 1]; ++k)
+                    intervals_.push_back(drawn.intervals[k]);
+            }
+            begin_.push_back(static_cast<std::uint32_t>(intervals_.size()));
+        }
+}
+
 void DepthImage::finish(Layers layers, double thickness)
 {
     sort_hits();

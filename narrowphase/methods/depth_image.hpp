@@ -11,34 +11,12 @@
 //         (2013), for the sign of an edge.
 #pragma once
 
+#include "kernels/data/ray_layers.hpp"
 #include "kernels/geometry/ray_passage.hpp"
 
-#include <limits>
 #include <span>
 
 namespace throng {
-
-/// Rays along z through an evenly spaced grid of x and y.
-///
-///   pixel   m, from one ray to the next
-///   first   of the grid's first ray, in pixels: whole numbers, by which a ray is known again
-///   shift   in pixels, added to all of them
-///   count   of rays along x and along y
-struct RayGrid {
-    double pixel = 0;
-    std::array<std::int32_t, 2> first{};
-    std::array<double, 2> shift{};
-    std::array<std::int32_t, 2> count{};
-
-    double at(std::size_t axis, std::int32_t i) const
-    {
-        return (first[axis] + i + shift[axis]) * pixel;
-    }
-    std::size_t rays() const
-    {
-        return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]);
-    }
-};
 
 /// The rays of an axis from low to high, and those that only rounding leaves out.
 struct RayRange {
@@ -86,18 +64,6 @@ struct RayWindow {
 ///           below another front face counts as inside it
 enum class Layers : std::uint8_t { all, single, sheet };
 
-/// A part of a ray inside a body.
-///
-///   enter, leave   m, z where it begins and ends; infinite for what has no end
-///   *_face         for DepthImage::normal(), of a mesh the triangle; kNoFace where there is no
-///                  surface
-struct RayInterval {
-    static constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
-
-    double enter = 0, leave = 0;
-    std::uint32_t enter_face = kNoFace, leave_face = kNoFace;
-};
-
 /// The intervals of a body along the rays of a grid, x fastest. Intervals of a ray do not overlap,
 /// and ascend. Keeps its room from one drawing to the next.
 class DepthImage {
@@ -122,6 +88,16 @@ public:
     /// that may meet it.
     void add(std::uint32_t triangle, const std::array<Vec3, 3>& corners, const RayWindow& rays);
     void finish(Layers layers, double thickness = 0);
+
+    /// The same by intervals that were drawn before, along the rays of a grid that differs in
+    /// `first` and `count` alone: rays beyond it meet nothing.
+    void begin_from(const Shapes& shapes,
+                    ShapeRef shape,
+                    const Pose& in_view,
+                    const RayGrid& grid,
+                    const RayLayers& drawn);
+    /// What was drawn.
+    RayLayers layers() const { return {grid_, begin_, intervals_}; }
 
     std::span<const RayInterval> on(std::size_t ray) const
     {

@@ -3,7 +3,7 @@
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/geometry/support.hpp"
-#include "narrowphase/methods/depth_image.hpp"
+#include "narrowphase/solids/image_views.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,129 +54,9 @@ struct View {
     std::vector<Facing> facings;               // by ray
     std::vector<std::uint32_t> begin, region;  // [rays + 1], [facings]
 
-    int across() const { return (axis + 1) % 3; }
-    int upward() const { return (axis + 2) % 3; }
-    // A place in a's frame in that of the rays.
-    Vec3 seen(const Vec3& place) const { return {place[across()], place[upward()], place[axis]}; }
+    int across() const { return throng::across(axis); }
+    int upward() const { return throng::upward(axis); }
 };
-
-// The axes in a circle, so that `axis` becomes z: exactly, to the last bit.
-Pose turned_to(int axis)
-{
-    if (axis == 0) return {Vec3::Zero(), Quat(0.5, -0.5, -0.5, -0.5)};
-    if (axis == 1) return {Vec3::Zero(), Quat(0.5, 0.5, 0.5, 0.5)};
-    return {};
-}
-
-// Which rays of the three views things come near, by the axes of a's frame: two views share each,
-// and its rays lie the same in both, unless there are none.
-class AxisWindows {
-public:
-    explicit AxisWindows(const std::array<View, 3>& views)
-        : axes_{axis_of(views, 0), axis_of(views, 1), axis_of(views, 2)}
-    { }
-
-    std::array<RayRange, 3> between(const Vec3& lower, const Vec3& upper) const
-    {
-        return {axes_[0].between(lower.x(), upper.x()), axes_[1].between(lower.y(), upper.y()),
-                axes_[2].between(lower.z(), upper.z())};
-    }
-    // Whether any view may see some of a box.
-    bool sees(const Vec3& lower, const Vec3& upper) const
-    {
-        const auto rays = between(lower, upper);
-        return rays[0].empty() + rays[1].empty() + rays[2].empty() < 2;
-    }
-
-private:
-    static RayAxis axis_of(const std::array<View, 3>& views, std::size_t axis)
-    {
-        const View &first = views[(axis + 2) % 3], &second = views[(axis + 1) % 3];
-        return first.grid.rays() > 0 ? RayAxis(first.grid, 0) : RayAxis(second.grid, 1);
-    }
-
-    std::array<RayAxis, 3> axes_;
-};
-
-// Of a mesh or a solid all three views at once: each of its triangles is turned but once, and most
-// of a fine mesh lie between two rays of every view.
-void draw_triangles(const Shapes& shapes,
-                    ShapeRef shape,
-                    const Pose& in_a,
-                    std::array<View, 3>& views,
-                    DepthImage View::*image)
-{
-    const Mesh& mesh = *mesh_of(shapes, shape);
-    const Mat3 turn = in_a.orientation.toRotationMatrix(), reach = turn.cwiseAbs();
-    const AxisWindows windows(views);
-    const auto seen = [&](const Mesh::Node& node) {
-        const Vec3 center = turn * (0.5 * (node.lower + node.upper)) + in_a.position;
-        const Vec3 half = reach * (0.5 * (node.upper - node.lower));
-        return windows.sees(center - half, center + half);
-    };
-    visit_nodes(mesh, seen, [&](std::uint32_t triangle) {
-        const auto& [i, j, k] = mesh.triangles[triangle];
-        const std::array<Vec3, 3> corners = {turn * mesh.vertices[i] + in_a.position,
-                                             turn * mesh.vertices[j] + in_a.position,
-                                             turn * mesh.vertices[k] + in_a.position};
-        const auto rays = windows.between(corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]),
-                                          corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]));
-        if (rays[0].empty() + rays[1].empty() + rays[2].empty() > 1) return;
-        for (View& view : views) {
-            const RayWindow window{rays[static_cast<std::size_t>(view.across())],
-                                   rays[static_cast<std::size_t>(view.upward())]};
-            if (window.columns.empty() || window.rows.empty()) continue;
-            (view.*image)
-                .add(triangle,
-                     {view.seen(corners[0]), view.seen(corners[1]), view.seen(corners[2])}, window);
-        }
-    });
-}
-
-void draw(const Shapes& shapes,
-          ShapeRef shape,
-          const Pose& in_a,
-          std::array<View, 3>& views,
-          DepthImage View::*image,
-          Layers layers,
-          double thickness)
-{
-    const bool triangles = mesh_of(shapes, shape) != nullptr;
-    for (View& view : views) {
-        const Pose in_view = view.from_a * in_a;
-        if (triangles)
-            (view.*image).begin(shapes, shape, in_view, view.grid);
-        else
-            (view.*image).draw(shapes, shape, in_view, view.grid, layers);
-    }
-    if (!triangles) return;
-    draw_triangles(shapes, shape, in_a, views, image);
-    for (View& view : views) (view.*image).finish(layers, thickness);
-}
-
-double longest_side(const Shapes& shapes, ShapeRef shape)
-{
-    const Box3 box = shape_bounds(shapes, shape, {});
-    return (box.upper - box.lower).maxCoeff();
-}
-
-// The rays of a view through a box in a's frame, at halves of a pixel from a's origin.
-RayGrid grid_through(const Box3& box, const View& view, double pixel)
-{
-    RayGrid grid;
-    grid.pixel = pixel;
-    grid.shift = {0.5, 0.5};
-    const int axes[] = {view.across(), view.upward()};
-    for (std::size_t k = 0; k < 2; ++k) {
-        const double low = std::ceil(box.lower[axes[k]] / pixel - 0.5);
-        const double high = std::floor(box.upper[axes[k]] / pixel - 0.5);
-        if (!(low <= high && std::abs(low) < 1e9)) return {pixel, {}, {}, {}};
-        grid.first[k] = static_cast<std::int32_t>(low);
-        // A box is no larger than the smaller shape, which is kMostRays wide, its diagonal more.
-        grid.count[k] = static_cast<std::int32_t>(std::min(high - low + 1, 2.0 * kMostRays));
-    }
-    return grid;
-}
 
 // What of a box the triangles of a mesh come near, or all of it where there are none in it: perhaps
 // the mesh goes round it.
@@ -385,16 +265,6 @@ Box3 part_to_look_at(
     return part_near(shapes.solids[solid.index].mesh, {}, part, kAlong * reach);
 }
 
-// The same for a pair, whatever the pose of the other: that is what makes ids last.
-double pixel_of(const Shapes& shapes, ShapeRef solid, ShapeRef other)
-{
-    double size = longest_side(shapes, solid);
-    if (other.kind != ShapeKind::mesh) size = std::min(size, longest_side(shapes, other));
-    int wanted = shapes.solids[solid.index].rays;
-    if (other.kind == ShapeKind::solid) wanted = std::max(wanted, shapes.solids[other.index].rays);
-    return size / std::clamp(wanted > 0 ? wanted : kAutoRays, 2, kMostRays);
-}
-
 std::uint32_t feature_of(const View& view, const Facing& facing)
 {
     const auto width = static_cast<std::uint32_t>(view.grid.count[0]);
@@ -440,14 +310,15 @@ void touch_by_depth_image(const Shapes& shapes,
     const double thickness = 0.5 * (own.upper - own.lower).minCoeff();
     const Layers layers = other.kind == ShapeKind::mesh ? Layers::sheet : Layers::all;
 
-    for (int axis = 0; axis < 3; ++axis) {
-        View& view = views[static_cast<std::size_t>(axis)];
-        view.axis = axis;
-        view.from_a = turned_to(axis);
-        view.grid = grid_through(part, view, pixel);
+    const ThreeGrids grids = grids_through(part, pixel);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        views[axis].axis = static_cast<int>(axis);
+        views[axis].from_a = turned_to(static_cast<int>(axis));
+        views[axis].grid = grids[axis];
     }
-    draw(shapes, solid, {}, views, &View::a, Layers::all, 0);
-    draw(shapes, other, other_in_solid, views, &View::b, layers, thickness);
+    draw_own(shapes, solid, grids, {&views[0].a, &views[1].a, &views[2].a});
+    draw_along_axes(shapes, other, other_in_solid, grids, {&views[0].b, &views[1].b, &views[2].b},
+                    layers, thickness);
     for (View& view : views) {
         collect_facings(view, kAlong * reach);
         find_regions(view);

@@ -20,12 +20,6 @@
 
 namespace throng {
 
-/// Rays along the longest side of the smaller of the two, where neither says.
-inline constexpr int kAutoRays = 32;
-
-/// The most rays along a side, whatever is asked for.
-inline constexpr int kMostRays = 512;
-
 /// Appends a touch for each ray and layer along which a solid and another shape share something or
 /// come within `reach` of one another, in the solid's frame, view by view and ray by ray.
 ///

@@ -2,6 +2,7 @@
 #include "narrowphase/solids/image_touches.hpp"
 
 #include "kernels/geometry/mesh.hpp"
+#include "narrowphase/solids/image_views.hpp"
 #include "scenes/closed_meshes.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
 
@@ -267,6 +268,40 @@ TEST(ImageTouches, NoneOfALinkAndTheMeshOfThatThroughIt)
         const Pose pose{{place, 0.001, -0.002}, upright};
         EXPECT_TRUE(touch(shapes, {ShapeKind::mesh, 0}, pose).empty()) << place;
     }
+}
+
+// Against one that is larger, as large and smaller, of which the last asks for other rays.
+TEST(ImageTouches, LayersDrawnAheadChangeNoBit)
+{
+    Shapes drawn;
+    drawn.solids = {solid_of(torus_mesh(0.4, 0.15, 24, 12)), solid_of(ball_mesh(1, 24, 12)),
+                    solid_of(torus_mesh(0.4, 0.15, 24, 12)), solid_of(ball_mesh(0.3, 24, 12))};
+    drawn.boxes = {{{1, 1, 0.2}}};
+    Shapes ahead = drawn;
+    for (Solid& solid : ahead.solids) solid.layers = layers_of(solid);
+    RandomShapes random(31);
+    std::size_t met = 0;
+    for (int i = 0; i < 60; ++i) {
+        const Pose pose{random.vector(-0.8, 0.8), random.turn()};
+        for (const ShapeRef other : {ShapeRef{ShapeKind::solid, 1}, ShapeRef{ShapeKind::solid, 2},
+                                     ShapeRef{ShapeKind::solid, 3}, ShapeRef{ShapeKind::box, 0}}) {
+            const auto plain = touch(drawn, other, pose, 0.01);
+            const auto told = touch(ahead, other, pose, 0.01);
+            ASSERT_EQ(told.size(), plain.size());
+            met += plain.size();
+            for (std::size_t k = 0; k < plain.size(); ++k) {
+                EXPECT_EQ(told[k].position, plain[k].position);
+                EXPECT_EQ(told[k].normal, plain[k].normal);
+                EXPECT_EQ(told[k].separation, plain[k].separation);
+                EXPECT_EQ(told[k].feature, plain[k].feature);
+            }
+        }
+    }
+    EXPECT_GT(met, 1000U);
+    // And they are what is looked at.
+    for (RayLayers& layers : ahead.solids[0].layers) layers.begin.assign(layers.begin.size(), 0);
+    EXPECT_FALSE(touch(drawn, {ShapeKind::box, 0}, {}).empty());
+    EXPECT_TRUE(touch(ahead, {ShapeKind::box, 0}, {}).empty());
 }
 
 TEST(ImageTouches, OfWhatIsFarAreNone)
