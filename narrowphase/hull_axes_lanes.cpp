@@ -334,8 +334,9 @@ void Search::touch(HullTouch& out)
     const float unlike = at_depth - edge_.separation;
     const bool agrees = unlike <= 2 * bias && unlike >= -2 * bias;
     if (edge_.a >= 0 && !(agrees && alike())) cross_edges(out);
-    // A face that leads by its bias alone may have nothing over it.
-    if (out.count > 0 || face.separation >= 0) return;
+    // A face that leads by its bias alone may have nothing over it. At rest others bear the body,
+    // and a contact that comes and goes would rock it.
+    if (out.count > 0 || face.separation >= -4 * bias) return;
     const bool by_best = best_b_.separation >= best_a_.separation;
     if (by_best != by_b) clip_face(by_best, out);
     if (out.count == 0) touch_vertex(by_best, out);

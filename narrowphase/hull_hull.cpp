@@ -221,8 +221,9 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
     const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
     const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
     if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
-    // A face that leads by its bias alone may have nothing over it.
-    if (out.count > 0 || face.separation >= 0) return;
+    // A face that leads by its bias alone may have nothing over it. At rest others bear the body,
+    // and a contact that comes and goes would rock it.
+    if (out.count > 0 || face.separation >= -4 * bias) return;
     const bool by_b = axes.face_b.separation >= axes.face_a.separation;
     const FaceAxis& best = by_b ? axes.face_b : axes.face_a;
     if (by_b != b_leads) face_manifold(by_b ? turned : pair, best, reach, bias, out, least);
