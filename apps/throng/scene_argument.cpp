@@ -24,17 +24,6 @@ bool is_file(std::string_view word)
         && std::filesystem::exists(word, ignored);
 }
 
-void set_from_line(Scene& scene,
-                   std::string_view option,
-                   std::string_view name,
-                   std::string_view value)
-{
-    const std::string trouble = set_dial(scene.settings, name, value);
-    if (!trouble.empty()) throw BadInput(std::string(option) + ": " + trouble);
-    auto& set = scene.dials_set;
-    if (std::find(set.begin(), set.end(), name) == set.end()) set.emplace_back(name);
-}
-
 }  // namespace
 
 SceneArgument read_scene_argument(const Options& options)
@@ -63,6 +52,17 @@ SceneArgument read_scene_argument(const Options& options)
     argument.scene.cache_folder = default_cache_folder().string();
     set_dials(argument.scene, options);
     return argument;
+}
+
+void set_from_line(Scene& scene,
+                   std::string_view option,
+                   std::string_view name,
+                   std::string_view value)
+{
+    const std::string trouble = set_dial(scene.settings, name, value);
+    if (!trouble.empty()) throw BadInput(std::string(option) + ": " + trouble);
+    auto& set = scene.dials_set;
+    if (std::find(set.begin(), set.end(), name) == set.end()) set.emplace_back(name);
 }
 
 void set_dials(Scene& scene, const Options& options)

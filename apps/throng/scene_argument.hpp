@@ -34,6 +34,12 @@ inline constexpr Option kThreadsOption = {
 /// Throws SceneError and BadInput.
 SceneArgument read_scene_argument(const Options& options);
 
+/// Sets a dial that an option of the line names. Throws BadInput, which names the option.
+void set_from_line(Scene& scene,
+                   std::string_view option,
+                   std::string_view name,
+                   std::string_view value);
+
 /// Sets the dials that --set and --dt of the line name. Throws BadInput.
 void set_dials(Scene& scene, const Options& options);
 

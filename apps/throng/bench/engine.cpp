@@ -2,7 +2,7 @@
 #include "apps/throng/bench/engine.hpp"
 
 #include "apps/throng/bench/peer_scene.hpp"
-#include "pipeline/dials.hpp"
+#include "apps/throng/scene_argument.hpp"
 
 namespace throng::bench {
 namespace {
@@ -58,8 +58,7 @@ throng_engine(int threads, TraceOption* trace, std::string_view dial, std::strin
     const std::string name(dial), wanted(value);
     return {"throng", name + '=' + wanted, threads, [=](const Scene& scene) {
                 Scene varied = scene;
-                set_dial(varied.settings, name, wanted);
-                varied.dials_set.push_back(name);
+                set_from_line(varied, "--vary", name, wanted);
                 return std::make_unique<ThrongEngine>(varied, scene, threads, trace);
             }};
 }

@@ -2,7 +2,6 @@
 #include "apps/throng/bench/plan.hpp"
 
 #include "apps/throng/scene_argument.hpp"
-#include "pipeline/dials.hpp"
 #include "pipeline/names.hpp"
 
 #include <algorithm>
@@ -109,9 +108,8 @@ Variation variation_of(std::string_view text)
         throw BadInput("--vary: wanted DIAL=VALUE,VALUE, not " + in_quotes(text));
     varied.dial = text.substr(0, equals);
     for (const std::string_view value : parts_of("--vary", text.substr(equals + 1))) {
-        Settings unused;
-        const std::string trouble = set_dial(unused, varied.dial, value);
-        if (!trouble.empty()) throw BadInput("--vary: " + trouble);
+        Scene unused;
+        set_from_line(unused, "--vary", varied.dial, value);
         if (std::find(varied.values.begin(), varied.values.end(), value) != varied.values.end())
             throw BadInput("--vary: " + in_quotes(value) + " is given twice");
         varied.values.emplace_back(value);

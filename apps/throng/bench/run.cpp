@@ -62,7 +62,7 @@ public:
     {
         if (last_repeat) engine_->finish(label);
         if (!interrupted()) {
-            run_.quality = engine_->judge();
+            if (run_.repeat == 0) run_.quality = engine_->judge();
             run_.state_hash = engine_->state_hash();
         }
         run_.state_bytes = static_cast<double>(engine_->state_bytes());

@@ -19,7 +19,7 @@ struct Run {
     std::vector<double> ms, cpu_ms;  // by step; the second of all threads together
     std::vector<std::size_t> contacts;
     std::vector<StageRun> stages;
-    Quality quality;
+    Quality quality;  // of the first repeat; the others end alike, and judging takes long
     double make_ms = 0;
     double state_bytes = 0, heap_bytes = 0, resident_bytes = 0;
 
