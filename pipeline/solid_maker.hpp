@@ -16,9 +16,13 @@ namespace throng {
 ///
 ///   at       m, of the shape's axes in the mesh's: 0 but for a mesh far from its own origin
 ///   mass     in the mesh's axes, of unit density: of the mesh where it is closed, else of what its
-///   way makes of it summary  how it is taken, and how exactly remarks  what was found wrong with
-///   the mesh and what was done about it, as sentences trouble  empty, or why it cannot be had, and
-///   what would do
+///            way makes of it
+///
+///   summary  how it is taken, and how exactly
+///
+///   remarks  what was found wrong with the mesh and what was done about it, as sentences
+///
+///   trouble  empty, or why it cannot be had, and what would do
 struct MadeSolid {
     std::variant<Solid, std::vector<Hull>> shape;
     Vec3 at = Vec3::Zero();

@@ -354,32 +354,6 @@ double weight_of_depth(double reach, double size)
     return fast > 1 ? kShallow / (fast * fast) : kShallow;
 }
 
-// Chooses by places told apart and depths in steps, and takes the touches as they are.
-//
-//   visit  sees each touch that is chosen, and which end of the group it is
-template <class Visit>
-void choose_points(const Grouping& groups,
-                   std::uint8_t group,
-                   const Vec3& normal,
-                   const std::vector<SurfaceTouch>& touches,
-                   double reach,
-                   double size,
-                   const Visit& visit)
-{
-    thread_local std::vector<LocalManifold<double>::Point> candidates;
-    candidates.clear();
-    const double step = kDepthStep * size;
-    for (std::size_t i = 0; i < touches.size(); ++i) {
-        if (!groups.holds(group, i)) continue;
-        const double along = touches[i].separation * normal.dot(touches[i].normal);
-        candidates.push_back({told_apart(touches[i], kApart * size),
-                              step > 0 ? std::round(along / step) * step : along,
-                              static_cast<std::uint32_t>(i)});
-    }
-    Spread(candidates, normal, weight_of_depth(reach, size))
-        .visit([&](const auto& chosen, std::uint32_t end) { visit(touches[chosen.feature], end); });
-}
-
 // Of a place whose normal does not agree with its group's: see kOwnNormal.
 Vec3 normal_between(const Vec3& group, const Vec3& own, double cosine)
 {
@@ -388,32 +362,73 @@ Vec3 normal_between(const Vec3& group, const Vec3& own, double cosine)
     return (part * own + (1 - part) * group).normalized();
 }
 
-// What agrees with the group's normal together, and the rest each by itself.
-void add_manifolds(const Grouping& groups,
-                   std::uint8_t group,
-                   const Vec3& normal,
-                   const std::vector<SurfaceTouch>& touches,
-                   double reach,
-                   double size,
-                   std::size_t first,
-                   std::vector<PatchManifold>& out)
-{
-    const std::uint32_t name = free_name(normal, out, first);
-    PatchManifold together{name, {}};
-    together.manifold.normal = normal;
-    const auto place = [&](const SurfaceTouch& touch, std::uint32_t end) {
-        const double along = normal.dot(touch.normal);
-        const bool agrees = along >= kGroupNormal;
-        PatchManifold alone{kNames * (end + 1) + name, {}};
-        LocalManifold<double>& manifold = agrees ? together.manifold : alone.manifold;
-        if (!agrees) manifold.normal = normal_between(normal, touch.normal, along);
-        manifold.add(touch.position, touch.separation * manifold.normal.dot(touch.normal),
-                     touch.feature);
-        if (!agrees) out.push_back(alone);
-    };
-    choose_points(groups, group, normal, touches, reach, size, place);
-    if (together.manifold.count > 0) out.push_back(together);
-}
+// The manifolds of one set of touches, put behind what `out` holds.
+class PatchMaker {
+public:
+    PatchMaker(const std::vector<SurfaceTouch>& touches,
+               double reach,
+               double size,
+               std::vector<PatchManifold>& out)
+        : touches_(touches), groups_(touches, reach, size), reach_(reach), size_(size), out_(out),
+          first_(out.size())
+    { }
+
+    /// Touches that overlap and are in no manifold.
+    std::size_t make()
+    {
+        groups_.visit([&](const Vec3& normal, std::uint8_t group) { add(normal, group); });
+        std::sort(out_.begin() + static_cast<std::ptrdiff_t>(first_), out_.end(),
+                  [](const PatchManifold& a, const PatchManifold& b) { return a.patch < b.patch; });
+        return groups_.left_out();
+    }
+
+private:
+    // What agrees with the group's normal together, and the rest each by itself.
+    void add(const Vec3& normal, std::uint8_t group)
+    {
+        const std::uint32_t name = free_name(normal, out_, first_);
+        PatchManifold together{name, {}};
+        together.manifold.normal = normal;
+        choose(normal, group, [&](const SurfaceTouch& touch, std::uint32_t end) {
+            const double along = normal.dot(touch.normal);
+            const bool agrees = along >= kGroupNormal;
+            PatchManifold alone{kNames * (end + 1) + name, {}};
+            LocalManifold<double>& manifold = agrees ? together.manifold : alone.manifold;
+            if (!agrees) manifold.normal = normal_between(normal, touch.normal, along);
+            manifold.add(touch.position, touch.separation * manifold.normal.dot(touch.normal),
+                         touch.feature);
+            if (!agrees) out_.push_back(alone);
+        });
+        if (together.manifold.count > 0) out_.push_back(together);
+    }
+
+    // By places told apart and depths in steps. `visit` sees each touch that is chosen as it is,
+    // and which end of the group it is.
+    template <class Visit>
+    void choose(const Vec3& normal, std::uint8_t group, const Visit& visit) const
+    {
+        thread_local std::vector<LocalManifold<double>::Point> candidates;
+        candidates.clear();
+        const double step = kDepthStep * size_;
+        for (std::size_t i = 0; i < touches_.size(); ++i) {
+            if (!groups_.holds(group, i)) continue;
+            const double along = touches_[i].separation * normal.dot(touches_[i].normal);
+            candidates.push_back({told_apart(touches_[i], kApart * size_),
+                                  step > 0 ? std::round(along / step) * step : along,
+                                  static_cast<std::uint32_t>(i)});
+        }
+        Spread(candidates, normal, weight_of_depth(reach_, size_))
+            .visit([&](const auto& chosen, std::uint32_t end) {
+                visit(touches_[chosen.feature], end);
+            });
+    }
+
+    const std::vector<SurfaceTouch>& touches_;
+    const Grouping groups_;
+    double reach_, size_;
+    std::vector<PatchManifold>& out_;
+    std::size_t first_;  // of this set in `out`
+};
 
 }  // namespace
 
@@ -429,14 +444,7 @@ std::size_t make_patches(std::vector<SurfaceTouch>& touches,
     });
     if (touches.empty()) return 0;
     std::sort(touches.begin(), touches.end(), comes_before);
-    const std::size_t first = out.size();
-    const Grouping groups(touches, reach, size);
-    groups.visit([&](const Vec3& normal, std::uint8_t group) {
-        add_manifolds(groups, group, normal, touches, reach, size, first, out);
-    });
-    std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
-              [](const PatchManifold& a, const PatchManifold& b) { return a.patch < b.patch; });
-    return groups.left_out();
+    return PatchMaker(touches, reach, size, out).make();
 }
 
 }  // namespace throng
