@@ -1,11 +1,11 @@
 // Field cache: the same bits cold and kept, and nothing believed that is damaged or another's.
 #include "narrowphase/solids/field_cache.hpp"
 
+#include "tests/narrowphase/solids/cache_folder.hpp"
 #include "tests/narrowphase/solids/closed.hpp"
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <thread>
 
 namespace throng {
@@ -13,18 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class FieldCache : public testing::Test {
+class FieldCache : public test::CacheFolder {
 protected:
-    void SetUp() override
-    {
-        const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(testing::TempDir()) / (std::string("field_cache_") + test->name());
-        fs::remove_all(folder_);
-        settings_.voxel = 0.12;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
+    FieldCache() { settings_.voxel = 0.12; }
 
-    fs::path file() const { return folder_ / (field_key(mesh_, settings_) + ".vdb"); }
+    fs::path file() const { return folder / (field_key(mesh_, settings_) + ".vdb"); }
     void expect_same(const FieldResult& result) const
     {
         const FieldResult plain = build_field(mesh_, settings_);
@@ -38,65 +31,45 @@ protected:
         EXPECT_EQ(result.error, plain.error);
         EXPECT_EQ(result.remarks, plain.remarks);
     }
-    std::string content() const
-    {
-        std::ifstream in(file(), std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    void overwrite(const std::string& bytes) const
-    {
-        std::ofstream(file(), std::ios::binary | std::ios::trunc) << bytes;
-    }
 
     // With a fin that is remarked on.
     Mesh mesh_ =
         closed(both(torus_mesh(1, 0.3, 24, 12), moved(box_mesh({0.5, 0.5, 0.02}), {0, 0, 1.3})));
     FieldSettings settings_;
-    fs::path folder_;
 };
 
 TEST_F(FieldCache, GivesTheSameBitsColdAndKept)
 {
-    expect_same(cached_field(mesh_, settings_, folder_));
+    expect_same(cached_field(mesh_, settings_, folder));
     EXPECT_TRUE(fs::exists(file()));
     const auto written = fs::last_write_time(file());
-    expect_same(cached_field(mesh_, settings_, folder_));
+    expect_same(cached_field(mesh_, settings_, folder));
     EXPECT_EQ(fs::last_write_time(file()), written);  // read, not made again
     // Nothing else is left lying about, and other tools can read what is.
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+    EXPECT_EQ(files(), 1);
     EXPECT_EQ(read_vdb(file(), VdbWants::bricks).trouble, "");
 }
 
 TEST_F(FieldCache, BelievesNothingThatIsDamaged)
 {
-    cached_field(mesh_, settings_, folder_);
-    const std::string good = content();
+    cached_field(mesh_, settings_, folder);
+    const std::string good = bytes_of_file(file());
     ASSERT_GT(good.size(), 10000u);
-    std::vector<std::string> bad{"",
-                                 "x",
-                                 good.substr(0, good.size() / 2),
-                                 good.substr(0, good.size() - 1),
-                                 good + "x",
-                                 good.substr(0, good.size() - 16)};
-    for (const std::size_t at :
-         {std::size_t{3}, good.size() / 3, good.size() - 20, good.size() - 3}) {
-        bad.push_back(good);
-        bad.back()[at] = static_cast<char>(bad.back()[at] ^ 4);
-    }
-    for (const std::string& bytes : bad) {
-        overwrite(bytes);
-        expect_same(cached_field(mesh_, settings_, folder_));
+    for (const std::string& bytes : test::damaged(good)) {
+        test::overwrite(file(), bytes);
+        expect_same(cached_field(mesh_, settings_, folder));
         // Made anew; but for what a .vdb draws by lot for its name.
-        EXPECT_TRUE(content() != bytes && content().size() == good.size());
+        const std::string made = bytes_of_file(file());
+        EXPECT_TRUE(made != bytes && made.size() == good.size());
     }
 }
 
 TEST_F(FieldCache, BelievesNoFileOfAnotherMesh)
 {
     const Mesh other = closed(ball_mesh(1, 20, 10));
-    cached_field(other, settings_, folder_);
-    fs::rename(folder_ / (field_key(other, settings_) + ".vdb"), file());
-    expect_same(cached_field(mesh_, settings_, folder_));
+    cached_field(other, settings_, folder);
+    fs::rename(folder / (field_key(other, settings_) + ".vdb"), file());
+    expect_same(cached_field(mesh_, settings_, folder));
 }
 
 TEST_F(FieldCache, NamesFilesByAllThatTheyAreMadeFrom)
@@ -130,16 +103,16 @@ TEST_F(FieldCache, MayBeFilledBySeveralAtOnce)
     std::vector<FieldResult> results(4);
     std::vector<std::thread> all;
     for (FieldResult& result : results)
-        all.emplace_back([&] { result = cached_field(mesh_, settings_, folder_); });
+        all.emplace_back([&] { result = cached_field(mesh_, settings_, folder); });
     for (std::thread& one : all) one.join();
     for (const FieldResult& result : results) expect_same(result);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+    EXPECT_EQ(files(), 1);
 }
 
 TEST_F(FieldCache, DoesWithoutAFolderThatCannotBeWritten)
 {
-    std::ofstream(folder_.string()) << "a file where the folder should be";
-    const FieldResult result = cached_field(mesh_, settings_, folder_);
+    std::ofstream(folder.string()) << "a file where the folder should be";
+    const FieldResult result = cached_field(mesh_, settings_, folder);
     EXPECT_EQ(result.trouble, "");
     EXPECT_EQ(result.bricks.values, build_field(mesh_, settings_).bricks.values);
     ASSERT_FALSE(result.remarks.empty());

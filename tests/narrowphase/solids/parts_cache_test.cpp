@@ -3,33 +3,26 @@
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
 #include "scenes/closed_meshes.hpp"
+#include "tests/narrowphase/solids/cache_folder.hpp"
 
 #include <gtest/gtest.h>
-
-#include <fstream>
 
 namespace throng {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of the test's own, empty before and gone after.
-class PartsCache : public testing::Test {
+class PartsCache : public test::CacheFolder {
 protected:
-    void SetUp() override
+    PartsCache()
     {
-        const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-        folder = fs::path(testing::TempDir()) / ("throng_parts_" + test);
-        fs::remove_all(folder);
         const TriangleSoup soup = torus_mesh(3, 1, 8, 5);
         mesh = build_mesh(soup.vertices, soup.triangles).mesh;
         find_vertex_normals(mesh);
     }
-    void TearDown() override { fs::remove_all(folder); }
 
     fs::path file() const { return folder / (parts_key(mesh, wanted) + ".parts"); }
 
-    fs::path folder;
     Mesh mesh;
     PartsWanted wanted{4, 0};
 };
@@ -75,33 +68,18 @@ TEST_F(PartsCache, KeptPartsAreRead)
     EXPECT_EQ(cached_parts(mesh, other, folder).hulls.size(), 1u);
     // It was put right, and nothing else was left behind.
     EXPECT_NE(fs::file_size(own), fs::file_size(others));
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2);
+    EXPECT_EQ(files(), 2);
 }
 
 TEST_F(PartsCache, DamagedFilesAreMadeAnew)
 {
     const ConvexParts plain = cached_parts(mesh, wanted, folder);
-    std::ifstream in(file(), std::ios::binary);
-    const std::string whole{std::istreambuf_iterator<char>(in), {}};
-    in.close();
-    const auto write = [&](const std::string& bytes) {
-        std::ofstream(file(), std::ios::binary) << bytes;
-    };
-    const auto read = [&] {
-        std::ifstream again(file(), std::ios::binary);
-        return std::string{std::istreambuf_iterator<char>(again), {}};
-    };
-    for (const std::size_t cut :
-         {std::size_t{0}, std::size_t{7}, whole.size() / 2, whole.size() - 1}) {
-        write(whole.substr(0, cut));
+    const std::string whole = bytes_of_file(file());
+    for (const std::string& bytes : test::damaged(whole)) {
+        test::overwrite(file(), bytes);
         expect_same(cached_parts(mesh, wanted, folder), plain);
-        EXPECT_EQ(read(), whole);
+        EXPECT_EQ(bytes_of_file(file()), whole);
     }
-    std::string turned = whole;
-    turned[whole.size() / 3] = static_cast<char>(turned[whole.size() / 3] ^ 4);
-    write(turned);
-    expect_same(cached_parts(mesh, wanted, folder), plain);
-    EXPECT_EQ(read(), whole);
 }
 
 TEST_F(PartsCache, FolderThatCannotBeWrittenIsRemarkedOn)

@@ -2,35 +2,27 @@
 
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
-#include "narrowphase/solids/file_seal.hpp"
 #include "scenes/closed_meshes.hpp"
+#include "tests/narrowphase/solids/cache_folder.hpp"
 
 #include <gtest/gtest.h>
-
-#include <fstream>
 
 namespace throng {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of the test's own, empty before and gone after.
-class SpheresCache : public testing::Test {
+class SpheresCache : public test::CacheFolder {
 protected:
-    void SetUp() override
+    SpheresCache()
     {
-        const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-        folder = fs::path(testing::TempDir()) / ("throng_spheres_" + test);
-        fs::remove_all(folder);
         const TriangleSoup soup = torus_mesh(3, 1, 8, 5);
         mesh = build_mesh(soup.vertices, soup.triangles).mesh;
         find_vertex_normals(mesh);
     }
-    void TearDown() override { fs::remove_all(folder); }
 
     fs::path file() const { return folder / (spheres_key(mesh, wanted) + ".spheres"); }
 
-    fs::path folder;
     Mesh mesh;
     SphereTreeLimits wanted{2, 8, 0, 2000};
 };
@@ -79,7 +71,7 @@ TEST_F(SpheresCache, KeptSpheresAreRead)
     EXPECT_EQ(cached_spheres(mesh, other, folder).tree.levels.size(), 1U);
     // It was put right, and nothing else was left behind.
     EXPECT_NE(fs::file_size(own), fs::file_size(others));
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2);
+    EXPECT_EQ(files(), 2);
 }
 
 // What a seal cannot tell: written whole, by another hand.
@@ -93,7 +85,7 @@ TEST_F(SpheresCache, ChildrenThatAreNotThereAreNotBelieved)
     const std::size_t children = 8 + 16 + 8 + 16 + 40;
     ASSERT_EQ(turned[children], static_cast<char>(plain.levels[0].nodes[0].count));
     turned[children] = 100;
-    std::ofstream(file(), std::ios::binary) << turned;
+    test::overwrite(file(), turned);
     ASSERT_TRUE(seal_file(file()));
     expect_same(cached_spheres(mesh, wanted, folder), plain);
     EXPECT_EQ(bytes_of_file(file()), whole);
@@ -102,27 +94,12 @@ TEST_F(SpheresCache, ChildrenThatAreNotThereAreNotBelieved)
 TEST_F(SpheresCache, DamagedFilesAreMadeAnew)
 {
     const SphereTree plain = cached_spheres(mesh, wanted, folder).tree;
-    std::ifstream in(file(), std::ios::binary);
-    const std::string whole{std::istreambuf_iterator<char>(in), {}};
-    in.close();
-    const auto write = [&](const std::string& bytes) {
-        std::ofstream(file(), std::ios::binary) << bytes;
-    };
-    const auto read = [&] {
-        std::ifstream again(file(), std::ios::binary);
-        return std::string{std::istreambuf_iterator<char>(again), {}};
-    };
-    for (const std::size_t cut :
-         {std::size_t{0}, std::size_t{7}, whole.size() / 2, whole.size() - 1}) {
-        write(whole.substr(0, cut));
+    const std::string whole = bytes_of_file(file());
+    for (const std::string& bytes : test::damaged(whole)) {
+        test::overwrite(file(), bytes);
         expect_same(cached_spheres(mesh, wanted, folder), plain);
-        EXPECT_EQ(read(), whole);
+        EXPECT_EQ(bytes_of_file(file()), whole);
     }
-    std::string turned = whole;
-    turned[whole.size() / 3] = static_cast<char>(turned[whole.size() / 3] ^ 4);
-    write(turned);
-    expect_same(cached_spheres(mesh, wanted, folder), plain);
-    EXPECT_EQ(read(), whole);
 }
 
 TEST_F(SpheresCache, FolderThatCannotBeWrittenIsRemarkedOn)

@@ -1,0 +1,52 @@
+// Cache folder: a folder of a test's own for files that are kept, and ways to damage these.
+#pragma once
+
+#include "narrowphase/solids/file_seal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace throng::test {
+
+/// Empty before the test and gone after.
+class CacheFolder : public testing::Test {
+protected:
+    void SetUp() override { std::filesystem::remove_all(folder); }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+
+    std::ptrdiff_t files() const
+    {
+        return std::distance(std::filesystem::directory_iterator(folder), {});
+    }
+
+    const std::filesystem::path folder = [] {
+        const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
+        return std::filesystem::path(testing::TempDir())
+            / (std::string("throng_") + test->test_suite_name() + '_' + test->name());
+    }();
+};
+
+inline void overwrite(const std::filesystem::path& file, const std::string& bytes)
+{
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+/// A file of some length cut short, with more behind it, without its seal, and with a bit turned
+/// here and there.
+inline std::vector<std::string> damaged(const std::string& whole)
+{
+    const std::size_t size = whole.size();
+    std::vector<std::string> all{"x", whole + "x"};
+    for (const std::size_t cut :
+         {std::size_t{0}, std::size_t{7}, size / 2, size - kSealBytes, size - 1})
+        all.push_back(whole.substr(0, cut));
+    for (const std::size_t at : {std::size_t{3}, size / 3, size - 20, size - 3}) {
+        all.push_back(whole);
+        all.back()[at] = static_cast<char>(all.back()[at] ^ 4);
+    }
+    return all;
+}
+
+}  // namespace throng::test
