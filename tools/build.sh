@@ -125,7 +125,7 @@ test_preset() {
 }
 
 # Runs what a sanitizer is there for: asan the fast tests, but for those that only compare runs with
-# one another; tsan those with threads.
+# one another or that do the same many times over; tsan those with threads.
 test_sanitized() {
     local which=(-LE "slow|tree") steady=()
     export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
@@ -136,7 +136,10 @@ test_sanitized() {
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi
     else
-        which+=(-E "SameBits/|SweepWidths|PlantedFault|OnThreeThreads|OnAnyNumberOfThreads")
+        local compares="SameBits/|SolidBits|SweepWidths|PlantedFault|OnThreeThreads"
+        compares+="|OnAnyNumberOfThreads|Catalog.(SameSeed|OtherSeed)"
+        local repeats="KeepsItsBounds/H(37|43)|Catalog.EverySize|Run.ProgressIs"
+        which+=(-E "$compares|$repeats")
     fi
     (cd "$root/build/$1" && "${steady[@]}" ctest --output-on-failure --no-tests=error \
         --timeout 600 -j "$(job_count)" "${which[@]}")
