@@ -1,0 +1,65 @@
+// Integrators: how a state is carried through time, whatever its numbers mean.
+//
+// A state is a plain row of numbers, places first and speeds after them. What they are of, a body,
+// two bodies on a spring or anything else, is for the law alone to know; so an integrator is a
+// page, and a new one is another row of the table.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace throng {
+
+enum class Integrator : std::uint8_t { semi_implicit, euler, midpoint, splitting, rk4 };
+
+/// The law by which a state moves.
+///
+///   state  [places() + speeds()]
+class MotionLaw {
+public:
+    virtual ~MotionLaw() = default;
+    virtual std::size_t places() const = 0;
+    virtual std::size_t speeds() const = 0;
+
+    /// How fast places change.  rates: [places()]
+    virtual void place_rates(const double* state, double* rates) = 0;
+    /// How fast speeds change at a time, s since the step began.  rates: [speeds()]
+    virtual void speed_rates(double time, const double* state, double* rates) = 0;
+
+    // The same in parts, for those that take them one after another. Each may be solved as the law
+    // likes best: exactly, or implicitly.
+
+    /// What acts from outside changes speeds for a span of time, places held.
+    virtual void kick(double time, double span, double* state) = 0;
+    /// What speeds do to one another, places held.
+    virtual void swerve(double span, double* state) = 0;
+    /// Places and speeds when nothing acts from outside: symmetric in time, and what the law
+    /// conserves is kept to rounding.
+    virtual void coast(double span, double* state) = 0;
+};
+
+/// Room that integrators work in, kept from one call to the next.
+using IntegratorRoom = std::vector<double>;
+
+/// A row of the table.
+struct IntegratorRow {
+    std::string_view name;
+    int order;  // of the error after a fixed time
+    /// Carries the state from `time` on for a span, both in s.
+    void (*advance)(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state);
+};
+
+/// All integrators, in the order of the enumeration.
+///
+/// Source: Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1 and II.5.
+std::span<const IntegratorRow> integrators();
+
+/// The longest span, as a share of 1 / (angular frequency), at which an oscillation damped by
+/// `ratio` of critical does not grow; 0 where it grows at any. Found by trying: the integrator
+/// itself is asked for the matrix of one step.
+double stable_span(const IntegratorRow& integrator, double ratio);
+
+}  // namespace throng
