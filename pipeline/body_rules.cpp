@@ -74,7 +74,7 @@ void check_contradictions(const BodyDescription& body, const SceneChecker& check
 /// Velocities that the body can have. The keys name them.
 bool may_move(const BodyDescription& body)
 {
-    return body.motion != Motion::static_ && !body.lock_position;
+    return body.motion != Motion::static_ && !body.lock_position && !body.pivot;
 }
 bool may_turn(const BodyDescription& body)
 {
@@ -148,7 +148,8 @@ void check_motion(const BodyDescription& body, const SceneChecker& checker)
                     "a velocity in rad/s");
     checker.at("velocity")
         .need(may_move(body) || body.velocity.isZero(0),
-              "wanted [0, 0, 0] for a body that never moves");
+              body.pivot ? "wanted [0, 0, 0] with a pivot: angular_velocity says how it swings"
+                         : "wanted [0, 0, 0] for a body that never moves");
     checker.at("angular_velocity")
         .need(may_turn(body) || body.angular_velocity.isZero(0),
               "wanted [0, 0, 0] for a body that never turns");

@@ -16,17 +16,11 @@ namespace {
 constexpr bool kNotYet = false;
 constexpr Choice kFrictionAt[] = {{"manifold"}, {"points", kNotYet}};
 constexpr Choice kPrecision[] = {{"float"}, {"double"}};
-constexpr Choice kIntegrator[] = {{"semi_implicit"},
-                                  {"euler", kNotYet},
-                                  {"midpoint", kNotYet},
-                                  {"splitting", kNotYet},
-                                  {"rk4", kNotYet}};
-constexpr Choice kRotation[] = {{"quaternion"},
-                                {"rotation_vector", kNotYet},
-                                {"matrix", kNotYet},
-                                {"quaternion_euler", kNotYet},
-                                {"matrix_euler", kNotYet},
-                                {"matrix_euler_repaired", kNotYet}};
+constexpr Choice kIntegrator[] = {
+    {"semi_implicit"}, {"euler"}, {"midpoint"}, {"splitting"}, {"rk4"}};
+constexpr Choice kRotation[] = {{"quaternion"},   {"rotation_vector"},
+                                {"matrix"},       {"quaternion_euler"},
+                                {"matrix_euler"}, {"matrix_euler_repaired"}};
 constexpr Choice kGyroscopic[] = {{"implicit"}, {"explicit"}, {"off"}};
 constexpr Choice kBroadPhase[] = {{"auto"}, {"embree"}, {"grid"}, {"sweep"}, {"all_pairs"}};
 constexpr Choice kNarrowPhase[] = {{"auto"},       {"gjk"},         {"sat"},
@@ -312,7 +306,7 @@ std::vector<Dial> make_dials()
         choice_dial<&S::precision, kPrecision>("precision",
             "double resolves far finer motion and overlap, and takes about twice the memory and time"),
         choice_dial<&S::integrator, kIntegrator>("integrator",
-            "higher orders follow smooth forces more closely, and evaluate them more often"),
+            "higher orders follow smooth forces more closely, and evaluate them more often; what touches something goes by semi_implicit"),
         choice_dial<&S::rotation, kRotation>("rotation",
             "the exponential map keeps turns exact; the textbook updates drift and save a root"),
         choice_dial<&S::gyroscopic, kGyroscopic>("gyroscopic",

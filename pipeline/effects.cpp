@@ -21,13 +21,13 @@ struct Known {
 
 // In the order of the enumeration.
 constexpr Known kKnown[] = {
-    {"motion", true},        {"gravity", true},        {"forces", false},
+    {"motion", true},        {"gravity", true},        {"forces", true},
     {"drive", true},         {"rotation", true},       {"gyroscopic", true},
     {"contact", true},       {"friction", true},       {"rolling friction", true},
     {"restitution", true},   {"fast motion", false},   {"mesh contact", true},
     {"voxel contact", true}, {"sphere contact", true}, {"image contact", true},
-    {"springs", false},      {"attractors", false},    {"wind", false},
-    {"drag", false},         {"pivot", false},         {"joints", false},
+    {"springs", true},       {"attractors", true},     {"wind", true},
+    {"drag", true},          {"pivot", true},          {"joints", false},
     {"motors", false},       {"sleeping", true},       {"sensors", false},
     {"events", false},       {"agents", false},
 };
@@ -44,6 +44,7 @@ public:
                 !who.empty())
                 call(static_cast<Effect>(i), who);
         find_motion();
+        if (found_.on.has(Effect::motion)) find_forces();
         find_contact();
         if (found_.on.has(Effect::contact)) find_materials();
         find_rotation();
@@ -102,6 +103,28 @@ private:
                 > facts_.colliders.inner_extent[collider];
         });
         if (fast != kNobody) call(Effect::fast_motion, name(fast));
+    }
+
+    void find_forces()
+    {
+        const Forces& forces = facts_.forces;
+        if (forces.field) call(Effect::forces, "force field of the program");
+        const auto call_for = [&](Effect effect, std::size_t size, auto acts) {
+            const auto body = first_body(
+                [&](std::size_t b) { return b < size && facts_.states.dynamic(b) && acts(b); });
+            if (body != kNobody) call(effect, name(body));
+        };
+        call_for(Effect::forces, forces.force.size(), [&](std::size_t b) {
+            return !forces.force[b].isZero(0) || !forces.torque[b].isZero(0);
+        });
+        call_for(Effect::drag, forces.linear_drag.size(), [&](std::size_t b) {
+            return forces.linear_drag[b] > 0 || forces.angular_drag[b] > 0;
+        });
+        call_for(Effect::pivot, forces.hangs.size(),
+                 [&](std::size_t b) { return forces.hangs[b] != 0; });
+        if (!forces.springs.empty()) call(Effect::springs, "spring 0");
+        if (!forces.attractors.empty()) call(Effect::attractors, "attractor 0");
+        if (!forces.wind.isZero(0)) call(Effect::wind, "wind of the scene");
     }
 
     // Filters know groups and masks: bodies of one group and mask are alike.
@@ -195,13 +218,28 @@ private:
             }
     }
 
+    bool turned_by_forces(std::uint32_t body) const
+    {
+        const Forces& forces = facts_.forces;
+        if (forces.field || (body < forces.hangs.size() && forces.hangs[body] != 0)) return true;
+        if (body < forces.torque.size() && !forces.torque[body].isZero(0)) return true;
+        if (body + std::size_t{1} >= forces.first_spring.size()) return false;
+        for (std::uint32_t k = forces.first_spring[body]; k < forces.first_spring[body + 1]; ++k) {
+            const SpringForce& spring = forces.springs[forces.spring_of[k]];
+            if (!(spring.a == body ? spring.at_a : spring.at_b).isZero(0)) return true;
+        }
+        return false;
+    }
+
     // A ball about its own center is turned by friction alone; anything else by any touch.
     bool can_be_turned(std::size_t body) const
     {
         if (!movable(body)) return false;
         if (!facts_.velocities.angular[body].isZero(0)) return true;
         const Sym3& inverse = facts_.masses.inverse_inertia[body];
-        if (inverse == Sym3{} || !has_contact(body)) return false;
+        if (inverse == Sym3{}) return false;
+        if (turned_by_forces(static_cast<std::uint32_t>(body))) return true;
+        if (!has_contact(body)) return false;
         if (found_.on.has(Effect::friction)) return true;
         for (std::uint32_t k = 0; k < facts_.colliders.count[body]; ++k) {
             const std::uint32_t collider = facts_.colliders.begin[body] + k;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/data/bodies.hpp"
+#include "kernels/data/forces.hpp"
 #include "pipeline/set.hpp"
 
 #include <array>
@@ -44,6 +45,9 @@ enum class Effect : std::uint8_t {
 /// What calls for contacts of solids, each by its way.
 inline constexpr Set<Effect> kSolidContact = {Effect::voxel_contact, Effect::sphere_contact,
                                               Effect::image_contact};
+/// What acts on bodies besides gravity and contacts.
+inline constexpr Set<Effect> kForces = {Effect::forces, Effect::springs, Effect::attractors,
+                                        Effect::wind,   Effect::drag,    Effect::pivot};
 inline constexpr int kEffects = static_cast<int>(Effect::agents) + 1;
 
 std::string_view name_of(Effect effect);
@@ -83,6 +87,7 @@ struct EffectFacts {
     const Velocities& velocities;
     const Masses& masses;
     const Drives& drives;
+    const Forces& forces;
     const Shapes& shapes;
     const Colliders& colliders;
     const Surfaces& surfaces;

@@ -6,6 +6,7 @@
 #include "kernels/math/rotation.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "narrowphase/solids/solid_pairs.hpp"
+#include "pipeline/force_builder.hpp"
 #include "pipeline/stages/recycled_manifolds.hpp"
 #include "pipeline/world_state.hpp"
 
@@ -105,16 +106,20 @@ Measures World::measure() const
     const BodyStates& states = state_->get<BodyStates>();
     const Poses& poses = state_->get<Poses>();
     const Velocities& velocities = state_->get<Velocities>();
-    for (std::size_t body = 0; body < states.kind.size(); ++body) {
+    for (std::uint32_t body = 0; body < states.kind.size(); ++body) {
         if (!states.dynamic(body)) continue;
-        const Vec3& v = velocities.linear[body];
+        const Vec3 v = state_->velocity(body);
         const Vec3& w = velocities.angular[body];
         const Vec3 spin = in_world_axes(masses.inertia[body], poses.orientation[body]).matrix() * w;
-        measures.kinetic_energy += 0.5 * (masses.mass[body] * v.squaredNorm() + w.dot(spin));
-        measures.potential_energy -= masses.mass[body] * gravity().dot(poses.position[body]);
+        // About a pivot all of the motion is in the spin.
+        const double square = velocities.linear[body].squaredNorm();
+        measures.kinetic_energy += 0.5 * (masses.mass[body] * square + w.dot(spin));
+        measures.potential_energy -=
+            masses.mass[body] * gravity().dot(state_->center_of_mass(body));
         measures.momentum += masses.mass[body] * v;
         measures.angular_momentum += masses.mass[body] * poses.position[body].cross(v) + spin;
     }
+    measures.potential_energy += potential_of(state_->get<Forces>(), masses, poses);
     return measures;
 }
 

@@ -34,9 +34,9 @@ struct Measures {
     double greatest_overlap = 0;  // m, least-translation depth
     double mean_overlap = 0;      // m, over pairs that overlap
     std::size_t overlapping_pairs = 0;
-    double kinetic_energy = 0;             // J
-    double potential_energy = 0;           // J, of gravity, 0 at the origin
-    Vec3 momentum = Vec3::Zero();          // N s
+    double kinetic_energy = 0;     // J
+    double potential_energy = 0;   // J, of gravity, 0 at the origin; of springs and attractors
+    Vec3 momentum = Vec3::Zero();  // N s
     Vec3 angular_momentum = Vec3::Zero();  // N m s, about the origin of the world
 };
 

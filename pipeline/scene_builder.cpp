@@ -2,6 +2,7 @@
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
+#include "pipeline/force_builder.hpp"
 #include "pipeline/scene_rules.hpp"
 #include "pipeline/solid_maker.hpp"
 #include "pipeline/world_state.hpp"
@@ -289,6 +290,14 @@ void SceneBuilder::weigh(std::uint32_t body,
         const Sym3 about_natural = scaled(shape->mass.inertia, mass / volume);
         masses.inertia[body] = shifted(about_natural, mass, state_.center[body] - natural);
     }
+    state_forces(body, stated, state_.center[body], state_.get<Forces>());
+    if (stated.pivot) {
+        // The pivot takes the place of the center: it never moves, and all turning is about it.
+        const Vec3 off = state_.center[body] - *stated.pivot;
+        masses.inverse_mass[body] = 0;
+        masses.inertia[body] = shifted(masses.inertia[body], mass, off);
+        state_.center[body] = *stated.pivot;
+    }
     if (stated.lock_rotation || masses.inertia[body] == Sym3{}) return;
     const bool in_double = state_.get<Conditions>().settings.precision == Precision::double_;
     masses.inverse_inertia[body] = turning_ease(masses.inertia[body], in_double ? 1e14 : 1e6);
@@ -302,9 +311,6 @@ void SceneBuilder::note_requests(std::uint32_t body, const BodyDescription& stat
     const std::string who =
         "body " + std::to_string(body) + (stated.name.empty() ? "" : " " + stated.name);
     Requests& requests = state_.requests;
-    if (!stated.force.isZero(0) || !stated.torque.isZero(0)) requests.ask(Effect::forces, who);
-    if (stated.linear_drag != 0 || stated.angular_drag != 0) requests.ask(Effect::drag, who);
-    if (stated.pivot) requests.ask(Effect::pivot, who);
     if (stated.fast) requests.ask(Effect::fast_motion, who);
 }
 
@@ -407,6 +413,20 @@ void SceneBuilder::make_room(std::size_t bodies)
             c.count, filter.body, filter.group, filter.mask);
 }
 
+void SceneBuilder::add_forces(const Scene& scene, std::span<const BodyId> ids)
+{
+    Forces& forces = state_.get<Forces>();
+    if (!scene.springs.empty()) {
+        std::vector<std::uint32_t> places;
+        for (const BodyId id : ids) places.push_back(id.index);
+        join_springs(scene.springs, places, state_.center, state_.get<BodyStates>(), forces);
+        state_.warn_of_springs();
+    }
+    for (const Attractor& attractor : scene.attractors)
+        forces.attractors.push_back({attractor.position, attractor.strength});
+    if (!scene.wind.isZero(0)) forces.wind = scene.wind;
+}
+
 std::vector<BodyId> SceneBuilder::add(const Scene& scene)
 {
     make_room(scene.body_count());
@@ -449,9 +469,7 @@ std::vector<BodyId> SceneBuilder::add(const Scene& scene)
             ids.push_back(add_body(body, &shape));
         }
     }
-    if (!scene.springs.empty()) state_.requests.ask(Effect::springs, "spring 0");
-    if (!scene.attractors.empty()) state_.requests.ask(Effect::attractors, "attractor 0");
-    if (!scene.wind.isZero(0)) state_.requests.ask(Effect::wind, "wind of the scene");
+    add_forces(scene, ids);
     state_.effects_stale = true;
     return ids;
 }

@@ -4,6 +4,8 @@
 // the command line.
 #pragma once
 
+#include "kernels/motion/integrators.hpp"
+#include "kernels/motion/orientation.hpp"
 #include "narrowphase/methods/method_start.hpp"
 
 #include <cstdint>
@@ -11,15 +13,6 @@
 namespace throng {
 
 enum class Precision : std::uint8_t { float_, double_ };
-enum class Integrator : std::uint8_t { semi_implicit, euler, midpoint, splitting, rk4 };
-enum class Rotation : std::uint8_t {
-    quaternion,
-    rotation_vector,
-    matrix,
-    quaternion_euler,
-    matrix_euler,
-    matrix_euler_repaired
-};
 enum class Gyroscopic : std::uint8_t { implicit, explicit_, off };
 enum class BroadPhase : std::uint8_t { auto_, embree, grid, sweep, all_pairs };
 enum class NarrowPhase : std::uint8_t { auto_, gjk, sat, chung_wang, clip_volume, containment };

@@ -86,6 +86,16 @@ void split_islands(const ActiveContacts&, const BodyStates&, IslandFinder&, Isla
 void color_rows(
     const Islands&, const ActiveContacts&, const BodyStates&, const Poses&, Painter&, Layout&);
 
+/// Forces into what they do to the velocities of bodies that touch something. Those in flight ask
+/// for themselves, as often as their integrator does.
+void apply_forces(const Conditions&,
+                  const Forces&,
+                  const Poses&,
+                  const Velocities&,
+                  const Masses&,
+                  const BodyStates&,
+                  Pulls&);
+
 /// Bodies into solver bodies, and room for the rows of their contacts.
 template <class Real>
 void prepare_rows(const Conditions&,
@@ -94,6 +104,7 @@ void prepare_rows(const Conditions&,
                   const Velocities&,
                   const Masses&,
                   const BodyStates&,
+                  const Pulls&,
                   Rows<Real>&);
 
 /// Contacts into rows, rows into impulses, velocities and poses. Substeps live here: see
@@ -115,6 +126,9 @@ void integrate_poses(const Conditions&,
                      const Islands&,
                      const Masses&,
                      const BodyStates&,
+                     const Forces&,
+                     const Pulls&,
+                     Flights&,
                      Poses&,
                      Velocities&,
                      Trouble&);
@@ -123,8 +137,14 @@ void integrate_poses(const Conditions&,
 void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
 
 /// Islands that have been quiet long enough fall asleep.
-void rest_islands(
-    const Conditions&, const Drives&, const Islands&, BodyStates&, Beds&, Velocities&, Rest&);
+void rest_islands(const Conditions&,
+                  const Drives&,
+                  const Forces&,
+                  const Islands&,
+                  BodyStates&,
+                  Beds&,
+                  Velocities&,
+                  Rest&);
 
 /// A row of a stage's inner table: what runs within a substep, and who calls for it.
 struct InnerRow {

@@ -6,6 +6,7 @@
 #include "kernels/data/bodies.hpp"
 #include "kernels/data/bounds.hpp"
 #include "kernels/data/contacts.hpp"
+#include "kernels/data/forces.hpp"
 #include "kernels/data/islands.hpp"
 #include "kernels/data/pairs.hpp"
 #include "kernels/data/rows.hpp"
@@ -41,6 +42,7 @@ using StepData = std::tuple<Conditions,
                             Surfaces,
                             PairFilter,
                             Drives,
+                            Forces,
                             Poses,
                             Velocities,
                             Masses,
@@ -54,6 +56,8 @@ using StepData = std::tuple<Conditions,
                             MethodPairs,
                             MeshContacts<Real>,
                             SolidContacts<Real>,
+                            Pulls,
+                            Flights,
                             ActiveContacts,
                             IslandFinder,
                             Islands,

@@ -21,6 +21,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, gather_contacts<Real>>("gather_contacts",   {contact}),
     stage<Real, split_islands>        ("split_islands",     {contact}),
     stage<Real, color_rows>           ("color_rows",        {contact}),
+    stage<Real, apply_forces>         ("apply_forces",      kForces),
     stage<Real, prepare_rows<Real>>   ("prepare_rows",      {contact}),
     stage<Real, solve_impulses<Real>> ("solve_impulses",    {contact}),
     stage<Real, integrate_poses>      ("integrate_poses",   {motion}),
@@ -33,10 +34,9 @@ constexpr Stage<Real> kStep[] = {
 template <class Real>
 consteval bool reads_follow_writes()
 {
-    DataSet ready =
-        data_set<
-            Real,
-            Conditions> | data_set<Real, Shapes> | data_set<Real, Surfaces> | data_set<Real, PairFilter> | data_set<Real, Drives> | data_set<Real, Poses> | data_set<Real, Velocities> | data_set<Real, Masses> | data_set<Real, BodyStates> | data_set<Real, Colliders>;
+    DataSet
+        ready = data_set<
+                    Real, Conditions> | data_set<Real, Shapes> | data_set<Real, Surfaces> | data_set<Real, PairFilter> | data_set<Real, Drives> | data_set<Real, Forces> | data_set<Real, Poses> | data_set<Real, Velocities> | data_set<Real, Masses> | data_set<Real, BodyStates> | data_set<Real, Colliders>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;

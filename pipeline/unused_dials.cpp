@@ -86,6 +86,10 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
         return "narrowphase auto always begins with what a pair remembers";
     if (settings.solver != Solver::direct && name == "direct_limit")
         return "solver " + solver + " takes islands of any size";
+    if (name == "gyroscopic" && settings.gyroscopic == Gyroscopic::explicit_
+        && settings.integrator != Integrator::semi_implicit)
+        return "integrator " + dial_value(settings, "integrator")
+            + " takes the torque as it does all others";
     if (settings.response != Response::penalty
         && is_one_of({"penalty_stiffness", "penalty_damping"}))
         return "response " + response + " has no penalty forces";

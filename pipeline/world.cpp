@@ -2,6 +2,7 @@
 
 #include "broadphase/margins.hpp"
 #include "kernels/solve/sweep.hpp"
+#include "pipeline/force_builder.hpp"
 #include "pipeline/scene_check.hpp"
 #include "pipeline/step_table.hpp"
 #include "pipeline/world_state.hpp"
@@ -124,15 +125,42 @@ void World::State::refresh()
     movers_stale = false;
 }
 
+Vec3 World::State::arm(std::uint32_t body) const
+{
+    const auto& hang = get<Forces>().hang;
+    return body < hang.size() ? Vec3(get<Poses>().orientation[body] * hang[body])
+                              : Vec3(Vec3::Zero());
+}
+
+Vec3 World::State::center_of_mass(std::uint32_t body) const
+{
+    return get<Poses>().position[body] + arm(body);
+}
+
+Vec3 World::State::velocity(std::uint32_t body) const
+{
+    const Velocities& velocities = get<Velocities>();
+    return velocities.linear[body] + velocities.angular[body].cross(arm(body));
+}
+
+void World::State::warn_of_springs()
+{
+    for (std::string& warning :
+         unstable_springs(get<Forces>(), get<Masses>(), get<Conditions>().settings))
+        if (std::find(remarks.begin(), remarks.end(), warning) == remarks.end())
+            remarks.push_back(std::move(warning));
+}
+
 void World::State::refresh_effects()
 {
     effects_stale = false;
     movers_stale = true;
     Conditions& conditions = get<Conditions>();
     const Set<Effect> before = conditions.effects;
-    effects = find_effects({conditions, get<BodyStates>(), get<Poses>(), get<Velocities>(),
-                            get<Masses>(), get<Drives>(), get<Shapes>(), get<Colliders>(),
-                            get<Surfaces>(), get<PairFilter>(), requests, names, material_names});
+    effects =
+        find_effects({conditions, get<BodyStates>(), get<Poses>(), get<Velocities>(), get<Masses>(),
+                      get<Drives>(), get<Forces>(), get<Shapes>(), get<Colliders>(),
+                      get<Surfaces>(), get<PairFilter>(), requests, names, material_names});
     conditions.effects = effects.on;
     empty_unused();
     if (effects.on.has(Effect::contact)) choose_broad_phase();
@@ -203,6 +231,7 @@ void World::step(int steps)
             state.report.fallbacks += state.get<MethodPairs>().fell_back;
             state.follow_step();
         }
+        state.get<Conditions>().time += settings().dt;
         ++state.report.step;
         state.report.time_ms =
             std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
@@ -218,8 +247,10 @@ void World::set_settings(const Settings& settings)
         throw std::invalid_argument(
             "set_settings: precision cannot change in a world; make another");
     check_settings(settings, "set_settings");
+    state_->get<Flights>() = {};  // numbers of another rotation, or of another law
     state_->get<Conditions>().settings = settings;
     state_->effects_stale = true;
+    state_->warn_of_springs();
 }
 
 Vec3 World::gravity() const { return state_->get<Conditions>().gravity; }
@@ -284,17 +315,28 @@ Pose World::pose(BodyId body) const
 
 Vec3 World::center_of_mass(BodyId body) const
 {
-    return state_->get<Poses>().position[state_->place_of(body, "center_of_mass")];
+    return state_->center_of_mass(state_->place_of(body, "center_of_mass"));
 }
 
 Vec3 World::velocity(BodyId body) const
 {
-    return state_->get<Velocities>().linear[state_->place_of(body, "velocity")];
+    return state_->velocity(state_->place_of(body, "velocity"));
 }
 
 Vec3 World::angular_velocity(BodyId body) const
 {
     return state_->get<Velocities>().angular[state_->place_of(body, "angular_velocity")];
+}
+
+Mat3 World::rotation_matrix(BodyId body) const
+{
+    const std::uint32_t at = state_->place_of(body, "rotation_matrix");
+    const Quat& orientation = state_->get<Poses>().orientation[at];
+    const auto& memory = state_->get<Flights>().memory;
+    const bool held =
+        at < memory.size() && memory[at].shown_orientation.coeffs() == orientation.coeffs();
+    return held ? matrix_of(settings().rotation, memory[at].orientation.data())
+                : orientation.toRotationMatrix();
 }
 
 Vec3 World::contact_force(BodyId body) const

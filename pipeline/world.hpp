@@ -5,6 +5,7 @@
 // the world's own threads, and its result is the same bits for any number of them.
 #pragma once
 
+#include "kernels/data/forces.hpp"
 #include "pipeline/effects.hpp"
 #include "pipeline/report.hpp"
 #include "pipeline/scene.hpp"
@@ -47,6 +48,10 @@ public:
     void set_settings(const Settings& settings);
     Vec3 gravity() const;
     void set_gravity(const Vec3& gravity);
+    /// A force and torque of the program's own on every dynamic body that is awake, at every
+    /// evaluation of the integrator; none to take it away. Called from any of the world's threads.
+    /// Bodies in a field do not sleep.
+    void set_force_field(ForceField field);
 
     std::size_t body_count() const;      // alive
     std::vector<BodyId> bodies() const;  // alive, by index
@@ -67,6 +72,10 @@ public:
     void set_pose(BodyId body, const Pose& pose);
     void set_velocity(BodyId body, const Vec3& linear, const Vec3& angular);
     void add_impulse(BodyId body, const Vec3& impulse);  // N s, at the center of mass
+
+    /// What turns body axes into world axes as the `rotation` that is chosen holds it: with the
+    /// textbook's forms no rotation after a while.
+    Mat3 rotation_matrix(BodyId body) const;
 
     /// Force of the contacts on a body over the last substep, N, friction included.
     Vec3 contact_force(BodyId body) const;

@@ -2,6 +2,7 @@
 //
 // The step keeps much from one step to the next; what a change from outside makes stale is put
 // right here, so that no stage has to wonder.
+#include "pipeline/force_builder.hpp"
 #include "pipeline/stages.hpp"
 #include "pipeline/world_state.hpp"
 
@@ -178,6 +179,15 @@ void World::remove(std::span<const BodyId> bodies)
         --state.alive;
     }
     std::sort(state.free_bodies.rbegin(), state.free_bodies.rend());
+    drop_forces(going, states, state.get<Forces>());
+    state.effects_stale = true;
+}
+
+void World::set_force_field(ForceField field)
+{
+    State& state = *state_;
+    state.get<Forces>().field = std::move(field);
+    for (std::uint32_t body = 0; body < state.generation.size(); ++body) state.wake(body);
     state.effects_stale = true;
 }
 

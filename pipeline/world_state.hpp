@@ -66,6 +66,11 @@ struct World::State {
 
     /// The body's index. Throws std::invalid_argument for one that is gone.
     std::uint32_t place_of(BodyId body, const char* caller) const;
+    /// Where the center of mass is of a body that may hang from a pivot, m, and how fast, m/s.
+    Vec3 center_of_mass(std::uint32_t body) const;
+    Vec3 velocity(std::uint32_t body) const;
+    Vec3 arm(std::uint32_t body) const;  // from its position there, world axes
+
     /// Wakes a body with all that sleeps with it.
     void wake(std::uint32_t body);
     /// The broad phase has to look at a body's colliders again.
@@ -90,6 +95,8 @@ struct World::State {
     /// Empties what no stage writes any more, and wakes all where nobody may sleep.
     void empty_unused();
     void choose_broad_phase();
+    /// Remarks on springs that the settings make unstable.
+    void warn_of_springs();
 };
 
 struct MadeSolid;  // solid_maker.hpp
@@ -115,6 +122,7 @@ private:
     void
     place_colliders(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
     void weigh(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
+    void add_forces(const Scene& scene, std::span<const BodyId> ids);
     void note_requests(std::uint32_t body, const BodyDescription& stated);
 
     World::State& state_;

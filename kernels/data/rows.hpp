@@ -37,6 +37,12 @@ struct SpinInertia {
     alignas(32) Real share[8];
 };
 
+/// What forces add to a body's motion, as SolverBody::motion has it, a second.
+template <class Real>
+struct SolverPull {
+    alignas(32) Real rate[8];
+};
+
 /// One number a lane.
 template <class Real>
 struct alignas(64) Lane16 {
@@ -157,6 +163,7 @@ struct Layout {
 ///   bounces      [points] while restitution acts
 ///   rollings     [blocks] while rolling friction acts
 ///   inertias     [bodies] while the gyroscopic torque acts
+///   pulls        [bodies] while forces act
 template <class Real>
 struct Rows {
     std::vector<std::uint32_t> first_point;
@@ -166,6 +173,7 @@ struct Rows {
     std::vector<RollingRows<Real>> rollings;
     std::vector<SolverBody<Real>> bodies;
     std::vector<SpinInertia<Real>> inertias;
+    std::vector<SolverPull<Real>> pulls;
     Wavefront wave;  // scratch
 };
 

@@ -5,6 +5,9 @@
 #include "kernels/motion/flight.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
+#include "pipeline/stages/rigid_law.hpp"
+
+#include <algorithm>
 
 namespace throng {
 
@@ -75,12 +78,123 @@ bool fly_one(const Conditions& conditions,
     return true;
 }
 
+// Bodies by the law of rigid motion: any integrator, any rotation, any forces.
+class LawFlight {
+public:
+    LawFlight(const Conditions& conditions,
+              const RigidFacts& facts,
+              const Pulls& pulls,
+              Poses& poses,
+              Velocities& velocities,
+              Flights& flights)
+        : conditions_(conditions), rule_(rigid_rule(conditions)), facts_(facts), pulls_(pulls),
+          integrator_(integrators()[static_cast<std::size_t>(conditions.settings.integrator)]),
+          poses_(poses), velocities_(velocities), flights_(flights)
+    { }
+
+    /// Each body for itself, but for those that springs join: they go together, or where a contact
+    /// holds one of them, by the forces of the step's beginning, which it is moved by too.
+    ///
+    ///   bodies  ascending
+    void fly(const std::vector<std::uint32_t>& bodies, const BodyStates& states, Trouble& trouble)
+    {
+        flights_.memory.resize(states.kind.size());
+        const Forces& forces = facts_.forces;
+        const auto flies = [&](std::uint32_t body) {
+            return states.moves(body) && std::binary_search(bodies.begin(), bodies.end(), body);
+        };
+        const auto whole = [&](std::uint32_t group) {
+            const auto& members = forces.groups[group];
+            return std::all_of(members.begin(), members.end(), flies);
+        };
+        // The outcome is written down when all have read.
+        std::vector<std::vector<Landing>> landings(block_count(bodies.size(), kBodies));
+        for_each_block(bodies.size(), kBodies, [&](auto begin, auto end, auto block) {
+            RigidMotion law(rule_, facts_);
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::uint32_t body = bodies[i];
+                if (!states.moves(body)) continue;
+                const std::uint32_t group =
+                    body < forces.group_of.size() ? forces.group_of[body] : kNobody;
+                if (group == kNobody) {
+                    carry(law, {&body, 1}, landings[block]);
+                } else if (!whole(group)) {
+                    RigidMotion held(rule_, facts_);
+                    held.hold(pulls_);
+                    carry(held, {&body, 1}, landings[block]);
+                } else if (forces.groups[group].front() == body) {
+                    carry(law, forces.groups[group], landings[block]);
+                }
+            }
+        });
+        for (const auto& list : landings)
+            for (const Landing& landing : list)
+                if (!land(landing)) trouble.quarantined.push_back(landing.body);
+    }
+
+private:
+    static constexpr std::size_t kBodies = 64;  // a block: some 20 microseconds of work
+    struct Landing {
+        std::uint32_t body = 0;
+        RigidMotion::Outcome outcome;
+    };
+
+    void
+    carry(RigidMotion& law, std::span<const std::uint32_t> bodies, std::vector<Landing>& landings)
+    {
+        const double span = conditions_.substep();
+        law.take(bodies, flights_);
+        IntegratorRoom room;
+        for (int step = 0; step < conditions_.settings.substeps; ++step) {
+            integrator_.advance(law, step * span, span, room, law.state());
+            law.settle();
+        }
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            landings.push_back({bodies[i], law.outcome(i)});
+    }
+
+    // False, and the body as it was, where it would become what a step cannot hold.
+    bool land(const Landing& landing)
+    {
+        const RigidMotion::Outcome& now = landing.outcome;
+        if (!holdable(now.position) || !now.orientation.coeffs().allFinite()
+            || !holdable(now.velocity) || !holdable(now.angular_velocity))
+            return false;
+        poses_.position[landing.body] = now.position;
+        poses_.orientation[landing.body] = now.orientation;
+        velocities_.linear[landing.body] = now.velocity;
+        velocities_.angular[landing.body] = now.angular_velocity;
+        flights_.memory[landing.body] = now.memory;
+        return true;
+    }
+
+    const Conditions& conditions_;
+    RigidRule rule_;
+    RigidFacts facts_;
+    const Pulls& pulls_;
+    const IntegratorRow& integrator_;
+    Poses& poses_;
+    Velocities& velocities_;
+    Flights& flights_;
+};
+
+// Whether the wide kernel, or what it leaves to fly_one(), is the law that is asked for.
+bool falls_alone(const Conditions& conditions)
+{
+    return conditions.settings.integrator == Integrator::semi_implicit
+        && conditions.settings.rotation == Rotation::quaternion
+        && !conditions.effects.meets(kForces);
+}
+
 }  // namespace
 
 void integrate_poses(const Conditions& conditions,
                      const Islands& islands,
                      const Masses& masses,
                      const BodyStates& states,
+                     const Forces& forces,
+                     const Pulls& pulls,
+                     Flights& flights,
                      Poses& poses,
                      Velocities& velocities,
                      Trouble& trouble)
@@ -108,7 +222,13 @@ void integrate_poses(const Conditions& conditions,
         });
         trouble.of_block.append_to(trouble.quarantined);
     };
-    fly(alone ? states.movers.dynamic : islands.lone);
+    const auto& free = alone ? states.movers.dynamic : islands.lone;
+    if (falls_alone(conditions))
+        fly(free);
+    else
+        LawFlight(conditions, {forces, masses, poses, velocities}, pulls, poses, velocities,
+                  flights)
+            .fly(free, states, trouble);
     fly(states.movers.kinematic);
 }
 

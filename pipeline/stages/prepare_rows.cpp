@@ -47,6 +47,20 @@ void seat_inertia(std::uint32_t body,
     seat.share[6] = 1;
 }
 
+template <class Real>
+void seat_pull(std::uint32_t body,
+               const Pulls& pulls,
+               const BodyStates& states,
+               SolverPull<Real>& seat)
+{
+    seat = {};
+    if (body == kNobody || !states.movable(body)) return;
+    for (int k = 0; k < 3; ++k) {
+        seat.rate[k] = static_cast<Real>(pulls.linear[body][k]);
+        seat.rate[4 + k] = static_cast<Real>(pulls.angular[body][k]);
+    }
+}
+
 }  // namespace
 
 template <class Real>
@@ -56,14 +70,18 @@ void prepare_rows(const Conditions& conditions,
                   const Velocities& velocities,
                   const Masses& masses,
                   const BodyStates& states,
+                  const Pulls& pulls,
                   Rows<Real>& rows)
 {
+    const bool forced = conditions.effects.meets(kForces);
     const bool gyroscopic = conditions.has(Effect::gyroscopic);
     rows.bodies.resize(layout.body_of_slot.size());
     rows.inertias.resize(gyroscopic ? rows.bodies.size() : 0);
+    rows.pulls.resize(forced ? rows.bodies.size() : 0);
     const auto seat = [&](std::uint32_t body, std::size_t slot) {
         seat_body(body, poses, velocities, masses, states, rows.bodies[slot]);
         if (gyroscopic) seat_inertia(body, poses, masses, states, rows.inertias[slot]);
+        if (forced) seat_pull(body, pulls, states, rows.pulls[slot]);
     };
     seat(kNobody, 0);
     // In order of bodies, of which many arrays are read; that of slots may be any other.
@@ -91,7 +109,7 @@ void prepare_rows(const Conditions& conditions,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void prepare_rows<Real>(const Conditions&, const Layout&, const Poses&,               \
                                      const Velocities&, const Masses&, const BodyStates&,          \
-                                     Rows<Real>&);
+                                     const Pulls&, Rows<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

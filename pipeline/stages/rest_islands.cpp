@@ -41,6 +41,7 @@ void put_to_bed(std::span<const std::uint32_t> bodies,
 
 void rest_islands(const Conditions& conditions,
                   const Drives& drives,
+                  const Forces& forces,
                   const Islands& islands,
                   BodyStates& states,
                   Beds& beds,
@@ -50,10 +51,12 @@ void rest_islands(const Conditions& conditions,
     rest.rested.clear();
     const Settings& settings = conditions.settings;
     const auto quiet_for = [&](std::uint32_t body) {
-        // Who is driven wants to move, even where something holds it up.
+        // Who is driven wants to move, even where something holds it up; what a spring or a field
+        // will do to it nobody here knows.
         const bool quiet = states.moves(body)  // not put to rest in this very step
             && speed_of(velocities, states, body) < settings.sleep_speed
-            && !std::binary_search(drives.body.begin(), drives.body.end(), body);
+            && !std::binary_search(drives.body.begin(), drives.body.end(), body)
+            && !forces.stirs(body);
         states.quiet_time[body] = quiet ? states.quiet_time[body] + settings.dt : 0.0;
         return states.quiet_time[body];
     };

@@ -212,7 +212,19 @@ private:
             kernels_.begin_substep(rows_.bodies.data() + at,
                                    rows_.inertias.empty() ? nullptr : rows_.inertias.data() + at,
                                    count, substep);
+            if (!rows_.pulls.empty()) pull(at, count);
         });
+    }
+
+    // Forces move a body with contacts and without, so that what contacts gave stays what it was.
+    void pull(std::size_t at, std::size_t count)
+    {
+        for (std::size_t i = at; i < at + count; ++i)
+            for (int k = 0; k < 8; ++k) {
+                const Real change = rows_.pulls[i].rate[k] * time_;
+                rows_.bodies[i].motion[k] += change;
+                rows_.bodies[i].free[k] += change;
+            }
     }
 
     void advance(const Slice& slice, bool shared)

@@ -180,7 +180,9 @@ TEST(IntegratePoses, MovesTheLoneAndLeavesTheOthersToTheSolver)
     Islands islands;
     islands.lone = {1, 2};
     Trouble trouble;
-    integrate_poses(b.conditions, islands, b.masses, b.states, b.poses, b.velocities, trouble);
+    Flights flights;
+    integrate_poses(b.conditions, islands, b.masses, b.states, {}, {}, flights, b.poses,
+                    b.velocities, trouble);
     EXPECT_EQ(b.poses.position[0], Vec3(0, 0, 0));
     EXPECT_NEAR(b.poses.position[1].x(), 1 + 1.0 / 60, 1e-15);
     EXPECT_LT(b.poses.position[1].z(), 0);
@@ -195,7 +197,9 @@ TEST(IntegratePoses, LeavesWhatAStepCannotHoldWhereItWasAndReportsIt)
     Islands islands;
     islands.lone = {0, 1};
     Trouble trouble;
-    integrate_poses(b.conditions, islands, b.masses, b.states, b.poses, b.velocities, trouble);
+    Flights flights;
+    integrate_poses(b.conditions, islands, b.masses, b.states, {}, {}, flights, b.poses,
+                    b.velocities, trouble);
     EXPECT_EQ(trouble.quarantined, (std::vector<std::uint32_t>{1}));
     EXPECT_EQ(b.poses.position[1], Vec3(1, 0, 0));
     quarantine_bodies(trouble, b.states, b.masses, b.velocities);
@@ -218,7 +222,7 @@ TEST(RestIslands, PutsAnIslandToBedOnceAllOfItIsQuiet)
     b.velocities.linear[0] = Vec3(0.01, 0, 0);
     int steps = 0;
     while (b.states.awake[0] != 0 && ++steps < 100)
-        rest_islands(b.conditions, {}, islands, b.states, beds, b.velocities, rest);
+        rest_islands(b.conditions, {}, {}, islands, b.states, beds, b.velocities, rest);
     EXPECT_NEAR(steps, 30, 1);
     EXPECT_EQ(rest.rested, (std::vector<std::uint32_t>{0, 1}));
     EXPECT_EQ(b.states.bed[0], b.states.bed[1]);

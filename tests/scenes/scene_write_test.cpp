@@ -100,7 +100,6 @@ Scene full_scene()
     body.torque = Vec3(0.3, 0, 0);
     body.linear_drag = 0.1;
     body.angular_drag = 0.2;
-    body.pivot = Vec3(0, 0, -0.05);
     body.group = 6;
     body.mask = 0;
     body.fast = true;
@@ -112,6 +111,7 @@ Scene full_scene()
     scene.bodies.push_back({});
     scene.bodies[2].mass = 3;
     scene.bodies[2].lock_rotation = true;
+    scene.bodies[2].pivot = Vec3(0, 0, -0.05);
     scene.springs = {{0, kNone, Vec3(0.1, 0, 0), Vec3(0, 0, 3), 1e4, 0.1, 1},
                      {2, 0, {0, 0, 0}, {0, 0, 0}, 1, 0, 0}};
     scene.attractors = {{Vec3(1, 2, 3), -0.1}};

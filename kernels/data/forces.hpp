@@ -1,0 +1,99 @@
+// Forces: what acts on bodies besides gravity and contacts, and how orientations are kept.
+//
+// Every list by body may be shorter than the bodies, or empty: the rest have nothing of the kind.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace throng {
+
+/// A force at the center of mass, N, and a torque about it, N m; world axes.
+struct Wrench {
+    Vec3 force = Vec3::Zero();
+    Vec3 torque = Vec3::Zero();
+};
+
+/// What a force field is asked about.
+struct FieldPlace {
+    std::uint32_t body = 0;
+    double time = 0;                       // s, since the world began
+    double mass = 0;                       // kg
+    Pose center;                           // of mass, with the body's axes
+    Vec3 velocity = Vec3::Zero();          // of the center of mass, m/s
+    Vec3 angular_velocity = Vec3::Zero();  // world axes, rad/s
+};
+
+/// Called for every dynamic body that is awake, as often as the integrator evaluates forces, from
+/// any thread: the answer may depend on the place alone.
+using ForceField = std::function<Wrench(const FieldPlace&)>;
+
+/// Holds two points at a distance: stiffness (distance - length) + damping d distance / dt.
+struct SpringForce {
+    std::uint32_t a = 0, b = 0;                     // bodies; kNobody: the world
+    Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  // m, from the center of mass, body axes
+    double stiffness = 0, damping = 0, length = 0;  // N/m, N s/m, m
+};
+
+/// Draws every body with mass near by strength / distance^2, m/s2.
+struct AttractorForce {
+    Vec3 position = Vec3::Zero();
+    double strength = 0;  // m3/s2
+};
+
+struct Forces {
+    std::vector<Vec3> force, torque;  // [bodies] N, N m; constant, world axes; both or none
+    std::vector<double> linear_drag, angular_drag;  // [bodies] kg/s, kg m2/s; both or none
+    Vec3 wind = Vec3::Zero();                       // m/s, of the air that drag is against
+    std::vector<AttractorForce> attractors;
+    ForceField field;  // empty: none
+    // [bodies] m, body axes: where the center of mass is, seen from the pivot that the body's
+    // position is; zero for a body without a pivot.
+    std::vector<Vec3> hang;
+    std::vector<std::uint8_t> hangs;  // [bodies] 1: has a pivot
+
+    std::vector<SpringForce> springs;
+    std::vector<std::uint32_t> first_spring, spring_of;  // [bodies + 1]; springs of each body
+    // Bodies that springs join and that have to be carried on together; each list ascending.
+    std::vector<std::vector<std::uint32_t>> groups;
+    std::vector<std::uint32_t> group_of;  // [bodies] kNobody: in none
+
+    /// Whether there is anything but gravity.
+    bool any() const
+    {
+        return !force.empty() || !linear_drag.empty() || !attractors.empty() || field
+            || !hang.empty() || !springs.empty();
+    }
+    /// Whether a body is held by something that may move it from rest at any time.
+    bool stirs(std::uint32_t body) const
+    {
+        return field
+            || (body + std::size_t{1} < first_spring.size()
+                && first_spring[body] != first_spring[body + 1]);
+    }
+};
+
+/// What the forces of the step's beginning do to the velocities of bodies that the solver moves.
+struct Pulls {
+    std::vector<Vec3> linear, angular;  // [bodies] m/s2, rad/s2 in world axes; empty: no forces
+};
+
+/// What bodies in flight keep from step to step where turning there and back between body axes and
+/// world axes would be seen, or an orientation is not held as a quaternion. It counts for as long
+/// as pose and velocity are still what it was shown as.
+struct FlightMemory {
+    std::array<double, 9> orientation = {};  // by the rotation that is chosen
+    Vec3 spin = Vec3::Zero();                // rad/s, body axes
+    Quat shown_orientation = Quat(0, 0, 0, 0);
+    Vec3 shown_spin = Vec3::Zero();  // world axes
+};
+
+/// By body; empty where none is kept.
+struct Flights {
+    std::vector<FlightMemory> memory;
+};
+
+}  // namespace throng

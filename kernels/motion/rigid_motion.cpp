@@ -1,0 +1,462 @@
+#include "kernels/motion/rigid_motion.hpp"
+
+#include "kernels/math/rotation.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+Vec3 vector_at(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+void put(const Vec3& from, double* to)
+{
+    for (int k = 0; k < 3; ++k) to[k] = from[k];
+}
+
+// Of a list that may be shorter than the bodies.
+template <class T>
+T of(const std::vector<T>& list, std::uint32_t body, const T& none)
+{
+    return body < list.size() ? list[body] : none;
+}
+
+// Velocity after a drag whose rate times the span is z, and an acceleration that would add
+// `gained` without it. 1 / (1 + z + z^2 / 2) in place of the exponential: second order, and no
+// drag, however strong, turns a velocity round.
+Vec3 dragged(const Vec3& velocity, const Vec3& gained, const Vec3& wind, double z)
+{
+    return velocity + (gained + z * (wind - velocity)) * ((1 + 0.5 * z) / (1 + z + 0.5 * z * z));
+}
+
+// The same for spinning, where the rate is a matrix.
+Vec3 dragged(const Vec3& spin, const Vec3& gained, const Mat3& z)
+{
+    const Mat3 one = Mat3::Identity();
+    const Mat3 slowed = one + z + 0.5 * Mat3(z * z);
+    const Vec3 towards = gained - Vec3(z * spin);
+    return spin + slowed.inverse() * Vec3((one + 0.5 * z) * towards);
+}
+
+}  // namespace
+
+RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) const
+{
+    const Masses& masses = facts_.masses;
+    const Quat& pose = facts_.poses.orientation[id];
+    Body body;
+    body.body = id;
+    body.inverse_mass = masses.inverse_mass[id];
+    body.turns = rule_.turns && masses.inverse_inertia[id] != Sym3{};
+    body.precesses = body.turns && masses.spins_unevenly[id] != 0
+        && rule_.gyroscopic != RigidRule::Gyroscopic::off;
+    const std::vector<std::uint8_t>& hangs = facts_.forces.hangs;
+    body.by_momentum =
+        rule_.momentum_on_pivots && body.turns && id < hangs.size() && hangs[id] != 0;
+    body.ease = masses.inverse_inertia[id].matrix();
+    const Sym3& inertia = masses.inertia[id];
+    body.moments = Vec3(inertia.xx, inertia.yy, inertia.zz);
+    if (masses.spins_unevenly[id] == 2) {
+        const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia.matrix());
+        body.axes = solver.eigenvectors();
+        body.moments = solver.eigenvalues();
+    }
+    const Vec3& spin = facts_.velocities.angular[id];
+    if (id < flights.memory.size()) {
+        const FlightMemory& memory = flights.memory[id];
+        if (memory.shown_orientation.coeffs() == pose.coeffs() && memory.shown_spin == spin) {
+            body.spin = memory.spin;
+            body.orientation = memory.orientation;
+            return body;
+        }
+    }
+    body.spin = pose.conjugate() * spin;
+    if (body.by_momentum) body.spin = pose * Vec3(inertia.matrix() * body.spin);
+    body.orientation = write_orientation(rule_.rotation, pose);
+    return body;
+}
+
+void RigidMotion::take(std::span<const std::uint32_t> bodies, const Flights& flights)
+{
+    bodies_.clear();
+    for (const std::uint32_t body : bodies) bodies_.push_back(taken(body, flights));
+    state_.assign(places() + speeds(), 0.0);
+    moments_.resize(bodies_.size());
+    wrenches_.resize(bodies_.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const Body& body = bodies_[i];
+        double* const place = state_.data() + place_of(i);
+        put(facts_.poses.position[body.body], place);
+        if (adds_rates(rule_.rotation))
+            std::copy_n(body.orientation.begin(), numbers_of(rule_.rotation), place + 3);
+        put(facts_.velocities.linear[body.body], state_.data() + speed_of(i));
+        put(body.spin, state_.data() + speed_of(i) + 3);
+    }
+}
+
+void RigidMotion::settle()
+{
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (!bodies_[i].turns) continue;
+        double* const turn = state_.data() + place_of(i) + 3;
+        OrientationNumbers& orientation = bodies_[i].orientation;
+        if (adds_rates(rule_.rotation)) {
+            repair(rule_.rotation, turn);
+            std::copy_n(turn, numbers_of(rule_.rotation), orientation.begin());
+        } else if (const Vec3 change = vector_at(turn); !change.isZero(0)) {
+            const Vec3 local = bodies_[i].by_momentum
+                ? Vec3(matrix_of(rule_.rotation, orientation.data()).transpose() * change)
+                : change;
+            turn_on(rule_.rotation, local, orientation.data());
+            put(Vec3::Zero(), turn);
+        }
+    }
+}
+
+RigidMotion::Outcome RigidMotion::outcome(std::size_t i) const
+{
+    const Body& body = bodies_[i];
+    Outcome out;
+    out.position = vector_at(state_.data() + place_of(i));
+    out.velocity = vector_at(state_.data() + speed_of(i));
+    out.orientation = body.turns ? read_orientation(rule_.rotation, body.orientation.data())
+                                 : facts_.poses.orientation[body.body];
+    const Vec3 spin = vector_at(state_.data() + speed_of(i) + 3);
+    if (body.by_momentum) {
+        const Mat3 turn = out.orientation.toRotationMatrix();
+        out.angular_velocity = turn * body_spin(i, turn, state_.data());
+    } else {
+        // What nothing has changed keeps its bits.
+        out.angular_velocity =
+            spin == body.spin ? facts_.velocities.angular[body.body] : Vec3(out.orientation * spin);
+    }
+    out.memory = {body.orientation, spin, out.orientation, out.angular_velocity};
+    return out;
+}
+
+// Body axes to world axes.
+Mat3 RigidMotion::turn_at(std::size_t i, const double* state) const
+{
+    const Body& body = bodies_[i];
+    const double* const place = state + place_of(i);
+    if (adds_rates(rule_.rotation)) return matrix_of(rule_.rotation, place + 3);
+    const Mat3 before = matrix_of(rule_.rotation, body.orientation.data());
+    const Vec3 change = vector_at(place + 3);
+    if (change.isZero(0)) return before;
+    const Mat3 further = exponential(change).toRotationMatrix();
+    return body.by_momentum ? Mat3(further * before) : Mat3(before * further);
+}
+
+// Angular velocity in body axes.
+Vec3 RigidMotion::body_spin(std::size_t i, const Mat3& turn, const double* state) const
+{
+    const Vec3 spin = vector_at(state + speed_of(i) + 3);
+    if (!bodies_[i].by_momentum) return spin;
+    return bodies_[i].ease * Vec3(turn.transpose() * spin);
+}
+
+RigidMotion::Moment RigidMotion::moment_at(std::size_t i, const double* state) const
+{
+    const Body& body = bodies_[i];
+    Moment now;
+    now.turn = turn_at(i, state);
+    now.spin = now.turn * body_spin(i, now.turn, state);
+    now.arm = now.turn * of(facts_.forces.hang, body.body, Vec3(Vec3::Zero()));
+    now.position = vector_at(state + place_of(i));
+    now.velocity = vector_at(state + speed_of(i)) + now.spin.cross(now.arm);
+    return now;
+}
+
+RigidMotion::Moment RigidMotion::moment_outside(std::uint32_t body, double time) const
+{
+    Moment now;
+    if (body == kNobody) {
+        now.turn = Mat3::Identity();
+        now.position = now.arm = now.velocity = now.spin = Vec3::Zero();
+        return now;
+    }
+    now.spin = facts_.velocities.angular[body];
+    now.turn = turned(facts_.poses.orientation[body], now.spin, time).toRotationMatrix();
+    now.arm = now.turn * of(facts_.forces.hang, body, Vec3(Vec3::Zero()));
+    now.position = facts_.poses.position[body] + time * facts_.velocities.linear[body];
+    now.velocity = facts_.velocities.linear[body] + now.spin.cross(now.arm);
+    return now;
+}
+
+void RigidMotion::look(const double* state)
+{
+    for (std::size_t i = 0; i < bodies_.size(); ++i) moments_[i] = moment_at(i, state);
+}
+
+void RigidMotion::add_springs(std::size_t i, double time, Wrench& on) const
+{
+    const Forces& forces = facts_.forces;
+    const std::uint32_t id = bodies_[i].body;
+    if (id + 1 >= forces.first_spring.size()) return;
+    for (std::uint32_t k = forces.first_spring[id]; k < forces.first_spring[id + 1]; ++k) {
+        const SpringForce& spring = forces.springs[forces.spring_of[k]];
+        const bool first = spring.a == id;
+        const std::uint32_t other = first ? spring.b : spring.a;
+        const auto among = std::lower_bound(
+            bodies_.begin(), bodies_.end(), other,
+            [](const Body& body, std::uint32_t wanted) { return body.body < wanted; });
+        const bool inside = among != bodies_.end() && among->body == other;
+        const Moment& here = moments_[i];
+        const Moment there =
+            inside ? moments_[std::size_t(among - bodies_.begin())] : moment_outside(other, time);
+        const Vec3 lever = here.turn * (first ? spring.at_a : spring.at_b);
+        const Vec3 far_lever = there.turn * (first ? spring.at_b : spring.at_a);
+        const auto speed = [](const Moment& at, const Vec3& from) {
+            return Vec3(at.velocity + at.spin.cross(from));
+        };
+        const Vec3 between =
+            (there.position + there.arm + far_lever) - (here.position + here.arm + lever);
+        const double distance = std::sqrt(between.squaredNorm());
+        // Ends that meet are drawn nowhere: which way, none could say.
+        if (!(distance > 0)) continue;
+        const Vec3 along = between / distance;
+        const double parting = along.dot(speed(there, far_lever) - speed(here, lever));
+        const double pull =
+            spring.stiffness * (distance - spring.length) + spring.damping * parting;
+        on.force += pull * along;
+        on.torque += lever.cross(Vec3(pull * along));
+    }
+}
+
+void RigidMotion::find_wrenches(double time, bool all_drag)
+{
+    const Forces& forces = facts_.forces;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const std::uint32_t id = bodies_[i].body;
+        const Moment& now = moments_[i];
+        const double mass = mass_of(bodies_[i]);
+        Wrench& on = wrenches_[i];
+        on.force = of(forces.force, id, Vec3(Vec3::Zero()));
+        on.torque = of(forces.torque, id, Vec3(Vec3::Zero()));
+        if (all_drag || bodies_[i].by_momentum) {
+            on.force += of(forces.linear_drag, id, 0.0) * (forces.wind - now.velocity);
+            on.torque -= of(forces.angular_drag, id, 0.0) * now.spin;
+        }
+        for (const AttractorForce& attractor : forces.attractors) {
+            const Vec3 towards = attractor.position - (now.position + now.arm);
+            const double square = towards.squaredNorm();
+            if (square > 0)
+                on.force += mass * attractor.strength / (square * std::sqrt(square)) * towards;
+        }
+        if (forces.field) {
+            const Pose center{now.position + now.arm, Quat(now.turn)};
+            const Wrench more =
+                forces.field({id, rule_.time + time, mass, center, now.velocity, now.spin});
+            on.force += more.force;
+            on.torque += more.torque;
+        }
+        add_springs(i, time, on);
+        // From the center of mass to the position, which for most are one.
+        if (now.arm.isZero(0)) continue;
+        on.force += mass * rule_.gravity;
+        on.torque += now.arm.cross(on.force);
+    }
+}
+
+RigidMotion::Pull RigidMotion::pull_on(std::size_t i)
+{
+    look(state_.data());
+    find_wrenches(0, true);
+    const Mat3& turn = moments_[i].turn;
+    return {bodies_[i].inverse_mass * wrenches_[i].force,
+            turn * Vec3(bodies_[i].ease * Vec3(turn.transpose() * wrenches_[i].torque))};
+}
+
+void RigidMotion::place_rates(const double* state, double* rates)
+{
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const double* const place = state + place_of(i);
+        const double* const speed = state + speed_of(i);
+        double* const rate = rates + place_of(i);
+        put(vector_at(speed), rate);
+        const bool by_momentum = bodies_[i].by_momentum;
+        const Mat3 turn = by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
+        const Vec3 spin = body_spin(i, turn, state);
+        if (adds_rates(rule_.rotation))
+            rates_of(rule_.rotation, place + 3, spin, rate + 3);
+        else if (by_momentum)
+            // From the left the series is that of the way back.
+            put(rate_of_turn(-vector_at(place + 3), turn * spin), rate + 3);
+        else
+            put(rate_of_turn(vector_at(place + 3), spin), rate + 3);
+    }
+}
+
+void RigidMotion::speed_rates(double time, const double* state, double* rates)
+{
+    if (forced_ || held_ != nullptr) look(state);
+    if (forced_ && held_ == nullptr) find_wrenches(time, true);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const Body& body = bodies_[i];
+        const Mat3& turn = moments_[i].turn;
+        Vec3 linear = fall_of(body), angular = Vec3::Zero(), torque = Vec3::Zero();
+        if (held_ != nullptr) {
+            linear += held_->linear[body.body];
+            angular = turn.transpose() * held_->angular[body.body];
+        } else if (forced_) {
+            linear += body.inverse_mass * wrenches_[i].force;
+            torque = turn.transpose() * wrenches_[i].torque;
+        }
+        if (body.precesses) {
+            const Vec3 spin = vector_at(state + speed_of(i) + 3);
+            torque -= spin.cross(Vec3(facts_.masses.inertia[body.body].matrix() * spin));
+        }
+        put(linear, rates + i * 6);
+        if (body.by_momentum) {
+            put(Vec3::Zero(), rates + i * 6 + 3);
+            add_momentum(i, 1, rates + i * 6 + 3);
+            continue;
+        }
+        put(body.turns ? Vec3(angular + body.ease * torque) : Vec3(Vec3::Zero()),
+            rates + i * 6 + 3);
+    }
+}
+
+// What a torque, or an acceleration that is held, adds to an angular momentum in a time.
+void RigidMotion::add_momentum(std::size_t i, double span, double* momentum) const
+{
+    Vec3 rate = wrenches_[i].torque;
+    if (held_ != nullptr) {
+        const std::uint32_t id = bodies_[i].body;
+        const Mat3& turn = moments_[i].turn;
+        const Vec3 local = turn.transpose() * held_->angular[id];
+        rate = turn * Vec3(facts_.masses.inertia[id].matrix() * local);
+    }
+    put(vector_at(momentum) + span * rate, momentum);
+}
+
+// Forces, and drag by itself, so that however strong it only slows.
+void RigidMotion::push(std::size_t i, double span, double* speed) const
+{
+    const Body& body = bodies_[i];
+    const Forces& forces = facts_.forces;
+    const Mat3& turn = moments_[i].turn;
+    const double drag = of(forces.linear_drag, body.body, 0.0);
+    const Vec3 linear = fall_of(body) + body.inverse_mass * wrenches_[i].force;
+    put(dragged(vector_at(speed), span * linear, forces.wind, span * drag * body.inverse_mass),
+        speed);
+    if (!body.turns) return;
+    Vec3 torque = turn.transpose() * wrenches_[i].torque;
+    Mat3 z = span * of(forces.angular_drag, body.body, 0.0) * body.ease;
+    // Drag on what swings about a pivot slows its turning.
+    if (const Vec3& arm = moments_[i].arm; drag > 0 && !arm.isZero(0)) {
+        torque += turn.transpose() * arm.cross(Vec3(drag * forces.wind));
+        const Vec3 lever = turn.transpose() * arm;
+        const Mat3 one = Mat3::Identity();
+        const Mat3 about = lever.squaredNorm() * one - Mat3(lever * lever.transpose());
+        z += span * drag * Mat3(body.ease * about);
+    }
+    const Vec3 spin = vector_at(speed + 3), gained = span * Vec3(body.ease * torque);
+    put(z.isZero(0) ? Vec3(spin + gained) : dragged(spin, gained, z), speed + 3);
+}
+
+void RigidMotion::kick(double time, double span, double* state)
+{
+    if (forced_ || held_ != nullptr) look(state);
+    if (forced_ && held_ == nullptr) find_wrenches(time, false);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const Body& body = bodies_[i];
+        double* const speed = state + speed_of(i);
+        if (body.by_momentum) {
+            add_momentum(i, span, speed + 3);
+        } else if (held_ != nullptr) {
+            const Vec3 angular = moments_[i].turn.transpose() * held_->angular[body.body];
+            const Vec3 linear = fall_of(body) + held_->linear[body.body];
+            put(vector_at(speed) + span * linear, speed);
+            put(vector_at(speed + 3) + span * angular, speed + 3);
+        } else if (forced_) {
+            push(i, span, speed);
+        } else {
+            put(vector_at(speed) + span * fall_of(body), speed);
+        }
+    }
+}
+
+void RigidMotion::swerve(double span, double* state)
+{
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (!bodies_[i].precesses || bodies_[i].by_momentum) continue;
+        double* const spin = state + speed_of(i) + 3;
+        const auto after = rule_.gyroscopic == RigidRule::Gyroscopic::implicit
+            ? after_gyroscopic_torque_local
+            : after_explicit_gyroscopic_torque_local;
+        put(after(vector_at(spin), facts_.masses.inertia[bodies_[i].body], span), spin);
+    }
+}
+
+namespace {
+
+// Which principal axis has two equal moments beside it; -1: none has.
+int axis_of_symmetry(const Vec3& moments)
+{
+    for (int k = 0; k < 3; ++k) {
+        const double a = moments[(k + 1) % 3], b = moments[(k + 2) % 3];
+        if (std::abs(a - b) <= 1e-9 * (a + b)) return k;
+    }
+    return -1;
+}
+
+}  // namespace
+
+// A body with an axis of symmetry turns about its momentum and about that axis, both exactly. Any
+// other goes about one principal axis after another and back: each turn is exact and leaves the
+// length of the momentum alone.
+//
+// Source: McLachlan, Explicit Lie-Poisson integration and the Euler equations (1993); Dullweber,
+//         Leimkuhler & McLachlan (1997); for the first, Touma & Wisdom (1994).
+void RigidMotion::turn_freely(std::size_t i, double span, double* state)
+{
+    Body& body = bodies_[i];
+    double* const numbers = state + place_of(i) + 3;
+    const auto turn_by = [&](const Vec3& turn) {
+        if (!adds_rates(rule_.rotation))
+            return turn_on(rule_.rotation, turn, body.orientation.data());
+        double rates[9];
+        rates_of(rule_.rotation, numbers, turn, rates);
+        for (int k = 0; k < numbers_of(rule_.rotation); ++k) numbers[k] += rates[k];
+    };
+    const Mat3 now = body.by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
+    const Vec3 spin = body_spin(i, now, state);
+    if (!body.precesses) return turn_by(span * spin);
+    const Mat3& axes = body.axes;
+    Vec3 momentum = body.moments.cwiseProduct(Vec3(axes.transpose() * spin));
+    const auto turn_about = [&](int axis, double angle) {
+        const SinCos turn = sin_cos(angle);
+        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+        const double x = momentum[next], y = momentum[last];
+        momentum[next] = turn.cos * x + turn.sin * y;
+        momentum[last] = turn.cos * y - turn.sin * x;
+        turn_by(angle * Vec3(axes.col(axis)));
+    };
+    if (const int axis = axis_of_symmetry(body.moments); axis >= 0) {
+        const double across = body.moments[(axis + 1) % 3];
+        turn_by(span / across * Vec3(axes * momentum));
+        turn_about(axis, span * momentum[axis] * (1 / body.moments[axis] - 1 / across));
+    } else {
+        constexpr int kOrder[] = {0, 1, 2, 1, 0};
+        for (const int k : kOrder)
+            turn_about(k, (k == 2 ? 1 : 0.5) * span * momentum[k] / body.moments[k]);
+    }
+    if (!body.by_momentum)
+        put(axes * Vec3(momentum.cwiseQuotient(body.moments)), state + speed_of(i) + 3);
+}
+
+void RigidMotion::coast(double span, double* state)
+{
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        double* const place = state + place_of(i);
+        put(vector_at(place) + span * vector_at(state + speed_of(i)), place);
+        if (bodies_[i].turns) turn_freely(i, span, state);
+    }
+}
+
+}  // namespace throng

@@ -1,0 +1,135 @@
+// Rigid motion: the law by which bodies fly, alone or several that springs join.
+//
+// To an integrator a state is a row of numbers. Here is what they are, body after body:
+//
+//   places  its position (3); then the change of rotation since the last call of settle() (3), or
+//           the numbers of a rotation that adds rates (4 or 9)
+//   speeds  velocity (3), angular velocity in body axes (3)
+//
+// A body on a pivot may have its angular momentum about the pivot in world axes instead, and its
+// change of rotation in world axes too: a fast top then has numbers that hardly change.
+#pragma once
+
+#include "kernels/data/bodies.hpp"
+#include "kernels/data/forces.hpp"
+#include "kernels/motion/integrators.hpp"
+#include "kernels/motion/orientation.hpp"
+
+#include <span>
+
+namespace throng {
+
+/// What holds for all bodies of a step.
+struct RigidRule {
+    Vec3 gravity = Vec3::Zero();  // m/s2
+    double time = 0;              // s, since the world began, as the step begins
+    bool turns = true;            // bodies may turn at all
+    Rotation rotation = Rotation::quaternion;
+    // How swerve() takes the gyroscopic torque; to rates it is there or not.
+    enum class Gyroscopic : std::uint8_t {
+        off,
+        implicit,
+        direct
+    } gyroscopic = Gyroscopic::implicit;
+    bool momentum_on_pivots = false;  // as above
+};
+
+/// What the law reads of all bodies, as they are when the step begins.
+struct RigidFacts {
+    const Forces& forces;
+    const Masses& masses;
+    const Poses& poses;
+    const Velocities& velocities;
+};
+
+class RigidMotion : public MotionLaw {
+public:
+    RigidMotion(const RigidRule& rule, const RigidFacts& facts)
+        : rule_(rule), facts_(facts), forced_(facts.forces.any())
+    { }
+
+    /// Takes up some bodies, ascending, in place of those before. What springs join them to and is
+    /// not among them moves on at its velocity.
+    void take(std::span<const std::uint32_t> bodies, const Flights& flights);
+    double* state() { return state_.data(); }
+    /// From now on these accelerations act in place of forces, whatever the bodies do.
+    void hold(const Pulls& pulls) { held_ = &pulls; }
+    /// After each call of an integrator: changes of rotation are taken into the orientations.
+    void settle();
+
+    /// What has become of the body that was taken up at a place.
+    struct Outcome {
+        Vec3 position, velocity, angular_velocity;
+        Quat orientation;
+        FlightMemory memory;
+    };
+    Outcome outcome(std::size_t i) const;
+
+    /// What forces do to it at the step's beginning, world axes, m/s2 and rad/s2. Gravity is among
+    /// them where it hangs from a pivot, and not where it falls.
+    struct Pull {
+        Vec3 linear, angular;
+    };
+    Pull pull_on(std::size_t i);
+
+    std::size_t places() const override { return bodies_.size() * place_numbers(); }
+    std::size_t speeds() const override { return bodies_.size() * 6; }
+    void place_rates(const double* state, double* rates) override;
+    void speed_rates(double time, const double* state, double* rates) override;
+    void kick(double time, double span, double* state) override;
+    void swerve(double span, double* state) override;
+    void coast(double span, double* state) override;
+
+private:
+    struct Body {
+        std::uint32_t body = 0;
+        bool turns = false, precesses = false, by_momentum = false;
+        double inverse_mass = 0;
+        Mat3 ease = Mat3::Zero();        // inverse inertia
+        Mat3 axes = Mat3::Identity();    // principal ones, as columns
+        Vec3 moments = Vec3::Zero();     // about them
+        Vec3 spin = Vec3::Zero();        // as taken up: the speeds it begins with
+        OrientationNumbers orientation;  // as of the last settle()
+    };
+    // Where a body is at a moment.
+    struct Moment {
+        Mat3 turn;            // body axes to world axes
+        Vec3 position, arm;   // m; arm: from there to the center of mass
+        Vec3 velocity, spin;  // of the center of mass, m/s; rad/s; world axes
+    };
+
+    std::size_t place_numbers() const
+    {
+        const int turn = adds_rates(rule_.rotation) ? numbers_of(rule_.rotation) : 3;
+        return 3 + static_cast<std::size_t>(turn);
+    }
+    std::size_t place_of(std::size_t i) const { return i * place_numbers(); }
+    std::size_t speed_of(std::size_t i) const { return places() + i * 6; }
+    double mass_of(const Body& body) const { return facts_.masses.mass[body.body]; }
+    Mat3 turn_at(std::size_t i, const double* state) const;
+    Vec3 body_spin(std::size_t i, const Mat3& turn, const double* state) const;
+    Body taken(std::uint32_t body, const Flights& flights) const;
+    Moment moment_at(std::size_t i, const double* state) const;
+    Moment moment_outside(std::uint32_t body, double time) const;
+    void look(const double* state);
+    void find_wrenches(double time, bool all_drag);
+    void add_springs(std::size_t i, double time, Wrench& on) const;
+    void push(std::size_t i, double span, double* speed) const;
+    Vec3 fall_of(const Body& body) const
+    {
+        return body.inverse_mass > 0 ? rule_.gravity : Vec3(Vec3::Zero());
+    }
+    void add_momentum(std::size_t i, double span, double* momentum) const;
+    void turn_freely(std::size_t i, double span, double* state);
+
+    const RigidRule& rule_;
+    RigidFacts facts_;
+    bool forced_;  // there is more than gravity
+    const Pulls* held_ = nullptr;
+    std::vector<Body> bodies_;
+    std::vector<double> state_;
+    std::vector<Moment> moments_;   // [bodies]
+    std::vector<Wrench> wrenches_;  // [bodies] about their positions
+};
+
+}  // namespace throng

@@ -1,0 +1,226 @@
+#include "pipeline/force_builder.hpp"
+
+#include "kernels/parallel/disjoint_sets.hpp"
+#include "pipeline/dials.hpp"
+#include "pipeline/names.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace throng {
+
+namespace {
+
+// From where a body's position is to its center of mass, body axes.
+Vec3 hang_of(const Forces& forces, std::uint32_t body)
+{
+    return body < forces.hang.size() ? forces.hang[body] : Vec3(Vec3::Zero());
+}
+
+// At a place of lists that all have it or none.
+template <class... Lists>
+void make_room(std::uint32_t body, Lists&... lists)
+{
+    const auto one = [&](auto& list, auto none) {
+        if (list.size() <= body) list.resize(body + std::size_t{1}, none);
+    };
+    (one(lists, typename Lists::value_type(Lists::value_type::Zero())), ...);
+}
+
+void make_room(std::uint32_t body, std::vector<double>& a, std::vector<double>& b)
+{
+    for (auto* const list : {&a, &b})
+        if (list->size() <= body) list->resize(body + std::size_t{1}, 0.0);
+}
+
+// Which springs each body has, and who has to be carried on together: what stands still or goes by
+// itself passes nothing on.
+void sort_springs(const BodyStates& states, Forces& forces)
+{
+    const std::size_t bodies = states.kind.size();
+    forces.first_spring.assign(bodies + 1, 0);
+    const auto count = [&](std::uint32_t body) {
+        if (body != kNobody) ++forces.first_spring[body + 1];
+    };
+    for (const SpringForce& spring : forces.springs) {
+        count(spring.a);
+        count(spring.b);
+    }
+    for (std::size_t i = 0; i < bodies; ++i) forces.first_spring[i + 1] += forces.first_spring[i];
+    forces.spring_of.resize(forces.first_spring.back());
+    std::vector<std::uint32_t> next(forces.first_spring.begin(), forces.first_spring.end() - 1);
+    DisjointSets sets;
+    sets.reset(bodies);
+    for (std::uint32_t i = 0; i < forces.springs.size(); ++i) {
+        const SpringForce& spring = forces.springs[i];
+        for (const std::uint32_t body : {spring.a, spring.b}) {
+            if (body == kNobody) continue;
+            forces.spring_of[next[body]++] = i;
+            if (states.dynamic(body)) sets.add(body);
+        }
+        if (spring.a != kNobody && spring.b != kNobody && states.dynamic(spring.a)
+            && states.dynamic(spring.b))
+            sets.join(spring.a, spring.b);
+    }
+    forces.groups.clear();
+    forces.group_of.assign(bodies, kNobody);
+    for (std::uint32_t body = 0; body < bodies; ++body) {
+        if (!sets.holds(body)) continue;
+        const std::uint32_t first = sets.find(body);
+        if (first == body) {
+            forces.group_of[body] = static_cast<std::uint32_t>(forces.groups.size());
+            forces.groups.emplace_back();
+        } else {
+            forces.group_of[body] = forces.group_of[first];
+        }
+        forces.groups[forces.group_of[body]].push_back(body);
+    }
+}
+
+// How easily a body gives way at a point of it, in whatever direction is easiest, 1/kg.
+double ease_at(const Masses& masses, std::uint32_t body, const Vec3& lever)
+{
+    if (body == kNobody) return 0;
+    const Sym3& turning = masses.inverse_inertia[body];
+    return masses.inverse_mass[body] + (turning.xx + turning.yy + turning.zz) * lever.squaredNorm();
+}
+
+std::string spring_warning(std::size_t i, double limit, const Settings& settings)
+{
+    const std::string_view integrator =
+        integrators()[static_cast<std::size_t>(settings.integrator)].name;
+    const std::string who = "spring " + std::to_string(i) + ": ";
+    if (limit <= 0)
+        return who + std::string(integrator)
+            + " makes it swing wider at any dt; take integrator=semi_implicit";
+    const double span = settings.dt / settings.substeps;
+    return who + "a substep of " + number_text(span) + " s is beyond " + number_text(limit)
+        + " s, the longest at which " + std::string(integrator)
+        + " keeps it from swinging wider; take substeps="
+        + std::to_string(static_cast<int>(std::ceil(settings.dt / limit))) + " or more";
+}
+
+}  // namespace
+
+void state_forces(std::uint32_t body,
+                  const BodyDescription& stated,
+                  const Vec3& center,
+                  Forces& forces)
+{
+    if (!stated.force.isZero(0) || !stated.torque.isZero(0)) {
+        make_room(body, forces.force, forces.torque);
+        forces.force[body] = stated.force;
+        forces.torque[body] = stated.torque;
+    }
+    if (stated.linear_drag != 0 || stated.angular_drag != 0) {
+        make_room(body, forces.linear_drag, forces.angular_drag);
+        forces.linear_drag[body] = stated.linear_drag;
+        forces.angular_drag[body] = stated.angular_drag;
+    }
+    if (stated.pivot) {
+        make_room(body, forces.hang);
+        forces.hangs.resize(forces.hang.size(), 0);
+        forces.hang[body] = center - *stated.pivot;
+        forces.hangs[body] = 1;
+    }
+}
+
+void join_springs(std::span<const Spring> springs,
+                  std::span<const std::uint32_t> ids,
+                  std::span<const Vec3> center,
+                  const BodyStates& states,
+                  Forces& forces)
+{
+    const auto id = [&](std::uint32_t end) { return end == kNone ? kNobody : ids[end]; };
+    const auto lever = [&](std::uint32_t body, const Vec3& at) {
+        return body == kNobody ? at : Vec3(at - center[body] - hang_of(forces, body));
+    };
+    for (const Spring& stated : springs) {
+        SpringForce spring{id(stated.a),     id(stated.b),   {},           {},
+                           stated.stiffness, stated.damping, stated.length};
+        spring.at_a = lever(spring.a, stated.at_a);
+        spring.at_b = lever(spring.b, stated.at_b);
+        forces.springs.push_back(spring);
+    }
+    if (!forces.springs.empty()) sort_springs(states, forces);
+}
+
+void drop_forces(std::span<const std::uint8_t> going, const BodyStates& states, Forces& forces)
+{
+    for (std::uint32_t body = 0; body < going.size(); ++body) {
+        if (going[body] == 0) continue;
+        for (auto* const list : {&forces.force, &forces.torque, &forces.hang})
+            if (body < list->size()) (*list)[body].setZero();
+        if (body < forces.hangs.size()) forces.hangs[body] = 0;
+        for (auto* const list : {&forces.linear_drag, &forces.angular_drag})
+            if (body < list->size()) (*list)[body] = 0;
+    }
+    if (forces.springs.empty()) return;
+    const auto goes = [&](std::uint32_t body) { return body != kNobody && going[body] != 0; };
+    std::erase_if(forces.springs,
+                  [&](const SpringForce& spring) { return goes(spring.a) || goes(spring.b); });
+    sort_springs(states, forces);
+}
+
+std::vector<std::string>
+unstable_springs(const Forces& forces, const Masses& masses, const Settings& settings)
+{
+    // Springs that share a body add up: the square of the fastest frequency is at most what they
+    // come to side by side, and just that for a spring by itself.
+    std::vector<double> square(forces.springs.size(), 0), damping(forces.springs.size(), 0);
+    for (std::size_t i = 0; i < forces.springs.size(); ++i) {
+        const SpringForce& spring = forces.springs[i];
+        const auto add = [&](std::uint32_t body) {
+            if (body == kNobody) return;
+            for (std::uint32_t k = forces.first_spring[body]; k < forces.first_spring[body + 1];
+                 ++k) {
+                const SpringForce& other = forces.springs[forces.spring_of[k]];
+                const Vec3& at = other.a == body ? other.at_a : other.at_b;
+                const double ease = ease_at(masses, body, hang_of(forces, body) + at);
+                square[i] += other.stiffness * ease;
+                damping[i] += other.damping * ease;
+            }
+        };
+        add(spring.a);
+        add(spring.b);
+    }
+    const IntegratorRow& integrator = integrators()[static_cast<std::size_t>(settings.integrator)];
+    const double span = settings.dt / settings.substeps;
+    std::map<double, double> limits;  // by damping ratio: springs are mostly alike
+    std::vector<std::string> warnings;
+    for (std::size_t i = 0; i < square.size(); ++i) {
+        if (!(square[i] > 0)) continue;
+        const double frequency = std::sqrt(square[i]);
+        const double ratio = damping[i] / (2 * frequency);
+        const auto [known, fresh] = limits.try_emplace(ratio, 0.0);
+        if (fresh) known->second = stable_span(integrator, ratio);
+        const double limit = known->second / frequency;
+        if (span > limit) warnings.push_back(spring_warning(i, limit, settings));
+    }
+    return warnings;
+}
+
+double potential_of(const Forces& forces, const Masses& masses, const Poses& poses)
+{
+    double energy = 0;
+    const auto point = [&](std::uint32_t body, const Vec3& at) {
+        if (body == kNobody) return at;
+        return Vec3(poses.at(body) * Vec3(hang_of(forces, body) + at));
+    };
+    for (const SpringForce& spring : forces.springs) {
+        const double distance =
+            (point(spring.b, spring.at_b) - point(spring.a, spring.at_a)).norm();
+        const double stretch = distance - spring.length;
+        energy += 0.5 * spring.stiffness * stretch * stretch;
+    }
+    for (const AttractorForce& attractor : forces.attractors)
+        for (std::uint32_t body = 0; body < masses.mass.size(); ++body) {
+            const double distance = (point(body, Vec3(Vec3::Zero())) - attractor.position).norm();
+            if (masses.mass[body] > 0 && distance > 0)
+                energy -= masses.mass[body] * attractor.strength / distance;
+        }
+    return energy;
+}
+
+}  // namespace throng

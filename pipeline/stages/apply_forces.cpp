@@ -1,0 +1,40 @@
+// Apply forces: what acts besides gravity and contacts, once a step, on whoever a contact may hold.
+#include "kernels/parallel/blocks.hpp"
+#include "pipeline/stages.hpp"
+#include "pipeline/stages/rigid_law.hpp"
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kGrain = 64;  // bodies a block
+
+}  // namespace
+
+void apply_forces(const Conditions& conditions,
+                  const Forces& forces,
+                  const Poses& poses,
+                  const Velocities& velocities,
+                  const Masses& masses,
+                  const BodyStates& states,
+                  Pulls& pulls)
+{
+    if (!conditions.has(Effect::contact)) return;
+    pulls.linear.resize(states.kind.size());
+    pulls.angular.resize(states.kind.size());
+    const RigidRule rule = rigid_rule(conditions);
+    const Flights none;
+    const auto& movers = states.movers.dynamic;
+    for_each_block(movers.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        RigidMotion law(rule, {forces, masses, poses, velocities});
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t body = movers[i];
+            law.take({&body, 1}, none);
+            const RigidMotion::Pull pull = law.pull_on(0);
+            pulls.linear[body] = pull.linear;
+            pulls.angular[body] = pull.angular;
+        }
+    });
+}
+
+}  // namespace throng

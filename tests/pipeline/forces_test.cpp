@@ -1,0 +1,364 @@
+// Forces: what acts besides gravity and contacts, in flight and on what touches something.
+#include "pipeline/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace throng {
+namespace {
+
+Scene empty_scene(Integrator integrator = Integrator::rk4)
+{
+    Scene scene;
+    scene.gravity = Vec3::Zero();
+    scene.settings.precision = Precision::double_;
+    scene.settings.integrator = integrator;
+    scene.settings.dt = 1e-2;
+    scene.settings.substeps = 2;
+    return scene;
+}
+
+// 2 kg, moments 1, 2 and 3 times 0.1 kg m2.
+BodyDescription& add_body(Scene& scene, const Vec3& position = Vec3::Zero())
+{
+    BodyDescription body;
+    body.mass = 2;
+    body.inertia = Sym3{0.1, 0.2, 0.3};
+    body.position = position;
+    scene.bodies.push_back(body);
+    return scene.bodies.back();
+}
+
+Spring spring_between(std::uint32_t a, std::uint32_t b, double stiffness, double length)
+{
+    Spring spring;
+    spring.a = a;
+    spring.b = b;
+    spring.stiffness = stiffness;
+    spring.length = length;
+    return spring;
+}
+
+void add_floor(Scene& scene, double friction)
+{
+    scene.materials.push_back({"m", 1000, friction, 0, 0});
+    scene.shapes.push_back({"floor", PlaneShape{}});
+    scene.shapes.push_back({"crate", BoxShape{Vec3(0.5, 0.5, 0.25)}});
+    BodyDescription floor;
+    floor.shape = floor.material = 0;
+    floor.motion = Motion::static_;
+    scene.bodies.push_back(floor);
+}
+
+BodyDescription& add_crate(Scene& scene, const Vec3& position)
+{
+    BodyDescription crate;
+    crate.shape = 1;
+    crate.material = 0;
+    crate.mass = 1;
+    crate.position = position;
+    scene.bodies.push_back(crate);
+    return scene.bodies.back();
+}
+
+double energy(const World& world)
+{
+    const Measures now = world.measure();
+    return now.kinetic_energy + now.potential_energy;
+}
+
+TEST(Forces, AConstantOneGivesAParabolaAndATorqueASpin)
+{
+    Scene scene = empty_scene();
+    BodyDescription& body = add_body(scene);
+    body.force = Vec3(0, 3, 0);
+    body.torque = Vec3(0, 0, 0.6);
+    World world(scene);
+    world.step(100);
+    const BodyId id = world.bodies()[0];
+    EXPECT_LT((world.pose(id).position - Vec3(0, 0.5 * 1.5, 0)).norm(), 1e-12);
+    EXPECT_LT((world.angular_velocity(id) - Vec3(0, 0, 2)).norm(), 1e-12);
+}
+
+TEST(Forces, OnWhatTouchesSomethingActInEverySubstep)
+{
+    Scene scene = empty_scene(Integrator::semi_implicit);
+    scene.gravity = Vec3(0, 0, -10);
+    add_floor(scene, 0.3);
+    add_crate(scene, Vec3(0, 0, 0.25)).force = Vec3(5, 0, -10);
+    World world(scene);
+    world.step(200);
+    const BodyId crate = world.bodies()[1];
+    // Pressed down by twice its weight: 20 N of load, 6 N of friction, so it stays.
+    EXPECT_LT(world.velocity(crate).norm(), 1e-6);
+    EXPECT_NEAR(world.contact_force(crate).z(), 20, 0.02);
+    EXPECT_NEAR(world.contact_force(crate).x(), -5, 0.02);
+}
+
+TEST(Forces, DragEndsAtTheSpeedWhereItHoldsTheWeight)
+{
+    for (const Integrator integrator :
+         {Integrator::semi_implicit, Integrator::splitting, Integrator::rk4}) {
+        Scene scene = empty_scene(integrator);
+        scene.gravity = Vec3(0, 0, -10);
+        scene.wind = Vec3(4, 0, 0);
+        add_body(scene).linear_drag = 8;
+        World world(scene);
+        world.step(2000);
+        EXPECT_LT((world.velocity(world.bodies()[0]) - Vec3(4, 0, -2.5)).norm(), 1e-9);
+    }
+}
+
+TEST(Forces, DragHoweverStrongOnlySlows)
+{
+    for (const Integrator integrator : {Integrator::semi_implicit, Integrator::splitting}) {
+        Scene scene = empty_scene(integrator);
+        BodyDescription& body = add_body(scene);
+        body.linear_drag = body.angular_drag = 1e6;
+        body.velocity = Vec3(7, 0, 0);
+        body.angular_velocity = Vec3(0, 3, 0);
+        World world(scene);
+        double speed = 7, spin = 3;
+        for (int step = 0; step < 20; ++step) {
+            world.step();
+            const BodyId id = world.bodies()[0];
+            EXPECT_GE(world.velocity(id).x(), 0);
+            EXPECT_LE(world.velocity(id).x(), speed);
+            EXPECT_LE(world.angular_velocity(id).norm(), spin);
+            speed = world.velocity(id).x();
+            spin = world.angular_velocity(id).norm();
+        }
+        EXPECT_LT(speed, 1e-3);
+    }
+}
+
+TEST(Forces, AnAttractorHoldsABodyInItsOrbit)
+{
+    for (const Integrator integrator : {Integrator::splitting, Integrator::rk4}) {
+        Scene scene = empty_scene(integrator);
+        scene.attractors.push_back({Vec3(1, 0, 0), 4});
+        add_body(scene, Vec3(3, 0, 0)).velocity = Vec3(0, std::sqrt(2.0), 0);
+        World world(scene);
+        const double before = energy(world);
+        // Once around: radius 2 m at sqrt(2) m/s.
+        const double around = 2 * std::numbers::pi * 2 / std::sqrt(2.0);
+        world.step(static_cast<int>(std::lround(around / 1e-2)));
+        EXPECT_LT((world.pose(world.bodies()[0]).position - Vec3(3, 0, 0)).norm(), 2e-2);
+        EXPECT_NEAR(energy(world), before, 1e-6);
+    }
+}
+
+TEST(Forces, ASpringBetweenTwoKeepsMomentumAndHasItsPeriod)
+{
+    Scene scene = empty_scene();
+    add_body(scene, Vec3(-1, 0, 0));
+    add_body(scene, Vec3(1.1, 0, 0)).velocity = Vec3(0, 0, 0.3);
+    scene.springs.push_back(spring_between(0, 1, 100, 2));
+    World world(scene);
+    const double before = energy(world);
+    double extent = 0;
+    for (int step = 0; step < 300; ++step) {
+        world.step();
+        EXPECT_LT((world.measure().momentum - Vec3(0, 0, 0.6)).norm(), 1e-12);
+        const auto ids = world.bodies();
+        extent =
+            std::max(extent, (world.pose(ids[1]).position - world.pose(ids[0]).position).norm());
+    }
+    EXPECT_NEAR(energy(world), before, 1e-6);
+    EXPECT_NEAR(extent, 2.1, 0.02);
+}
+
+TEST(Forces, ASpringOffTheCenterTurnsItsBody)
+{
+    Scene scene = empty_scene();
+    add_body(scene);
+    Spring spring = spring_between(0, kNone, 50, 0);
+    spring.at_a = Vec3(0.2, 0, 0);
+    spring.at_b = Vec3(0.2, 0.1, 0);
+    scene.springs.push_back(spring);
+    World world(scene);
+    world.step();
+    const BodyId id = world.bodies()[0];
+    // 5 N at 0.2 m: 2.5 m/s2 and 1 N m / 0.3 kg m2, for 0.01 s.
+    EXPECT_NEAR(world.velocity(id).y(), 0.025, 1e-4);
+    EXPECT_NEAR(world.angular_velocity(id).z(), 0.01 / 0.3, 1e-4);
+}
+
+// One end flies, the other lies on the floor: both are moved by the same force.
+TEST(Forces, ASpringPassesMomentumToWhatTouchesSomething)
+{
+    Scene scene = empty_scene(Integrator::semi_implicit);
+    scene.gravity = Vec3(0, 0, -10);
+    add_floor(scene, 0);
+    add_crate(scene, Vec3(0, 0, 0.25));
+    add_crate(scene, Vec3(3, 0, 3));
+    scene.springs.push_back(spring_between(1, 2, 2, 1));
+    World world(scene);
+    world.step(50);
+    const Vec3 momentum = world.measure().momentum;
+    EXPECT_LT(std::abs(momentum.x()), 1e-6);
+    EXPECT_GT(world.velocity(world.bodies()[1]).x(), 0.1);
+}
+
+TEST(Forces, OfASpringGoWithEitherOfItsBodies)
+{
+    Scene scene = empty_scene();
+    add_body(scene);
+    add_body(scene, Vec3(1, 0, 0));
+    scene.springs.push_back(spring_between(0, 1, 100, 3));
+    World world(scene);
+    const auto ids = world.bodies();
+    world.remove(std::span(ids).subspan(1));
+    world.step(10);
+    EXPECT_EQ(world.velocity(ids[0]), Vec3(0, 0, 0));
+    EXPECT_FALSE(world.effects().on.has(Effect::springs));
+}
+
+TEST(Forces, OfAProgramsOwnFieldAreAskedForAtEveryStage)
+{
+    Scene scene = empty_scene();
+    add_body(scene);
+    World world(scene);
+    world.set_force_field([](const FieldPlace& place) {
+        return Wrench{place.mass * Vec3(0, 0, std::cos(place.time)), Vec3::Zero()};
+    });
+    world.step(100);
+    EXPECT_NEAR(world.velocity(world.bodies()[0]).z(), std::sin(1.0), 1e-9);
+    world.set_force_field({});
+    const Vec3 before = world.velocity(world.bodies()[0]);
+    world.step(10);
+    EXPECT_EQ(world.velocity(world.bodies()[0]), before);
+}
+
+TEST(Pivot, APendulumSwingsByItsMomentAboutThePivot)
+{
+    for (const Integrator integrator : {Integrator::semi_implicit, Integrator::midpoint,
+                                        Integrator::splitting, Integrator::rk4}) {
+        Scene scene = empty_scene(integrator);
+        scene.gravity = Vec3(0, 0, -10);
+        scene.settings.substeps = 10;
+        BodyDescription& body = add_body(scene);
+        body.pivot = Vec3(0, 0, 0.5);
+        const double tilt = 1e-3;
+        body.orientation = Quat(std::cos(0.5 * tilt), std::sin(0.5 * tilt), 0, 0);
+        World world(scene);
+        const BodyId id = world.bodies()[0];
+        const Vec3 hung = world.pose(id) * Vec3(0, 0, 0.5);
+        // A quarter of the period 2 pi sqrt((I + m l2) / (m g l)): at the lowest point.
+        const double quarter =
+            0.5 * std::numbers::pi * std::sqrt((0.1 + 2 * 0.25) / (2 * 10 * 0.5));
+        world.step(static_cast<int>(std::lround(quarter / 1e-2)));
+        const double angle = 2 * world.pose(id).orientation.x();
+        const double wanted =
+            tilt * std::cos(std::round(quarter / 1e-2) * 1e-2 / quarter * 0.5 * std::numbers::pi);
+        EXPECT_NEAR(angle, wanted, 5e-3 * tilt);
+        EXPECT_LT((world.pose(id) * Vec3(0, 0, 0.5) - hung).norm(), 1e-15);
+        const Vec3 arm = world.pose(id).orientation * Vec3(0, 0, -0.5);
+        EXPECT_LT((world.velocity(id) - world.angular_velocity(id).cross(arm)).norm(), 1e-15);
+    }
+}
+
+TEST(Pivot, AContactTurnsTheBodyAboutIt)
+{
+    // A beam on a pivot in its middle; a crate that falls on one end brings that end down.
+    Scene scene = empty_scene(Integrator::semi_implicit);
+    scene.gravity = Vec3(0, 0, -10);
+    add_floor(scene, 0.5);
+    scene.shapes.push_back({"beam", BoxShape{Vec3(2, 0.5, 0.1)}});
+    BodyDescription beam;
+    beam.shape = 2;
+    beam.material = 0;
+    beam.mass = 5;
+    beam.position = Vec3(0, 0, 3);
+    beam.pivot = Vec3::Zero();
+    scene.bodies.push_back(beam);
+    add_crate(scene, Vec3(1.4, 0, 3.5));
+    World world(scene);
+    world.step(60);
+    const BodyId id = world.bodies()[1];
+    EXPECT_LT((world.pose(id) * Vec3(1, 0, 0)).z(), 2.95);
+    EXPECT_LT((world.pose(id).position - Vec3(0, 0, 3)).norm(), 1e-12);
+}
+
+TEST(Pivot, RulesOutAVelocityOfItsOwn)
+{
+    Scene scene = empty_scene();
+    BodyDescription& body = add_body(scene);
+    body.pivot = Vec3(0, 0, 1);
+    body.velocity = Vec3(1, 0, 0);
+    EXPECT_THROW(World{scene}, std::invalid_argument);
+}
+
+TEST(Springs, ThatSwingWiderAreToldWithWhatWouldDo)
+{
+    Scene scene = empty_scene(Integrator::semi_implicit);
+    add_body(scene, Vec3(1, 0, 0));
+    scene.springs.push_back(spring_between(0, kNone, 2e6, 1));  // limit 2 ms
+    World world(scene);
+    ASSERT_EQ(world.remarks().size(), 1u);
+    EXPECT_NE(world.remarks()[0].find("substeps=5"), std::string::npos) << world.remarks()[0];
+    scene.settings.substeps = 5;
+    EXPECT_TRUE(World(scene).remarks().empty());
+}
+
+class EveryMotion : public testing::TestWithParam<std::tuple<Integrator, Rotation>> { };
+
+// Bodies on springs, on pivots, in the wind, alone; some of them on the floor.
+Scene busy_scene(Integrator integrator, Rotation rotation)
+{
+    Scene scene = empty_scene(integrator);
+    scene.gravity = Vec3(0, 0, -10);
+    scene.settings.precision = Precision::float_;
+    scene.settings.rotation = rotation;
+    scene.wind = Vec3(1, 0.5, 0);
+    scene.attractors.push_back({Vec3(0, 0, 5), 3});
+    add_floor(scene, 0.5);
+    for (int i = 0; i < 200; ++i) {
+        BodyDescription& crate =
+            add_crate(scene, Vec3(1.5 * (i % 20), 1.5 * (i / 20), 0.3 + i % 3));
+        crate.angular_velocity = Vec3(0.1 * i, 1, -0.05 * i);
+        crate.linear_drag = 0.01 * (i % 5);
+        if (i % 7 == 0) {
+            crate.pivot = Vec3(0.3, 0.2, 0.1);
+            crate.position.z() += 3;
+        }
+    }
+    for (std::uint32_t i = 1; i < 150; i += 4)
+        scene.springs.push_back(spring_between(i, i + 20, 30, 2));
+    return scene;
+}
+
+TEST_P(EveryMotion, IsTheSameBitsOnAnyNumberOfThreads)
+{
+    const auto [integrator, rotation] = GetParam();
+    const Scene scene = busy_scene(integrator, rotation);
+    World one(scene, 1), three(scene, 3), in_order(scene, 2);
+    in_order.run_in_order(true);
+    for (int i = 0; i < 3; ++i) {
+        one.step(10);
+        three.step(10);
+        in_order.step(10);
+        EXPECT_EQ(one.state_hash(), three.state_hash());
+        EXPECT_EQ(one.state_hash(), in_order.state_hash());
+    }
+    EXPECT_EQ(one.report().bodies_quarantined, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         EveryMotion,
+                         testing::Combine(testing::Values(Integrator::semi_implicit,
+                                                          Integrator::euler,
+                                                          Integrator::midpoint,
+                                                          Integrator::splitting,
+                                                          Integrator::rk4),
+                                          testing::Values(Rotation::quaternion,
+                                                          Rotation::rotation_vector,
+                                                          Rotation::matrix,
+                                                          Rotation::quaternion_euler,
+                                                          Rotation::matrix_euler,
+                                                          Rotation::matrix_euler_repaired)));
+
+}  // namespace
+}  // namespace throng
