@@ -14,6 +14,16 @@ namespace throng {
 namespace {
 
 constexpr HardCase kCases[] = {
+    {"H1", "free tops turn as they should, by every integrator and rotation", case_free_top,
+     Fault::spin},
+    {"H2", "a top that flips keeps what should be kept for a hundred periods", case_long_flight,
+     Fault::spin},
+    {"H3", "a heavy top on a pivot nods in cusps", case_heavy_top, Fault::spin},
+    {"H4", "a sleeping top stands or falls, either side of the limit", case_sleeping_top,
+     Fault::spin},
+    {"H5", "spinning fast: what one step turns by, and what many do", case_high_spin, Fault::spin},
+    {"H6", "rotations stay rotations for millions of steps", case_rotation_drift, Fault::spin},
+    {"H7", "boxes fly along their parabolas", case_ballistic, Fault::spin},
     {"H8", "a stack of equal boxes comes to rest and weighs what it weighs", case_stack,
      Fault::mass},
     {"H12", "a box slides to rest where Coulomb says, and straight", case_sliding, Fault::friction},
@@ -40,6 +50,8 @@ constexpr HardCase kCases[] = {
     {"H44", "heaps of scans and lumps come to rest and hardly overlap", case_solid_heap,
      Fault::shrink},
     {"H45", "shared volumes and depths converge as they should", case_convergence, Fault::shrink},
+    {"H46", "springs swing wider beyond the limit, which is told, and not within",
+     case_spring_limit, Fault::stiffness},
 };
 
 constexpr double kShrunk = 0.9;
@@ -70,6 +82,12 @@ void plant(Fault fault, Scene& scene)
     case Fault::mass:
         for (BodyDescription& body : scene.bodies)
             if (body.mass) *body.mass *= 1.1;
+        break;
+    case Fault::spin:
+        for (BodyDescription& body : scene.bodies) body.angular_velocity *= 1.05;
+        break;
+    case Fault::stiffness:
+        for (Spring& spring : scene.springs) spring.stiffness *= 1.1;
         break;
     case Fault::shrink:
         for (ShapeDescription& shape : scene.shapes) shrink(shape);

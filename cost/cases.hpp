@@ -40,6 +40,8 @@ enum class Fault : std::uint8_t {
     mass,         // bodies 10 % too heavy
     float_poses,  // poses rounded to float after every step, and before a method sees them
     nudge,        // pairs handed to a method off by a millionth of their size, and of a radian
+    spin,         // bodies that turn 5 % too fast
+    stiffness,    // springs 10 % too stiff
     shrink,       // meshes a tenth too small, and all that is asked for its shared volume
 };
 

@@ -5,6 +5,16 @@
 
 namespace throng {
 
+// Motion without contact.
+void case_free_top(CaseBench& bench);        // H1, free_top.cpp
+void case_long_flight(CaseBench& bench);     // H2, free_top.cpp
+void case_heavy_top(CaseBench& bench);       // H3, heavy_top.cpp
+void case_sleeping_top(CaseBench& bench);    // H4, heavy_top.cpp
+void case_high_spin(CaseBench& bench);       // H5, free_top.cpp
+void case_rotation_drift(CaseBench& bench);  // H6, free_top.cpp
+void case_ballistic(CaseBench& bench);       // H7, ballistic.cpp
+void case_spring_limit(CaseBench& bench);    // H46, spring_limit.cpp
+
 void case_stack(CaseBench& bench);        // H8, stack.cpp
 void case_sliding(CaseBench& bench);      // H12, sliding.cpp
 void case_slope_limit(CaseBench& bench);  // H13, slope_limit.cpp

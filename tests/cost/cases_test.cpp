@@ -78,7 +78,7 @@ TEST(HardCaseNames, AreFoundWhateverTheCaseOfLetters)
 {
     EXPECT_EQ(find_case("h8")->name, "H8");
     EXPECT_EQ(find_case("H33")->name, "H33");
-    EXPECT_EQ(find_case("H3"), nullptr);
+    EXPECT_EQ(find_case("H"), nullptr);
     EXPECT_EQ(find_case(""), nullptr);
 }
 
