@@ -131,12 +131,12 @@ void lay_rod(const MeshTriangle& triangle,
     }
 }
 
-// The best axis so far of a triangle against a polytope.
+// The best axis so far of a triangle against a polytope, of those that the mesh sticks out to.
 struct TriangleAxis {
-    enum class Kind { front, face, edge, apart } kind = Kind::front;
+    enum class Kind { front, face, apart } kind = Kind::front;
     double separation = 0;
+    double apart = 0;  // m, by the axis that parts the two most, whatever the mesh
     FaceAxis face;
-    EdgeAxis edge;
 };
 
 // b's faces: any may show that the two are apart; only those the mesh sticks out to may push.
@@ -152,6 +152,7 @@ void try_faces(const MeshTriangle& triangle,
             best.kind = TriangleAxis::Kind::apart;
             return;
         }
+        best.apart = std::max(best.apart, axis.separation);
         const double to_beat =
             best.kind == TriangleAxis::Kind::front ? best.separation + bias : best.separation;
         if (axis.separation <= to_beat) continue;
@@ -176,6 +177,16 @@ void clip_like_faces(const PolytopePair& pair,
     for (std::size_t i = 0; i < pair.b.normals.size() && found.count == 0; ++i)
         if (pair.b.normals[i].dot(against) > kAlike)
             clip_faces(pair, front, static_cast<std::uint16_t>(i), reach, slack, found);
+}
+
+// Of two that are apart, what lies behind the triangle has gone past its rim, or past the back of
+// all that the mesh encloses: a far reach sees both.
+void drop_overlaps(PolytopePoints& found)
+{
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < found.count; ++i)
+        if (found.points[i].separation >= 0) found.points[kept++] = found.points[i];
+    found.count = kept;
 }
 
 // The normal on the far side of an edge that sticks out: a rim pushes sideways too, and a little
@@ -322,16 +333,21 @@ void touch_polytope(const MeshTriangle& triangle,
 
     const double bias = 1e-3 * shape.inner_radius;
     TriangleAxis best;
-    best.separation = front.separation;
+    best.separation = best.apart = front.separation;
     const PolytopePair turned = pair.mirrored();
     try_faces(triangle, turned, reach, bias, best);
     if (best.kind == TriangleAxis::Kind::apart) return;
 
     // Any edge at all may show that the two are apart.
-    if (best_edge_axis(pair, reach).separation > reach) return;
+    const double floor = best.apart > bias ? reach : std::min(bias, reach);
+    const EdgeAxis any = best_edge_axis(pair, floor);
+    if (!any.normal.isZero(0)) best.apart = any.separation;
+    if (best.apart > reach) return;
+    const bool parted = best.apart > bias;
 
     const OutwardEdges outward(triangle, flat, pair);
-    const EdgeAxis edge = best_edge_axis(outward.pair, best.separation + bias);
+    const double to_beat = best.separation + bias;
+    const EdgeAxis edge = best_edge_axis(outward.pair, parted ? std::max(to_beat, 0.0) : to_beat);
     if (!edge.normal.isZero(0)) {
         if (edge.separation <= reach) cross_edges(outward.pair, edge, reach + bias, out);
         return;
@@ -340,11 +356,12 @@ void touch_polytope(const MeshTriangle& triangle,
     PolytopePoints found;
     clip_faces(by_front ? pair : turned, by_front ? front : best.face, reach, bias, found);
     if (by_front) clip_like_faces(pair, front, reach, bias, found);
+    if (parted) drop_overlaps(found);
     out.normal = by_front ? triangle.normal : turned.a.normals[best.face.face];
     reduce_to_four<double>({found.points.data(), found.count}, out);
     if (!by_front) turn_round(pair, out);
     // What leads by its bias alone may have nothing over it.
-    if (out.count > 0 || best.separation >= 0) return;
+    if (out.count > 0 || best.separation >= 0 || parted) return;
     const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
     if (!better.normal.isZero(0)) cross_edges(outward.pair, better, reach + bias, out);
 }

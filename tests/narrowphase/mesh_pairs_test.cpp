@@ -1,5 +1,6 @@
 #include "kernels/geometry/mesh.hpp"
 #include "narrowphase/narrowphase.hpp"
+#include "scenes/closed_meshes.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
 
 #include <gtest/gtest.h>
@@ -248,6 +249,41 @@ TEST(MeshPairs, AHullIsAsDeepAsItLiesHoweverUnevenItsFaces)
     }
     EXPECT_GT(uneven, 1000);
     EXPECT_GT(slivers, 300);
+}
+
+// Of a fast body all triangles of a small mesh are within reach, those too that look at it over the
+// hollow of the mesh or from behind the next one.
+TEST(MeshPairs, WhatIsApartDoesNotOverlapHoweverFarTheReach)
+{
+    const double ring = 0.4, tube = 0.1;
+    const TriangleSoup soup = torus_mesh(ring, tube, 32, 16);
+    Shapes shapes;
+    shapes.meshes = {build_mesh(soup.vertices, soup.triangles).mesh};
+    // A bar, and what is round within it.
+    shapes.boxes = {{{0.1, 0.05, 0.5}}};
+    shapes.capsules = {{0.05, 0.45}};
+    shapes.cylinders = {{0.05, 0.5}};
+    RandomShapes random(36);
+    int through = 0;
+    for (int i = 0; i < 120; ++i) {
+        SCOPED_TRACE("seed 36, pose " + std::to_string(i));
+        // Through the hole, within a cylinder that is.
+        const Vec3 lean(random.number(-0.2, 0.2), random.number(-0.2, 0.2), 1);
+        const Quat turn = Quat::FromTwoVectors(Vec3::UnitZ(), lean)
+            * Quat(Eigen::AngleAxisd(random.number(-3, 3), Vec3::UnitZ()));
+        const Pose pose{random.number(-0.5, 0.5) * lean.normalized(), turn};
+        double widest = 0;
+        for (const Vec3& corner : corners_of(shapes.boxes[0].half_extents))
+            widest = std::max(widest, (pose * corner).head<2>().norm());
+        if (widest > ring - tube - 0.01) continue;
+        ++through;
+        for (const ShapeKind kind : {ShapeKind::box, ShapeKind::capsule, ShapeKind::cylinder}) {
+            const auto found = touch_mesh<double>(shapes, {kind, 0}, pose, 0.3);
+            EXPECT_FALSE(found.empty());
+            for (const auto& one : found) ASSERT_GE(deepest(one.manifold), 0);
+        }
+    }
+    EXPECT_GT(through, 50);
 }
 
 TEST(MeshPairs, ABallCrossingAConvexRidgeIsHeldThroughout)
