@@ -1,9 +1,9 @@
 // Shape rules: what a shape of a scene must be, and what it then weighs.
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh.hpp"
-#include "kernels/geometry/mesh_health.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/level_set.hpp"
+#include "pipeline/moving_mesh.hpp"
 #include "pipeline/names.hpp"
 #include "pipeline/scene_rules.hpp"
 
@@ -116,10 +116,12 @@ struct ShapeChecker {
             for (const std::uint32_t corner : triangle)
                 file.need(corner < mesh.vertices.size(), "wanted triangles between vertices");
         if (!moves) return {};
-        const MendedMesh mended = mend(mesh.vertices, mesh.triangles);
+        const std::shared_ptr<const MovingMesh> moving = moving_mesh(mesh);
+        const MendedMesh& mended = moving->mended;
         file.need(mended.trouble.empty(), "wanted a mesh that can move; it " + mended.trouble);
         MassProperties mass = mass_as_if_closed(mended.mesh);
         if (mass.volume < 0) mass = turned_inside_out(mass);
+        mass.center += moving->at;
         const Box3 box = box_of(mended.mesh);
         file.need(mass.volume > kThinnest * (box.upper - box.lower).prod(),
                   "wanted a mesh that encloses a volume, for a body that moves");

@@ -1,7 +1,6 @@
 #include "pipeline/solid_maker.hpp"
 
 #include "kernels/geometry/mesh.hpp"
-#include "kernels/geometry/mesh_health.hpp"
 #include "kernels/geometry/surface_points.hpp"
 #include "narrowphase/solids/field_cache.hpp"
 #include "narrowphase/solids/image_views.hpp"
@@ -10,27 +9,11 @@
 #include "narrowphase/solids/spheres_cache.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/level_set.hpp"
-
-#include <limits>
+#include "pipeline/moving_mesh.hpp"
 
 namespace throng {
 
 namespace {
-
-// The middle of a mesh that lies further from its origin than a few of its sides, else 0. Fields
-// and points are in float: about the middle they lose nothing to the distance.
-Vec3 far_center(const std::vector<Vec3>& vertices)
-{
-    constexpr double kFar = 4;
-    Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
-    for (const Vec3& vertex : vertices) {
-        lower = lower.cwiseMin(vertex);
-        upper = upper.cwiseMax(vertex);
-    }
-    const Vec3 middle = 0.5 * lower + 0.5 * upper;
-    const bool far = middle.cwiseAbs().maxCoeff() > kFar * (upper - lower).maxCoeff();
-    return far ? middle : Vec3(Vec3::Zero());
-}
 
 // Without its mesh.
 Solid voxel_solid(const Mesh& surface, VoxelBricks field)
@@ -66,14 +49,8 @@ public:
 
     MadeSolid make(const MeshShape& stated)
     {
-        made_.at = far_center(stated.vertices);
-        std::vector<Vec3> vertices = stated.vertices;
-        for (Vec3& vertex : vertices) vertex -= made_.at;
-        MendedMesh mended = mend(std::move(vertices), stated.triangles);
-        if (!mended.trouble.empty()) return refused(mended.trouble);
-        mesh_ = std::move(mended.mesh);
-        made_.remarks = std::move(mended.remarks);
-        sound_ = mended.health.sound();
+        if (std::string trouble = take_mesh(stated); !trouble.empty())
+            return refused(std::move(trouble));
         if (!sound_ && !take_level_set()) return refused(made_.trouble);
         made_.mass = mass_of(mesh_);
         made_.mass.center += made_.at;
@@ -93,6 +70,21 @@ public:
     }
 
 private:
+    // Answers what is wrong with it.
+    std::string take_mesh(const MeshShape& stated)
+    {
+        const std::shared_ptr<const MovingMesh> moving = moving_mesh(stated);
+        // Its way into the world ends here.
+        forget_moving_mesh(stated);
+        const MendedMesh& mended = moving->mended;
+        if (!mended.trouble.empty()) return mended.trouble;
+        made_.at = moving->at;
+        mesh_ = mended.mesh;
+        made_.remarks = mended.remarks;
+        sound_ = mended.health.sound();
+        return {};
+    }
+
     // With what was found before: it is mostly the cause.
     MadeSolid refused(std::string why)
     {

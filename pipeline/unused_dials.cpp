@@ -1,7 +1,7 @@
 #include "pipeline/unused_dials.hpp"
 
-#include "kernels/geometry/mesh_health.hpp"
 #include "pipeline/dials.hpp"
+#include "pipeline/moving_mesh.hpp"
 #include "pipeline/scene_rules.hpp"
 #include "pipeline/solid_maker.hpp"
 
@@ -32,7 +32,7 @@ bool asks_for(const MeshShape& mesh, const Settings& settings, const MeshDial& d
 {
     if (settings_of(mesh, settings).nonconvex == dial.way) return true;
     // What does not tell its inside is mended by voxels, whatever its way.
-    return dial.way == NonConvex::voxels && !mend(mesh.vertices, mesh.triangles).health.sound();
+    return dial.way == NonConvex::voxels && !moving_mesh(mesh)->mended.health.sound();
 }
 
 std::vector<const MeshShape*> moving_meshes(const Scene& scene)
