@@ -1,13 +1,15 @@
 // Voxel: what a level set takes to make and to read back, and a sample of it.
 //
 // A bumpy ball of 70,000 triangles. `patch`: 256 points side by side within 1.4 voxels of the
-// surface at a time, as in a contact; `random`: anywhere about it.
+// surface at a time, as in a contact; `random`: anywhere about it. `tree`: the same in OpenVDB's
+// tree.
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
 #include "kernels/geometry/voxel_kernels.hpp"
 #include "narrowphase/solids/field_cache.hpp"
 #include "perf/support.hpp"
+#include "perf/tree_samples.hpp"
 #include "scenes/closed_meshes.hpp"
 #include "scenes/random.hpp"
 
@@ -96,24 +98,36 @@ Points make_points(const VoxelBricks& bricks, bool patches)
     return points;
 }
 
-void sample(benchmark::State& state, int voxels, bool patches, const char* width)
+// `sample_patch` is called with the arrays of a patch at a time.
+template <class Sample>
+void sample_all(benchmark::State& state, int voxels, bool patches, const Sample& sample_patch)
 {
-    const VoxelBricks& bricks = field_of(voxels);
-    const Points points = make_points(bricks, patches);
-    const SampleKernel kernel = sample_kernel_of(width);
-    if (kernel == nullptr) return state.SkipWithError("this machine has not got that width");
-    const BrickView view = view_of(bricks);
+    const Points points = make_points(field_of(voxels), patches);
     std::vector<float> distance(kPatch), gx(kPatch), gy(kPatch), gz(kPatch);
     for ([[maybe_unused]] auto iteration : state)
         for (std::size_t i = 0; i < kPoints; i += kPatch) {
-            kernel(view,
-                   {points.x.data() + i, points.y.data() + i, points.z.data() + i, distance.data(),
-                    gx.data(), gy.data(), gz.data()},
-                   kPatch);
+            sample_patch({points.x.data() + i, points.y.data() + i, points.z.data() + i,
+                          distance.data(), gx.data(), gy.data(), gz.data()});
             benchmark::DoNotOptimize(distance.data());
             benchmark::ClobberMemory();
         }
     state.counters["a_sample"] = time_of_one(kPoints);
+}
+
+void sample(benchmark::State& state, int voxels, bool patches, const char* width)
+{
+    const SampleKernel kernel = sample_kernel_of(width);
+    if (kernel == nullptr) return state.SkipWithError("this machine has not got that width");
+    const BrickView view = view_of(field_of(voxels));
+    sample_all(state, voxels, patches,
+               [&](const SampleArrays& arrays) { kernel(view, arrays, kPatch); });
+}
+
+void sample_tree(benchmark::State& state, int voxels, bool patches)
+{
+    const FieldTree tree(field_of(voxels));
+    sample_all(state, voxels, patches,
+               [&](const SampleArrays& arrays) { tree.sample(arrays, kPatch); });
 }
 
 }  // namespace
@@ -124,18 +138,22 @@ void register_benchmarks()
         const std::string size = std::to_string(voxels);
         benchmark::RegisterBenchmark(("level_set/cold/" + size).c_str(), make_cold, voxels)
             ->Unit(benchmark::kMillisecond)
+            ->MeasureProcessCPUTime()
             ->UseRealTime()
             ->Iterations(1);
         benchmark::RegisterBenchmark(("level_set/cached/" + size).c_str(), make_cached, voxels)
             ->Unit(benchmark::kMillisecond)
+            ->MeasureProcessCPUTime()
             ->UseRealTime();
-        for (const char* width : {"scalar", "avx2", "avx512"})
-            for (const bool patches : {true, false})
-                benchmark::RegisterBenchmark(
-                    (std::string("sample/") + (patches ? "patch/" : "random/") + size + "/" + width)
-                        .c_str(),
-                    sample, voxels, patches, width)
+        for (const bool patches : {true, false}) {
+            const std::string name =
+                std::string("sample/") + (patches ? "patch/" : "random/") + size + "/";
+            for (const char* width : {"scalar", "avx2", "avx512"})
+                benchmark::RegisterBenchmark((name + width).c_str(), sample, voxels, patches, width)
                     ->Unit(benchmark::kMillisecond);
+            benchmark::RegisterBenchmark((name + "tree").c_str(), sample_tree, voxels, patches)
+                ->Unit(benchmark::kMillisecond);
+        }
     }
 }
 

@@ -34,7 +34,7 @@ LIBRARIES = {
                        "narrowphase/solids/voxel_field.cpp"],
     r"embree\d*/": ["broadphase/embree_tree.cpp"],
     r"(hdf5|H5)": ["pipeline/run_file*.cpp", "tests/pipeline/run_file*.cpp"],
-    r"(openvdb|nanovdb)/": ["narrowphase/solids/voxel_field.cpp"],
+    r"(openvdb|nanovdb)/": ["narrowphase/solids/voxel_field.cpp", "perf/tree_samples.cpp"],
     r"(gtest|gmock)/": ["tests/*"],
     r"benchmark/": ["perf/*"],
     r"(hwy/|\w*intrin\.h)": ["kernels/math/lanes*"],
