@@ -1,8 +1,6 @@
 #include "narrowphase/triangle_contacts.hpp"
 
 #include "kernels/geometry/closest_points.hpp"
-#include "narrowphase/contact_points.hpp"
-#include "narrowphase/polytope_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,9 +14,6 @@ constexpr double kLevel = 1e-9;
 // A shape's center this part of its radius past an edge still counts as above the face, so that
 // rounding on a seam never lets both triangles take it for the other's.
 constexpr double kSeam = 1e-4;
-
-// Cosine beyond which faces are alike: a fiftieth of a radian.
-constexpr double kAlike = 0.9998;
 
 bool rises(const Vec3& from, const Vec3& to, const Vec3& direction)
 {
@@ -131,98 +126,6 @@ void lay_rod(const MeshTriangle& triangle,
     }
 }
 
-// The best axis so far of a triangle against a polytope, of those that the mesh sticks out to.
-struct TriangleAxis {
-    enum class Kind { front, face, apart } kind = Kind::front;
-    double separation = 0;
-    double apart = 0;  // m, by the axis that parts the two most, whatever the mesh
-    FaceAxis face;
-};
-
-// b's faces: any may show that the two are apart; only those the mesh sticks out to may push.
-void try_faces(const MeshTriangle& triangle,
-               const PolytopePair& turned,
-               double reach,
-               double bias,
-               TriangleAxis& best)
-{
-    for (std::size_t i = 0; i < turned.a.normals.size(); ++i) {
-        const FaceAxis axis = face_axis(turned, static_cast<std::uint16_t>(i));
-        if (axis.separation > reach) {
-            best.kind = TriangleAxis::Kind::apart;
-            return;
-        }
-        best.apart = std::max(best.apart, axis.separation);
-        const double to_beat =
-            best.kind == TriangleAxis::Kind::front ? best.separation + bias : best.separation;
-        if (axis.separation <= to_beat) continue;
-        const Vec3 direction = -(turned.turn.transpose() * turned.a.normals[i]);
-        if (direction.dot(triangle.normal) < 0) continue;
-        if (!corner_sticks_out(triangle, axis.vertex, direction)) continue;
-        best.kind = TriangleAxis::Kind::face;
-        best.separation = axis.separation;
-        best.face = axis;
-    }
-}
-
-// Where the polytope's face at its deepest corner is a sliver beside the triangle: the first that
-// is all but along it and has anything over the triangle.
-void clip_like_faces(const PolytopePair& pair,
-                     const FaceAxis& front,
-                     double reach,
-                     double slack,
-                     PolytopePoints& found)
-{
-    const Vec3 against = pair.turn.transpose() * -pair.a.normals[front.face];
-    for (std::size_t i = 0; i < pair.b.normals.size() && found.count == 0; ++i)
-        if (pair.b.normals[i].dot(against) > kAlike)
-            clip_faces(pair, front, static_cast<std::uint16_t>(i), reach, slack, found);
-}
-
-// Of two that are apart, what lies behind the triangle has gone past its rim, or past the back of
-// all that the mesh encloses: a far reach sees both.
-void drop_overlaps(PolytopePoints& found)
-{
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < found.count; ++i)
-        if (found.points[i].separation >= 0) found.points[kept++] = found.points[i];
-    found.count = kept;
-}
-
-// The normal on the far side of an edge that sticks out: a rim pushes sideways too, and a little
-// further, so that directions straight out of it are well inside.
-Vec3 far_normal(const MeshTriangle& triangle, std::size_t edge, const Vec3& rim)
-{
-    const std::int32_t next = triangle.mesh.beyond[triangle.index][edge];
-    if (next >= 0) return triangle.mesh.normals[static_cast<std::size_t>(next)];
-    return (rim - 0.05 * triangle.normal).normalized();
-}
-
-// The triangle with the edges that stick out alone; their arcs end where the next triangle's begin.
-struct OutwardEdges {
-    OutwardEdges(const MeshTriangle& triangle, const TrianglePolytope& flat, const PolytopePair& of)
-        : normals(flat.normals), offsets(flat.offsets), pair(of)
-    {
-        std::size_t count = 0;
-        for (std::size_t e = 0; e < 3; ++e) {
-            if ((triangle.mesh.convex_edges[triangle.index] >> e & 1) == 0) continue;
-            normals[2 + e] = far_normal(triangle, e, flat.normals[2 + e]);
-            offsets[2 + e] = normals[2 + e].dot(triangle.corners[e]);
-            edges[count++] = of.a.edges[2 * e];
-        }
-        pair.a.normals = normals;
-        pair.a.offsets = offsets;
-        pair.a.edges = {edges.data(), count};
-    }
-    OutwardEdges(const OutwardEdges&) = delete;  // the pair looks at the arrays
-    OutwardEdges& operator=(const OutwardEdges&) = delete;
-
-    std::array<Vec3, 5> normals;
-    std::array<double, 5> offsets;
-    std::array<Hull::Edge, 3> edges{};
-    PolytopePair pair;
-};
-
 }  // namespace
 
 MeshTriangle::MeshTriangle(const Mesh& of, std::uint32_t triangle)
@@ -315,55 +218,6 @@ void touch_rod(const MeshTriangle& triangle,
     }
     out.normal = direction;
     out.add((touch.on_triangle + touch.on_rod - direction * radius) / 2, distance - radius, 3);
-}
-
-void touch_polytope(const MeshTriangle& triangle,
-                    const PolytopeView& shape,
-                    const Pose& pose,
-                    double reach,
-                    LocalManifold<double>& out)
-{
-    out.count = 0;
-    const auto& corners = triangle.corners;
-    const TrianglePolytope flat(corners[0], corners[1], corners[2], triangle.normal);
-    const PolytopePair pair(flat.view(), shape, pose);
-    if (triangle.normal.dot(pair.offset) < 0) return;
-    const FaceAxis front = face_axis(pair, 0);
-    if (front.separation > reach) return;
-
-    const double bias = 1e-3 * shape.inner_radius;
-    TriangleAxis best;
-    best.separation = best.apart = front.separation;
-    const PolytopePair turned = pair.mirrored();
-    try_faces(triangle, turned, reach, bias, best);
-    if (best.kind == TriangleAxis::Kind::apart) return;
-
-    // Any edge at all may show that the two are apart.
-    const double floor = best.apart > bias ? reach : std::min(bias, reach);
-    const EdgeAxis any = best_edge_axis(pair, floor);
-    if (!any.normal.isZero(0)) best.apart = any.separation;
-    if (best.apart > reach) return;
-    const bool parted = best.apart > bias;
-
-    const OutwardEdges outward(triangle, flat, pair);
-    const double to_beat = best.separation + bias;
-    const EdgeAxis edge = best_edge_axis(outward.pair, parted ? std::max(to_beat, 0.0) : to_beat);
-    if (!edge.normal.isZero(0)) {
-        if (edge.separation <= reach) cross_edges(outward.pair, edge, reach + bias, out);
-        return;
-    }
-    const bool by_front = best.kind == TriangleAxis::Kind::front;
-    PolytopePoints found;
-    clip_faces(by_front ? pair : turned, by_front ? front : best.face, reach, bias, found);
-    if (by_front) clip_like_faces(pair, front, reach, bias, found);
-    if (parted) drop_overlaps(found);
-    out.normal = by_front ? triangle.normal : turned.a.normals[best.face.face];
-    reduce_to_four<double>({found.points.data(), found.count}, out);
-    if (!by_front) turn_round(pair, out);
-    // What leads by its bias alone may have nothing over it.
-    if (out.count > 0 || best.separation >= 0 || parted) return;
-    const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
-    if (!better.normal.isZero(0)) cross_edges(outward.pair, better, reach + bias, out);
 }
 
 }  // namespace throng

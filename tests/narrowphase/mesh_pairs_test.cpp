@@ -286,6 +286,39 @@ TEST(MeshPairs, WhatIsApartDoesNotOverlapHoweverFarTheReach)
     EXPECT_GT(through, 50);
 }
 
+// A box on the rim of a block, leaning inward by a hair: no side of the block pushes it out
+// sideways, though it is half behind one and a little below its edge.
+TEST(MeshPairs, WhatLiesOnARimIsNotPushedOffSideways)
+{
+    const TriangleSoup soup = box_mesh({1, 1, 1});
+    Shapes shapes;
+    shapes.meshes = {build_mesh(soup.vertices, soup.triangles).mesh};
+    shapes.boxes = {{{0.5, 0.4, 0.3}}};
+    RandomShapes random(37);
+    int leaning = 0;
+    for (int i = 0; i < 1000; ++i) {
+        SCOPED_TRACE("seed 37, pose " + std::to_string(i));
+        const Quat turn(1, random.number(-1e-3, 1e-3), random.number(-1e-3, 1e-3),
+                        random.number(-0.5, 0.5));
+        Pose pose{{random.number(0.6, 1.2), random.number(-0.3, 0.3), 0}, turn.normalized()};
+        double lowest = 0;
+        for (const Vec3& corner : corners_of(shapes.boxes[0].half_extents))
+            if (const Vec3 at = pose * corner; at.x() < 1) lowest = std::min(lowest, at.z());
+        const double depth = random.number(0.001, 0.004);
+        pose.position.z() = 1 - lowest - depth;
+        const auto found = touch_mesh<double>(shapes, {ShapeKind::box, 0}, pose, 0);
+        ASSERT_FALSE(found.empty());
+        for (const auto& one : found) {
+            ASSERT_GT(one.manifold.normal.z(), 0.99);
+            // What hangs over the rim may be lower by as much as the box leans; a side leaves to
+            // the top what is a fifth as deep there.
+            ASSERT_GT(deepest(one.manifold), 5 * (-depth - 0.003));
+        }
+        leaning += pose.position.x() > 1;
+    }
+    EXPECT_GT(leaning, 200);
+}
+
 TEST(MeshPairs, ABallCrossingAConvexRidgeIsHeldThroughout)
 {
     // A roof along y: two slopes that meet at x = 0. The ball rolls over it at constant distance.
