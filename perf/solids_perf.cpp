@@ -3,7 +3,7 @@
 //
 // Noisy lumps about 1 m across. `near` overlaps by 5 mm somewhere, `apart` is twice the reach from
 // touching, with bounds that mostly overlap still. `cold` finds the touches; `warm` is what a step
-// does about a pair that it knows and that has hardly moved: solids move their manifolds, hulls
+// does about a pair that it knows: solids that have hardly moved since move their manifolds, hulls
 // begin with what they remember. Level sets are in voxel_perf.cpp.
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_health.hpp"
