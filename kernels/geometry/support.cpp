@@ -218,6 +218,22 @@ Core<Real> core_of(const Shapes& shapes, ShapeRef shape)
 }
 
 template <class Real>
+Core<Real> core_of_points(std::span<const Vec3T<Real>> corners)
+{
+    Core<Real> core;
+    core.kind = ShapeKind::triangle;
+    core.corners = corners.data();
+    core.corner_count = static_cast<std::uint32_t>(corners.size());
+    for (const Vec3T<Real>& corner : corners)
+        core.middle += corner / static_cast<Real>(corners.size());
+    for (const Vec3T<Real>& corner : corners) {
+        core.extents = core.extents.cwiseMax((corner - core.middle).cwiseAbs());
+        core.size = std::max(core.size, corner.norm());
+    }
+    return core;
+}
+
+template <class Real>
 SupportPoint<Real> support(const Core<Real>& core, const Vec3T<Real>& direction)
 {
     SupportPoint<Real> point;
@@ -236,6 +252,12 @@ SupportPoint<Real> support(const Core<Real>& core, const Vec3T<Real>& direction)
         break;
     case ShapeKind::hull:
         return furthest_vertex(*core.hull, direction);
+    case ShapeKind::triangle:
+        for (std::uint32_t i = 1; i < core.corner_count; ++i)
+            if (core.corners[i].dot(direction) > core.corners[point.feature].dot(direction))
+                point.feature = i;
+        point.position = core.corners[point.feature];
+        break;
     default:
         break;
     }
@@ -280,6 +302,7 @@ SupportFace<Real> rim_points(const Core<Real>& cylinder, const Vec3T<Real>& dire
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template Core<Real> core_of<Real>(const Shapes&, ShapeRef);                                    \
+    template Core<Real> core_of_points<Real>(std::span<const Vec3T<Real>>);                        \
     template SupportPoint<Real> support<Real>(const Core<Real>&, const Vec3T<Real>&);              \
     template SupportFace<Real> support_face<Real>(const Core<Real>&, const Vec3T<Real>&);          \
     template SupportFace<Real> rim_points<Real>(const Core<Real>&, const Vec3T<Real>&);

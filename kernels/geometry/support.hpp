@@ -8,6 +8,7 @@
 #include "kernels/data/shapes.hpp"
 
 #include <array>
+#include <span>
 
 namespace throng {
 
@@ -19,6 +20,7 @@ namespace throng {
 ///   size      greatest distance of the core from its frame's origin, rounding included, or a
 ///             bound within twice of it: what tolerances are relative to
 ///   middle    a point inside the core
+///   corners   of a triangle, or whatever points there are
 template <class Real>
 struct Core {
     ShapeKind kind = ShapeKind::sphere;
@@ -27,7 +29,14 @@ struct Core {
     Real size = 0;
     Vec3T<Real> middle = Vec3T<Real>::Zero();
     const Hull* hull = nullptr;
+    const Vec3T<Real>* corners = nullptr;
+    std::uint32_t corner_count = 0;
 };
+
+/// That of a triangle, or of the hull of more points: each is looked at for every support. At least
+/// one. Keep them while it lives.
+template <class Real>
+Core<Real> core_of_points(std::span<const Vec3T<Real>> corners);
 
 /// Needs: a sphere, capsule, cylinder, box or hull.
 template <class Real>
@@ -36,7 +45,7 @@ Core<Real> core_of(const Shapes& shapes, ShapeRef shape);
 /// A point of a core that lies furthest along some direction.
 ///
 ///   feature   box: corner, bit i set where coordinate i is positive; hull: vertex; capsule: end;
-///             cylinder: cap (0 below, 1 above); sphere: 0
+///             cylinder: cap (0 below, 1 above); triangle: corner; sphere: 0
 template <class Real>
 struct SupportPoint {
     Vec3T<Real> position = Vec3T<Real>::Zero();

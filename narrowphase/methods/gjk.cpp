@@ -194,9 +194,12 @@ void walk(const CorePair& pair, double limit, Furthest& furthest, Vec3 nearest, 
 }  // namespace
 
 CorePair::CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a)
-    : a(core_of<double>(shapes, shape_a)), b(core_of<double>(shapes, shape_b)),
-      b_position(b_in_a.position), b_turn(b_in_a.orientation.toRotationMatrix()),
-      size(a.size + b.size)
+    : CorePair(core_of<double>(shapes, shape_a), core_of<double>(shapes, shape_b), b_in_a)
+{ }
+
+CorePair::CorePair(const Core<double>& core_a, const Core<double>& core_b, const Pose& b_in_a)
+    : a(core_a), b(core_b), b_position(b_in_a.position),
+      b_turn(b_in_a.orientation.toRotationMatrix()), size(a.size + b.size)
 { }
 
 Difference furthest_difference(const CorePair& pair, const Vec3& direction)

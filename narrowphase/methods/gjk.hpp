@@ -19,6 +19,7 @@ struct CorePair {
     double size = 0;  // what tolerances are relative to
 
     CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a);
+    CorePair(const Core<double>& core_a, const Core<double>& core_b, const Pose& b_in_a);
 };
 
 /// A point of a minus a point of b, in a's frame, and the features that these are of
