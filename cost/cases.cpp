@@ -2,6 +2,7 @@
 
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
+#include "pipeline/dials.hpp"
 #include "pipeline/world.hpp"
 
 #include <algorithm>
@@ -45,6 +46,12 @@ constexpr HardCase kCases[] = {
     {"H35", "shapes about one center leave by the shortest way", case_concentric, Fault::nudge},
     {"H36", "the volume that two polytopes share", case_shared_volume, Fault::nudge},
     {"H37", "accelerations change the time and never the answer", case_same_answers, Fault::nudge},
+    {"H38", "a bullet never comes through a plate, nor through a sheet", case_bullet_plate,
+     Fault::late},
+    {"H39", "a rod that turns by 150 degrees in a step meets the wall", case_spinning_rod,
+     Fault::late},
+    {"H40", "two fast bodies meet, graze or miss as they should", case_fast_pair, Fault::late},
+    {"H42", "exact queries of public sets: no touch is missed", case_exact_paths, Fault::late},
     {"H43", "holes are gone through, chains hold and a bolt turns down its nut", case_through_hole,
      Fault::shrink},
     {"H44", "heaps of scans and lumps come to rest and hardly overlap", case_solid_heap,
@@ -114,6 +121,13 @@ Pose nudged(const Pose& pose, double size)
 {
     const Vec3 aslant = Vec3(0.5, 0.6, 0.62);
     return {pose.position + 1e-6 * size * aslant, pose.orientation * exponential(1e-6 * aslant)};
+}
+
+std::string name_of(ToiMethod method)
+{
+    Settings settings;
+    settings.toi_method = method;
+    return dial_value(settings, "toi_method");
 }
 
 }  // namespace
@@ -210,6 +224,36 @@ VolumeAnswer CaseBench::ask_volume(std::string_view way,
     return answer;
 }
 
+ImpactAnswer CaseBench::timed_impact(ToiMethod method, const std::function<ImpactAnswer()>& asked)
+{
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    ImpactAnswer answer = asked();
+    method_ms_[name_of(method)] +=
+        std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    if (fault_ != Fault::late) return answer;
+    answer.time *= 1.01;
+    answer.meets = answer.meets && !answer.touching;
+    return answer;
+}
+
+ImpactAnswer CaseBench::ask_impact(const ImpactQuery& query,
+                                   ToiMethod method,
+                                   const ShapeMotion& a,
+                                   const ShapeMotion& b,
+                                   double duration)
+{
+    return timed_impact(method,
+                        [&] { return query.ask(a, b, duration, method, settings_.toi_tolerance); });
+}
+
+ImpactAnswer
+CaseBench::ask_linear_paths(const LinearQuestion& question, ToiMethod method, double tolerance)
+{
+    return timed_impact(method,
+                        [&] { return throng::ask_linear_paths(question, method, tolerance); });
+}
+
 ConvexAnswer CaseBench::timed(std::string_view method,
                               const Pose& a,
                               const Pose& b,
@@ -248,6 +292,12 @@ void CaseBench::report_method(std::string_view method,
     double& spent = method_ms_[std::string(method)];
     results_.back().time_ms = spent;
     spent = 0;
+}
+
+double CaseBench::spent_on(std::string_view method) const
+{
+    const auto spent = method_ms_.find(method);
+    return spent == method_ms_.end() ? 0 : spent->second;
 }
 
 void CaseBench::skip(std::string setting, std::string quantity, std::string why)

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "pipeline/convex_query.hpp"
+#include "pipeline/impact_query.hpp"
 #include "pipeline/volume_query.hpp"
 
 #include <functional>
@@ -42,6 +43,7 @@ enum class Fault : std::uint8_t {
     nudge,        // pairs handed to a method off by a millionth of their size, and of a radian
     spin,         // bodies that turn 5 % too fast
     stiffness,    // springs 10 % too stiff
+    late,         // times of impact a hundredth too late, and touches at the start not seen
     shrink,       // meshes a tenth too small, and all that is asked for its shared volume
 };
 
@@ -82,6 +84,16 @@ public:
     ConvexAnswer
     touch(const ConvexQuery& query, Precision precision, const Pose& a, const Pose& b, double size);
 
+    /// When two shapes first touch, by a method of the dial toi_method; its time counts towards
+    /// that method's next line, as does that of linear paths.
+    ImpactAnswer ask_impact(const ImpactQuery& query,
+                            ToiMethod method,
+                            const ShapeMotion& a,
+                            const ShapeMotion& b,
+                            double duration);
+    ImpactAnswer
+    ask_linear_paths(const LinearQuestion& question, ToiMethod method, double tolerance);
+
     /// What a way says that two shapes share; its time counts towards the next line.
     VolumeAnswer ask_volume(std::string_view way,
                             const ShapeDescription& a,
@@ -100,6 +112,8 @@ public:
                        double figure,
                        double bound,
                        std::string unit);
+    /// ms, what a method has taken since its last line.
+    double spent_on(std::string_view method) const;
     /// Adds a line that says why there is none.
     void skip(std::string setting, std::string quantity, std::string why);
 
@@ -112,6 +126,8 @@ private:
                        const Pose& b,
                        double size,
                        const std::function<ConvexAnswer(const Pose&)>& asked);
+
+    ImpactAnswer timed_impact(ToiMethod method, const std::function<ImpactAnswer()>& asked);
 
     Settings settings_;
     Fault fault_;

@@ -34,11 +34,10 @@ constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct", kNotYet}};
 constexpr Choice kFrictionCone[] = {{"cone"}, {"pyramid", kNotYet}};
 constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous", kNotYet}};
 constexpr Choice kOverlap[] = {{"allow"}, {"back_up", kNotYet}, {"subdivide", kNotYet}};
-constexpr Choice kToiMethod[] = {{"newton"}, {"bisection", kNotYet}, {"conservative", kNotYet}};
+constexpr Choice kToiMethod[] = {{"newton"}, {"bisection"}, {"conservative"}};
 constexpr Choice kSleep[] = {{"on"}, {"off"}};
 constexpr Choice kAuto[] = {{"auto"}};
 constexpr Choice kDirectLimit[] = {{"500"}};
-constexpr Choice kToiTolerance[] = {{"1e-4"}};
 
 // Finer steps than this are lost in the time they add up to; greater ones in no scene's scale.
 constexpr double kShortestStep = 1e-9, kLongestStep = 1e4;
@@ -178,6 +177,26 @@ std::string set_push_limit(Settings& settings, std::string_view text)
 }
 
 std::string get_push_limit(const Settings& settings) { return number_text(settings.push_limit); }
+
+// Below the spacing of float next to 1 a step that works in float cannot tell what it is; above
+// this a contact is not looked for as far out as a body was held.
+constexpr double kLeastToiTolerance = 0x1p-23, kMostToiTolerance = 0.02;
+
+std::string set_toi_tolerance(Settings& settings, std::string_view text)
+{
+    const double share = parse_number(text);
+    if (!(share >= kLeastToiTolerance && share <= kMostToiTolerance))
+        return wanted("a share of the shape's size from " + number_text(kLeastToiTolerance)
+                          + ", what float resolves, to " + number_text(kMostToiTolerance),
+                      text);
+    settings.toi_tolerance = share;
+    return {};
+}
+
+std::string get_toi_tolerance(const Settings& settings)
+{
+    return number_text(settings.toi_tolerance);
+}
 
 std::string set_voxel_size(Settings& settings, std::string_view text)
 {
@@ -345,9 +364,9 @@ std::vector<Dial> make_dials()
             "sequential passes an impact along one pair at a time; simultaneous shares it, for a joint solve"),
         fixed_dial<kOverlap>("overlap",
             "backing up or subdividing the step avoids overlap, and repeats work at every impact"),
-        fixed_dial<kToiMethod>("toi_method",
-            "newton is quickest, bisection surest, conservative never passes the first touch"),
-        fixed_number<kToiTolerance>("toi_tolerance", "a number", "of the shape's size",
+        choice_dial<&S::toi_method, kToiMethod>("toi_method",
+            "time alone: none is ever late; newton asks least, bisection a bit at a time, conservative often where two graze"),
+        number_dial("toi_tolerance", "a number from 1.2e-7 to 0.02", "of the smallest half extent", set_toi_tolerance, get_toi_tolerance,
             "a smaller tolerance finds the moment of touch more exactly, for more evaluations"),
         named_dial("sleep", kSleep, set_sleep, get_sleep,
             "bodies at rest cost nothing while asleep; off follows the slowest creep"),

@@ -3,6 +3,7 @@
 #include "broadphase/pair_filter.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "pipeline/conditions.hpp"
+#include "pipeline/fast_bodies.hpp"
 
 #include <algorithm>
 #include <map>
@@ -24,7 +25,7 @@ constexpr Known kKnown[] = {
     {"motion", true},        {"gravity", true},        {"forces", true},
     {"drive", true},         {"rotation", true},       {"gyroscopic", true},
     {"contact", true},       {"friction", true},       {"rolling friction", true},
-    {"restitution", true},   {"fast motion", false},   {"mesh contact", true},
+    {"restitution", true},   {"fast motion", true},    {"mesh contact", true},
     {"voxel contact", true}, {"sphere contact", true}, {"image contact", true},
     {"springs", true},       {"attractors", true},     {"wind", true},
     {"drag", true},          {"pivot", true},          {"joints", false},
@@ -98,9 +99,9 @@ private:
         const double dt = facts_.conditions.settings.dt;
         const auto fast = first_body([&](std::size_t body) {
             if (!movable(body) || facts_.colliders.count[body] == 0) return false;
-            const std::uint32_t collider = facts_.colliders.begin[body];
-            return facts_.velocities.linear[body].norm() * dt
-                > facts_.colliders.inner_extent[collider];
+            const Vec3& gravity = facts_.conditions.gravity;
+            const double fall = facts_.states.dynamic(body) ? gravity.norm() * dt * dt : 0;
+            return hurries(facts_.colliders, facts_.velocities, body, dt, fall);
         });
         if (fast != kNobody) call(Effect::fast_motion, name(fast));
     }

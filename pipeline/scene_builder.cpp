@@ -346,6 +346,7 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     const auto& drive = stated.drive_velocity;
     const Vec3 surface(drive[0].value_or(0), drive[1].value_or(0), drive[2].value_or(0));
     put(states.conveys, body, std::uint8_t{!moves && !surface.isZero(0)});
+    put(states.fast, body, std::uint8_t{moves && stated.fast});
     if (!moves) velocities.linear[body] = surface;
     if (drive[0] || drive[1] || drive[2]) {
         const double free = std::nan("");
@@ -404,7 +405,7 @@ void SceneBuilder::make_room(std::size_t bodies)
     BodyStates& s = state_.get<BodyStates>();
     reserve(bodies, p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass,
             m.inertia, m.inverse_inertia, m.spins_unevenly, s.kind, s.awake, s.quarantined,
-            s.quiet_time, s.bed, s.radius, s.conveys, s.movers.dynamic, state_.center,
+            s.quiet_time, s.bed, s.radius, s.conveys, s.fast, s.movers.dynamic, state_.center,
             state_.generation, state_.motion);
     // Most bodies have one collider.
     Colliders& c = state_.get<Colliders>();

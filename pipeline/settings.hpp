@@ -6,6 +6,7 @@
 
 #include "kernels/motion/integrators.hpp"
 #include "kernels/motion/orientation.hpp"
+#include "narrowphase/impact/toi_method.hpp"
 #include "narrowphase/methods/method_start.hpp"
 
 #include <cstdint>
@@ -54,6 +55,8 @@ struct Settings {
     Solver solver = Solver::soft_step;
     FrictionAt friction_at = FrictionAt::manifold;
     FrictionCone friction_cone = FrictionCone::cone;
+    ToiMethod toi_method = ToiMethod::newton;
+    double toi_tolerance = 1e-4;  // of the smallest half extent of the two shapes
     bool sleep = true;
 
     // Sleeping: an island rests once all of it stayed slower than this for this long.

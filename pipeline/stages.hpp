@@ -136,6 +136,20 @@ void integrate_poses(const Conditions&,
 /// Bodies that turned non-finite stand still from now on.
 void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
 
+/// Bodies that go so far in a step that they could pass through something: held where they first
+/// meet it, for the contacts of the next step.
+void sweep_fast(const Conditions&,
+                const Shapes&,
+                const Colliders&,
+                const PairFilter&,
+                const Bounds&,
+                const Pairs&,
+                const BodyStates&,
+                const Rest&,
+                Poses&,
+                Velocities&,
+                FastBodies&);
+
 /// Islands that have been quiet long enough fall asleep.
 void rest_islands(const Conditions&,
                   const Drives&,

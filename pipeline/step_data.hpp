@@ -31,6 +31,14 @@ struct Rest {
     std::vector<std::uint32_t> awoken, rested;
 };
 
+/// Who was swept in this step, and who was held.
+///
+///   held  bodies, ascending
+struct FastBodies {
+    std::vector<std::uint32_t> held;
+    std::vector<std::uint8_t> flags;  // [bodies] scratch, all 0 between stages
+};
+
 // The finder of pairs, as one thing among the data: it remembers from step to step.
 struct Finder {
     AnyPairFinder finder;
@@ -65,6 +73,7 @@ using StepData = std::tuple<Conditions,
                             Layout,
                             Rows<Real>,
                             Trouble,
-                            Rest>;
+                            Rest,
+                            FastBodies>;
 
 }  // namespace throng

@@ -26,17 +26,20 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, solve_impulses<Real>> ("solve_impulses",    {contact}),
     stage<Real, integrate_poses>      ("integrate_poses",   {motion}),
     stage<Real, quarantine_bodies>    ("quarantine_bodies", {motion}),
+    stage<Real, sweep_fast>           ("sweep_fast",        {fast_motion}),
     stage<Real, rest_islands>         ("rest_islands",      {sleeping}),
 };
 // clang-format on
+
+template <class Real, class... Kinds>
+constexpr DataSet data_sets = (DataSet{} | ... | data_set<Real, Kinds>);
 
 // Whatever a stage reads is kept from the last step or written by an earlier row.
 template <class Real>
 consteval bool reads_follow_writes()
 {
-    DataSet
-        ready = data_set<
-                    Real, Conditions> | data_set<Real, Shapes> | data_set<Real, Surfaces> | data_set<Real, PairFilter> | data_set<Real, Drives> | data_set<Real, Forces> | data_set<Real, Poses> | data_set<Real, Velocities> | data_set<Real, Masses> | data_set<Real, BodyStates> | data_set<Real, Colliders>;
+    DataSet ready = data_sets<Real, Conditions, Shapes, Surfaces, PairFilter, Drives, Forces, Poses,
+                              Velocities, Masses, BodyStates, Colliders, Rest>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;

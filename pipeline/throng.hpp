@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/convex_query.hpp"
+#include "pipeline/impact_query.hpp"
 #include "pipeline/level_set.hpp"
 #include "pipeline/queries.hpp"
 #include "pipeline/report.hpp"

@@ -97,6 +97,14 @@ void World::State::follow_step()
         follow_movers(rest.awoken, get<BodyStates>());
     const Movers& movers = get<BodyStates>().movers;
     get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size(), movers.dynamic.size());
+    // A body that has become fast calls for what looks after it from the next step on.
+    if (const std::uint32_t hurried = get<Bounds>().hurried;
+        hurried != kNobody && !effects.on.has(Effect::fast_motion)) {
+        const bool named = hurried < names.size() && !names[hurried].empty();
+        requests.ask(Effect::fast_motion,
+                     "body " + std::to_string(hurried) + (named ? " " + names[hurried] : ""));
+        effects_stale = true;
+    }
     if (trouble.quarantined.empty()) return;
     report.bodies_quarantined += trouble.quarantined.size();
     for (const std::uint32_t body : trouble.quarantined) touch(body);

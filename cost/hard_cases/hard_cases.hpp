@@ -20,6 +20,12 @@ void case_sliding(CaseBench& bench);      // H12, sliding.cpp
 void case_slope_limit(CaseBench& bench);  // H13, slope_limit.cpp
 void case_leaning(CaseBench& bench);      // H22, leaning.cpp
 
+// Bodies that go far in a step: fast_bodies.cpp, and the sets of exact_paths.cpp.
+void case_bullet_plate(CaseBench& bench);  // H38
+void case_spinning_rod(CaseBench& bench);  // H39
+void case_fast_pair(CaseBench& bench);     // H40
+void case_exact_paths(CaseBench& bench);   // H42
+
 // What convex methods say of two shapes.
 void case_broken_pairs(CaseBench& bench);      // H28, convex_pairs.cpp
 void case_kissing(CaseBench& bench);           // H29, kissing.cpp

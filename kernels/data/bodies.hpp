@@ -75,6 +75,8 @@ struct BodyStates {
 
     std::vector<std::uint8_t> conveys;  // still, and its surface is driven; may be shorter
 
+    std::vector<std::uint8_t> fast;  // marked so by the user; may be shorter
+
     Movers movers;  // as of the start of the step: who wakes in it is there from the next one on
 
     bool moves(std::size_t body) const { return awake[body] != 0; }
@@ -84,6 +86,7 @@ struct BodyStates {
         return body < conveys.size() && conveys[body] != 0 && kind[body] == BodyKind::still;
     }
     bool dynamic(std::size_t body) const { return kind[body] == BodyKind::dynamic; }
+    bool marked_fast(std::size_t body) const { return body < fast.size() && fast[body] != 0; }
     /// Whether a contact can push it.
     bool movable(std::size_t body) const { return dynamic(body) && moves(body); }
 };

@@ -71,6 +71,9 @@ struct NearBox {
 ///   touched   colliders that were added, removed or moved from outside since the last step
 ///   half, round, form  [colliders] the shape as mover_bounds.hpp wants it, rounded up
 ///   stretch   how many times further than usual margins look ahead: see stretch_for()
+///   fast      bodies that a later stage stops where they meet something, ascending: contacts are
+///             looked for no further from them than from bodies at rest
+///   hurried   the first body that may go about half its smallest half extent in this step, or more
 ///   flags     [colliders] scratch, all 0 between stages
 struct Bounds {
     std::vector<Box3> boxes;
@@ -83,9 +86,13 @@ struct Bounds {
     std::vector<float> half[3], round;
     std::vector<std::uint8_t> form;
     double stretch = 1;
+    std::vector<std::uint32_t> fast;
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    std::uint32_t hurried = kNone;
     std::vector<std::uint8_t> flags;
     bool still_changed = true;
-    std::vector<std::vector<std::uint32_t>> of_block;  // scratch
+    std::vector<std::vector<std::uint32_t>> of_block, fast_of_block;  // scratch
+    std::vector<std::uint32_t> hurried_of_block;                      // scratch
 };
 
 }  // namespace throng

@@ -141,13 +141,16 @@ Impact impact_of_meshes(const Shapes& shapes,
                         const ImpactRule& rule)
 {
     const bool ball_of_b = !(inner_extent(shapes, a.shape) > inner_extent(shapes, b.shape));
-    const MovingShape& on = ball_of_b ? a : b;
-    const MovingShape& other = ball_of_b ? b : a;
-    Core<double> ball;
-    ball.radius = ball.size = inner_extent(shapes, other.shape);
-    const Impact impact =
-        impact_with_mesh(*mesh_of(shapes, on.shape), on, ball, other, begin, end, rule);
-    return ball_of_b ? impact : turned_round(impact);
+    MovingShape other = ball_of_b ? b : a;
+    other.ball = inner_extent(shapes, other.shape);
+    return ball_of_b ? impact_time(shapes, a, other, begin, end, rule)
+                     : impact_time(shapes, other, b, begin, end, rule);
+}
+
+// Its triangles, unless a ball stands for it.
+const Mesh* mesh_of(const Shapes& shapes, const MovingShape& moving)
+{
+    return moving.ball > 0 ? nullptr : mesh_of(shapes, moving.shape);
 }
 
 }  // namespace
@@ -177,18 +180,18 @@ Impact impact_time(const Shapes& shapes,
                    const ImpactRule& rule)
 {
     if (a.shape.kind == ShapeKind::plane && b.shape.kind == ShapeKind::plane) return at_end(end, 0);
-    const Mesh *on_a = mesh_of(shapes, a.shape), *on_b = mesh_of(shapes, b.shape);
+    const Mesh *on_a = mesh_of(shapes, a), *on_b = mesh_of(shapes, b);
     if (a.shape.kind == ShapeKind::plane) return impact_with_plane(shapes, a, b, begin, end, rule);
     if (b.shape.kind == ShapeKind::plane)
         return turned_round(impact_with_plane(shapes, b, a, begin, end, rule));
     if (on_a && on_b) return impact_of_meshes(shapes, a, b, begin, end, rule);
     if (on_a) {
-        const Core<double> core = core_of<double>(shapes, b.shape);
+        const Core<double> core = moving_core(shapes, b);
         return impact_with_mesh(*on_a, a, core, b, begin, end, rule);
     }
-    const Core<double> core = core_of<double>(shapes, a.shape);
+    const Core<double> core = moving_core(shapes, a);
     if (on_b) return turned_round(impact_with_mesh(*on_b, b, core, a, begin, end, rule));
-    return impact_of({core, a, core_of<double>(shapes, b.shape), b}, begin, end, rule);
+    return impact_of({core, a, moving_core(shapes, b), b}, begin, end, rule);
 }
 
 }  // namespace throng

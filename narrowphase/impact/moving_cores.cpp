@@ -32,13 +32,6 @@ double rounding_of(const MovingCore& a, const MovingCore& b, double round)
            + a.sweep().shift.norm() + b.sweep().shift.norm());
 }
 
-Core<double> core_over_plane(const Shapes& shapes, ShapeRef shape)
-{
-    const Mesh* const mesh = mesh_of(shapes, shape);
-    return mesh ? core_of_points(std::span<const Vec3>(mesh->vertices))
-                : core_of<double>(shapes, shape);
-}
-
 // Whether a segment comes into a box.
 bool meets(const Vec3& from, const Vec3& way, const Vec3& lower, const Vec3& upper)
 {
@@ -57,6 +50,22 @@ bool meets(const Vec3& from, const Vec3& way, const Vec3& lower, const Vec3& upp
 }
 
 }  // namespace
+
+Core<double> moving_core(const Shapes& shapes, const MovingShape& moving)
+{
+    if (moving.ball > 0) {
+        Core<double> ball;
+        ball.radius = ball.size = moving.ball;
+        return ball;
+    }
+    if (const Mesh* const mesh = mesh_of(shapes, moving.shape))
+        return core_of_points(std::span<const Vec3>(mesh->vertices));
+    Core<double> core = core_of<double>(shapes, moving.shape);
+    core.extents *= moving.scale;
+    core.radius *= moving.scale;
+    core.size *= moving.scale;
+    return core;
+}
 
 MovingCore::MovingCore(const Core<double>& core, const MovingShape& moving, const Vec3& from)
     : core_(core), sweep_(moving.sweep), local_(moving.local),
@@ -127,8 +136,7 @@ GapLimits MovingCores::limits_along(const Vec3& normal) const
 
 OverPlane::OverPlane(const Shapes& shapes, const MovingShape& plane, const MovingShape& other)
     : plane_(shapes.planes[plane.shape.index]), from_(other.sweep.begin.position),
-      sweep_(plane.sweep), local_(plane.local),
-      other_(core_over_plane(shapes, other.shape), other, from_)
+      sweep_(plane.sweep), local_(plane.local), other_(moving_core(shapes, other), other, from_)
 {
     sweep_.begin.position -= from_;
     rounding_ = kRounding

@@ -34,6 +34,9 @@ private:
     double reach_ = 0;
 };
 
+/// The core of a convex shape or of the ball that stands for it; of a mesh, of its corners.
+Core<double> moving_core(const Shapes& shapes, const MovingShape& moving);
+
 /// How two cores are apart: along the unit direction, in world axes, from a to b. The separation
 /// along it is a lower bound of their distance; 0 where they overlap.
 struct Apart {

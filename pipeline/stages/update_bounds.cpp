@@ -4,6 +4,7 @@
 #include "broadphase/mover_bounds.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
+#include "pipeline/fast_bodies.hpp"
 #include "pipeline/stages.hpp"
 
 #include <algorithm>
@@ -16,10 +17,6 @@ namespace throng {
 namespace {
 
 constexpr std::size_t kGrain = 1024;  // bodies a block: some 20 microseconds of work
-
-// Contacts are looked for this far from a resting surface, as a share of the shape's smallest half
-// extent: far enough that a body at rest never loses its contacts to a breath.
-constexpr double kRestingReach = 0.04;
 
 // A plane has no size to take a share of: it looks only as far as it moves.
 double resting_reach(const Colliders& colliders, std::size_t collider)
@@ -128,7 +125,8 @@ public:
            Bounds& bounds)
         : dt_(conditions.settings.dt), falls_(conditions.gravity.norm() * dt_ * dt_),
           shapes_(shapes), colliders_(colliders), poses_(poses), velocities_(velocities),
-          states_(states), bounds_(bounds)
+          states_(states), bounds_(bounds), tolerance_(conditions.settings.toi_tolerance),
+          sweeps_(conditions.has(Effect::fast_motion))
     { }
 
     void run()
@@ -136,9 +134,14 @@ public:
         make_room();
         const std::vector<std::uint32_t> touched = take_touched();
         bounds_.asked.clear();
+        bounds_.fast.clear();
+        bounds_.hurried = Bounds::kNone;
         of_movers(states_.movers.kinematic, 0);
         of_movers(states_.movers.dynamic, falls_);
         of_others(touched);
+        std::vector<std::uint32_t>& fast = bounds_.fast;
+        if (!std::is_sorted(fast.begin(), fast.end())) std::sort(fast.begin(), fast.end());
+        fast.erase(std::unique(fast.begin(), fast.end()), fast.end());
         for (const std::uint32_t collider : touched) bounds_.flags[collider] = 0;
     }
 
@@ -178,13 +181,22 @@ private:
         const MarginRule margin = margin_of();
         const MoverRule rule{dt_,          kRestingReach,  falls,       margin.base,
                              margin.steps, margin.longest, margin.loose};
+        const std::size_t blocks = block_count(bodies.size(), kGrain);
+        bounds_.hurried_of_block.assign(blocks, Bounds::kNone);
+        if (bounds_.fast_of_block.size() < blocks) bounds_.fast_of_block.resize(blocks);
         in_blocks(bodies.size(), [&](std::size_t begin, std::size_t end, auto& asked) {
             std::array<std::uint32_t, kGrain> colliders, owners, found;
             std::size_t count = 0;
+            const std::size_t block = begin / kGrain;
+            bounds_.fast_of_block[block].clear();
             const auto flush = [&] {
                 const std::size_t left =
                     kernel_(rule, arrays, colliders.data(), owners.data(), count, found.data());
                 asked.insert(asked.end(), found.data(), found.data() + left);
+                for (std::size_t i = 0; i < count; ++i)
+                    if (bounds_.reach[colliders[i]]
+                        > kHurriedReach * colliders_.inner_extent[colliders[i]])
+                        note_hurried(colliders[i], falls, block);
                 count = 0;
             };
             for (std::size_t i = begin; i < end; ++i) {
@@ -193,7 +205,10 @@ private:
                 for (std::uint32_t at = first; at < first + colliders_.count[body]; ++at) {
                     if (bounds_.flags[at] != 0
                         || bounds_.form[at] == static_cast<std::uint8_t>(MoverForm::other)) {
-                        if (colliders_.body[at] == body) update(at, asked);
+                        if (colliders_.body[at] != body) continue;
+                        update(at, asked);
+                        if (bounds_.reach[at] > kHurriedReach * colliders_.inner_extent[at])
+                            note_hurried(at, falls, block);
                         continue;
                     }
                     colliders[count] = at;
@@ -203,6 +218,32 @@ private:
             }
             flush();
         });
+        for (std::size_t block = 0; block < blocks; ++block) {
+            bounds_.hurried = std::min(bounds_.hurried, bounds_.hurried_of_block[block]);
+            const std::vector<std::uint32_t>& fast = bounds_.fast_of_block[block];
+            bounds_.fast.insert(bounds_.fast.end(), fast.begin(), fast.end());
+        }
+    }
+
+    // Few ever come here.
+    void note_hurried(std::uint32_t collider, double falls, std::size_t block)
+    {
+        const std::uint32_t body = colliders_.body[collider];
+        if (!hurries(colliders_, velocities_, body, dt_, falls)) return;
+        bounds_.hurried_of_block[block] = std::min(bounds_.hurried_of_block[block], body);
+        if (!sweeps_ || !states_.dynamic(body)) return;
+        const double inner = colliders_.inner_extent[collider];
+        const double way = velocities_.linear[body].norm() * dt_
+            + way_of_turning(colliders_, collider, velocities_.angular[body].norm() * dt_);
+        if (!states_.marked_fast(body) && !(way > kAheadOfContacts * inner)) return;
+        // It is stopped where it meets something, so that what it only may meet is no contact: one
+        // far ahead would turn aside what flies past a corner. Its box holds all of its way.
+        const double reach = kHeldReach * tolerance_ * inner;
+        bounds_.reach[collider] = reach;
+        bounds_.near[collider] = near_box(
+            shape_bounds(shapes_, colliders_.shape[collider], bounds_.placed[collider]), reach);
+        std::vector<std::uint32_t>& fast = bounds_.fast_of_block[block];
+        if (fast.empty() || fast.back() != body) fast.push_back(body);
     }
 
     // Those that were touched and do not move.
@@ -326,6 +367,8 @@ private:
     const Velocities& velocities_;
     const BodyStates& states_;
     Bounds& bounds_;
+    double tolerance_;  // see Settings::toi_tolerance
+    bool sweeps_;       // a later stage stops who is fast
     MoverKernel kernel_ = mover_kernel();
 };
 

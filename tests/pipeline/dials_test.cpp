@@ -131,7 +131,7 @@ TEST(Dials, SayWhatWasWanted)
         {"voxel_size", "-1", "voxel_size: wanted auto or a length from 1e-9 to 1e9 m"},
         {"image_resolution", "2", "image_resolution: wanted auto or a whole number from 4 to 512"},
         {"sphere_levels", "2.5", "sphere_levels: wanted auto or a whole number from 1 to 6"},
-        {"toi_tolerance", "1e-5", "toi_tolerance: wanted 1e-4, not \"1e-5\"; nothing else"},
+        {"toi_tolerance", "1e-8", "toi_tolerance: wanted a share of the shape's size from 1.19"},
         {"substep", "4", "substep: wanted the name of a dial, perhaps substeps"},
         {"presicion", "4", "presicion: wanted the name of a dial, perhaps precision"},
         {"zzzzzzzzz", "4", "zzzzzzzzz: wanted the name of a dial, one of: dt, substeps"},

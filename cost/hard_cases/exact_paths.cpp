@@ -1,0 +1,120 @@
+// Exact paths: H42, whether corners and triangles, edges and edges, meet on straight lines.
+//
+// Answers: exact ones that come with the sets, in integers. None that meet may be missed; how many
+// of those that do not are told to is printed as their share, for a tolerance of a millionth.
+#include "cost/hard_cases/hard_cases.hpp"
+#include "pipeline/dials.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace throng {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kTolerance = 1e-6;  // m, as the sets are commonly asked with; they are some m wide
+
+struct ExactQuery {
+    LinearQuestion question;
+    bool meets = false;
+};
+
+fs::path find_sets()
+{
+    // Cases change no environment.
+    const char* named = std::getenv("THRONG_DATA");  // NOLINT(concurrency-mt-unsafe)
+    if (named != nullptr && fs::exists(fs::path(named) / "ccd")) return fs::path(named) / "ccd";
+    const fs::path source = fs::absolute(__FILE__);
+    for (auto folder = source.parent_path(); folder != folder.root_path();
+         folder = folder.parent_path())
+        if (fs::exists(folder / "shared/data/ccd")) return folder / "shared/data/ccd";
+    return {};
+}
+
+// Eight rows a query, each of a fraction an axis and the truth: the points at the start, then
+// those at the end.
+void read_queries(const fs::path& file, bool edges, std::vector<ExactQuery>& queries)
+{
+    std::ifstream text(file);
+    ExactQuery query;
+    query.question.edges = edges;
+    std::string line;
+    for (std::size_t row = 0; std::getline(text, line); row = (row + 1) % 8) {
+        std::replace(line.begin(), line.end(), ',', ' ');
+        std::istringstream numbers(line);
+        Vec3 above, below;
+        int truth = 0;
+        numbers >> above.x() >> below.x() >> above.y() >> below.y() >> above.z() >> below.z()
+            >> truth;
+        auto& points = row < 4 ? query.question.from : query.question.to;
+        points[row % 4] = above.cwiseQuotient(below);
+        query.meets = truth != 0;
+        if (row == 7) queries.push_back(query);
+    }
+}
+
+std::vector<ExactQuery> read_set(const fs::path& folder, bool edges)
+{
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder / (edges ? "edge-edge" : "vertex-face")))
+        files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    std::vector<ExactQuery> queries;
+    for (const fs::path& file : files) read_queries(file, edges, queries);
+    return queries;
+}
+
+void ask_set(CaseBench& bench, const std::string& name, const std::vector<ExactQuery>& queries)
+{
+    const auto count = static_cast<double>(queries.size());
+    for (const Choice& method : find_dial("toi_method")->choices) {
+        Settings settings;
+        set_dial(settings, "toi_method", method.text);
+        double missed = 0, spurious = 0, evaluations = 0, apart = 0;
+        for (const ExactQuery& query : queries) {
+            const ImpactAnswer answer =
+                bench.ask_linear_paths(query.question, settings.toi_method, kTolerance);
+            missed += query.meets && !(answer.meets && answer.time <= 1) ? 1 : 0;
+            spurious += !query.meets && answer.meets ? 1 : 0;
+            apart += query.meets ? 0 : 1;
+            evaluations += answer.evaluations;
+        }
+        const double ns = bench.spent_on(method.text) * 1e6 / count;
+        const std::string setting = name + ", " + std::to_string(queries.size()) + " queries";
+        bench.report_method(method.text, setting, "touches missed", missed, 0, "1");
+        // Measured, and no bound of their own: all of those that are apart, a microsecond each in
+        // the thousands.
+        bench.report_method(method.text, setting, "of those apart, told to touch",
+                            spurious / std::max(apart, 1.0), 1, "1");
+        bench.report_method(method.text, setting, "evaluations a query", evaluations / count, 1e3,
+                            "1");
+        bench.report_method(method.text, setting, "time a query", ns, 1e6, "ns");
+    }
+}
+
+}  // namespace
+
+void case_exact_paths(CaseBench& bench)
+{
+    const fs::path sets = find_sets();
+    if (sets.empty()) {
+        bench.skip("public sets", "touches missed", "shared/data/ccd is absent");
+        return;
+    }
+    std::vector<fs::path> folders;
+    for (const auto& entry : fs::directory_iterator(sets))
+        if (entry.is_directory()) folders.push_back(entry.path());
+    std::sort(folders.begin(), folders.end());
+    for (const fs::path& folder : folders)
+        for (const bool edges : {false, true})
+            if (fs::exists(folder / (edges ? "edge-edge" : "vertex-face")))
+                ask_set(bench, folder.filename().string() + (edges ? " edge-edge" : " vertex-face"),
+                        read_set(folder, edges));
+}
+
+}  // namespace throng

@@ -1,0 +1,275 @@
+// Fast bodies: H38 a bullet and a plate, H39 a rod that turns, H40 two that meet.
+//
+// Answers: the geometry says when they first touch. Asked of each method of the dial toi_method,
+// whose error is at most the time in which the tolerance is crossed; then a world is run with it,
+// in which nothing may get through.
+#include "cost/hard_cases/hard_cases.hpp"
+#include "kernels/math/rotation.hpp"
+#include "pipeline/dials.hpp"
+#include "pipeline/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kSpeed = 1000;  // m/s
+
+// Each method in turn, by the dial's own words.
+void for_each_method(const std::function<void(std::string_view, ToiMethod)>& body)
+{
+    for (const Choice& choice : find_dial("toi_method")->choices) {
+        Settings settings;
+        set_dial(settings, "toi_method", choice.text);
+        body(choice.text, settings.toi_method);
+    }
+}
+
+// What a method tells of a meeting whose time is known: how late, how early, and what it took.
+//
+//   speed   m/s, at which the two come together then
+void judge(CaseBench& bench,
+           const char* setting,
+           const ImpactQuery& query,
+           const ShapeMotion& a,
+           const ShapeMotion& b,
+           double duration,
+           double truth,
+           double speed)
+{
+    for_each_method([&](std::string_view name, ToiMethod method) {
+        const ImpactAnswer answer = bench.ask_impact(query, method, a, b, duration);
+        const double off = answer.meets ? answer.time - truth : duration;
+        // The times themselves are rounded, and so is the truth.
+        const double rounding = 1e-14 * duration;
+        const double within = bench.settings().toi_tolerance * query.size() / speed;
+        bench.report_method(name, setting, "late", std::max(0.0, off), rounding, "s");
+        bench.report_method(name, setting, "early", std::max(0.0, -off), within + rounding, "s");
+        bench.report_method(name, setting, "evaluations", answer.evaluations, 1e3, "1");
+    });
+}
+
+void judge_miss(CaseBench& bench,
+                const char* setting,
+                const ImpactQuery& query,
+                const ShapeMotion& a,
+                const ShapeMotion& b,
+                double duration)
+{
+    for_each_method([&](std::string_view name, ToiMethod method) {
+        const ImpactAnswer answer = bench.ask_impact(query, method, a, b, duration);
+        bench.report_method(name, setting, "told to meet", answer.meets ? 1 : 0, 0, "1");
+    });
+}
+
+ShapeDescription sheet()
+{
+    MeshShape mesh;
+    mesh.vertices = {{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}};
+    mesh.triangles = {{0, 2, 1}, {0, 3, 2}};  // faces -x, where they come from
+    return {"sheet", mesh};
+}
+
+ShapeDescription ball(double radius) { return {"ball", SphereShape{radius}}; }
+ShapeDescription box(const Vec3& half) { return {"box", BoxShape{half}}; }
+
+std::uint32_t add_body(Scene& scene, const ShapeDescription& shape, const ShapeMotion& motion)
+{
+    scene.shapes.push_back(shape);
+    BodyDescription body;
+    body.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+    body.material = 0;
+    body.position = motion.pose.position;
+    body.orientation = motion.pose.orientation;
+    body.velocity = motion.velocity;
+    body.angular_velocity = motion.angular_velocity;
+    scene.bodies.push_back(body);
+    return static_cast<std::uint32_t>(scene.bodies.size() - 1);
+}
+
+void add_still(Scene& scene, const ShapeDescription& shape, const Vec3& position)
+{
+    ShapeMotion motion;
+    motion.pose.position = position;
+    scene.bodies[add_body(scene, shape, motion)].motion = Motion::static_;
+}
+
+Scene weightless(const CaseBench& bench, double dt, ToiMethod method, double restitution)
+{
+    Scene scene = bench.scene();
+    scene.gravity = Vec3::Zero();
+    scene.settings.dt = dt;
+    scene.settings.toi_method = method;
+    scene.materials.push_back({.name = "steel", .friction = 0, .restitution = restitution});
+    return scene;
+}
+
+ShapeMotion moving(const Vec3& position, const Vec3& velocity)
+{
+    ShapeMotion motion;
+    motion.pose.position = position;
+    motion.velocity = velocity;
+    return motion;
+}
+
+// Runs a body against what stands at x = 0 and shows how far its middle came past the face.
+void run_against(CaseBench& bench,
+                 const std::string& setting,
+                 const ShapeDescription& thing,
+                 const ShapeMotion& motion,
+                 const ShapeDescription& obstacle,
+                 double face,
+                 double half,
+                 double dt)
+{
+    for_each_method([&](std::string_view name, ToiMethod method) {
+        Scene scene = weightless(bench, dt, method, 0);
+        add_still(scene, obstacle, Vec3::Zero());
+        scene.bodies[add_body(scene, thing, motion)].fast = true;
+        double deepest = -1e30;
+        bench.run(scene, 0.25, [&](World& world, double) {
+            const double x = world.pose(world.bodies().back()).position.x();
+            deepest = std::max(deepest, x + half - face);
+            return true;
+        });
+        // A hundredth of its half extent is what contacts may give while they stop it.
+        bench.report(std::string(name) + ", " + setting, "depth past the face over half extent",
+                     std::max(0.0, deepest) / half, 1e-2, "1");
+    });
+}
+
+}  // namespace
+
+void case_bullet_plate(CaseBench& bench)
+{
+    const double radius = 0.005, half_thickness = 0.0005;
+    const ShapeDescription bullet = ball(radius), plate = box({half_thickness, 1, 1});
+    const ShapeMotion flight = moving({-10, 0.1, 0.2}, {kSpeed, 0, 0}), still;
+    judge(bench, "plate of 1 mm", ImpactQuery(bullet, plate), flight, still, 1.0 / 60,
+          (10 - radius - half_thickness) / kSpeed, kSpeed);
+    judge(bench, "sheet of triangles", ImpactQuery(bullet, sheet()), flight, still, 1.0 / 60,
+          (10 - radius) / kSpeed, kSpeed);
+    for (const auto& [name, dt] :
+         {std::pair("dt=1/60", 1.0 / 60), std::pair("dt=1/240", 1.0 / 240)}) {
+        run_against(bench, std::string("plate of 1 mm, ") + name, bullet, flight, plate,
+                    -half_thickness, radius, dt);
+        run_against(bench, std::string("sheet of triangles, ") + name, bullet, flight, sheet(), 0,
+                    radius, dt);
+    }
+    run_against(bench, "cube of 1 m from 5 m, dt=0.01", box(Vec3::Constant(0.5)),
+                moving({-5, 0, 0}, {kSpeed, 0, 0}), plate, -half_thickness, 0.5, 0.01);
+}
+
+void case_spinning_rod(CaseBench& bench)
+{
+    const double spin = 50 * kPi, wall = 0.6;
+    // Along y, about z, so that it turns towards +x.
+    ShapeMotion turning, still;
+    turning.pose.orientation = exponential(Vec3(-kPi / 2, 0, 0));
+    turning.angular_velocity = Vec3(0, 0, -spin);
+    still.pose.position = Vec3(wall + 0.05, 0, 0);
+    const ShapeDescription slab = box({0.05, 3, 3});
+    for (const auto& [name, radius] :
+         {std::pair("line", 1e-7), std::pair("capsule r=0.02", 0.02)}) {
+        const double sine = wall - radius;
+        judge(bench, name, ImpactQuery({"rod", CapsuleShape{radius, 1}}, slab), turning, still,
+              1.0 / 60, std::asin(sine) / spin, spin * std::sqrt(1 - sine * sine));
+    }
+
+    // A stick of 4 m that comes down on a wall of 0.25 m, at spins from none to 50 rad/s.
+    for_each_method([&](std::string_view name, ToiMethod method) {
+        double deepest = 0;
+        for (int i = 0; i <= (bench.brief() ? 2 : 10); ++i) {
+            Scene scene = weightless(bench, 1.0 / 60, method, 0);
+            add_still(scene, box({0.125, 40, 40}), Vec3::Zero());
+            ShapeMotion stick = moving({-20, 0, 0}, {100, 0, 0});
+            stick.angular_velocity = Vec3(0, 0, bench.brief() ? 25 * i : 5 * i);
+            scene.bodies[add_body(scene, box({0.1, 2, 0.1}), stick)].fast = true;
+            bench.run(scene, 1, [&](World& world, double) {
+                const double x = world.pose(world.bodies().back()).position.x();
+                deepest = std::max(deepest, x + 0.125);
+                return true;
+            });
+        }
+        // Its middle is at least its half thickness from the face while no part of it is through.
+        bench.report(std::string(name) + ", stick of 4 m at 100 m/s, to 50 rad/s",
+                     "way of its middle past the face", deepest, 0, "m");
+    });
+}
+
+namespace {
+
+// Two balls on ways side by side: how near they come to having changed places, and how their
+// velocities differ from those they began with.
+void run_pair(CaseBench& bench, const std::string& setting, double offset, bool meet)
+{
+    for_each_method([&](std::string_view name, ToiMethod method) {
+        Scene scene = weightless(bench, 1.0 / 60, method, 1);
+        for (const double side : {-1.0, 1.0})
+            add_body(scene, ball(0.01),
+                     moving({5 * side, side > 0 ? offset : 0.0, 0}, {-kSpeed * side, 0, 0}));
+        double change = 0, momentum = 0;
+        bench.run(scene, 0.1, [&](World& world, double) {
+            const auto bodies = world.bodies();
+            const Vec3 a = world.velocity(bodies[0]), b = world.velocity(bodies[1]);
+            change = (a - Vec3(kSpeed, 0, 0)).norm() / kSpeed;
+            momentum = (a + b).norm() / kSpeed;
+            return true;
+        });
+        const std::string of = std::string(name) + ", " + setting;
+        // Balls as heavy as each other swap what they have along the line of their centers.
+        const double along = std::sqrt(std::max(0.0, 1 - offset * offset / (0.02 * 0.02)));
+        const double wanted = meet ? 2 * along : 0;
+        bench.report(of, "error of the change of velocity", std::abs(change - wanted),
+                     meet ? 1e-2 : 0, "1");
+        bench.report(of, "momentum gained", momentum, 1e-5, "1");
+    });
+}
+
+void run_between_plates(CaseBench& bench)
+{
+    for_each_method([&](std::string_view name, ToiMethod method) {
+        Scene scene = weightless(bench, 1.0 / 60, method, 1);
+        for (const double side : {-1.0, 1.0})
+            add_still(scene, box({0.05, 2, 2}), {side * (0.55 + 1e-4), 0, 0});
+        const std::uint32_t cube =
+            add_body(scene, box(Vec3::Constant(0.5)), moving(Vec3::Zero(), {10, 0, 0}));
+        scene.bodies[cube].fast = true;
+        double deepest = 0;
+        bench.run(scene, 2, [&](World& world, double) {
+            const double x = std::abs(world.pose(world.bodies().back()).position.x());
+            deepest = std::max(deepest, x - 1e-4);
+            return true;
+        });
+        bench.report(std::string(name) + ", cube at 10 m/s between plates 0.1 mm away", "overlap",
+                     deepest, 1e-4, "m");
+    });
+}
+
+}  // namespace
+
+void case_fast_pair(CaseBench& bench)
+{
+    const ImpactQuery pair(ball(0.01), ball(0.01));
+    const ShapeMotion right = moving({-5, 0, 0}, {kSpeed, 0, 0});
+    const auto left = [](double offset) { return moving({5, offset, 0}, {-kSpeed, 0, 0}); };
+    const double duration = 1.0 / 60, together = 2 * kSpeed;
+    judge(bench, "head on", pair, right, left(0), duration, 0.00499, together);
+    const double along = std::sqrt(0.02 * 0.02 - 0.015 * 0.015);
+    judge(bench, "offset 0.015 m", pair, right, left(0.015), duration, (10 - along) / together,
+          together * along / 0.02);
+    judge_miss(bench, "offset 0.0201 m", pair, right, left(0.0201), duration);
+    judge(bench, "cube 0.1 mm from a plate",
+          ImpactQuery(box(Vec3::Constant(0.5)), box({0.05, 2, 2})),
+          moving(Vec3::Zero(), {10, 0, 0}), moving({0.55 + 1e-4, 0, 0}, Vec3::Zero()), duration,
+          1e-5, 10);
+    run_pair(bench, "head on", 0, true);
+    run_pair(bench, "offset 0.015 m", 0.015, true);
+    run_pair(bench, "offset 0.0201 m", 0.0201, false);
+    run_between_plates(bench);
+}
+
+}  // namespace throng

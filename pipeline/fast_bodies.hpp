@@ -1,0 +1,62 @@
+// Fast bodies: who may pass through something in a step.
+#pragma once
+
+#include "kernels/data/bodies.hpp"
+
+#include <algorithm>
+
+namespace throng {
+
+/// Contacts are looked for this far from a resting surface, as a share of the shape's smallest half
+/// extent: far enough that a body at rest never loses its contacts to a breath.
+inline constexpr double kRestingReach = 0.04;
+
+/// A body is hurried once the reach of a collider is this share of its smallest half extent: half
+/// the extent in a step, and what it looks around at rest. Who is not cannot be fast in this step,
+/// nor, but for a blow, in the next one.
+inline constexpr double kHurriedReach = 0.5 + kRestingReach;
+
+/// Who goes further in a step than this many smallest half extents looks for no contacts ahead, nor
+/// does who is marked fast. Up to here those that it finds ahead hold it in all but rare cases.
+inline constexpr double kAheadOfContacts = 2;
+
+/// The reach of such a body, in tolerances of its time of impact: it is held within one. Any more
+/// and what passes close by is turned aside.
+inline constexpr double kHeldReach = 2;
+
+/// Up to this angle a step, rad, contacts see turning well enough ahead: no point is further from
+/// the straight way that they take it for than 3 % of that.
+inline constexpr double kSmallTurn = 0.25;
+
+/// How far the surface of a collider comes by turning in a step, m, at most; 0 where contacts see
+/// it ahead, and of a ball about its own center, which stays where it is.
+inline double way_of_turning(const Colliders& colliders, std::size_t at, double angle)
+{
+    const double outer = colliders.outer_radius[at];
+    if (!(outer > colliders.inner_extent[at])) return 0;
+    return angle > kSmallTurn ? std::min(angle, 2.0) * outer : 0;
+}
+
+/// Whether a body is hurried, of those that have colliders.
+///
+///   falls   m, what gravity may add to its way in a step
+inline bool hurries(const Colliders& colliders,
+                    const Velocities& velocities,
+                    std::size_t body,
+                    double dt,
+                    double falls)
+{
+    const double way = velocities.linear[body].norm() * dt;
+    const double angle = velocities.angular[body].norm() * dt;
+    for (std::uint32_t k = 0; k < colliders.count[body]; ++k) {
+        const std::uint32_t at = colliders.begin[body] + k;
+        const double inner = colliders.inner_extent[at];
+        // A surface has no inside to be passed by turning about itself.
+        const double turning = inner > 0 ? way_of_turning(colliders, at, angle) : 0;
+        const double rest = std::max(kRestingReach * inner, falls);
+        if (rest + way + turning > kHurriedReach * inner && way + turning + falls > 0) return true;
+    }
+    return false;
+}
+
+}  // namespace throng

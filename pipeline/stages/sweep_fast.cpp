@@ -1,0 +1,415 @@
+// Sweep fast: who goes so far in a step that it could pass through something is held where it first
+// meets it, turned as it was then. The contacts of the next step find it there.
+//
+// The ways are those from the poses before the step to the poses after it. Of two fast bodies that
+// meet both are held. One that meets what is not fast goes on with that: it stays where it is
+// against a wall, and rides on a plate that moves by itself. Impacts are taken in the order of
+// their times, so that one held out of the way of another is not met there any more.
+//
+// Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
+//          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
+#include "kernels/geometry/shape_bounds.hpp"
+#include "kernels/parallel/blocks.hpp"
+#include "narrowphase/impact/impact_time.hpp"
+#include "pipeline/fast_bodies.hpp"
+#include "pipeline/stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kPairs = 8;        // a block: some 20 microseconds of work
+constexpr std::size_t kMovers = 4096;    // a block
+constexpr std::size_t kBoxes = 1 << 14;  // a block
+constexpr double kNever = 2;             // later than the step
+
+// Of a shape that touches another from the start contact takes care. What it does not hold back
+// must not get through all the same: that is for the same shape, smaller by so much, or for a ball
+// within it. The greatest of them that does not touch yet is taken; contact may have pressed a thin
+// one in by more than a tenth.
+constexpr double kScales[] = {0.9, 0.6, 0.3, 0.1};
+
+// The first of these scales for one that contacts look ahead of: they will have held it.
+constexpr std::size_t kHeldAhead = 1;
+
+struct Candidate {
+    PairKey key = 0;
+    double time = kNever;        // of their next impact
+    Vec3 normal = Vec3::Zero();  // from a to b then
+    bool pressed = false;        // they touched before, and contact has not held them
+};
+
+// The way of a body from some time on: that of another it has come to ride on, or its own.
+struct Way {
+    std::uint32_t body = kNobody;
+    Sweep sweep;
+    Pose attached;                  // the body in the frame that is swept
+    std::uint32_t rides = kNobody;  // on this body
+    double since = 0;               // 0 to 1, when it was held
+    bool fast = false, held = false;
+    bool ahead = false;  // of contacts: those that it may come to were not looked for
+};
+
+class FastSweep {
+public:
+    FastSweep(const Conditions& conditions,
+              const Shapes& shapes,
+              const Colliders& colliders,
+              const PairFilter& filter,
+              const Bounds& bounds,
+              const Pairs& pairs,
+              const BodyStates& states,
+              Poses& poses,
+              Velocities& velocities,
+              FastBodies& fast)
+        : settings_(conditions.settings), shapes_(shapes), colliders_(colliders), filter_(filter),
+          bounds_(bounds), pairs_(pairs), states_(states), poses_(poses), velocities_(velocities),
+          fast_(fast)
+    { }
+
+    void run(const std::vector<std::uint32_t>& awoken)
+    {
+        fast_.held.clear();
+        find_fast(awoken);
+        if (found_.empty()) return;
+        fast_.flags.resize(states_.kind.size(), 0);
+        for (const std::uint32_t body : found_) fast_.flags[body] = 1;
+        find_candidates();
+        for (const std::uint32_t body : found_) fast_.flags[body] = 0;
+        if (candidates_.empty()) return;
+        find_ways();
+        for_each_block(candidates_.size(), kPairs, [&](auto begin, auto end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) ask(candidates_[i], 0);
+        });
+        hold_all();
+    }
+
+private:
+    // Before the step, from where a collider of it was.
+    Pose began(std::uint32_t body) const
+    {
+        const std::uint32_t at = colliders_.begin[body];
+        const Pose& local = colliders_.local[at];
+        const Pose& placed = bounds_.placed[at];
+        if (local.position.isZero(0) && local.orientation.vec().isZero(0)) return placed;
+        return placed * local.inverse();
+    }
+
+    // Whether a body has come far enough to have passed through something. What moves by itself is
+    // measured against those that it may run over: see worth_asking().
+    bool went_far(std::uint32_t body) const
+    {
+        if (colliders_.count[body] == 0 || states_.kind[body] == BodyKind::gone) return false;
+        const Vec3 way = poses_.position[body] - began(body).position;
+        const double length = way.norm();
+        const double angle = velocities_.angular[body].norm() * settings_.dt;
+        if (!(length > 0 || angle > 0) || !std::isfinite(length)) return false;
+        for (std::uint32_t k = 0; k < colliders_.count[body]; ++k) {
+            const std::uint32_t at = colliders_.begin[body] + k;
+            const double inner = colliders_.inner_extent[at];
+            const double turning = inner > 0 ? way_of_turning(colliders_, at, angle) : 0;
+            if (length + turning > inner) return true;
+        }
+        return false;
+    }
+
+    // Ascending: those that were known to be fast before, and those that a blow made so.
+    void find_fast(const std::vector<std::uint32_t>& awoken)
+    {
+        found_ = bounds_.fast;
+        for (const auto* movers : {&states_.movers.dynamic, &states_.movers.kinematic, &awoken}) {
+            BlockLists<std::uint32_t> lists;
+            lists.start(block_count(movers->size(), kMovers));
+            for_each_block(movers->size(), kMovers, [&](auto begin, auto end, auto block) {
+                for (std::size_t i = begin; i < end; ++i)
+                    if (went_far((*movers)[i])) lists[block].push_back((*movers)[i]);
+            });
+            lists.append_to(found_);
+        }
+        std::sort(found_.begin(), found_.end());
+        found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    }
+
+    bool is_fast(std::uint32_t body) const { return fast_.flags[body] != 0; }
+
+    // Two of which one at least is dynamic and one fast. A thing that moves by itself has to go
+    // further than the half extent of what it runs over.
+    bool worth_asking(PairKey key) const
+    {
+        std::uint32_t a = colliders_.body[first_of(key)], b = colliders_.body[second_of(key)];
+        if (a == kNobody || b == kNobody || a == b) return false;
+        if (!is_fast(a) && !is_fast(b)) return false;
+        if (!states_.dynamic(a) && !states_.dynamic(b)) return false;
+        for (const auto& [fast, slow, at] :
+             {std::tuple(a, b, second_of(key)), std::tuple(b, a, first_of(key))})
+            if (is_fast(fast) && states_.kind[fast] == BodyKind::kinematic && !is_fast(slow)) {
+                const double way = (poses_.position[fast] - began(fast).position).norm()
+                    + velocities_.angular[fast].norm() * settings_.dt * states_.radius[fast];
+                return way > colliders_.inner_extent[at];
+            }
+        return true;
+    }
+
+    void find_candidates()
+    {
+        candidates_.clear();
+        for (const PairKey key : pairs_.keys)
+            if (worth_asking(key)) candidates_.push_back({key});
+        for (const std::uint32_t body : found_)
+            for (std::uint32_t k = 0; k < colliders_.count[body]; ++k)
+                look_beyond_box(colliders_.begin[body] + k);
+        const auto less = [](const Candidate& a, const Candidate& b) { return a.key < b.key; };
+        const auto same = [](const Candidate& a, const Candidate& b) { return a.key == b.key; };
+        std::sort(candidates_.begin(), candidates_.end(), less);
+        candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), same),
+                          candidates_.end());
+    }
+
+    // What a blow has driven out of its box may meet what the broad phase did not think of.
+    void look_beyond_box(std::uint32_t at)
+    {
+        if (colliders_.shape[at].kind == ShapeKind::plane) return;
+        const Pose ends = poses_.at(colliders_.body[at]) * colliders_.local[at];
+        const Box3 way = joined(shape_bounds(shapes_, colliders_.shape[at], bounds_.placed[at]),
+                                shape_bounds(shapes_, colliders_.shape[at], ends));
+        if (bounds_.boxes[at].contains(way)) return;
+        BlockLists<Candidate> lists;
+        lists.start(block_count(colliders_.size(), kBoxes));
+        for_each_block(colliders_.size(), kBoxes, [&](auto begin, auto end, auto block) {
+            for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+                if (colliders_.body[i] == kNobody || !bounds_.boxes[i].overlaps(way)) continue;
+                const PairKey key = pair_key(at, i);
+                if (i != at && filter_.allows(at, i) && worth_asking(key))
+                    lists[block].push_back({key});
+            }
+        });
+        lists.append_to(candidates_);
+    }
+
+    void find_ways()
+    {
+        std::vector<std::uint32_t> bodies;
+        for (const Candidate& candidate : candidates_)
+            for (const std::uint32_t at : {first_of(candidate.key), second_of(candidate.key)})
+                bodies.push_back(colliders_.body[at]);
+        std::sort(bodies.begin(), bodies.end());
+        bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+        ways_.resize(bodies.size());
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            const std::uint32_t body = bodies[i];
+            Way& way = ways_[i];
+            way.body = body;
+            way.fast =
+                std::binary_search(found_.begin(), found_.end(), body) && states_.dynamic(body);
+            way.ahead = std::binary_search(bounds_.fast.begin(), bounds_.fast.end(), body);
+            if (states_.kind[body] == BodyKind::still)
+                way.sweep.begin = poses_.at(body);
+            else
+                way.sweep = sweep_between(began(body), poses_.at(body),
+                                          velocities_.angular[body] * settings_.dt);
+        }
+    }
+
+    Way& way_of(std::uint32_t body)
+    {
+        const auto less = [](const Way& way, std::uint32_t wanted) { return way.body < wanted; };
+        return *std::lower_bound(ways_.begin(), ways_.end(), body, less);
+    }
+
+    MovingShape moving(std::uint32_t at)
+    {
+        const Way& way = way_of(colliders_.body[at]);
+        return {colliders_.shape[at], way.sweep, way.attached * colliders_.local[at]};
+    }
+
+    // What must not get through whatever contact does.
+    MovingShape smaller(std::uint32_t at, double scale)
+    {
+        MovingShape inner = moving(at);
+        const ShapeKind kind = inner.shape.kind;
+        if (kind == ShapeKind::hull)
+            inner.local.position +=
+                inner.local.orientation * shapes_.hulls[inner.shape.index].center;
+        if (kind == ShapeKind::hull || kind == ShapeKind::solid || kind == ShapeKind::mesh)
+            inner.ball = scale * colliders_.inner_extent[at];
+        else
+            inner.scale = scale;
+        return inner;
+    }
+
+    // When two meet next. Of those that touch already contact takes care.
+    void ask(Candidate& candidate, double since)
+    {
+        candidate.time = kNever;
+        const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
+        const ShapeRef shape_a = colliders_.shape[a], shape_b = colliders_.shape[b];
+        const ImpactRule rule = impact_rule(
+            settings_.toi_method, settings_.toi_tolerance * impact_size(shapes_, shape_a, shape_b));
+        const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
+        const bool ahead = way_a.ahead || way_b.ahead;
+        Impact impact;
+        if (ahead) impact = impact_time(shapes_, moving(a), moving(b), since, 1, rule);
+        candidate.pressed = impact.meeting == Meeting::at_start;
+        if (!ahead || candidate.pressed) {
+            const bool of_a = way_a.fast || (!way_b.fast && states_.dynamic(way_a.body));
+            if (!(colliders_.inner_extent[of_a ? a : b] > 0)) return;
+            for (std::size_t i = ahead ? 0 : kHeldAhead; i < std::size(kScales); ++i) {
+                impact = of_a
+                    ? impact_time(shapes_, smaller(a, kScales[i]), moving(b), since, 1, rule)
+                    : impact_time(shapes_, moving(a), smaller(b, kScales[i]), since, 1, rule);
+                if (impact.meeting != Meeting::at_start) break;
+                candidate.pressed = true;
+            }
+        }
+        if (impact.meeting != Meeting::meet) return;
+        candidate.time = impact.time;
+        candidate.normal = impact.normal;
+    }
+
+    static Pose pose_on(const Way& way, double time) { return way.sweep.at(time) * way.attached; }
+
+    // From now on a body goes where another does, as it is against it now.
+    void ride(Way& way, std::uint32_t on, double time)
+    {
+        const Pose now = pose_on(way, time);
+        const Sweep& sweep = way_of(on).sweep;
+        way.attached = sweep.at(time).inverse() * now;
+        way.sweep = sweep;
+        way.rides = on;
+        way.held = true;
+        way.since = time;
+    }
+
+    void hold(Way& way, double time)
+    {
+        way.sweep = {pose_on(way, time), Vec3::Zero(), Vec3::Zero()};
+        way.attached = Pose{};
+        way.rides = kNobody;
+        way.held = true;
+        way.since = time;
+    }
+
+    // What becomes of two that meet. Whoever is changed by it is told.
+    void meet(const Candidate& candidate, std::vector<std::uint32_t>& changed)
+    {
+        Way& a = way_of(colliders_.body[first_of(candidate.key)]);
+        Way& b = way_of(colliders_.body[second_of(candidate.key)]);
+        const double time = candidate.time;
+        const bool free_a = may_change(a), free_b = may_change(b);
+        if (free_a && free_b && a.fast == b.fast) {
+            hold(a, time);
+            hold(b, time);
+            changed = {a.body, b.body};
+            return;
+        }
+        // The fast one yields, else the one that may.
+        const bool yields_a = free_a && (a.fast || !free_b);
+        if (!free_a && !free_b) return;
+        Way &yields = yields_a ? a : b, &other = yields_a ? b : a;
+        if (candidate.pressed && !states_.dynamic(other.body))
+            stop_pressing(yields.body, other.body,
+                          yields_a ? candidate.normal : Vec3(-candidate.normal));
+        if (yields.rides != kNobody || other.sweep.still())
+            hold(yields, time);
+        else
+            ride(yields, other.body, time);
+        changed = {yields.body};
+    }
+
+    // Its middle goes no further into what it is pressed into, and cannot move: a corner that holds
+    // it at its side, while it turns about that faster than steps can follow, would let it.
+    void stop_pressing(std::uint32_t body, std::uint32_t on, const Vec3& normal)
+    {
+        Vec3& velocity = velocities_.linear[body];
+        const double pressing = normal.dot(velocity - velocities_.linear[on]);
+        if (pressing > 0) velocity -= pressing * normal;
+    }
+
+    // Each is stopped on its own way once, and once more on that of what carries it.
+    bool may_change(const Way& way) const
+    {
+        return states_.dynamic(way.body) && !(way.held && way.sweep.still());
+    }
+
+    // Those that ride on a body that was stopped are stopped with it.
+    void stop_riders(double time, std::vector<std::uint32_t>& changed)
+    {
+        for (std::size_t i = 0; i < changed.size(); ++i)
+            for (Way& way : ways_)
+                if (way.rides == changed[i]) {
+                    hold(way, time);
+                    changed.push_back(way.body);
+                }
+    }
+
+    // The earliest impact, what it changes, and again.
+    void hold_all()
+    {
+        // Each impact changes a body, and no body more than twice.
+        for (std::size_t left = 2 * ways_.size(); left > 0; --left) {
+            const auto first = std::min_element(
+                candidates_.begin(), candidates_.end(),
+                [](const Candidate& a, const Candidate& b) { return a.time < b.time; });
+            if (!(first->time < kNever)) break;
+            const double time = first->time;
+            std::vector<std::uint32_t> changed;
+            meet(*first, changed);
+            first->time = kNever;
+            stop_riders(time, changed);
+            for (Candidate& other : candidates_) {
+                if (&other == &*first) continue;
+                const std::uint32_t a = colliders_.body[first_of(other.key)];
+                const std::uint32_t b = colliders_.body[second_of(other.key)];
+                const auto is = [&](std::uint32_t body) { return body == a || body == b; };
+                if (std::any_of(changed.begin(), changed.end(), is)) ask(other, time);
+            }
+        }
+        for (const Way& way : ways_) {
+            if (!way.held) continue;
+            const Pose end = pose_on(way, 1);
+            poses_.position[way.body] = end.position;
+            poses_.orientation[way.body] = end.orientation.normalized();
+            fast_.held.push_back(way.body);
+        }
+    }
+
+    const Settings& settings_;
+    const Shapes& shapes_;
+    const Colliders& colliders_;
+    const PairFilter& filter_;
+    const Bounds& bounds_;
+    const Pairs& pairs_;
+    const BodyStates& states_;
+    Poses& poses_;
+    Velocities& velocities_;
+    FastBodies& fast_;
+    std::vector<std::uint32_t> found_;  // fast bodies, ascending
+    std::vector<Candidate> candidates_;
+    std::vector<Way> ways_;  // by body
+};
+
+}  // namespace
+
+void sweep_fast(const Conditions& conditions,
+                const Shapes& shapes,
+                const Colliders& colliders,
+                const PairFilter& filter,
+                const Bounds& bounds,
+                const Pairs& pairs,
+                const BodyStates& states,
+                const Rest& rest,
+                Poses& poses,
+                Velocities& velocities,
+                FastBodies& fast)
+{
+    // Where nothing can touch, nothing is in the way.
+    if (bounds.placed.size() != colliders.size()) return;
+    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, poses, velocities, fast)
+        .run(rest.awoken);
+}
+
+}  // namespace throng
