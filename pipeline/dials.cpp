@@ -30,14 +30,13 @@ constexpr Choice kBoundsFilter[] = {{"none"},    {"sphere"},   {"k_dop:14"},
                                     {"k_dop:6"}, {"k_dop:18"}, {"k_dop:26"}};
 constexpr Choice kNonconvex[] = {{"voxels"}, {"parts"}, {"spheres"}, {"depth_image"}, {"hull"}};
 constexpr Choice kResponse[] = {{"impulse"}, {"penalty", kNotYet}, {"kinematic", kNotYet}};
-constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct", kNotYet}};
+constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct"}};
 constexpr Choice kFrictionCone[] = {{"cone"}, {"pyramid", kNotYet}};
-constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous", kNotYet}};
+constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous"}};
 constexpr Choice kOverlap[] = {{"allow"}, {"back_up", kNotYet}, {"subdivide", kNotYet}};
 constexpr Choice kToiMethod[] = {{"newton"}, {"bisection"}, {"conservative"}};
 constexpr Choice kSleep[] = {{"on"}, {"off"}};
 constexpr Choice kAuto[] = {{"auto"}};
-constexpr Choice kDirectLimit[] = {{"500"}};
 
 // Finer steps than this are lost in the time they add up to; greater ones in no scene's scale.
 constexpr double kShortestStep = 1e-9, kLongestStep = 1e4;
@@ -146,6 +145,19 @@ std::string set_iterations(Settings& settings, std::string_view text)
 std::string get_iterations(const Settings& settings)
 {
     return settings.iterations == 0 ? "auto" : std::to_string(settings.iterations);
+}
+
+std::string set_direct_limit(Settings& settings, std::string_view text)
+{
+    const int count = parse_whole(text, 100000);
+    if (count == 0) return wanted("a whole number from 1 to 100000", text);
+    settings.direct_limit = count;
+    return {};
+}
+
+std::string get_direct_limit(const Settings& settings)
+{
+    return std::to_string(settings.direct_limit);
 }
 
 std::string set_contact_rate(Settings& settings, std::string_view text)
@@ -352,7 +364,7 @@ std::vector<Dial> make_dials()
             "impulses hold overlap small; penalty forces are smooth and soft; kinematic is cheap and loses momentum"),
         choice_dial<&S::solver, kSolver>("solver",
             "soft_step converges best for its time; pgs is the classic; direct is exact and slow"),
-        fixed_number<kDirectLimit>("direct_limit", "a whole number: greatest island that solver direct takes", "bodies",
+        number_dial("direct_limit", "a whole number: greatest island that solver direct takes", "bodies, or contacts", set_direct_limit, get_direct_limit,
             "greater islands solved exactly, for time that grows with the cube"),
         fixed_number<kAuto>("penalty_stiffness", "auto (from mass and dt, within the stability limit), or a number", "N/m",
             "stiffer leaves less overlap and needs a shorter step"),
@@ -360,7 +372,7 @@ std::vector<Dial> make_dials()
             "more damping bounces less and needs a shorter step"),
         choice_dial<&S::friction_cone, kFrictionCone>("friction_cone",
             "the cone is the same in every direction; the pyramid is cheaper and holds up to 1.41 too much"),
-        fixed_dial<kImpactLaw>("impact_law",
+        choice_dial<&S::impact_law, kImpactLaw>("impact_law",
             "sequential passes an impact along one pair at a time; simultaneous shares it, for a joint solve"),
         fixed_dial<kOverlap>("overlap",
             "backing up or subdividing the step avoids overlap, and repeats work at every impact"),

@@ -21,6 +21,7 @@ enum class BoundsFilter : std::uint8_t { none, sphere, k_dop_14, k_dop_6, k_dop_
 enum class NonConvex : std::uint8_t { voxels, parts, spheres, depth_image, hull };
 enum class Response : std::uint8_t { impulse, penalty, kinematic };
 enum class Solver : std::uint8_t { soft_step, pgs, direct };
+enum class ImpactLaw : std::uint8_t { sequential, simultaneous };
 enum class FrictionAt : std::uint8_t { manifold, points };
 enum class FrictionCone : std::uint8_t { cone, pyramid };
 
@@ -53,6 +54,8 @@ struct Settings {
     int max_parts = 0;         // convex parts of a shape
     Response response = Response::impulse;
     Solver solver = Solver::soft_step;
+    int direct_limit = 500;  // contacts or bodies of the greatest island that is solved directly
+    ImpactLaw impact_law = ImpactLaw::sequential;
     FrictionAt friction_at = FrictionAt::manifold;
     FrictionCone friction_cone = FrictionCone::cone;
     ToiMethod toi_method = ToiMethod::newton;

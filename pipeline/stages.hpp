@@ -83,8 +83,13 @@ void gather_contacts(const Pairs&,
 void split_islands(const ActiveContacts&, const BodyStates&, IslandFinder&, Islands&);
 
 /// Islands into batches, slices, colors and blocks.
-void color_rows(
-    const Islands&, const ActiveContacts&, const BodyStates&, const Poses&, Painter&, Layout&);
+void color_rows(const Conditions&,
+                const Islands&,
+                const ActiveContacts&,
+                const BodyStates&,
+                const Poses&,
+                Painter&,
+                Layout&);
 
 /// Forces into what they do to the velocities of bodies that touch something. Those in flight ask
 /// for themselves, as often as their integrator does.
@@ -113,6 +118,7 @@ template <class Real>
 void solve_impulses(const Conditions&,
                     const Layout&,
                     const ActiveContacts&,
+                    const Masses&,
                     Rows<Real>&,
                     ConvexContacts<Real>&,
                     MeshContacts<Real>&,

@@ -80,7 +80,9 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
         && is_one_of({"solver", "iterations", "contact_rate", "push_limit", "direct_limit",
                       "friction_cone", "friction_at", "impact_law"}))
         return "response " + response + " solves no rows";
-    if (settings.solver != Solver::soft_step && is_one_of({"contact_rate", "push_limit"}))
+    if (settings.solver != Solver::soft_step && name == "contact_rate")
+        return "solver " + solver + " has no soft contacts";
+    if (settings.solver == Solver::pgs && name == "push_limit")
         return "solver " + solver + " has no soft contacts";
     if (settings.narrowphase == NarrowPhase::auto_ && name == "method_start")
         return "narrowphase auto always begins with what a pair remembers";
@@ -90,6 +92,10 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
         && settings.integrator != Integrator::semi_implicit)
         return "integrator " + dial_value(settings, "integrator")
             + " takes the torque as it does all others";
+    if (settings.solver != Solver::direct && name == "impact_law")
+        return "solver " + solver + " passes an impact along one pair at a time";
+    if (settings.solver == Solver::direct && name == "friction_at")
+        return "solver " + solver + " has friction at every point";
     if (settings.response != Response::penalty
         && is_one_of({"penalty_stiffness", "penalty_damping"}))
         return "response " + response + " has no penalty forces";

@@ -237,6 +237,10 @@ void World::step(int steps)
                 },
                 state.step);
             state.report.fallbacks += state.get<MethodPairs>().fell_back;
+            const Trouble& trouble = state.get<Trouble>();
+            state.report.fallbacks += trouble.direct_left;
+            state.report.direct_residual =
+                std::max(state.report.direct_residual, trouble.direct_residual);
             state.follow_step();
         }
         state.get<Conditions>().time += settings().dt;

@@ -131,6 +131,7 @@ struct Batch {
     std::uint32_t first_slice = 0, slices = 0;
     std::uint32_t contacts = 0, on_faces = 0;  // how many, and how many of three points or four
     bool wide = false;                         // big: all threads share it
+    bool direct = false;                       // one island, for the direct solver
 };
 
 /// Which contact goes into which lane, and which body is which solver body: first the still one,
@@ -164,6 +165,8 @@ struct Layout {
 ///   rollings     [blocks] while rolling friction acts
 ///   inertias     [bodies] while the gyroscopic torque acts
 ///   pulls        [bodies] while forces act
+///   settled      [bodies] while the direct solver acts: who has its new state already, and who
+///                turned non-finite
 template <class Real>
 struct Rows {
     std::vector<std::uint32_t> first_point;
@@ -174,6 +177,8 @@ struct Rows {
     std::vector<SolverBody<Real>> bodies;
     std::vector<SpinInertia<Real>> inertias;
     std::vector<SolverPull<Real>> pulls;
+    enum class Settled : std::uint8_t { no, yes, lost };
+    std::vector<Settled> settled;
     Wavefront wave;  // scratch
 };
 

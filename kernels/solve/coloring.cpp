@@ -67,18 +67,23 @@ void Painter::gather_slices(const Islands& islands,
     layout.body_of_slot.assign(1, kNobody);
     layout.body_of_slot.insert(layout.body_of_slot.end(), islands.bodies.begin(),
                                islands.bodies.end());
+    const auto is_direct = [&](std::size_t island) {
+        return islands.contact_begin[island + 1] - islands.contact_begin[island] <= direct_limit
+            && islands.body_begin[island + 1] - islands.body_begin[island] <= direct_limit;
+    };
     for (std::size_t first = 0, last = 0; first < islands.size(); first = last) {
         const std::uint32_t begin = islands.contact_begin[first];
         const auto contacts_until = [&](std::size_t island) {
             return islands.contact_begin[island] - begin;
         };
-        for (last = first + 1; last < islands.size(); ++last)
+        Batch batch;
+        batch.direct = is_direct(first);
+        for (last = first + 1; direct_limit == 0 && last < islands.size(); ++last)
             if (contacts_until(last + 1) > kBatchContacts) break;
 
-        Batch batch;
         batch.first_slice = static_cast<std::uint32_t>(layout.slices.size());
         batch.contacts = contacts_until(last);
-        batch.wide = batch.contacts > kBatchContacts;
+        batch.wide = batch.contacts > kBatchContacts && !batch.direct;
         Slice slice;
         slice.first_body = islands.body_begin[first] + 1;
         slice.dynamic = islands.body_begin[last] - islands.body_begin[first];

@@ -18,6 +18,9 @@ inline constexpr std::size_t kBatchContacts = 512;
 class Painter {
 public:
     CutRule cut;
+    // Greatest island, in contacts and in bodies, that goes to the direct solver; above 0 each
+    // island is a batch of its own.
+    std::size_t direct_limit = 0;
 
     void lay_out(const Islands& islands,
                  const ActiveContacts& active,

@@ -3,13 +3,18 @@
 
 namespace throng {
 
-void color_rows(const Islands& islands,
+void color_rows(const Conditions& conditions,
+                const Islands& islands,
                 const ActiveContacts& contacts,
                 const BodyStates& states,
                 const Poses& poses,
                 Painter& painter,
                 Layout& layout)
 {
+    const Settings& settings = conditions.settings;
+    painter.direct_limit = settings.solver == Solver::direct
+        ? static_cast<std::size_t>(settings.direct_limit)
+        : 0;
     painter.lay_out(islands, contacts, states, poses.position, layout);
 }
 

@@ -27,8 +27,9 @@ public:
     /// in which they lie in memory, as there are more of them than of the rows that they lie in.
     void store(std::size_t begin, std::size_t end) const;
 
-private:
     Contact<Real>& contact_of(const ActiveContacts::Entry& source) const;
+
+private:
     void fill(std::size_t block, LooseBlock<Real>& loose) const;
 
     const Layout& layout_;

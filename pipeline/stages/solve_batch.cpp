@@ -60,9 +60,11 @@ public:
     {
         using enum Pass::Kind;
         const bool pgs = conditions_.settings.solver == Solver::pgs;
-        const int pushes = conditions_.settings.iterations > 0 ? conditions_.settings.iterations
-            : pgs                                              ? 20
-                                                               : 1;
+        // What is too great for the direct solver comes here, but the iterations are not meant for
+        // it.
+        const bool left = conditions_.settings.solver == Solver::direct;
+        const int wanted = left ? 0 : conditions_.settings.iterations;
+        const int pushes = wanted > 0 ? wanted : pgs ? 20 : 1;
         const int relaxes = pgs ? 0 : on_faces_ ? kInStructures : kInHeaps;
         add_pass({prepare});
         for (int step = 0; step < conditions_.settings.substeps; ++step) {

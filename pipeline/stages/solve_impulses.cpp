@@ -3,6 +3,7 @@
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
 #include "pipeline/stages/solve_batch.hpp"
+#include "pipeline/stages/solve_direct.hpp"
 
 #include <cmath>
 
@@ -58,6 +59,7 @@ template <class Real>
 void solve_impulses(const Conditions& conditions,
                     const Layout& layout,
                     const ActiveContacts& active,
+                    const Masses& masses,
                     Rows<Real>& rows,
                     ConvexContacts<Real>& convex,
                     MeshContacts<Real>& meshes,
@@ -68,8 +70,14 @@ void solve_impulses(const Conditions& conditions,
 {
     trouble.quarantined.clear();
     const RowMaker<Real> maker(conditions, layout, active, convex, meshes, solids, rows);
+    const DirectScene<Real> direct{conditions, layout, active, masses, maker, poses, velocities};
+    start_direct(layout, rows, trouble);
     const auto solve = [&](const Batch& batch) {
-        solve_batch(conditions, layout, batch, maker, rows);
+        if (batch.direct)
+            trouble.residual_of[static_cast<std::size_t>(&batch - layout.batches.data())] =
+                solve_direct(direct, batch, rows);
+        else
+            solve_batch(conditions, layout, batch, maker, rows);
     };
     // Big islands use all threads themselves, so they go one after another.
     for (const Batch& batch : layout.batches)
@@ -79,6 +87,8 @@ void solve_impulses(const Conditions& conditions,
             if (!layout.batches[i].wide) solve(layout.batches[i]);
     });
 
+    finish_direct(conditions, layout, trouble);
+
     // In order of bodies, of which many arrays are written.
     const std::size_t bodies = layout.slot.size();
     trouble.of_block.start(block_count(bodies, kBodies));
@@ -86,7 +96,10 @@ void solve_impulses(const Conditions& conditions,
         for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body) {
             const std::uint32_t slot = layout.slot[body];
             if (slot == Layout::kNoSlot) continue;
-            if (!take_back(rows.bodies[slot], body, poses, velocities))
+            using Settled = typename Rows<Real>::Settled;
+            const Settled settled = rows.settled.empty() ? Settled::no : rows.settled[slot];
+            if (settled == Settled::yes) continue;
+            if (settled == Settled::lost || !take_back(rows.bodies[slot], body, poses, velocities))
                 trouble.of_block[block].push_back(body);
         }
     });
@@ -94,9 +107,10 @@ void solve_impulses(const Conditions& conditions,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void solve_impulses<Real>(const Conditions&, const Layout&, const ActiveContacts&,    \
-                                       Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,    \
-                                       SolidContacts<Real>&, Poses&, Velocities&, Trouble&);
+    template void solve_impulses<Real>(                                                            \
+        const Conditions&, const Layout&, const ActiveContacts&, const Masses&, Rows<Real>&,       \
+        ConvexContacts<Real>&, MeshContacts<Real>&, SolidContacts<Real>&, Poses&, Velocities&,     \
+        Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

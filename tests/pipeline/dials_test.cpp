@@ -87,7 +87,9 @@ TEST(Dials, ValuesSetBackGiveTheSame)
                                   {"sleep", "off"},
                                   {"broadphase", "all_pairs"},
                                   {"toi_tolerance", "0.0001"},
-                                  {"direct_limit", "500"}};
+                                  {"solver", "direct"},
+                                  {"impact_law", "simultaneous"},
+                                  {"direct_limit", "20"}};
     for (const auto& [name, value] : all) {
         Settings first, second;
         ASSERT_EQ(set_dial(first, name, value), "");
@@ -125,8 +127,8 @@ TEST(Dials, SayWhatWasWanted)
         {"contact_rate", "2", "contact_rate: wanted auto, a number above 0 and up to 1"},
         {"push_limit", "-1", "push_limit: wanted a speed from 0 to 1e6 m/s"},
         {"precision", "half", "precision: wanted float or double, not \"half\""},
-        {"solver", "direct",
-         "solver: wanted soft_step or pgs; \"direct\" is not available in this build"},
+        {"solver", "exact", "solver: wanted soft_step, pgs or direct, not \"exact\""},
+        {"direct_limit", "0", "direct_limit: wanted a whole number from 1 to 100000, not \"0\""},
         {"sleep", "true", "sleep: wanted on or off, not \"true\""},
         {"voxel_size", "-1", "voxel_size: wanted auto or a length from 1e-9 to 1e9 m"},
         {"image_resolution", "2", "image_resolution: wanted auto or a whole number from 4 to 512"},

@@ -167,8 +167,8 @@ TEST(SceneFile, RefusesBadTops)
          "settings.substeps: wanted a number or text, not true"},
         {kTop, "\"settings\": {\"dt\": @\"1/0\"}", "settings.dt: wanted a time from 1e-9 to 1e4 s"},
         {kTop, "\"settings\": {\"dt\": @-0.1}", "settings.dt: wanted a time from 1e-9 to 1e4 s"},
-        {kTop, "\"settings\": {\"solver\": @\"direct\"}",
-         "settings.solver: wanted soft_step or pgs; \"direct\" is not available in this build"},
+        {kTop, "\"settings\": {\"solver\": @\"exact\"}",
+         "settings.solver: wanted soft_step, pgs or direct, not \"exact\""},
         {kTop, "\"settings\": {\"max_parts\": @0}",
          "settings.max_parts: wanted auto or a whole number from 1 to 256, not \"0\""},
     });

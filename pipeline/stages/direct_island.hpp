@@ -1,0 +1,75 @@
+// Direct island: the bodies and touching points of one island as they go through a step.
+#pragma once
+
+#include "kernels/solve/direct.hpp"
+#include "pipeline/stages/solve_direct.hpp"
+
+namespace throng {
+
+/// A body of the island, through the step.
+///
+///   moved, turned  since the step began
+struct DirectSeat {
+    std::uint32_t body = kNobody;
+    bool dynamic = false, advances = false, precesses = false;
+    Quat orientation = Quat::Identity();  // as the step began
+    Vec3 moved = Vec3::Zero();
+    Quat turned = Quat::Identity();
+};
+
+/// Where two bodies of the island meet.
+///
+///   arms    m, as the step began, of what turns with the body
+///   rounds  m, from there along the normal to the surface: round sides do not turn
+///   gap     m, as the step began; below 0 where they overlap
+struct DirectTouch {
+    std::uint32_t contact = 0, point = 0;  // place in Layout::contacts; of the contact
+    std::int32_t a = -1, b = -1;           // seats
+    Vec3 normal = Vec3::UnitZ();
+    Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
+    double round_a = 0, round_b = 0;
+    double gap = 0;
+    double restitution = 0;
+    double tolerance = 0;  // m, overlap that is let be
+};
+
+class DirectIsland {
+public:
+    template <class Real>
+    DirectIsland(const DirectScene<Real>& scene, const Batch& batch);
+
+    /// Takes the island through one substep.
+    void substep(const Conditions& conditions);
+    /// Gives poses, velocities and impulses back.
+    template <class Real>
+    void finish(const DirectScene<Real>& scene, const Batch& batch, Rows<Real>& rows) const;
+
+    double residual() const { return residual_; }
+
+private:
+    template <class Real>
+    void take_bodies(const DirectScene<Real>& scene, const Slice& slice);
+    template <class Real>
+    void take_contact(const DirectScene<Real>& scene, const Slice& slice, std::uint32_t place);
+    std::int32_t seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const;
+    Vec3 arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round) const;
+    void place_points();
+    void move_freely(const Conditions& conditions);
+    double approach(std::size_t point, std::span<const DirectBody> bodies) const;
+    void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
+    bool bounce(const Conditions& conditions);
+    bool part(const Conditions& conditions);
+    void advance(double time);
+
+    std::vector<DirectSeat> seats_;  // those that can be moved, then those that move by themselves
+    std::vector<DirectTouch> touches_;
+    std::vector<DirectBody> before_, free_, after_, going_;  // [seats]; going_: how places change
+    std::vector<DirectPoint> points_, others_;               // [touches]
+    std::vector<double> gaps_;                               // [touches] m, now
+    std::vector<Sym3> inertia_, inverse_inertia_;            // [seats] body axes
+    DirectSolver solver_;
+    int steps_ = 0;
+    double residual_ = 0;
+};
+
+}  // namespace throng

@@ -1,0 +1,280 @@
+#include "kernels/solve/direct.hpp"
+#include "tests/kernels/solve/plain_sweeps.hpp"
+#include "tests/support/dice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace throng::test {
+namespace {
+
+constexpr double kFall = 9.81 / 60;  // m/s, of one step
+constexpr int kSteps = 50;
+
+struct Problem {
+    std::vector<DirectBody> bodies;
+    std::vector<DirectPoint> points;
+
+    DirectAnswer solve(int steps = kSteps) { return DirectSolver().solve(bodies, points, steps); }
+};
+
+DirectBody box(double mass, const Vec3& size)
+{
+    DirectBody body;
+    const Vec3 squares = size.cwiseProduct(size);
+    const double share = 12 / mass;
+    body.inverse_mass = 1 / mass;
+    body.inverse_inertia = {share / (squares.y() + squares.z()), share / (squares.x() + squares.z()),
+                            share / (squares.x() + squares.y())};
+    body.velocity = Vec3(0, 0, -kFall);
+    return body;
+}
+
+// Four points under a face, `half` below b's center and above a's.
+void add_face(Problem& problem, int a, int b, double half, double friction)
+{
+    for (const double x : {-0.5, 0.5})
+        for (const double y : {-0.5, 0.5}) {
+            DirectPoint point;
+            point.a = a;
+            point.b = b;
+            point.arm_a = Vec3(x, y, half);
+            point.arm_b = Vec3(x, y, -half);
+            point.friction = friction;
+            problem.points.push_back(point);
+        }
+}
+
+Problem stack(int high, double top_mass = 1)
+{
+    Problem problem;
+    for (int k = 0; k < high; ++k) {
+        problem.bodies.push_back(box(k == high - 1 ? top_mass : 1, Vec3::Ones()));
+        add_face(problem, k - 1, k, 0.5, 0.5);
+    }
+    return problem;
+}
+
+// Bodies of all masses in a cloud, each touching the ground or some before it.
+Problem heap(Dice& dice, int bodies, double friction)
+{
+    Problem problem;
+    for (int k = 0; k < bodies; ++k) {
+        const Vec3 size(dice.between(0.5, 1.5), dice.between(0.5, 1.5), dice.between(0.5, 1.5));
+        problem.bodies.push_back(box(std::pow(10, dice.between(-0.5, 0.5)), size));
+        problem.bodies.back().velocity += dice.point(0.3);
+        problem.bodies.back().spin = dice.point(0.3);
+        for (int i = 0; i < 3; ++i) {
+            DirectPoint point;
+            point.b = k;
+            point.a = static_cast<int>(dice.between(-1, k)) - (k == 0 ? 1 : 0);
+            if (point.a >= k) point.a = k - 1;
+            point.normal = (Vec3::UnitZ() + dice.point(0.7)).normalized();
+            point.arm_a = dice.point(0.5);
+            point.arm_b = -0.5 * point.normal + dice.point(0.3);
+            point.friction = friction;
+            point.least = dice.between(0, 1) < 0.3 ? -dice.between(0, 0.1) : 0;
+            problem.points.push_back(point);
+        }
+    }
+    return problem;
+}
+
+double greatest_speed(const Problem& problem)
+{
+    double speed = 0;
+    for (const DirectBody& body : problem.bodies)
+        speed = std::max({speed, body.velocity.norm(), body.spin.norm()});
+    return speed;
+}
+
+// What an answer has to keep, seen without the solver's own measure: no point closes faster than it
+// may nor pulls, one that parts bears nothing, friction is in its cone and full against sliding.
+void expect_law(const Problem& given, double tolerance)
+{
+    Problem problem = given;
+    PlainSweeps look(problem.bodies, problem.points);
+    for (const DirectPoint& point : given.points) {
+        const Vec3 speed = look.speed(point);
+        const double parting = point.normal.dot(speed) - point.least;
+        const double load = point.normal.dot(point.impulse);
+        const Vec3 held = point.impulse - load * point.normal;
+        const Vec3 slip = speed - point.normal * point.normal.dot(speed);
+        EXPECT_GT(parting, -tolerance);
+        EXPECT_GT(load, -tolerance);
+        EXPECT_LT(std::min(parting, load), tolerance);
+        EXPECT_LT(held.norm(), point.friction * load + tolerance);
+        if (slip.norm() < 1e-4) continue;
+        EXPECT_LT((held + point.friction * load * slip.normalized()).norm(), 10 * tolerance);
+    }
+}
+
+TEST(Direct, StacksStandStillHoweverHighAndHeavy)
+{
+    for (const auto& [high, mass] : {std::pair(1, 1.0), std::pair(10, 1.0), std::pair(100, 1.0),
+                                     std::pair(2, 1e2), std::pair(2, 1e4), std::pair(10, 1e4)}) {
+        Problem problem = stack(high, mass);
+        const DirectAnswer answer = problem.solve();
+        EXPECT_LE(answer.residual, 1e-11) << high << ' ' << mass;
+        EXPECT_LT(greatest_speed(problem), 1e-11) << high << ' ' << mass;
+        double load = 0;
+        for (int k = 0; k < 4; ++k)
+            load += problem.points[static_cast<std::size_t>(k)].impulse.z();
+        const double weight = (high - 1 + mass) * kFall;
+        EXPECT_NEAR(load, weight, 1e-10 * weight);
+    }
+}
+
+TEST(Direct, PointsOfOneFaceBearAlike)
+{
+    Problem problem = stack(3);
+    problem.solve();
+    for (std::size_t k = 0; k < 12; ++k)
+        EXPECT_NEAR(problem.points[k].impulse.z(), problem.points[k / 4 * 4].impulse.z(), 1e-9);
+}
+
+TEST(Direct, AgreesWithPlainSweepsWithoutFriction)
+{
+    Dice dice(11);
+    for (int round = 0; round < 12; ++round) {
+        Problem problem = heap(dice, 8, 0), plain = problem;
+        EXPECT_LE(problem.solve().residual, kDirectResidual);
+        PlainSweeps(plain.bodies, plain.points).run(20000);
+        for (std::size_t i = 0; i < problem.bodies.size(); ++i) {
+            EXPECT_LT((problem.bodies[i].velocity - plain.bodies[i].velocity).norm(), 1e-6);
+            EXPECT_LT((problem.bodies[i].spin - plain.bodies[i].spin).norm(), 1e-6);
+        }
+    }
+}
+
+TEST(Direct, AgreesWithPlainSweepsWithFriction)
+{
+    Dice dice(12);
+    for (int round = 0; round < 12; ++round) {
+        Problem problem = heap(dice, 8, 0.3), plain = problem;
+        EXPECT_LE(problem.solve().residual, kDirectResidual);
+        PlainSweeps(plain.bodies, plain.points).run(20000);
+        for (std::size_t i = 0; i < problem.bodies.size(); ++i) {
+            EXPECT_LT((problem.bodies[i].velocity - plain.bodies[i].velocity).norm(), 1e-6);
+            EXPECT_LT((problem.bodies[i].spin - plain.bodies[i].spin).norm(), 1e-6);
+        }
+    }
+}
+
+TEST(Direct, KeepsTheLawOfContactInHeaps)
+{
+    Dice dice(13);
+    for (int round = 0; round < 30; ++round) {
+        Problem problem = heap(dice, 30, round % 3 == 0 ? 0.6 : 0.4);
+        EXPECT_LE(problem.solve().residual, kDirectResidual) << round;
+        expect_law(problem, 1e-7);
+    }
+}
+
+TEST(Direct, BoxOnASlopeSticksAtExactlyTheTangentAndSlidesBelow)
+{
+    const double angle = std::atan(0.5);
+    const auto drop = [&](double friction) {
+        Problem problem;
+        problem.bodies.push_back(box(1, Vec3(1, 1, 0.5)));
+        // In the slope's own axes: gravity leans downhill, which is x.
+        problem.bodies[0].velocity = kFall * Vec3(std::sin(angle), 0, -std::cos(angle));
+        add_face(problem, -1, 0, 0.25, friction);
+        EXPECT_LE(problem.solve().residual, kDirectResidual) << friction;
+        return problem.bodies[0].velocity;
+    };
+    EXPECT_LT(drop(0.75).norm(), 1e-13);
+    EXPECT_LT(drop(0.5).norm(), 1e-9);
+    const double wanted = kFall * (std::sin(angle) - 0.49 * std::cos(angle));
+    EXPECT_LT((drop(0.49) - Vec3(wanted, 0, 0)).norm(), 1e-12);
+}
+
+TEST(Direct, FrictionSlowsASlidingBallAndTurnsIt)
+{
+    Problem problem;
+    DirectBody ball;
+    ball.inverse_mass = 1;
+    ball.inverse_inertia = {2.5, 2.5, 2.5};  // of radius 1
+    ball.velocity = Vec3(3, 4, -kFall);
+    problem.bodies.push_back(ball);
+    DirectPoint point;
+    point.b = 0;
+    point.arm_b = -Vec3::UnitZ();
+    point.friction = 0.2;
+    problem.points.push_back(point);
+    EXPECT_LE(problem.solve().residual, kDirectResidual);
+    const double lost = 0.2 * kFall;
+    EXPECT_LT((problem.bodies[0].velocity - Vec3(3, 4, 0) * (1 - lost / 5)).norm(), 1e-12);
+    EXPECT_LT((problem.bodies[0].spin - 2.5 * lost * Vec3(-0.8, 0.6, 0)).norm(), 1e-12);
+}
+
+TEST(Direct, RollingFrictionStopsWhatRollsSlowly)
+{
+    Problem problem;
+    DirectBody ball;
+    ball.inverse_mass = 1;
+    ball.inverse_inertia = {2.5, 2.5, 2.5};
+    ball.velocity = Vec3(0.001, 0, -kFall);
+    ball.spin = Vec3(0, 0.001, 0.001);
+    problem.bodies.push_back(ball);
+    DirectPoint point;
+    point.b = 0;
+    point.arm_b = -Vec3::UnitZ();
+    point.friction = 0.5;
+    point.rolling = 0.1;
+    problem.points.push_back(point);
+    EXPECT_LE(problem.solve().residual, kDirectResidual);
+    EXPECT_LT(greatest_speed(problem), 1e-12);
+}
+
+TEST(Direct, MomentumIsKept)
+{
+    Dice dice(14);
+    Problem problem = heap(dice, 10, 0.5);
+    Vec3 wanted = Vec3::Zero(), got = Vec3::Zero();
+    const auto sum_up = [&](Vec3& sum) {
+        for (const DirectBody& body : problem.bodies) sum += body.velocity / body.inverse_mass;
+    };
+    sum_up(wanted);
+    problem.solve();
+    for (const DirectPoint& point : problem.points)
+        if (point.a < 0) wanted += point.impulse;
+    sum_up(got);
+    EXPECT_LT((got - wanted).norm(), 1e-11);
+}
+
+TEST(Direct, WhatItFoundBeforeIsFoundAgainAtOnce)
+{
+    Problem problem = stack(20);
+    const Problem before = problem;
+    EXPECT_GT(problem.solve().steps, 3);
+    problem.bodies = before.bodies;
+    const DirectAnswer again = problem.solve();
+    EXPECT_LE(again.steps, 1);
+    EXPECT_LE(again.residual, 1e-12);
+}
+
+TEST(Direct, TakesNoMoreStepsThanAllowedAndTellsWhatIsMissing)
+{
+    Dice dice(15);
+    Problem problem = heap(dice, 30, 0.4);
+    const DirectAnswer answer = problem.solve(2);
+    EXPECT_LE(answer.steps, 2);
+    EXPECT_GT(answer.residual, kDirectResidual);
+    EXPECT_TRUE(std::isfinite(greatest_speed(problem)));
+}
+
+TEST(Direct, NothingToStopNeedsNoImpulse)
+{
+    Problem problem = stack(2);
+    for (DirectBody& body : problem.bodies) body.velocity = Vec3(0, 0, 1);
+    problem.points.resize(4);  // the lower one's alone
+    EXPECT_EQ(problem.solve().residual, 0);
+    for (const DirectPoint& point : problem.points) EXPECT_EQ(point.impulse, Vec3(Vec3::Zero()));
+    Problem none;
+    EXPECT_EQ(none.solve().residual, 0);
+}
+
+}  // namespace
+}  // namespace throng::test
