@@ -135,6 +135,7 @@ private:
     Extent extent_;
     double spent_ms_ = 0;
     std::size_t lost_ = 0;  // bodies quarantined since the last line
+    double missed_ = 0;     // greatest residual of the direct solver, likewise
     std::map<std::string, double, std::less<>> method_ms_;
     std::vector<CaseResult> results_;
 };

@@ -16,9 +16,19 @@ void case_ballistic(CaseBench& bench);       // H7, ballistic.cpp
 void case_spring_limit(CaseBench& bench);    // H46, spring_limit.cpp
 
 void case_stack(CaseBench& bench);        // H8, stack.cpp
+void case_mass_ratio(CaseBench& bench);   // H9, mass_ratio.cpp
+void case_cards(CaseBench& bench);        // H10, cards_and_arches.cpp
+void case_arch(CaseBench& bench);         // H11, cards_and_arches.cpp
 void case_sliding(CaseBench& bench);      // H12, sliding.cpp
 void case_slope_limit(CaseBench& bench);  // H13, slope_limit.cpp
+void case_rolling(CaseBench& bench);      // H14, rolling.cpp
+void case_spin_bounce(CaseBench& bench);  // H15, impacts.cpp
+void case_cradle(CaseBench& bench);       // H17, impacts.cpp
+void case_break(CaseBench& bench);        // H18, impacts.cpp
 void case_leaning(CaseBench& bench);      // H22, leaning.cpp
+void case_struck_rod(CaseBench& bench);   // H23, impacts.cpp
+void case_turntable(CaseBench& bench);    // H24, turntable.cpp
+void case_planks(CaseBench& bench);       // H25, turntable.cpp
 
 // Bodies that go far in a step: fast_bodies.cpp, and the sets of exact_paths.cpp.
 void case_bullet_plate(CaseBench& bench);  // H38
@@ -45,6 +55,9 @@ void case_through_hole(CaseBench& bench);  // H43, through_hole.cpp
 void case_solid_heap(CaseBench& bench);    // H44, solid_heap.cpp
 void case_convergence(CaseBench& bench);   // H45, convergence.cpp
 
+/// The settings for exact answers: solver direct, double precision, one substep.
+void ask_exactly(Settings& settings);
+
 /// A scene under construction: shapes, materials and bodies by value, ids in order.
 class SceneParts {
 public:
@@ -57,8 +70,11 @@ public:
     /// Dynamic bodies of a mass; inertia from the shape.
     std::uint32_t
     box(std::uint32_t material, double mass, const Vec3& half_extents, const Pose& pose);
+    std::uint32_t ball(std::uint32_t material, double mass, double radius, const Vec3& at);
     std::uint32_t cylinder(
         std::uint32_t material, double mass, double radius, double half_length, const Pose& pose);
+    std::uint32_t
+    hull(std::uint32_t material, double mass, HullShape shape, const Pose& pose);
     BodyDescription& body(std::uint32_t id) { return scene_.bodies[id]; }
     Scene& scene() { return scene_; }
 

@@ -2,6 +2,13 @@
 
 namespace throng {
 
+void ask_exactly(Settings& settings)
+{
+    settings.solver = Solver::direct;
+    settings.precision = Precision::double_;
+    settings.substeps = 1;
+}
+
 std::uint32_t SceneParts::material(double friction, double restitution)
 {
     Material material;
@@ -42,6 +49,27 @@ SceneParts::box(std::uint32_t material, double mass, const Vec3& half_extents, c
     body.position = pose.position;
     body.orientation = pose.orientation;
     return add(BoxShape{half_extents}, body);
+}
+
+std::uint32_t
+SceneParts::ball(std::uint32_t material, double mass, double radius, const Vec3& at)
+{
+    BodyDescription body;
+    body.material = material;
+    body.mass = mass;
+    body.position = at;
+    return add(SphereShape{radius}, body);
+}
+
+std::uint32_t
+SceneParts::hull(std::uint32_t material, double mass, HullShape shape, const Pose& pose)
+{
+    BodyDescription body;
+    body.material = material;
+    body.mass = mass;
+    body.position = pose.position;
+    body.orientation = pose.orientation;
+    return add(std::move(shape), body);
 }
 
 std::uint32_t SceneParts::cylinder(

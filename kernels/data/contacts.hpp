@@ -4,6 +4,7 @@
 // far the scene is from the origin, and float holds them well.
 #pragma once
 
+#include "kernels/data/bodies.hpp"
 #include "kernels/data/manifolds.hpp"
 #include "kernels/data/pairs.hpp"
 #include "kernels/data/travels.hpp"
@@ -177,6 +178,7 @@ struct ActiveContacts {
         float extent = 0;  // m, the lesser of the smallest half extents of the two shapes
     };
     std::vector<Entry> entries;
+    std::vector<Surfaces::Meeting> meetings;  // [entries] in all digits; empty in float
     std::vector<std::size_t> begin, end;  // scratch: of the entries of each block of pairs
 };
 

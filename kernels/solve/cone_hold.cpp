@@ -9,6 +9,7 @@ namespace {
 // How hard rows are held, of their own mass: a visit leaves a share of one over that of the error
 // of what hardly resists, and loses as many digits.
 constexpr double kHold = 1e7;
+constexpr double kWorse = 100;  // than the best met so far: these kinds lead nowhere
 constexpr int kMostVisits = 40;
 constexpr double kEnough = 1e-14;  // residual: rounding
 // A visit that leaves more of the residual than this calls for other kinds or another matrix.
@@ -83,6 +84,8 @@ void ConeHold::sort_out()
         else if (kind == Kind::sticks && cone.rows > 1
                  && width(cone.impulse) > cone.impulse[0] * (1 + kRounding))
             kind = Kind::slides;
+        else if (kind == Kind::slides && dot(states_[i].way, cone.speed) < -kRounding)
+            kind = Kind::sticks;  // it would slide back, so its friction need not be full
         states_[i].way = way_of(cone);
         const double speed = width(cone.speed);
         states_[i].stiffness =
@@ -170,7 +173,7 @@ double ConeHold::run(int& most)
             for (std::size_t k = 0; k < states_.size(); ++k)
                 states_[k].best = island_.cones[k].impulse;
         }
-        if (!(now > kEnough)) break;
+        if (!(now > kEnough) || now > kWorse * best) break;
         stale = !(now < kSlow * last);
         last = now;
     }

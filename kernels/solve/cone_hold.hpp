@@ -15,7 +15,7 @@ public:
 
     /// Tells the kinds by the cones' speeds and impulses and works out impulses that hold them.
     /// Points that turn out to pull part, those that close are held, those that stick beyond their
-    /// friction slide. Leaves the best impulses met in the cones and gives their residual, greater
+    /// friction slide and those that would slide back stick. Leaves the best impulses met in the cones and gives their residual, greater
     /// than where it began if all fails.
     ///
     ///   most   factorisations at most; counted down

@@ -11,9 +11,9 @@ namespace {
 
 // Residual at which nothing is to be gained, and one that will do once holding has failed.
 constexpr double kDone = 1e-11, kGood = 1e-10;
-// Holding is tried from here on, and again each time that the path has come ten times nearer.
-constexpr double kNear = 1e-3, kNearer = 0.1;
-constexpr int kHoldSteps = 6;   // factorisations of one try
+// Holding is tried from here on, and again each time that the path has come a hundred times nearer.
+constexpr double kNear = 1e-3, kNearer = 0.01;
+constexpr int kHoldSteps = 8;  // factorisations of one try
 // Steps of the path without getting nearer by a tenth, after which it is followed the other way;
 // and how often that may be.
 constexpr int kPatience = 5, kTurns = 6;

@@ -121,14 +121,19 @@ void DirectIsland::take_contact(const DirectScene<Real>& scene,
     touch.normal = in_double(contact.normal).normalized();
     touch.round_a = double{contact.round_a};
     touch.round_b = double{contact.round_b};
-    touch.restitution = double{entry.restitution};
+    const bool exact = !scene.active.meetings.empty();
+    const Surfaces::Meeting meeting = exact
+        ? scene.active.meetings[scene.layout.contacts[place]]
+        : Surfaces::Meeting{double{entry.friction}, double{entry.restitution},
+                            double{entry.rolling_friction}};
+    touch.restitution = meeting.restitution;
     touch.tolerance = kTolerance<Real> * double{entry.extent};
     DirectPoint point;
     point.a = touch.a;
     point.b = touch.b;
     point.normal = touch.normal;
-    point.friction = double{entry.friction};
-    point.rolling = double{entry.rolling_friction};
+    point.friction = meeting.friction;
+    point.rolling = meeting.rolling_friction;
     for (int k = 0; k < contact.count; ++k) {
         const auto& from = contact.points[static_cast<std::size_t>(k)];
         touch.point = static_cast<std::uint32_t>(k);
@@ -206,26 +211,6 @@ double DirectIsland::approach(std::size_t at, std::span<const DirectBody> bodies
         return body.velocity + body.spin.cross(arm);
     };
     return point.normal.dot(speed(point.b, point.arm_b) - speed(point.a, point.arm_a));
-}
-
-// Who came to touch faster than gravity alone makes in two steps leaves at a share of that speed.
-bool DirectIsland::bounce(const Conditions& conditions)
-{
-    if (!conditions.has(Effect::restitution)) return false;
-    const double threshold = 2 * conditions.gravity.norm() * conditions.settings.dt;
-    others_ = points_;
-    bool any = false;
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
-        const double speed = approach(i, before_);
-        const bool hit = points_[i].normal.dot(points_[i].impulse) > 0 && speed < -threshold
-            && touches_[i].restitution > 0;
-        any = any || hit;
-        others_[i].least = hit ? -speed * touches_[i].restitution : std::min(points_[i].least, 0.0);
-    }
-    if (!any) return false;
-    after_ = free_;
-    solve(after_, others_);
-    return true;
 }
 
 // Who overlaps is moved apart in this substep, on top of what else it does.

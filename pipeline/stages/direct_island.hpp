@@ -57,7 +57,14 @@ private:
     void move_freely(const Conditions& conditions);
     double approach(std::size_t point, std::span<const DirectBody> bodies) const;
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
+    // Impacts: see direct_impacts.cpp.
     bool bounce(const Conditions& conditions);
+    void list_touching(double threshold);
+    bool reflect(std::size_t begin, std::size_t end, double least_speed);
+    bool reflect_in_order(double least_speed);
+    double share_of_restitution() const;
+    void settle_after_impacts();
+
     bool part(const Conditions& conditions);
     void advance(double time);
 
@@ -66,6 +73,10 @@ private:
     std::vector<DirectBody> before_, free_, after_, going_;  // [seats]; going_: how places change
     std::vector<DirectPoint> points_, others_;               // [touches]
     std::vector<double> gaps_;                               // [touches] m, now
+    std::vector<DirectBody> struck_, stopped_;               // [seats] after impacts; and if e = 0
+    std::vector<std::size_t> touching_, hits_;               // touches that may be struck; that are
+    std::vector<DirectPoint> struck_points_;                 // [hits]
+    std::vector<double> struck_impulse_;                     // [touches] N s, of all impacts
     std::vector<Sym3> inertia_, inverse_inertia_;            // [seats] body axes
     DirectSolver solver_;
     int steps_ = 0;

@@ -48,10 +48,12 @@ public:
         for_each_block(convex.of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
             Meetings meetings(surfaces_);
             std::size_t at = active_.begin[block];
+            Surfaces::Meeting meeting;
             for (std::size_t i = begin; i < end; ++i)
                 if (const Contact<Real>* contact = convex.at(i))
                     at += take(i, *contact, convex.of_pair[i].contact, ContactList::convex,
-                               meetings, active_.entries[at])
+                               meetings, active_.entries[at],
+                               kInAllDigits ? active_.meetings[at] : meeting)
                         ? 1
                         : 0;
             active_.end[block] = at;
@@ -65,12 +67,17 @@ public:
         for (std::size_t i = 0; i < contacts.entries.size(); ++i) {
             const auto& [pair, part, contact] = contacts.entries[i];
             ActiveContacts::Entry entry;
-            if (contact.count > 0 && take(pair, contact, i, list, meetings, entry))
-                active_.entries.push_back(entry);
+            Surfaces::Meeting meeting;
+            if (contact.count == 0 || !take(pair, contact, i, list, meetings, entry, meeting))
+                continue;
+            active_.entries.push_back(entry);
+            if (kInAllDigits) active_.meetings.push_back(meeting);
         }
     }
 
 private:
+    static constexpr bool kInAllDigits = sizeof(Real) == 8;
+
     // Each block of pairs gets places for all its contacts.
     void make_places(const std::vector<PairState>& of_pair)
     {
@@ -85,21 +92,27 @@ private:
         });
         std::partial_sum(active_.begin.begin(), active_.begin.end(), active_.begin.begin());
         resize_closely(active_.entries, active_.begin.back());
+        if (kInAllDigits) active_.meetings.resize(active_.entries.size());
     }
 
     // Contacts of sleepers left some places free.
     void join_places()
     {
-        const auto place = [&](std::size_t at) {
-            return active_.entries.begin() + static_cast<std::ptrdiff_t>(at);
+        const auto join = [&](auto& list, std::size_t begin, std::size_t end, std::size_t to) {
+            const auto place = [&](std::size_t at) {
+                return list.begin() + static_cast<std::ptrdiff_t>(at);
+            };
+            std::copy(place(begin), place(end), place(to));
         };
         std::size_t size = 0;
         for (std::size_t block = 0; block < active_.end.size(); ++block) {
             const std::size_t begin = active_.begin[block], end = active_.end[block];
-            if (begin != size) std::copy(place(begin), place(end), place(size));
+            if (begin != size) join(active_.entries, begin, end, size);
+            if (kInAllDigits && begin != size) join(active_.meetings, begin, end, size);
             size += end - begin;
         }
         active_.entries.resize(size);
+        if (kInAllDigits) active_.meetings.resize(size);
     }
 
     // False where nobody can be pushed.
@@ -108,12 +121,14 @@ private:
               std::size_t slot,
               ContactList list,
               Meetings& meetings,
-              ActiveContacts::Entry& entry) const
+              ActiveContacts::Entry& entry,
+              Surfaces::Meeting& in_all_digits) const
     {
         const std::uint32_t a = first_of(pairs_.keys[pair]), b = second_of(pairs_.keys[pair]);
         const std::uint32_t body_a = colliders_.body[a], body_b = colliders_.body[b];
         if (!states_.movable(body_a) && !states_.movable(body_b)) return false;
         const auto& meeting = meetings.of(colliders_.material[a], colliders_.material[b]);
+        if (kInAllDigits) in_all_digits = meeting;
         const double extent = std::min(colliders_.inner_extent[a], colliders_.inner_extent[b]);
         entry = {body_a,
                  body_b,

@@ -1,0 +1,119 @@
+// Rolling: H14, balls that slip and come to roll, down slopes and on a box that is pulled away.
+//
+// A ball set off at v without spin rolls after 2 v / (7 mu g), at 5/7 v. Down a slope of angle s it
+// rolls with 5/7 g sin s where mu is at least 2/7 tan s, else slips with g (sin s - mu cos s). Balls
+// on a box that a force F pulls follow it with 2/7 of its acceleration.
+//
+// Source: the rolling test of SimBenchmark (leggedrobotics): 25 balls of 1 kg on a box of 10 kg,
+//         150 N, friction 0.4 below the box and 0.8 on it.
+#include "cost/hard_cases/hard_cases.hpp"
+#include "kernels/math/rotation.hpp"
+#include "pipeline/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kGravity = 9.81;
+constexpr double kStep = 1e-3;
+
+void slip_to_roll(CaseBench& bench)
+{
+    SceneParts parts(bench.scene());
+    const std::uint32_t material = parts.material(0.1);
+    parts.plane(material, Vec3::UnitZ(), 0);
+    const std::uint32_t ball = parts.ball(material, 1, 0.5, Vec3(0, 0, 0.5));
+    parts.body(ball).velocity = Vec3(7, 0, 0);
+    ask_exactly(parts.scene().settings);
+    parts.scene().settings.dt = kStep;
+    double rolls = 0, speed = 0, way = 0;
+    bench.run(parts.scene(), 3, [&](World& world, double now) {
+        const BodyId id = world.bodies().back();
+        speed = world.velocity(id).x();
+        way = world.pose(id).position.x();
+        if (rolls == 0 && std::abs(speed - 0.5 * world.angular_velocity(id).y()) < 1e-9)
+            rolls = now;
+        return rolls == 0;
+    });
+    const char* const name = "from 7 m/s, direct, dt 1e-3";
+    bench.report(name, "error of when it rolls", std::abs(rolls / 2.038736 - 1), 1e-3, "1");
+    bench.report(name, "error of its speed then", std::abs(speed / 5 - 1), 1e-6, "1");
+    bench.report(name, "error of the way until then", std::abs(way / 12.232416 - 1), 1e-3, "1");
+}
+
+void down_a_slope(CaseBench& bench, double angle_deg, double friction, double wanted, double spin)
+{
+    const Quat turn = exponential(Vec3(0, angle_deg * kPi / 180, 0));  // downhill is +x
+    SceneParts parts(bench.scene());
+    const std::uint32_t material = parts.material(friction);
+    parts.plane(material, turn * Vec3::UnitZ(), 0);
+    parts.ball(material, 1, 0.5, turn * Vec3(0, 0, 0.5));
+    ask_exactly(parts.scene().settings);
+    parts.scene().settings.dt = kStep;
+    double speed = 0, spins = 0;
+    const double time = 1;
+    bench.run(parts.scene(), time, [&](World& world, double) {
+        speed = world.velocity(world.bodies().back()).norm();
+        spins = 0.5 * world.angular_velocity(world.bodies().back()).y();
+        return true;
+    });
+    const std::string name = "slope of " + std::to_string(static_cast<int>(angle_deg))
+        + " deg, mu " + std::to_string(friction).substr(0, 3) + ", direct";
+    bench.report(name, "error of the acceleration", std::abs(speed / time / wanted - 1), 1e-6, "1");
+    bench.report(name, "error of the spin's", std::abs(spins / time / spin - 1), 1e-6, "1");
+}
+
+// The greatest squared error of velocities, over box and balls. The force is given as its impulse at
+// the beginning of every step.
+void balls_on_a_pulled_box(CaseBench& bench, const char* name, const Vec3& direction)
+{
+    const double force = 150, box_mass = 10, balls = 25;
+    SceneParts parts(bench.scene());
+    const std::uint32_t ground = parts.material(0), plate = parts.material(0),
+                        round = parts.material(0);
+    parts.meet(ground, plate, 0.4);
+    parts.meet(plate, round, 0.8);
+    parts.plane(ground, Vec3::UnitZ(), 0);
+    const std::uint32_t box =
+        parts.box(plate, box_mass, Vec3(10, 10, 0.1), {Vec3(0, 0, 0.1), Quat::Identity()});
+    for (int i = 0; i < 25; ++i)
+        parts.ball(round, 1, 0.1, Vec3(0.4 * (i % 5 - 2), 0.4 * (i / 5 - 2), 0.3));
+    ask_exactly(parts.scene().settings);
+    parts.scene().settings.dt = kStep;
+    parts.scene().settings.sleep = false;
+    const Vec3 along = direction.normalized();
+    const Vec3 pull = force * kStep * along;
+    parts.body(box).velocity = pull / box_mass;
+    const double acceleration =
+        (force - 0.4 * (box_mass + balls) * kGravity) / (box_mass + balls * 2 / 7);
+    double worst = 0;
+    bench.run(parts.scene(), bench.brief() ? 0.2 : 4, [&](World& world, double now) {
+        const std::vector<BodyId> ids = world.bodies();
+        const Vec3 wanted = acceleration * now * along;
+        worst = std::max(worst, (world.velocity(ids[1]) - wanted).squaredNorm());
+        for (std::size_t i = 2; i < ids.size(); ++i)
+            worst = std::max(worst, (world.velocity(ids[i]) - wanted * 2 / 7).squaredNorm());
+        world.add_impulse(ids[1], pull);
+        return true;
+    });
+    bench.report(name, "greatest squared error of the velocities", worst, 1e-14, "m2/s2");
+}
+
+}  // namespace
+
+void case_rolling(CaseBench& bench)
+{
+    slip_to_roll(bench);
+    down_a_slope(bench, 30, 0.5, 3.5035714285714286, 3.5035714285714286);
+    const double slope = kPi / 4;
+    down_a_slope(bench, 45, 0.1, kGravity * (std::sin(slope) - 0.1 * std::cos(slope)),
+                 2.5 * 0.1 * kGravity * std::cos(slope));
+    balls_on_a_pulled_box(bench, "25 balls on a pulled box, along y, direct", Vec3::UnitY());
+    balls_on_a_pulled_box(bench, "25 balls on a pulled box, aslant, direct", Vec3(0.5, 0.866, 0));
+}
+
+}  // namespace throng
