@@ -22,9 +22,9 @@ namespace throng {
 /// What a step has to tell of trouble.
 struct Trouble {
     std::vector<std::uint32_t>
-        quarantined;                     // bodies that turned non-finite in this step, ascending
-    double direct_residual = 0;    // greatest of the islands that were solved directly in this step
-    std::uint64_t direct_left = 0;  // islands in it that were too great for that
+        quarantined;             // bodies that turned non-finite in this step, ascending
+    double direct_residual = 0;  // greatest of the islands that were solved directly in this step
+    std::uint64_t direct_left = 0;       // islands in it that were too great for that
     std::vector<double> residual_of;     // scratch: [batches]
     BlockLists<std::uint32_t> of_block;  // scratch
 };

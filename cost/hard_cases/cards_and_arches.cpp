@@ -79,10 +79,10 @@ Scene card_house(const CaseBench& bench, int levels, double friction)
     for (int tents = levels; tents >= 1; --tents) {
         for (int i = 0; i < tents; ++i)
             for (const double side : {-1.0, 1.0})
-                parts.box(material, 0.01, half,
-                          {Vec3((i - (tents - 1) / 2.0) * pitch + side * sideways, 0,
-                                floor + upwards),
-                           exponential(Vec3(0, -side * lean - kPi / 2, 0))});
+                parts.box(
+                    material, 0.01, half,
+                    {Vec3((i - (tents - 1) / 2.0) * pitch + side * sideways, 0, floor + upwards),
+                     exponential(Vec3(0, -side * lean - kPi / 2, 0))});
         const double roof = floor + 2 * upwards + half.z();
         for (int i = 0; i + 1 < tents; ++i)
             parts.box(material, 0.01, half,
@@ -181,15 +181,16 @@ void case_arch(CaseBench& bench)
         double sag = 0;
         bench.run(scene, bench.brief() ? 2 : 20, [&](World& world, double) {
             const BodyId crown = world.bodies()[static_cast<std::size_t>(stones + 1) / 2];
-            const double first = scene.bodies[static_cast<std::size_t>(stones + 1) / 2].position.z();
+            const double first =
+                scene.bodies[static_cast<std::size_t>(stones + 1) / 2].position.z();
             sag = std::max(sag, std::abs(world.pose(crown).position.z() - first));
             force = world.contact_force(world.bodies().front()).z();
             return true;
         });
         const double weight = stones * kGravity;
         bench.report(name + ", direct", "sag of the crown over a stone", sag, 0.01, "1");
-        bench.report(name + ", direct", "error of the base force", std::abs(force + weight) / weight,
-                     1e-3, "1");
+        bench.report(name + ", direct", "error of the base force",
+                     std::abs(force + weight) / weight, 1e-3, "1");
     }
 }
 

@@ -73,8 +73,7 @@ public:
     std::uint32_t ball(std::uint32_t material, double mass, double radius, const Vec3& at);
     std::uint32_t cylinder(
         std::uint32_t material, double mass, double radius, double half_length, const Pose& pose);
-    std::uint32_t
-    hull(std::uint32_t material, double mass, HullShape shape, const Pose& pose);
+    std::uint32_t hull(std::uint32_t material, double mass, HullShape shape, const Pose& pose);
     BodyDescription& body(std::uint32_t id) { return scene_.bodies[id]; }
     Scene& scene() { return scene_; }
 

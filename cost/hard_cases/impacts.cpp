@@ -72,7 +72,8 @@ Scene row_of_balls(const CaseBench& bench,
 void cradle(CaseBench& bench, const std::string& name, ImpactLaw law)
 {
     for (const int moving : {1, 2}) {
-        const End end = end_of(bench, row_of_balls(bench, law, {1, 1, 1, 1, 1}, 0, moving, 1), 0.01);
+        const End end =
+            end_of(bench, row_of_balls(bench, law, {1, 1, 1, 1, 1}, 0, moving, 1), 0.01);
         double error = 0;
         for (int i = 0; i < 5; ++i) {
             const Vec3 wanted(i < 5 - moving ? 0 : 1, 0, 0);
@@ -98,8 +99,7 @@ void symmetric_drop(CaseBench& bench)
     SceneParts parts = without_gravity(bench, ImpactLaw::simultaneous);
     const std::uint32_t material = parts.material(0, 1);
     for (const double side : {-1.0, 1.0})
-        parts.ball(material, 1, 0.5,
-                   Vec3(side * std::sin(kPi / 6), 0, -std::cos(kPi / 6)));
+        parts.ball(material, 1, 0.5, Vec3(side * std::sin(kPi / 6), 0, -std::cos(kPi / 6)));
     const std::uint32_t ball = parts.ball(material, 1, 0.5, Vec3::Zero());
     parts.body(ball).velocity = Vec3(0, 0, -1);
     const End end = end_of(bench, parts.scene(), 0.01);
@@ -135,7 +135,8 @@ Scene billiards(const CaseBench& bench, bool backwards)
 Vec3 mirrored(const Vec3& v) { return {v.x(), -v.y(), v.z()}; }
 
 // A ball of radius 0.1 m strikes the floor at (3, -4) m/s, turning at `spin`.
-void spin_bounce(CaseBench& bench, const char* name, double friction, double spin, const Vec3& wanted)
+void spin_bounce(
+    CaseBench& bench, const char* name, double friction, double spin, const Vec3& wanted)
 {
     SceneParts parts = without_gravity(bench, ImpactLaw::sequential);
     const std::uint32_t material = parts.material(friction, 0.8);
@@ -174,9 +175,9 @@ void case_break(CaseBench& bench)
         order = std::max(order, (end.velocity[i] - other.velocity[15 - i]).norm());
     for (std::size_t row = 0, first = 0; row < 5; first += ++row)
         for (std::size_t i = 0; i <= row; ++i)
-            asymmetry = std::max(asymmetry, (end.velocity[first + i]
-                                             - mirrored(end.velocity[first + row - i]))
-                                                .norm());
+            asymmetry = std::max(
+                asymmetry,
+                (end.velocity[first + i] - mirrored(end.velocity[first + row - i])).norm());
     const char* const name = "15 balls, simultaneous";
     bench.report(name, "error of the momentum", (end.momentum - Vec3(0.85, 0, 0)).norm(), kExact,
                  "N s");
@@ -194,8 +195,7 @@ void case_struck_rod(CaseBench& bench)
         parts.box(material, 3, Vec3(1, 0.01, 0.01), {Vec3::Zero(), Quat::Identity()});
     parts.body(rod).inertia = Sym3{1, 1, 1, 0, 0, 0};
     const double radius = 0.1;
-    const std::uint32_t ball =
-        parts.ball(material, 1, radius, Vec3(1, 0, 0.01 + radius));
+    const std::uint32_t ball = parts.ball(material, 1, radius, Vec3(1, 0, 0.01 + radius));
     parts.body(ball).velocity = Vec3(0, 0, -10);
     const End end = end_of(bench, parts.scene(), 0.001);
     const char* const name = "ball of 1 kg on the end of a rod, direct";

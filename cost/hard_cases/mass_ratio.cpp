@@ -96,8 +96,8 @@ void case_mass_ratio(CaseBench& bench)
     for (const double ratio : {1e2, 1e3, 1e4}) piles.push_back(heavy_cube(bench, ratio));
     piles.push_back(growing_cubes(bench, "10 m cube on a 1 m cube", {1, 10}));
     piles.back().scene.settings.dt = 0.01;
-    piles.push_back(growing_cubes(bench, "six cubes, each twice the one below",
-                                  {0.25, 0.5, 1, 2, 4, 8}));
+    piles.push_back(
+        growing_cubes(bench, "six cubes, each twice the one below", {0.25, 0.5, 1, 2, 4, 8}));
     for (const double denser : {100.0, 200.0, 300.0})
         piles.push_back(loaded_pyramid(bench, denser));
     for (Pile& pile : piles) {

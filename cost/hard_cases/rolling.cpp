@@ -1,8 +1,8 @@
 // Rolling: H14, balls that slip and come to roll, down slopes and on a box that is pulled away.
 //
 // A ball set off at v without spin rolls after 2 v / (7 mu g), at 5/7 v. Down a slope of angle s it
-// rolls with 5/7 g sin s where mu is at least 2/7 tan s, else slips with g (sin s - mu cos s). Balls
-// on a box that a force F pulls follow it with 2/7 of its acceleration.
+// rolls with 5/7 g sin s where mu is at least 2/7 tan s, else slips with g (sin s - mu cos s).
+// Balls on a box that a force F pulls follow it with 2/7 of its acceleration.
 //
 // Source: the rolling test of SimBenchmark (leggedrobotics): 25 balls of 1 kg on a box of 10 kg,
 //         150 N, friction 0.4 below the box and 0.8 on it.
@@ -61,14 +61,14 @@ void down_a_slope(CaseBench& bench, double angle_deg, double friction, double wa
         spins = 0.5 * world.angular_velocity(world.bodies().back()).y();
         return true;
     });
-    const std::string name = "slope of " + std::to_string(static_cast<int>(angle_deg))
-        + " deg, mu " + std::to_string(friction).substr(0, 3) + ", direct";
+    const std::string name = "slope of " + std::to_string(static_cast<int>(angle_deg)) + " deg, mu "
+        + std::to_string(friction).substr(0, 3) + ", direct";
     bench.report(name, "error of the acceleration", std::abs(speed / time / wanted - 1), 1e-6, "1");
     bench.report(name, "error of the spin's", std::abs(spins / time / spin - 1), 1e-6, "1");
 }
 
-// The greatest squared error of velocities, over box and balls. The force is given as its impulse at
-// the beginning of every step.
+// The greatest squared error of velocities, over box and balls. The force is given as its impulse
+// at the beginning of every step.
 void balls_on_a_pulled_box(CaseBench& bench, const char* name, const Vec3& direction)
 {
     const double force = 150, box_mass = 10, balls = 25;

@@ -51,8 +51,7 @@ SceneParts::box(std::uint32_t material, double mass, const Vec3& half_extents, c
     return add(BoxShape{half_extents}, body);
 }
 
-std::uint32_t
-SceneParts::ball(std::uint32_t material, double mass, double radius, const Vec3& at)
+std::uint32_t SceneParts::ball(std::uint32_t material, double mass, double radius, const Vec3& at)
 {
     BodyDescription body;
     body.material = material;

@@ -67,11 +67,10 @@ void exact_stacks(CaseBench& bench)
         int high;
         double edge, gap, overlap;
     };
-    for (const Setting& setting : {Setting{"n=10, direct", 10, 1, 0, 5e-5},
-                                   Setting{"n=10, 0.1 m, direct", 10, 0.1, 0, 5e-5},
-                                   Setting{"n=10, from 1 mm gaps, direct", 10, 1, 1e-3, 5e-5},
-                                   Setting{"n=40, direct", 40, 1, 0, 5e-5},
-                                   Setting{"n=100, direct", 100, 1, 0, 1e-3}}) {
+    for (const Setting& setting :
+         {Setting{"n=10, direct", 10, 1, 0, 5e-5}, Setting{"n=10, 0.1 m, direct", 10, 0.1, 0, 5e-5},
+          Setting{"n=10, from 1 mm gaps, direct", 10, 1, 1e-3, 5e-5},
+          Setting{"n=40, direct", 40, 1, 0, 5e-5}, Setting{"n=100, direct", 100, 1, 0, 1e-3}}) {
         if (bench.brief() && setting.high > 10) continue;
         Scene scene = stack(bench, setting.high, setting.edge, setting.gap, Vec3::Zero());
         ask_exactly(scene.settings);

@@ -1,7 +1,7 @@
 // Turntable and tower: H24 and H25.
 //
-// A block at radius r on a disc that turns at w stays with it when w^2 r is at most mu g. A tower of
-// planks laid crosswise stands as long as one cares to look.
+// A block at radius r on a disc that turns at w stays with it when w^2 r is at most mu g. A tower
+// of planks laid crosswise stands as long as one cares to look.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
 #include "pipeline/world.hpp"
@@ -71,8 +71,7 @@ void case_planks(CaseBench& bench)
         for (const double side : {-1.0, 1.0}) {
             const Quat turn = layer % 2 == 0 ? Quat(Quat::Identity()) : across;
             const Vec3 off = turn * Vec3(0, side * 0.045, 0);
-            parts.box(material, mass, half,
-                      {off + Vec3(0, 0, (2 * layer + 1) * half.z()), turn});
+            parts.box(material, mass, half, {off + Vec3(0, 0, (2 * layer + 1) * half.z()), turn});
         }
     Scene scene = parts.scene();
     scene.settings.dt = 0.01;

@@ -179,7 +179,7 @@ struct ActiveContacts {
     };
     std::vector<Entry> entries;
     std::vector<Surfaces::Meeting> meetings;  // [entries] in all digits; empty in float
-    std::vector<std::size_t> begin, end;  // scratch: of the entries of each block of pairs
+    std::vector<std::size_t> begin, end;      // scratch: of the entries of each block of pairs
 };
 
 }  // namespace throng

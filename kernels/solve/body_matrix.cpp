@@ -24,10 +24,10 @@ struct Pair {
 
 struct BodyMatrix::Work {
     std::vector<BodyTie> ties;
-    std::vector<Pair> pairs;             // column by column
-    std::vector<std::size_t> pair_of;    // [ties]
-    std::vector<std::size_t> first_pair; // [bodies + 1] of each column
-    std::vector<Block> diagonal, below;  // [bodies], [pairs]
+    std::vector<Pair> pairs;              // column by column
+    std::vector<std::size_t> pair_of;     // [ties]
+    std::vector<std::size_t> first_pair;  // [bodies + 1] of each column
+    std::vector<Block> diagonal, below;   // [bodies], [pairs]
     std::vector<Block> above;
     Eigen::SparseMatrix<double> matrix;
     Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::AMDOrdering<int>> factors;
@@ -75,7 +75,8 @@ void BodyMatrix::Work::lay_pattern()
         columns[static_cast<std::size_t>(pairs[p].row)].push_back({pairs[p].column, &above[p]});
     }
     for (auto& column : columns)
-        std::sort(column.begin(), column.end(), [](const auto& x, const auto& y) { return x.row < y.row; });
+        std::sort(column.begin(), column.end(),
+                  [](const auto& x, const auto& y) { return x.row < y.row; });
     matrix.resize(6 * bodies, 6 * bodies);
     matrix.resizeNonZeros(static_cast<Eigen::Index>(36 * diagonal.size() + 72 * pairs.size()));
     int* const outer = matrix.outerIndexPtr();

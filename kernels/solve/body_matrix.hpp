@@ -16,12 +16,11 @@ namespace throng {
 /// Numbers of a body: linear, then angular.
 using BodySix = Eigen::Matrix<double, 6, 1>;
 /// Rows over the six of one body.
-using ConeBlock =
-    Eigen::Matrix<double, int(kConeRows), 6, Eigen::RowMajor>;
-/// How the rows of a tie weigh on one another: symmetric.
-using ConeWeight =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, int(kConeRows),
-                  int(kConeRows)>;
+using ConeBlock = Eigen::Matrix<double, int(kConeRows), 6, Eigen::RowMajor>;
+/// How the rows of a tie weigh on one another; need not be symmetric, as friction follows the normal
+/// and not the other way round.
+using ConeWeight = Eigen::
+    Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, int(kConeRows), int(kConeRows)>;
 
 /// Two bodies that something ties together; below 0 for what does not move.
 struct BodyTie {
@@ -45,7 +44,7 @@ public:
     /// Adds the tie at its place among those laid out; its rows over either body.
     void add(std::size_t tie, const ConeBlock& a, const ConeBlock& b, const ConeWeight& weight);
 
-    /// False where rounding left no positive matrix.
+    /// False where rounding left nothing to divide by.
     bool factorise();
     /// x of matrix x = right, in place; needs a matrix that was factorised.
     void solve(std::span<BodySix> right);

@@ -103,8 +103,8 @@ ConeVector ConeHold::answer(std::size_t at, const ConeVector& change) const
     if (state.kind != Kind::slides) return impulse;
     const double along = dot(state.way, change);
     for (std::size_t k = 1; k < island_.cones[at].rows; ++k)
-        impulse[k] = -state.stiffness * (change[k] - state.way[k] * along)
-            - impulse[0] * state.way[k];
+        impulse[k] =
+            -state.stiffness * (change[k] - state.way[k] * along) - impulse[0] * state.way[k];
     return impulse;
 }
 

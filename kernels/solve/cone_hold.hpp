@@ -15,8 +15,8 @@ public:
 
     /// Tells the kinds by the cones' speeds and impulses and works out impulses that hold them.
     /// Points that turn out to pull part, those that close are held, those that stick beyond their
-    /// friction slide and those that would slide back stick. Leaves the best impulses met in the cones and gives their residual, greater
-    /// than where it began if all fails.
+    /// friction slide and those that would slide back stick. Leaves the best impulses met in the
+    /// cones and gives their residual, greater than where it began if all fails.
     ///
     ///   most   factorisations at most; counted down
     double run(int& most);
@@ -25,7 +25,7 @@ private:
     enum class Kind : std::uint8_t { parts, sticks, slides };
     struct State {
         Kind kind = Kind::parts;
-        ConeVector way{};  // of sliding, of length 1
+        ConeVector way{};      // of sliding, of length 1
         double stiffness = 0;  // impulse over speed across that way
         ConeVector pull{}, best{};
     };
@@ -40,7 +40,7 @@ private:
 
     ContactCones& island_;
     BodyMatrix& matrix_;
-    std::vector<State> states_;          // [cones]
+    std::vector<State> states_;           // [cones]
     std::vector<BodySix> change_, step_;  // [columns]
 };
 

@@ -4,8 +4,8 @@ namespace throng {
 
 namespace {
 
-constexpr double kToBoundary = 0.99;   // of the way that leads out of the cones
-constexpr double kShortest = 1e-10;    // a step below which it stands still
+constexpr double kToBoundary = 0.99;  // of the way that leads out of the cones
+constexpr double kShortest = 1e-10;   // a step below which it stands still
 
 }  // namespace
 
@@ -39,8 +39,7 @@ void ConePath::measure()
         Place& place = places_[i];
         const ContactCone& cone = island_.cones[i];
         island_.push(cone, place.impulse, missing_);
-        place.missing =
-            sum(sum(place.speed, cone.free, -1), island_.seen(cone, change_), -1);
+        place.missing = sum(sum(place.speed, cone.free, -1), island_.seen(cone, change_), -1);
         place.missing[0] -= place.lift;
         place.scaling = ConeScaling(place.speed, place.impulse);
         place.middle = place.scaling.map(place.impulse);
@@ -125,8 +124,8 @@ void ConePath::aim_at_center()
     const double share = std::clamp(product_after(reach()) / now, 0.0, 1.0);
     const double center = share * share * share * now;
     for (Place& place : places_) {
-        const ConeVector second = product(place.scaling.inverse(place.step_speed),
-                                          place.scaling.map(place.step_impulse));
+        const ConeVector second =
+            product(place.scaling.inverse(place.step_speed), place.scaling.map(place.step_impulse));
         ConeVector left = sum(product(place.middle, place.middle), second);
         left[0] -= center;
         place.aim = quotient(left, place.middle);

@@ -14,8 +14,8 @@ class ConePath {
 public:
     ConePath(ContactCones& island, BodyMatrix& matrix);
 
-    /// One step: Mehrotra's, of which the first half looks how far it could go. False where rounding
-    /// lets it go no further.
+    /// One step: Mehrotra's, of which the first half looks how far it could go. False where
+    /// rounding lets it go no further.
     bool step();
     /// Whether steps follow how sliding changes; at first they do.
     void follow_sliding(bool follow) { follows_ = follow; }
@@ -45,7 +45,7 @@ private:
     bool follows_ = true;
     ContactCones& island_;
     BodyMatrix& matrix_;
-    std::vector<Place> places_;                    // [cones]
+    std::vector<Place> places_;                     // [cones]
     std::vector<BodySix> change_, missing_, step_;  // [columns]
 };
 

@@ -145,8 +145,7 @@ private:
         ConeVector c;
         c[0] = (axis[0] * a[0] + along) * scale;
         const double share = a[0] + along / (1 + axis[0]);
-        for (std::size_t k = 1; k < kConeRows; ++k)
-            c[k] = (a[k] + sense * axis[k] * share) * scale;
+        for (std::size_t k = 1; k < kConeRows; ++k) c[k] = (a[k] + sense * axis[k] * share) * scale;
         return c;
     }
 };

@@ -53,17 +53,20 @@ bool DirectSolver::Work::hold()
     return keep_if_better(residual);
 }
 
+// What rests goes on as it did: then not even a matrix is needed.
 bool DirectSolver::Work::start_from_guess()
 {
+    if (keep_if_better(island.residual(scratch))) return true;
+    matrix.lay_out(island.columns(), island.ties());
     bool any = false;
     for (const ContactCone& cone : island.cones) any = any || cone.impulse[0] > 0;
-    if (!any) return keep_if_better(island.residual(scratch));
+    if (!any) return false;
     island.push_all(scratch);
     for (ContactCone& cone : island.cones) {
         cone.speed = sum(cone.free, island.seen(cone, scratch));
         cone.speed[0] += width(cone.speed);
     }
-    return keep_if_better(island.residual(scratch)) || hold();
+    return hold();
 }
 
 void DirectSolver::Work::follow_path()
@@ -106,13 +109,11 @@ DirectSolver::solve(std::span<DirectBody> bodies, std::span<DirectPoint> points,
         for (DirectPoint& point : points) point.impulse = point.torque = Vec3::Zero();
         return work.answer;
     }
-    work.matrix.lay_out(work.island.columns(), work.island.ties());
     work.best.assign(work.island.cones.size(), ConeVector{});
     work.answer.residual = std::numeric_limits<double>::infinity();
     work.left = most_steps;
     if (!work.start_from_guess()) work.follow_path();
-    for (std::size_t i = 0; i < work.best.size(); ++i)
-        work.island.cones[i].impulse = work.best[i];
+    for (std::size_t i = 0; i < work.best.size(); ++i) work.island.cones[i].impulse = work.best[i];
     work.island.give(bodies, points);
     work.answer.steps = most_steps - work.left;
     return work.answer;

@@ -72,8 +72,7 @@ public:
     DirectSolver& operator=(DirectSolver&&) noexcept;
 
     /// Gives the points their impulses and the bodies their velocities.
-    DirectAnswer
-    solve(std::span<DirectBody> bodies, std::span<DirectPoint> points, int most_steps);
+    DirectAnswer solve(std::span<DirectBody> bodies, std::span<DirectPoint> points, int most_steps);
 
 private:
     struct Work;

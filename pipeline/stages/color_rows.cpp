@@ -12,9 +12,8 @@ void color_rows(const Conditions& conditions,
                 Layout& layout)
 {
     const Settings& settings = conditions.settings;
-    painter.direct_limit = settings.solver == Solver::direct
-        ? static_cast<std::size_t>(settings.direct_limit)
-        : 0;
+    painter.direct_limit =
+        settings.solver == Solver::direct ? static_cast<std::size_t>(settings.direct_limit) : 0;
     painter.lay_out(islands, contacts, states, poses.position, layout);
 }
 

@@ -34,8 +34,8 @@ void DirectIsland::list_touching(double threshold)
     touching_.clear();
     bool any = false;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
-        const bool touches = gaps_[i] <= touches_[i].tolerance
-            || points_[i].normal.dot(points_[i].impulse) > 0;
+        const bool touches =
+            gaps_[i] <= touches_[i].tolerance || points_[i].normal.dot(points_[i].impulse) > 0;
         if (!touches) continue;
         touching_.push_back(i);
         any = any || (touches_[i].restitution > 0 && approach(i, struck_) < -threshold);
@@ -110,8 +110,7 @@ void DirectIsland::settle_after_impacts()
     }
     after_ = free_;
     for (std::size_t i = 0; i < others_.size(); ++i)
-        if (grips && struck_impulse_[i] > 0)
-            others_[i].least = std::max(0.0, approach(i, struck_));
+        if (grips && struck_impulse_[i] > 0) others_[i].least = std::max(0.0, approach(i, struck_));
     if (!grips)
         for (std::size_t i = 0; i < after_.size(); ++i) {
             after_[i].velocity += struck_[i].velocity - before_[i].velocity;
@@ -140,8 +139,7 @@ bool DirectIsland::bounce(const Conditions& conditions)
     struck_impulse_.assign(touches_.size(), 0);
     const bool together = conditions.settings.impact_law == ImpactLaw::simultaneous;
     for (int pass = 0; pass < kMostPasses; ++pass)
-        if (!(together ? reflect(0, touching_.size(), least_speed)
-                       : reflect_in_order(least_speed)))
+        if (!(together ? reflect(0, touching_.size(), least_speed) : reflect_in_order(least_speed)))
             break;
     settle_after_impacts();
     return true;

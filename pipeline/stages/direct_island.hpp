@@ -51,6 +51,10 @@ private:
     void take_bodies(const DirectScene<Real>& scene, const Slice& slice);
     template <class Real>
     void take_contact(const DirectScene<Real>& scene, const Slice& slice, std::uint32_t place);
+    template <class Real>
+    void give_states(const DirectScene<Real>& scene, const Slice& slice, Rows<Real>& rows) const;
+    template <class Real>
+    void give_impulses(std::size_t first, Contact<Real>& contact) const;
     std::int32_t seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const;
     Vec3 arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round) const;
     void place_points();

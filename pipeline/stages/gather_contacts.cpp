@@ -51,9 +51,9 @@ public:
             Surfaces::Meeting meeting;
             for (std::size_t i = begin; i < end; ++i)
                 if (const Contact<Real>* contact = convex.at(i))
-                    at += take(i, *contact, convex.of_pair[i].contact, ContactList::convex,
-                               meetings, active_.entries[at],
-                               kInAllDigits ? active_.meetings[at] : meeting)
+                    at +=
+                        take(i, *contact, convex.of_pair[i].contact, ContactList::convex, meetings,
+                             active_.entries[at], kInAllDigits ? active_.meetings[at] : meeting)
                         ? 1
                         : 0;
             active_.end[block] = at;

@@ -25,9 +25,9 @@ struct DirectScene {
 template <class Real>
 void start_direct(const Layout& layout, Rows<Real>& rows, Trouble& trouble);
 
-/// Solves a direct batch, moves its bodies, and gives the contacts their impulses; the bodies' seats
-/// among the rows stay as they were, and are marked settled. Answers the greatest residual. Many
-/// batches may be solved at the same time.
+/// Solves a direct batch, moves its bodies, and gives the contacts their impulses; the bodies'
+/// seats among the rows stay as they were, and are marked settled. Answers the greatest residual.
+/// Many batches may be solved at the same time.
 template <class Real>
 double solve_direct(const DirectScene<Real>& scene, const Batch& batch, Rows<Real>& rows);
 

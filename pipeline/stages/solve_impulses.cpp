@@ -107,10 +107,10 @@ void solve_impulses(const Conditions& conditions,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void solve_impulses<Real>(                                                            \
-        const Conditions&, const Layout&, const ActiveContacts&, const Masses&, Rows<Real>&,       \
-        ConvexContacts<Real>&, MeshContacts<Real>&, SolidContacts<Real>&, Poses&, Velocities&,     \
-        Trouble&);
+    template void solve_impulses<Real>(const Conditions&, const Layout&, const ActiveContacts&,    \
+                                       const Masses&, Rows<Real>&, ConvexContacts<Real>&,          \
+                                       MeshContacts<Real>&, SolidContacts<Real>&, Poses&,          \
+                                       Velocities&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

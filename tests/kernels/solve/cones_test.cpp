@@ -1,4 +1,5 @@
 #include "kernels/solve/cones.hpp"
+
 #include "tests/support/dice.hpp"
 
 #include <gtest/gtest.h>

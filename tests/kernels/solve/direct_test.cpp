@@ -1,4 +1,5 @@
 #include "kernels/solve/direct.hpp"
+
 #include "tests/kernels/solve/plain_sweeps.hpp"
 #include "tests/support/dice.hpp"
 
@@ -25,7 +26,8 @@ DirectBody box(double mass, const Vec3& size)
     const Vec3 squares = size.cwiseProduct(size);
     const double share = 12 / mass;
     body.inverse_mass = 1 / mass;
-    body.inverse_inertia = {share / (squares.y() + squares.z()), share / (squares.x() + squares.z()),
+    body.inverse_inertia = {share / (squares.y() + squares.z()),
+                            share / (squares.x() + squares.z()),
                             share / (squares.x() + squares.y())};
     body.velocity = Vec3(0, 0, -kFall);
     return body;
@@ -119,8 +121,7 @@ TEST(Direct, StacksStandStillHoweverHighAndHeavy)
         EXPECT_LE(answer.residual, 1e-11) << high << ' ' << mass;
         EXPECT_LT(greatest_speed(problem), 1e-11) << high << ' ' << mass;
         double load = 0;
-        for (int k = 0; k < 4; ++k)
-            load += problem.points[static_cast<std::size_t>(k)].impulse.z();
+        for (int k = 0; k < 4; ++k) load += problem.points[static_cast<std::size_t>(k)].impulse.z();
         const double weight = (high - 1 + mass) * kFall;
         EXPECT_NEAR(load, weight, 1e-10 * weight);
     }

@@ -46,8 +46,7 @@ private:
             const DirectBody& of = bodies_[static_cast<std::size_t>(body)];
             Mat3 lever;
             lever << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-            all += of.inverse_mass * Mat3::Identity()
-                - lever * of.inverse_inertia.matrix() * lever;
+            all += of.inverse_mass * Mat3::Identity() - lever * of.inverse_inertia.matrix() * lever;
         }
         return all;
     }
