@@ -17,8 +17,8 @@ namespace throng {
 using BodySix = Eigen::Matrix<double, 6, 1>;
 /// Rows over the six of one body.
 using ConeBlock = Eigen::Matrix<double, int(kConeRows), 6, Eigen::RowMajor>;
-/// How the rows of a tie weigh on one another; need not be symmetric, as friction follows the normal
-/// and not the other way round.
+/// How the rows of a tie weigh on one another; need not be symmetric, as friction follows the
+/// normal and not the other way round.
 using ConeWeight = Eigen::
     Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, int(kConeRows), int(kConeRows)>;
 
