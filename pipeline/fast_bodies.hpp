@@ -17,7 +17,8 @@ inline constexpr double kRestingReach = 0.04;
 inline constexpr double kHurriedReach = 0.5 + kRestingReach;
 
 /// Who goes further in a step than this many smallest half extents looks for no contacts ahead, nor
-/// does who is marked fast. Up to here those that it finds ahead hold it in all but rare cases.
+/// does who is marked fast and is not at rest. Up to here those that it finds ahead hold it in all
+/// but rare cases.
 inline constexpr double kAheadOfContacts = 2;
 
 /// The reach of such a body, in tolerances of its time of impact: it is held within one. Any more

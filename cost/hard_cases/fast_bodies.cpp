@@ -70,11 +70,11 @@ ShapeDescription sheet()
     MeshShape mesh;
     mesh.vertices = {{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}};
     mesh.triangles = {{0, 2, 1}, {0, 3, 2}};  // faces -x, where they come from
-    return {"sheet", mesh};
+    return {"", mesh};
 }
 
-ShapeDescription ball(double radius) { return {"ball", SphereShape{radius}}; }
-ShapeDescription box(const Vec3& half) { return {"box", BoxShape{half}}; }
+ShapeDescription ball(double radius) { return {"", SphereShape{radius}}; }
+ShapeDescription box(const Vec3& half) { return {"", BoxShape{half}}; }
 
 std::uint32_t add_body(Scene& scene, const ShapeDescription& shape, const ShapeMotion& motion)
 {
@@ -175,7 +175,7 @@ void case_spinning_rod(CaseBench& bench)
     for (const auto& [name, radius] :
          {std::pair("line", 1e-7), std::pair("capsule r=0.02", 0.02)}) {
         const double sine = wall - radius;
-        judge(bench, name, ImpactQuery({"rod", CapsuleShape{radius, 1}}, slab), turning, still,
+        judge(bench, name, ImpactQuery({"", CapsuleShape{radius, 1}}, slab), turning, still,
               1.0 / 60, std::asin(sine) / spin, spin * std::sqrt(1 - sine * sine));
     }
 

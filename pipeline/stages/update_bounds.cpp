@@ -194,9 +194,7 @@ private:
                     kernel_(rule, arrays, colliders.data(), owners.data(), count, found.data());
                 asked.insert(asked.end(), found.data(), found.data() + left);
                 for (std::size_t i = 0; i < count; ++i)
-                    if (bounds_.reach[colliders[i]]
-                        > kHurriedReach * colliders_.inner_extent[colliders[i]])
-                        note_hurried(colliders[i], falls, block);
+                    if (look_at(colliders[i], owners[i])) note_hurried(colliders[i], falls, block);
                 count = 0;
             };
             for (std::size_t i = begin; i < end; ++i) {
@@ -207,8 +205,7 @@ private:
                         || bounds_.form[at] == static_cast<std::uint8_t>(MoverForm::other)) {
                         if (colliders_.body[at] != body) continue;
                         update(at, asked);
-                        if (bounds_.reach[at] > kHurriedReach * colliders_.inner_extent[at])
-                            note_hurried(at, falls, block);
+                        if (look_at(at, body)) note_hurried(at, falls, block);
                         continue;
                     }
                     colliders[count] = at;
@@ -225,17 +222,25 @@ private:
         }
     }
 
+    // Whether a collider may be that of a fast body.
+    bool look_at(std::uint32_t collider, std::uint32_t body) const
+    {
+        return bounds_.reach[collider] > kHurriedReach * colliders_.inner_extent[collider]
+            || (sweeps_ && states_.marked_fast(body));
+    }
+
     // Few ever come here.
     void note_hurried(std::uint32_t collider, double falls, std::size_t block)
     {
         const std::uint32_t body = colliders_.body[collider];
-        if (!hurries(colliders_, velocities_, body, dt_, falls)) return;
-        bounds_.hurried_of_block[block] = std::min(bounds_.hurried_of_block[block], body);
+        if (hurries(colliders_, velocities_, body, dt_, falls))
+            bounds_.hurried_of_block[block] = std::min(bounds_.hurried_of_block[block], body);
         if (!sweeps_ || !states_.dynamic(body)) return;
         const double inner = colliders_.inner_extent[collider];
         const double way = velocities_.linear[body].norm() * dt_
             + way_of_turning(colliders_, collider, velocities_.angular[body].norm() * dt_);
-        if (!states_.marked_fast(body) && !(way > kAheadOfContacts * inner)) return;
+        const double most = states_.marked_fast(body) ? kRestingReach : kAheadOfContacts;
+        if (!(way > most * inner)) return;
         // It is stopped where it meets something, so that what it only may meet is no contact: one
         // far ahead would turn aside what flies past a corner. Its box holds all of its way.
         const double reach = kHeldReach * tolerance_ * inner;

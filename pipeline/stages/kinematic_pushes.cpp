@@ -1,0 +1,74 @@
+// Kinematic pushes: bodies that overlap are put side by side as they are, and none turns.
+//
+// Of each velocity the part along the normal that closes is taken away, half of it from each of two
+// that can move, whatever their masses; the part across is slowed by friction. Nothing is
+// conserved.
+#include "pipeline/stages/direct_island.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr int kSweeps = 8;
+
+}  // namespace
+
+// How much of a push falls to each: half, or all of it where the other cannot move.
+std::pair<double, double> DirectIsland::shares_of(const DirectPoint& point) const
+{
+    const auto moves = [&](std::int32_t seat) {
+        return seat >= 0 && after_[static_cast<std::size_t>(seat)].inverse_mass > 0;
+    };
+    const bool a = moves(point.a), b = moves(point.b);
+    return {a ? b ? 0.5 : 1.0 : 0.0, b ? a ? 0.5 : 1.0 : 0.0};
+}
+
+void DirectIsland::stop_approach(std::size_t at)
+{
+    const DirectPoint& point = points_[at];
+    const double closing = -approach(at, after_);
+    if (gaps_[at] > 0 || !(closing > 0)) return;
+    const auto velocity = [&](std::int32_t seat) -> Vec3 {
+        return seat < 0 ? Vec3(Vec3::Zero()) : after_[static_cast<std::size_t>(seat)].velocity;
+    };
+    const Vec3 between = velocity(point.b) - velocity(point.a);
+    const Vec3 sliding = between - point.normal * point.normal.dot(between);
+    const double fast = std::sqrt(sliding.squaredNorm());
+    Vec3 change = point.normal * closing;
+    if (fast > 0) change -= sliding * std::min(1.0, point.friction * closing / fast);
+    const auto [a, b] = shares_of(point);
+    if (a > 0) after_[static_cast<std::size_t>(point.a)].velocity -= a * change;
+    if (b > 0) after_[static_cast<std::size_t>(point.b)].velocity += b * change;
+}
+
+void DirectIsland::push_apart(std::size_t at)
+{
+    const double gap = gap_now(at);
+    if (!(gap < -touches_[at].tolerance)) return;
+    const DirectPoint& point = points_[at];
+    const auto [a, b] = shares_of(point);
+    if (a > 0) seats_[static_cast<std::size_t>(point.a)].moved += a * gap * point.normal;
+    if (b > 0) seats_[static_cast<std::size_t>(point.b)].moved -= b * gap * point.normal;
+}
+
+void DirectIsland::separate(const Conditions& conditions)
+{
+    const double time = conditions.substep();
+    const int sweeps =
+        conditions.settings.iterations > 0 ? conditions.settings.iterations : kSweeps;
+    place_points();
+    move_freely(conditions, time);
+    for (DirectPoint& point : points_) point.impulse = point.torque = Vec3::Zero();
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+        for (std::size_t i = 0; i < touches_.size(); ++i) stop_approach(i);
+    going_ = after_;
+    advance(time);
+    place_points();
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+        for (std::size_t i = 0; i < touches_.size(); ++i) push_apart(i);
+}
+
+}  // namespace throng

@@ -1,0 +1,131 @@
+// Penalty forces: each point that overlaps is a spring with a damper, and all act at once.
+//
+// Overlap under a load is the load over the stiffness. Friction is a damper across the normal that
+// gives way at Coulomb's limit, so that what should stick creeps. Rolling friction has no force.
+#include "pipeline/stages/direct_island.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+// Of auto: by how many radians it swings in a substep, and the share of critical damping where
+// nothing bounces; together half of what a semi-implicit step bears.
+constexpr double kSwing = 0.5, kDamped = 0.7;
+// A substep is cut no finer than this, and to this share of the limit.
+constexpr int kMostCuts = 1000;
+constexpr double kWithin = 0.9;
+
+}  // namespace
+
+// What a point is to the step.
+struct DirectIsland::Give {
+    double stiffness = 0, damping = 0, across = 0;  // N/m, N s/m, N s/m
+    double longest = 0;                             // s, of a step that keeps it from growing
+};
+
+// Who bears how many points that overlap.
+void DirectIsland::count_touching()
+{
+    pressed_.assign(seats_.size(), 0);
+    for (std::size_t i = 0; i < touches_.size(); ++i)
+        for (const std::int32_t seat : {touches_[i].a, touches_[i].b})
+            if (gaps_[i] < 0 && seat >= 0) ++pressed_[static_cast<std::size_t>(seat)];
+}
+
+// By how much an impulse along a direction changes the speed between the two, 1/kg.
+double DirectIsland::ease_of(const DirectPoint& point, const Vec3& along) const
+{
+    double ease = 0;
+    const auto add = [&](std::int32_t seat, const Vec3& arm) {
+        if (seat < 0) return;
+        const DirectBody& body = after_[static_cast<std::size_t>(seat)];
+        const Vec3 turn = arm.cross(along);
+        ease += body.inverse_mass + turn.dot(Vec3(body.inverse_inertia.matrix() * turn));
+    };
+    add(point.a, point.arm_a);
+    add(point.b, point.arm_b);
+    return ease;
+}
+
+// Points that share a body add up: each takes its part of what the step bears.
+DirectIsland::Give
+DirectIsland::give_of(std::size_t at, const Settings& settings, double time) const
+{
+    const DirectTouch& touch = touches_[at];
+    std::uint32_t share = 1;
+    for (const std::int32_t seat : {touch.a, touch.b})
+        if (seat >= 0) share = std::max(share, pressed_[static_cast<std::size_t>(seat)]);
+    const double ease = ease_of(points_[at], touch.normal) * share;
+    if (!(ease > 0)) return {};
+    Give give;
+    give.stiffness = settings.penalty_stiffness > 0 ? settings.penalty_stiffness
+                                                    : kSwing * kSwing / (time * time * ease);
+    const double frequency = std::sqrt(give.stiffness * ease);
+    const double damped = kDamped * (1 - touch.restitution);
+    give.damping =
+        settings.penalty_damping >= 0 ? settings.penalty_damping : 2 * damped * frequency / ease;
+    const double ratio = 0.5 * give.damping * ease / frequency;
+    give.longest = 2 * (std::sqrt(1 + ratio * ratio) - ratio) / frequency;
+    give.across = 0.5 / (time * ease);
+    return give;
+}
+
+// All forces are of the velocities before, so that no order of touches has a say.
+void DirectIsland::push_by_forces(const Conditions& conditions, double time)
+{
+    place_points();
+    move_freely(conditions, time);
+    count_touching();
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        if (!(gaps_[i] < 0)) continue;
+        DirectPoint& point = points_[i];
+        const Give give = give_of(i, conditions.settings, time);
+        const double force =
+            std::max(0.0, -give.stiffness * gaps_[i] - give.damping * approach(i, before_));
+        const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
+            if (seat < 0) return Vec3::Zero();
+            const DirectBody& body = before_[static_cast<std::size_t>(seat)];
+            return body.velocity + body.spin.cross(arm);
+        };
+        const Vec3 between = speed(point.b, point.arm_b) - speed(point.a, point.arm_a);
+        const Vec3 sliding = between - point.normal * point.normal.dot(between);
+        const double fast = std::sqrt(sliding.squaredNorm());
+        const double hold = std::min(give.across * fast, point.friction * force);
+        Vec3 impulse = point.normal * (force * time);
+        if (fast > 0) impulse -= sliding * (hold * time / fast);
+        point.impulse += impulse;
+        const auto push = [&](std::int32_t seat, const Vec3& arm, double sign) {
+            if (seat < 0) return;
+            DirectBody& body = after_[static_cast<std::size_t>(seat)];
+            body.velocity += sign * body.inverse_mass * impulse;
+            body.spin += sign * Vec3(body.inverse_inertia.matrix() * arm.cross(impulse));
+        };
+        push(point.a, point.arm_a, -1);
+        push(point.b, point.arm_b, 1);
+    }
+    going_ = after_;
+    advance(time);
+}
+
+void DirectIsland::penalise(const Conditions& conditions)
+{
+    const double time = conditions.substep();
+    place_points();
+    count_touching();
+    double longest = time;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        points_[i].impulse = points_[i].torque = Vec3::Zero();
+        if (!(gaps_[i] < 0)) continue;
+        const double bears = give_of(i, conditions.settings, time).longest;
+        if (bears > 0 && bears < time) longest = std::min(longest, kWithin * bears);
+    }
+    const int cuts =
+        static_cast<int>(std::min(std::ceil(time / longest), static_cast<double>(kMostCuts)));
+    cuts_ = std::max(cuts_, cuts);
+    for (int cut = 0; cut < cuts; ++cut) push_by_forces(conditions, time / cuts);
+}
+
+}  // namespace throng
