@@ -99,11 +99,40 @@ private:
         return placed * local.inverse();
     }
 
+    // Most are: neither hurried as the step began nor fast as it ended.
+    bool surely_slow(std::uint32_t body) const
+    {
+        if (colliders_.count[body] != 1) return false;
+        const std::uint32_t at = colliders_.begin[body];
+        const double inner = colliders_.inner_extent[at], dt = settings_.dt;
+        return bounds_.reach[at] <= kHurriedReach * inner
+            && 4 * velocities_.linear[body].squaredNorm() * dt * dt <= inner * inner
+            && velocities_.angular[body].squaredNorm() * dt * dt <= kSmallTurn * kSmallTurn;
+    }
+
+    // Round all of a collider's way.
+    Box3 box_of_way(std::uint32_t at) const
+    {
+        const Box3 before = shape_bounds(shapes_, colliders_.shape[at], bounds_.placed[at]);
+        const std::uint32_t body = colliders_.body[at];
+        if (states_.kind[body] == BodyKind::still) return before;
+        const Pose ends = poses_.at(body) * colliders_.local[at];
+        Box3 box = joined(before, shape_bounds(shapes_, colliders_.shape[at], ends));
+        // Between the two it may reach further, by as much as its turning takes any point of it.
+        const double angle = velocities_.angular[body].norm() * settings_.dt;
+        const double turning = angle > 0 ? std::min(angle, 2.0) * colliders_.outer_radius[at] : 0;
+        const double slack = turning + settings_.toi_tolerance * colliders_.inner_extent[at];
+        box.lower.array() -= slack;
+        box.upper.array() += slack;
+        return box;
+    }
+
     // Whether a body has come far enough to have passed through something. What moves by itself is
     // measured against those that it may run over: see worth_asking().
     bool went_far(std::uint32_t body) const
     {
         if (colliders_.count[body] == 0 || states_.kind[body] == BodyKind::gone) return false;
+        if (surely_slow(body)) return false;
         const Vec3 way = poses_.position[body] - began(body).position;
         const double length = way.norm();
         const double angle = velocities_.angular[body].norm() * settings_.dt;
@@ -154,11 +183,20 @@ private:
         return true;
     }
 
+    bool ways_cross(PairKey key) const
+    {
+        const std::uint32_t a = first_of(key), b = second_of(key);
+        if (colliders_.shape[a].kind == ShapeKind::plane
+            || colliders_.shape[b].kind == ShapeKind::plane)
+            return true;
+        return box_of_way(a).overlaps(box_of_way(b));
+    }
+
     void find_candidates()
     {
         candidates_.clear();
         for (const PairKey key : pairs_.keys)
-            if (worth_asking(key)) candidates_.push_back({key});
+            if (worth_asking(key) && ways_cross(key)) candidates_.push_back({key});
         for (const std::uint32_t body : found_)
             for (std::uint32_t k = 0; k < colliders_.count[body]; ++k)
                 look_beyond_box(colliders_.begin[body] + k);
@@ -173,9 +211,7 @@ private:
     void look_beyond_box(std::uint32_t at)
     {
         if (colliders_.shape[at].kind == ShapeKind::plane) return;
-        const Pose ends = poses_.at(colliders_.body[at]) * colliders_.local[at];
-        const Box3 way = joined(shape_bounds(shapes_, colliders_.shape[at], bounds_.placed[at]),
-                                shape_bounds(shapes_, colliders_.shape[at], ends));
+        const Box3 way = box_of_way(at);
         if (bounds_.boxes[at].contains(way)) return;
         BlockLists<Candidate> lists;
         lists.start(block_count(colliders_.size(), kBoxes));
@@ -183,7 +219,7 @@ private:
             for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
                 if (colliders_.body[i] == kNobody || !bounds_.boxes[i].overlaps(way)) continue;
                 const PairKey key = pair_key(at, i);
-                if (i != at && filter_.allows(at, i) && worth_asking(key))
+                if (i != at && filter_.allows(at, i) && worth_asking(key) && ways_cross(key))
                     lists[block].push_back({key});
             }
         });
