@@ -71,7 +71,10 @@ TEST_P(HardCases, GivesTheSameFiguresOnThreeThreads)
     const std::vector<CaseResult> one = run(GetParam());
     const std::vector<CaseResult> three = run(GetParam(), Fault::none, 3);
     ASSERT_EQ(one.size(), three.size());
-    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].figure, three[i].figure);
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        if (one[i].unit == "ns") continue;  // a time is never the same twice
+        EXPECT_EQ(one[i].figure, three[i].figure);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue,
