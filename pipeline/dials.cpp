@@ -29,14 +29,15 @@ constexpr Choice kMethodStart[] = {{"cached"}, {"cold"}, {"plain"}};
 constexpr Choice kBoundsFilter[] = {{"none"},    {"sphere"},   {"k_dop:14"},
                                     {"k_dop:6"}, {"k_dop:18"}, {"k_dop:26"}};
 constexpr Choice kNonconvex[] = {{"voxels"}, {"parts"}, {"spheres"}, {"depth_image"}, {"hull"}};
-constexpr Choice kResponse[] = {{"impulse"}, {"penalty", kNotYet}, {"kinematic", kNotYet}};
+constexpr Choice kResponse[] = {{"impulse"}, {"penalty"}, {"kinematic"}};
 constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct"}};
 constexpr Choice kFrictionCone[] = {{"cone"}, {"pyramid", kNotYet}};
 constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous"}};
 constexpr Choice kOverlap[] = {{"allow"}, {"back_up", kNotYet}, {"subdivide", kNotYet}};
 constexpr Choice kToiMethod[] = {{"newton"}, {"bisection"}, {"conservative"}};
 constexpr Choice kSleep[] = {{"on"}, {"off"}};
-constexpr Choice kAuto[] = {{"auto"}};
+
+constexpr double kLeastStiffness = 1e-30, kLeastDamping = 0;
 
 // Finer steps than this are lost in the time they add up to; greater ones in no scene's scale.
 constexpr double kShortestStep = 1e-9, kLongestStep = 1e4;
@@ -224,6 +225,23 @@ std::string get_voxel_size(const Settings& settings)
     return settings.voxel_size > 0 ? number_text(settings.voxel_size) : "auto";
 }
 
+/// A number of at least `least`, or auto, which is below 0.
+template <auto Member, const auto& least>
+std::string set_amount(Settings& settings, std::string_view text)
+{
+    const double amount = parse_number(text);
+    if (!(amount >= least && amount <= 1e30) && text != "auto")
+        return wanted("auto or a number from " + number_text(least) + " to 1e30", text);
+    settings.*Member = text == "auto" ? -1 : amount;
+    return {};
+}
+
+template <auto Member>
+std::string get_amount(const Settings& settings)
+{
+    return settings.*Member >= 0 ? number_text(settings.*Member) : "auto";
+}
+
 /// A whole number, or auto, which is 0.
 template <auto Member, int least, int greatest>
 std::string set_whole(Settings& settings, std::string_view text)
@@ -366,9 +384,11 @@ std::vector<Dial> make_dials()
             "soft_step converges best for its time; pgs is the classic; direct is exact and slow"),
         number_dial("direct_limit", "a whole number: greatest island that solver direct takes", "bodies, or contacts", set_direct_limit, get_direct_limit,
             "greater islands solved exactly, for time that grows with the cube"),
-        fixed_number<kAuto>("penalty_stiffness", "auto (from mass and dt, within the stability limit), or a number", "N/m",
+        number_dial("penalty_stiffness", "auto (from mass and dt, within the stability limit), or a number", "N/m",
+            set_amount<&S::penalty_stiffness, kLeastStiffness>, get_amount<&S::penalty_stiffness>,
             "stiffer leaves less overlap and needs a shorter step"),
-        fixed_number<kAuto>("penalty_damping", "auto (from mass and dt, within the stability limit), or a number", "N s/m",
+        number_dial("penalty_damping", "auto (from mass, dt and restitution, within the stability limit), or a number", "N s/m",
+            set_amount<&S::penalty_damping, kLeastDamping>, get_amount<&S::penalty_damping>,
             "more damping bounces less and needs a shorter step"),
         choice_dial<&S::friction_cone, kFrictionCone>("friction_cone",
             "the cone is the same in every direction; the pyramid is cheaper and holds up to 1.41 too much"),

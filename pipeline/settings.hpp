@@ -53,6 +53,9 @@ struct Settings {
     int sphere_levels = 0;     // of the sphere tree, from 1
     int max_parts = 0;         // convex parts of a shape
     Response response = Response::impulse;
+    // Of each point of a contact; below 0: from mass and dt.
+    double penalty_stiffness = -1;  // N/m
+    double penalty_damping = -1;    // N s/m
     Solver solver = Solver::soft_step;
     int direct_limit = 500;  // contacts or bodies of the greatest island that is solved directly
     ImpactLaw impact_law = ImpactLaw::sequential;

@@ -26,6 +26,8 @@ struct Trouble {
     double direct_residual = 0;  // greatest of the islands that were solved directly in this step
     std::uint64_t direct_left = 0;       // islands in it that were too great for that
     std::vector<double> residual_of;     // scratch: [batches]
+    int penalty_cuts = 1;                // most that penalty forces cut a substep into
+    std::vector<int> cuts_of;            // scratch: [batches]
     BlockLists<std::uint32_t> of_block;  // scratch
 };
 

@@ -2,7 +2,9 @@
 
 #include "broadphase/margins.hpp"
 #include "kernels/solve/sweep.hpp"
+#include "pipeline/dials.hpp"
 #include "pipeline/force_builder.hpp"
+#include "pipeline/names.hpp"
 #include "pipeline/scene_check.hpp"
 #include "pipeline/step_table.hpp"
 #include "pipeline/world_state.hpp"
@@ -133,6 +135,18 @@ void World::State::refresh()
     movers_stale = false;
 }
 
+void World::State::warn_of_cuts(int cuts)
+{
+    if (cuts <= most_cuts) return;
+    most_cuts = cuts;
+    const Settings& settings = get<Conditions>().settings;
+    remarks.push_back("penalty_stiffness: " + dial_value(settings, "penalty_stiffness")
+                      + " N/m swings wider at a substep of "
+                      + number_text(settings.dt / settings.substeps) + " s, so each is cut in "
+                      + std::to_string(cuts) + "; take substeps="
+                      + std::to_string(settings.substeps * cuts) + ", or auto");
+}
+
 Vec3 World::State::arm(std::uint32_t body) const
 {
     const auto& hang = get<Forces>().hang;
@@ -239,6 +253,7 @@ void World::step(int steps)
             state.report.fallbacks += state.get<MethodPairs>().fell_back;
             const Trouble& trouble = state.get<Trouble>();
             state.report.fallbacks += trouble.direct_left;
+            state.warn_of_cuts(trouble.penalty_cuts);
             state.report.direct_residual =
                 std::max(state.report.direct_residual, trouble.direct_residual);
             state.follow_step();

@@ -51,6 +51,7 @@ struct World::State {
 
     std::vector<std::string> material_names;
     std::vector<std::string> remarks, solids;  // see World
+    int most_cuts = 1;                         // that were remarked on
 
     template <class Data>
     Data& get()
@@ -95,8 +96,10 @@ struct World::State {
     /// Empties what no stage writes any more, and wakes all where nobody may sleep.
     void empty_unused();
     void choose_broad_phase();
-    /// Remarks on springs that the settings make unstable.
+    /// Remarks on springs that the settings make unstable, and on penalty forces that had a
+    /// substep cut.
     void warn_of_springs();
+    void warn_of_cuts(int cuts);
 };
 
 struct MadeSolid;  // solid_maker.hpp

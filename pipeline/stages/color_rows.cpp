@@ -1,6 +1,8 @@
 // Color rows: islands into batches, slices, colors and blocks.
 #include "pipeline/stages.hpp"
 
+#include <limits>
+
 namespace throng {
 
 void color_rows(const Conditions& conditions,
@@ -12,8 +14,11 @@ void color_rows(const Conditions& conditions,
                 Layout& layout)
 {
     const Settings& settings = conditions.settings;
-    painter.direct_limit =
-        settings.solver == Solver::direct ? static_cast<std::size_t>(settings.direct_limit) : 0;
+    // Forces and pushes go island by island, however great.
+    painter.direct_limit = settings.response != Response::impulse
+        ? std::numeric_limits<std::size_t>::max()
+        : settings.solver == Solver::direct ? static_cast<std::size_t>(settings.direct_limit)
+                                            : 0;
     painter.lay_out(islands, contacts, states, poses.position, layout);
 }
 

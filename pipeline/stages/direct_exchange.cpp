@@ -69,6 +69,10 @@ void DirectIsland::take_bodies(const DirectScene<Real>& scene, const Slice& slic
         const bool uneven = scene.masses.spins_unevenly[seat.body] != 0;
         seat.precesses = dynamic && uneven && scene.conditions.has(Effect::gyroscopic);
         seat.orientation = scene.poses.orientation[seat.body];
+        if (dynamic && scene.conditions.effects.meets(kForces)) {
+            seat.pull = scene.pulls.linear[seat.body];
+            seat.twist = scene.pulls.angular[seat.body];
+        }
         DirectBody body;
         body.velocity = scene.velocities.linear[seat.body];
         body.spin = scene.velocities.angular[seat.body];

@@ -17,28 +17,37 @@ Vec3 DirectIsland::arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round
     return seats_[static_cast<std::size_t>(seat)].turned * arm + round;
 }
 
-// Arms and gaps by where the bodies are now.
-void DirectIsland::place_points()
+// By the arms that place_points() last found.
+double DirectIsland::gap_now(std::size_t at) const
 {
     const auto moved = [&](std::int32_t seat) -> Vec3 {
         return seat < 0 ? Vec3(Vec3::Zero()) : seats_[static_cast<std::size_t>(seat)].moved;
     };
+    const DirectTouch& touch = touches_[at];
+    const DirectPoint& point = points_[at];
+    const Vec3 by_a =
+        moved(touch.a) + point.arm_a - touch.arm_a - Vec3(touch.normal * touch.round_a);
+    const Vec3 by_b =
+        moved(touch.b) + point.arm_b - touch.arm_b + Vec3(touch.normal * touch.round_b);
+    return touch.gap + touch.normal.dot(by_b - by_a);
+}
+
+// Arms and gaps by where the bodies are now.
+void DirectIsland::place_points()
+{
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         const DirectTouch& touch = touches_[i];
         DirectPoint& point = points_[i];
         const Vec3 round_a = touch.normal * touch.round_a, round_b = -touch.normal * touch.round_b;
         point.arm_a = arm_now(touch.arm_a, touch.a, round_a);
         point.arm_b = arm_now(touch.arm_b, touch.b, round_b);
-        const Vec3 by_a = moved(touch.a) + point.arm_a - touch.arm_a - round_a;
-        const Vec3 by_b = moved(touch.b) + point.arm_b - touch.arm_b - round_b;
-        gaps_[i] = touch.gap + touch.normal.dot(by_b - by_a);
+        gaps_[i] = gap_now(i);
     }
 }
 
 // What a substep does to the bodies besides contacts.
-void DirectIsland::move_freely(const Conditions& conditions)
+void DirectIsland::move_freely(const Conditions& conditions, double time)
 {
-    const double time = conditions.substep();
     before_ = after_;
     for (std::size_t i = 0; i < seats_.size(); ++i) {
         const DirectSeat& seat = seats_[i];
@@ -48,6 +57,8 @@ void DirectIsland::move_freely(const Conditions& conditions)
         body.inverse_inertia = in_world_axes(inverse_inertia_[i], orientation);
         if (conditions.has(Effect::gravity) && body.inverse_mass > 0)
             body.velocity += conditions.gravity * time;
+        body.velocity += seat.pull * time;
+        body.spin += seat.twist * time;
         if (!seat.precesses || conditions.settings.gyroscopic == Gyroscopic::off) continue;
         const auto torque = conditions.settings.gyroscopic == Gyroscopic::implicit
             ? after_gyroscopic_torque
@@ -103,9 +114,11 @@ void DirectIsland::advance(double time)
 
 void DirectIsland::substep(const Conditions& conditions)
 {
+    if (conditions.settings.response == Response::penalty) return penalise(conditions);
+    if (conditions.settings.response == Response::kinematic) return separate(conditions);
     const double time = conditions.substep();
     place_points();
-    move_freely(conditions);
+    move_freely(conditions, time);
     for (std::size_t i = 0; i < points_.size(); ++i)
         points_[i].least = -std::max(gaps_[i], 0.0) / time;
     solve(after_, points_);

@@ -12,7 +12,8 @@ namespace throng {
 struct DirectSeat {
     std::uint32_t body = kNobody;
     bool dynamic = false, advances = false, precesses = false;
-    Quat orientation = Quat::Identity();  // as the step began
+    Quat orientation = Quat::Identity();             // as the step began
+    Vec3 pull = Vec3::Zero(), twist = Vec3::Zero();  // m/s2, rad/s2: what forces do
     Vec3 moved = Vec3::Zero();
     Quat turned = Quat::Identity();
 };
@@ -45,6 +46,8 @@ public:
     void finish(const DirectScene<Real>& scene, const Batch& batch, Rows<Real>& rows) const;
 
     double residual() const { return residual_; }
+    /// The most parts that penalty forces cut a substep into.
+    int cuts() const { return cuts_; }
 
 private:
     template <class Real>
@@ -58,7 +61,8 @@ private:
     std::int32_t seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const;
     Vec3 arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round) const;
     void place_points();
-    void move_freely(const Conditions& conditions);
+    double gap_now(std::size_t at) const;
+    void move_freely(const Conditions& conditions, double time);
     double approach(std::size_t point, std::span<const DirectBody> bodies) const;
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     // Impacts: see direct_impacts.cpp.
@@ -68,6 +72,18 @@ private:
     bool reflect_in_order(double least_speed);
     double share_of_restitution() const;
     void settle_after_impacts();
+
+    // Other responses: see penalty_forces.cpp and kinematic_pushes.cpp.
+    struct Give;
+    void penalise(const Conditions& conditions);
+    void count_touching();
+    double ease_of(const DirectPoint& point, const Vec3& along) const;
+    Give give_of(std::size_t at, const Settings& settings, double time) const;
+    void push_by_forces(const Conditions& conditions, double time);
+    void separate(const Conditions& conditions);
+    void stop_approach(std::size_t at);
+    void push_apart(std::size_t at);
+    std::pair<double, double> shares_of(const DirectPoint& point) const;
 
     bool part(const Conditions& conditions);
     void advance(double time);
@@ -82,8 +98,9 @@ private:
     std::vector<DirectPoint> struck_points_;                 // [hits]
     std::vector<double> struck_impulse_;                     // [touches] N s, of all impacts
     std::vector<Sym3> inertia_, inverse_inertia_;            // [seats] body axes
+    std::vector<std::uint32_t> pressed_;                     // [seats] touches that overlap
     DirectSolver solver_;
-    int steps_ = 0;
+    int steps_ = 0, cuts_ = 1;
     double residual_ = 0;
 };
 

@@ -16,6 +16,7 @@ struct DirectScene {
     const Layout& layout;
     const ActiveContacts& active;
     const Masses& masses;
+    const Pulls& pulls;
     const RowMaker<Real>& maker;
     Poses& poses;
     Velocities& velocities;
@@ -26,10 +27,14 @@ template <class Real>
 void start_direct(const Layout& layout, Rows<Real>& rows, Trouble& trouble);
 
 /// Solves a direct batch, moves its bodies, and gives the contacts their impulses; the bodies'
-/// seats among the rows stay as they were, and are marked settled. Answers the greatest residual.
-/// Many batches may be solved at the same time.
+/// seats among the rows stay as they were, and are marked settled. Tells the trouble of the batch:
+/// the greatest residual, and how often a substep was cut. Many batches may be solved at the same
+/// time.
 template <class Real>
-double solve_direct(const DirectScene<Real>& scene, const Batch& batch, Rows<Real>& rows);
+void solve_direct(const DirectScene<Real>& scene,
+                  const Batch& batch,
+                  Rows<Real>& rows,
+                  Trouble& trouble);
 
 /// Sums up what direct batches told.
 void finish_direct(const Conditions& conditions, const Layout& layout, Trouble& trouble);

@@ -60,6 +60,7 @@ void solve_impulses(const Conditions& conditions,
                     const Layout& layout,
                     const ActiveContacts& active,
                     const Masses& masses,
+                    const Pulls& pulls,
                     Rows<Real>& rows,
                     ConvexContacts<Real>& convex,
                     MeshContacts<Real>& meshes,
@@ -70,12 +71,12 @@ void solve_impulses(const Conditions& conditions,
 {
     trouble.quarantined.clear();
     const RowMaker<Real> maker(conditions, layout, active, convex, meshes, solids, rows);
-    const DirectScene<Real> direct{conditions, layout, active, masses, maker, poses, velocities};
+    const DirectScene<Real> direct{conditions, layout, active, masses,
+                                   pulls,      maker,  poses,  velocities};
     start_direct(layout, rows, trouble);
     const auto solve = [&](const Batch& batch) {
         if (batch.direct)
-            trouble.residual_of[static_cast<std::size_t>(&batch - layout.batches.data())] =
-                solve_direct(direct, batch, rows);
+            solve_direct(direct, batch, rows, trouble);
         else
             solve_batch(conditions, layout, batch, maker, rows);
     };
@@ -108,9 +109,9 @@ void solve_impulses(const Conditions& conditions,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(const Conditions&, const Layout&, const ActiveContacts&,    \
-                                       const Masses&, Rows<Real>&, ConvexContacts<Real>&,          \
-                                       MeshContacts<Real>&, SolidContacts<Real>&, Poses&,          \
-                                       Velocities&, Trouble&);
+                                       const Masses&, const Pulls&, Rows<Real>&,                   \
+                                       ConvexContacts<Real>&, MeshContacts<Real>&,                 \
+                                       SolidContacts<Real>&, Poses&, Velocities&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE
