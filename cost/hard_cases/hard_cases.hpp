@@ -13,7 +13,8 @@ void case_sleeping_top(CaseBench& bench);    // H4, heavy_top.cpp
 void case_high_spin(CaseBench& bench);       // H5, free_top.cpp
 void case_rotation_drift(CaseBench& bench);  // H6, free_top.cpp
 void case_ballistic(CaseBench& bench);       // H7, ballistic.cpp
-void case_spring_limit(CaseBench& bench);    // H46, spring_limit.cpp
+void case_spring_limit(CaseBench& bench);    // H46, spring_limit.cpp, and penalty_limit.cpp
+void penalty_limit(CaseBench& bench);
 
 void case_stack(CaseBench& bench);        // H8, stack.cpp
 void case_mass_ratio(CaseBench& bench);   // H9, mass_ratio.cpp
@@ -25,10 +26,12 @@ void case_rolling(CaseBench& bench);      // H14, rolling.cpp
 void case_spin_bounce(CaseBench& bench);  // H15, impacts.cpp
 void case_cradle(CaseBench& bench);       // H17, impacts.cpp
 void case_break(CaseBench& bench);        // H18, impacts.cpp
+void case_painleve(CaseBench& bench);     // H21, slid_rods.cpp
 void case_leaning(CaseBench& bench);      // H22, leaning.cpp
-void case_struck_rod(CaseBench& bench);   // H23, impacts.cpp
-void case_turntable(CaseBench& bench);    // H24, turntable.cpp
-void case_planks(CaseBench& bench);       // H25, turntable.cpp
+void case_struck_rod(CaseBench& bench);   // H23, impacts.cpp, and without_friction.cpp
+void motion_without_friction(CaseBench& bench);
+void case_turntable(CaseBench& bench);  // H24, turntable.cpp
+void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
 // Bodies that go far in a step: fast_bodies.cpp, and the sets of exact_paths.cpp.
 void case_bullet_plate(CaseBench& bench);  // H38

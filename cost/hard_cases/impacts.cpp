@@ -208,6 +208,7 @@ void case_struck_rod(CaseBench& bench)
                  kExact, "rad/s");
     bench.report(name, "error of the momentum", (end.momentum - Vec3(0, 0, -10)).norm(), kExact,
                  "N s");
+    motion_without_friction(bench);
 }
 
 }  // namespace throng

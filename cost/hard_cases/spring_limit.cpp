@@ -89,6 +89,7 @@ void case_spring_limit(CaseBench& bench)
     either_side(bench, Integrator::splitting, 0, 2 / kFrequency);
     either_side(bench, Integrator::rk4, 0, 2 * std::sqrt(2.0) / kFrequency);
     grow(bench);
+    penalty_limit(bench);
 }
 
 }  // namespace throng
