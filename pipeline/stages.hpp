@@ -175,7 +175,8 @@ struct InnerRow {
     bool within = false;    // part of the row above, in the same pass over the rows
 };
 
-/// The inner table of solve_impulses, for explain.
-std::span<const InnerRow> solve_table();
+/// The inner table of solve_impulses as those settings have it, for explain. Of solver direct: for
+/// islands within direct_limit; those beyond it go by soft_step's.
+std::span<const InnerRow> solve_table(const Settings& settings);
 
 }  // namespace throng

@@ -34,10 +34,10 @@ using Stages = std::vector<World::StageInfo>;
 constexpr std::string_view kOuter = "solve_impulses";
 
 /// The rows of the inner table that this scene has.
-std::vector<InnerRow> inner_rows(const Effects& effects)
+std::vector<InnerRow> inner_rows(const Effects& effects, const Settings& settings)
 {
     std::vector<InnerRow> rows;
-    for (const InnerRow& row : solve_table())
+    for (const InnerRow& row : solve_table(settings))
         if (row.called_for_by.meets(effects.on)) rows.push_back(row);
     return rows;
 }
@@ -155,7 +155,7 @@ int explain(const Options& options)
     // What is printed is the step as it begins; bodies that fail on the way may change it.
     const Effects effects = world.effects();
     const Stages stages = world.step_stages();
-    const std::vector<InnerRow> inner = inner_rows(effects);
+    const std::vector<InnerRow> inner = inner_rows(effects, world.settings());
     if (dot.asked_for()) write_dot(stages, inner, dot.stream());
     dot.keep();
 

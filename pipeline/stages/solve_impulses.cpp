@@ -27,6 +27,43 @@ constexpr InnerRow kSolveTable[] = {
     {"bounce", {Effect::restitution}, "after the last substep"},
 };
 
+constexpr InnerRow kDirectTable[] = {
+    {"take_islands", {Effect::contact}, "before the first substep"},
+    {"place_points", {Effect::contact}, "each substep"},
+    {"add_gravity", {Effect::gravity}, "each substep"},
+    {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
+    {"solve_exactly", {Effect::contact}, "each substep"},
+    {"hold_friction", {Effect::friction}, "each substep", true},
+    {"resist_rolling", {Effect::rolling_friction}, "each substep", true},
+    {"part_overlaps", {Effect::contact}, "each substep"},
+    {"bounce", {Effect::restitution}, "each substep"},
+    {"move_bodies", {Effect::motion}, "each substep"},
+    {"turn_bodies", {Effect::rotation}, "each substep"},
+};
+
+constexpr InnerRow kPenaltyTable[] = {
+    {"take_islands", {Effect::contact}, "before the first substep"},
+    {"cut_substep", {Effect::contact}, "each substep"},
+    {"place_points", {Effect::contact}, "each part of a substep"},
+    {"add_gravity", {Effect::gravity}, "each part of a substep"},
+    {"turn_gyroscopic", {Effect::gyroscopic}, "each part of a substep"},
+    {"push_by_forces", {Effect::contact}, "each part of a substep"},
+    {"damp_sliding", {Effect::friction}, "each part of a substep", true},
+    {"move_bodies", {Effect::motion}, "each part of a substep"},
+    {"turn_bodies", {Effect::rotation}, "each part of a substep"},
+};
+
+constexpr InnerRow kKinematicTable[] = {
+    {"take_islands", {Effect::contact}, "before the first substep"},
+    {"add_gravity", {Effect::gravity}, "each substep"},
+    {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
+    {"stop_approach", {Effect::contact}, "each sweep of a substep"},
+    {"slow_sliding", {Effect::friction}, "each sweep of a substep", true},
+    {"move_bodies", {Effect::motion}, "each substep"},
+    {"turn_bodies", {Effect::rotation}, "each substep"},
+    {"push_apart", {Effect::contact}, "each sweep of a substep"},
+};
+
 // Gives one body its new state. False, and the body as it was, when that is not sound.
 template <class Real>
 bool take_back(const SolverBody<Real>& seat,
@@ -53,7 +90,13 @@ bool take_back(const SolverBody<Real>& seat,
 
 }  // namespace
 
-std::span<const InnerRow> solve_table() { return kSolveTable; }
+std::span<const InnerRow> solve_table(const Settings& settings)
+{
+    if (settings.response == Response::penalty) return kPenaltyTable;
+    if (settings.response == Response::kinematic) return kKinematicTable;
+    if (settings.solver == Solver::direct) return kDirectTable;
+    return kSolveTable;
+}
 
 template <class Real>
 void solve_impulses(const Conditions& conditions,

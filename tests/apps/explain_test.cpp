@@ -65,6 +65,25 @@ TEST(Explain, APileHasWhatAPileNeeds)
         EXPECT_NE(stages.find(word), std::string::npos) << word;
 }
 
+TEST(Explain, TheSubstepIsThatOfTheResponseAndTheSolver)
+{
+    const auto inner_of = [](const std::string& dial) {
+        const Outcome said = run_throng({"explain", "pile:20", "--set", dial});
+        EXPECT_EQ(said.code, 0) << said.err;
+        return part_of(said.out, "stages");
+    };
+    const std::vector<std::pair<std::string, std::string>> wanted = {
+        {"solver=soft_step", "relax_contacts"},
+        {"solver=direct", "solve_exactly"},
+        {"response=penalty", "push_by_forces"},
+        {"response=kinematic", "push_apart"}};
+    for (const auto& [dial, row] : wanted) {
+        const std::string inner = inner_of(dial);
+        for (const auto& [other, others] : wanted)
+            EXPECT_EQ(inner.find(others) != std::string::npos, row == others) << dial << inner;
+    }
+}
+
 TEST(Explain, ALoneBallOnlyFalls)
 {
     const TestFolder folder;

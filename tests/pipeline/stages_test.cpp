@@ -302,8 +302,17 @@ TEST(WakeTouched, WhatMovesByItselfWakesOnlyWhileItMoves)
 
 TEST(SolveTable, ListsWhatASubstepDoes)
 {
-    EXPECT_FALSE(solve_table().empty());
-    for (const InnerRow& row : solve_table()) EXPECT_FALSE(row.when.empty()) << row.name;
+    Settings direct, penalty, kinematic;
+    direct.solver = Solver::direct;
+    penalty.response = Response::penalty;
+    kinematic.response = Response::kinematic;
+    for (const Settings& settings : {Settings{}, direct, penalty, kinematic}) {
+        EXPECT_FALSE(solve_table(settings).empty());
+        for (const InnerRow& row : solve_table(settings))
+            EXPECT_FALSE(row.when.empty()) << row.name;
+    }
+    EXPECT_NE(solve_table(direct).data(), solve_table(penalty).data());
+    EXPECT_NE(solve_table(kinematic).data(), solve_table(penalty).data());
 }
 
 }  // namespace
