@@ -76,13 +76,14 @@ private:
     // Other responses: see penalty_forces.cpp and kinematic_pushes.cpp.
     struct Give;
     void penalise(const Conditions& conditions);
-    void count_touching();
+    bool presses(std::size_t at, const Conditions& conditions, double ahead) const;
+    void count_touching(const Conditions& conditions, double ahead);
     double ease_of(const DirectPoint& point, const Vec3& along) const;
     Give give_of(std::size_t at, const Settings& settings, double time) const;
     void push_by_forces(const Conditions& conditions, double time);
     void separate(const Conditions& conditions);
     void stop_approach(std::size_t at);
-    void push_apart(std::size_t at);
+    void push_apart(std::size_t at, double most);
     std::pair<double, double> shares_of(const DirectPoint& point) const;
 
     bool part(const Conditions& conditions);

@@ -1,4 +1,5 @@
-// Kinematic pushes: bodies that overlap are put side by side as they are, and none turns.
+// Kinematic pushes: bodies that overlap are put side by side as they are, and none turns. Places
+// change no faster than the push limit lets a pair part.
 //
 // Of each velocity the part along the normal that closes is taken away, half of it from each of two
 // that can move, whatever their masses; the part across is slowed by friction. Nothing is
@@ -44,19 +45,21 @@ void DirectIsland::stop_approach(std::size_t at)
     if (b > 0) after_[static_cast<std::size_t>(point.b)].velocity += b * change;
 }
 
-void DirectIsland::push_apart(std::size_t at)
+// By so much at most from where place_points() found the two.
+void DirectIsland::push_apart(std::size_t at, double most)
 {
-    const double gap = gap_now(at);
-    if (!(gap < -touches_[at].tolerance)) return;
+    if (!(gaps_[at] < -touches_[at].tolerance)) return;
+    const double way = std::min(0.0, gaps_[at] + most) - gap_now(at);
+    if (!(way > 0)) return;
     const DirectPoint& point = points_[at];
     const auto [a, b] = shares_of(point);
-    if (a > 0) seats_[static_cast<std::size_t>(point.a)].moved += a * gap * point.normal;
-    if (b > 0) seats_[static_cast<std::size_t>(point.b)].moved -= b * gap * point.normal;
+    if (a > 0) seats_[static_cast<std::size_t>(point.a)].moved -= a * way * point.normal;
+    if (b > 0) seats_[static_cast<std::size_t>(point.b)].moved += b * way * point.normal;
 }
 
 void DirectIsland::separate(const Conditions& conditions)
 {
-    const double time = conditions.substep();
+    const double time = conditions.substep(), most = conditions.settings.push_limit * time;
     const int sweeps =
         conditions.settings.iterations > 0 ? conditions.settings.iterations : kSweeps;
     place_points();
@@ -68,7 +71,7 @@ void DirectIsland::separate(const Conditions& conditions)
     advance(time);
     place_points();
     for (int sweep = 0; sweep < sweeps; ++sweep)
-        for (std::size_t i = 0; i < touches_.size(); ++i) push_apart(i);
+        for (std::size_t i = 0; i < touches_.size(); ++i) push_apart(i, most);
 }
 
 }  // namespace throng

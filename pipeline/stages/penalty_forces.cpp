@@ -1,7 +1,8 @@
 // Penalty forces: each point that overlaps is a spring with a damper, and all act at once.
 //
 // Overlap under a load is the load over the stiffness. Friction is a damper across the normal that
-// gives way at Coulomb's limit, so that what should stick creeps. Rolling friction has no force.
+// gives way at Coulomb's limit, so that what should stick creeps: a box on four corners at eight
+// times the speed that it is given in a substep. Rolling friction has no force.
 #include "pipeline/stages/direct_island.hpp"
 
 #include <algorithm>
@@ -26,13 +27,23 @@ struct DirectIsland::Give {
     double longest = 0;                             // s, of a step that keeps it from growing
 };
 
-// Who bears how many points that overlap.
-void DirectIsland::count_touching()
+// Whether the two overlap, or come to within that time: a spring that they fall into for a whole
+// substep holds more than they bring with them.
+bool DirectIsland::presses(std::size_t at, const Conditions& conditions, double ahead) const
+{
+    const double closing = conditions.gravity.norm() * ahead - approach(at, after_);
+    return gaps_[at] < std::max(0.0, closing) * ahead;
+}
+
+// Who bears how many points that overlap, or come to within that time.
+void DirectIsland::count_touching(const Conditions& conditions, double ahead)
 {
     pressed_.assign(seats_.size(), 0);
-    for (std::size_t i = 0; i < touches_.size(); ++i)
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        if (!presses(i, conditions, ahead)) continue;
         for (const std::int32_t seat : {touches_[i].a, touches_[i].b})
-            if (gaps_[i] < 0 && seat >= 0) ++pressed_[static_cast<std::size_t>(seat)];
+            if (seat >= 0) ++pressed_[static_cast<std::size_t>(seat)];
+    }
 }
 
 // By how much an impulse along a direction changes the speed between the two, 1/kg.
@@ -78,7 +89,7 @@ void DirectIsland::push_by_forces(const Conditions& conditions, double time)
 {
     place_points();
     move_freely(conditions, time);
-    count_touching();
+    count_touching(conditions, 0);
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         if (!(gaps_[i] < 0)) continue;
         DirectPoint& point = points_[i];
@@ -114,11 +125,11 @@ void DirectIsland::penalise(const Conditions& conditions)
 {
     const double time = conditions.substep();
     place_points();
-    count_touching();
+    count_touching(conditions, time);
     double longest = time;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         points_[i].impulse = points_[i].torque = Vec3::Zero();
-        if (!(gaps_[i] < 0)) continue;
+        if (!presses(i, conditions, time)) continue;
         const double bears = give_of(i, conditions.settings, time).longest;
         if (bears > 0 && bears < time) longest = std::min(longest, kWithin * bears);
     }

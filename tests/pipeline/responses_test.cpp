@@ -1,0 +1,191 @@
+// What a step keeps to with response=penalty and response=kinematic, through the public door.
+#include "pipeline/world.hpp"
+#include "tests/pipeline/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+using testing::SceneOf;
+
+constexpr double kGravity = 9.81;
+
+SceneOf on_a_floor(Response response)
+{
+    SceneOf made;
+    made.scene.settings.response = response;
+    made.scene.settings.precision = Precision::double_;
+    made.scene.settings.sleep = false;
+    made.floor();
+    return made;
+}
+
+// One box of 1 kg and 1 m, its lower face at that height.
+SceneOf lone_box(Response response, double height)
+{
+    SceneOf made = on_a_floor(response);
+    made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.5 + height)).mass = 1;
+    return made;
+}
+
+BodyId last_of(const World& world) { return world.bodies().back(); }
+
+TEST(Responses, ABoxComesToRestOnAPlane)
+{
+    for (const Response response : {Response::penalty, Response::kinematic})
+        for (const Precision precision : {Precision::float_, Precision::double_}) {
+            SceneOf made = lone_box(response, 0.1);
+            made.scene.settings.precision = precision;
+            World world(made.scene);
+            world.step(300);
+            EXPECT_LT(world.velocity(last_of(world)).norm(), 1e-6);
+            EXPECT_LT(world.angular_velocity(last_of(world)).norm(), 1e-6);
+            // Springs are as stiff as lets a corner, four times as easy to move as the middle,
+            // swing by half a radian in a substep.
+            const double swing = world.settings().dt / world.settings().substeps / 0.5;
+            const double sunk = response == Response::penalty ? 4 * kGravity * swing * swing : 0;
+            EXPECT_NEAR(world.pose(last_of(world)).position.z(), 0.5 - sunk, 1e-5);
+            EXPECT_TRUE(world.remarks().empty());
+        }
+}
+
+TEST(Responses, PenaltyOverlapIsLoadOverStiffness)
+{
+    for (const double stiffness : {2e4, 1e5}) {
+        SceneOf made = lone_box(Response::penalty, 0);
+        made.scene.settings.penalty_stiffness = stiffness;
+        World world(made.scene);
+        world.step(300);
+        const double wanted = kGravity / (4 * stiffness);  // on four corners
+        EXPECT_NEAR(world.measure().greatest_overlap, wanted, 1e-4 * wanted);
+        EXPECT_NEAR(world.contact_force(last_of(world)).z(), kGravity, 1e-4 * kGravity);
+    }
+}
+
+TEST(Responses, PenaltyStackBearsItself)
+{
+    SceneOf made = on_a_floor(Response::penalty);
+    for (int k = 0; k < 4; ++k) made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.5 + k)).mass = 1;
+    World world(made.scene);
+    world.step(1200);  // its slowest swing fades to a tenth every second
+    for (const BodyId body : world.bodies()) EXPECT_LT(world.velocity(body).norm(), 1e-6);
+    EXPECT_NEAR(world.contact_force(world.bodies().front()).z(), -4 * kGravity, 1e-3 * kGravity);
+}
+
+TEST(Responses, PenaltyFrictionSlidesByCoulombsLaw)
+{
+    SceneOf made = lone_box(Response::penalty, 0);
+    made.scene.settings.dt = 1e-3;
+    made.scene.settings.penalty_stiffness = 1e5;
+    made.scene.bodies.back().position.z() -=
+        kGravity / 4e5;  // already as deep as its weight has it
+    made.scene.bodies.back().velocity = Vec3(4, 0, 0);
+    World world(made.scene);
+    world.step(500);
+    // Braking loads the corners in front and unloads those behind: the sum stays its weight.
+    EXPECT_NEAR(world.velocity(last_of(world)).x(), 4 - 0.5 * kGravity * 0.5, 1e-2);
+}
+
+// Friction is a damper, so what should stick creeps. Each of four corners, which are four times as
+// easy to move as the middle, has half of a fourth of what would stop it in a substep: that makes
+// an eighth of the box, which so creeps at eight times the speed that it is given in a substep.
+TEST(Responses, PenaltyFrictionHoldsButCreeps)
+{
+    const double slope = 0.3;  // tan, where friction would bear 0.5
+    for (const double dt : {1.0 / 60, 1e-3}) {
+        SceneOf made = lone_box(Response::penalty, 0);
+        made.scene.settings.dt = dt;
+        made.scene.gravity = kGravity * Vec3(slope, 0, -1).normalized();
+        World world(made.scene);
+        world.step(static_cast<int>(5 / dt));
+        const double along = kGravity * slope / std::sqrt(1 + slope * slope);
+        const double creep = 8 * along * dt / world.settings().substeps;
+        EXPECT_NEAR(world.velocity(last_of(world)).x(), creep, 0.01 * creep);
+    }
+}
+
+// 5 m/s onto a spring that takes thirty substeps to turn it round.
+TEST(Responses, PenaltyLosesLittleOfAnElasticBounce)
+{
+    SceneOf made = on_a_floor(Response::penalty);
+    made.scene.gravity = Vec3::Zero();
+    made.scene.materials[0].restitution = 1;
+    made.scene.settings.dt = 1e-3;
+    made.scene.settings.penalty_stiffness = 1e5;
+    BodyDescription& ball = made.ball(0.5, Vec3(0, 0, 0.6));
+    ball.mass = 1;
+    ball.velocity = Vec3(0, 0, -5);
+    World world(made.scene);
+    world.step(60);
+    EXPECT_NEAR(world.velocity(last_of(world)).z(), 5, 0.05);
+}
+
+TEST(Responses, PenaltyBeyondTheLimitIsCutAndSaid)
+{
+    SceneOf made = lone_box(Response::penalty, 0);
+    made.scene.settings.penalty_stiffness = 1e8;
+    World world(made.scene);
+    world.step(300);
+    ASSERT_EQ(world.remarks().size(), 1u);
+    const std::string said = world.remarks().front();
+    EXPECT_NE(said.find("penalty_stiffness"), std::string::npos) << said;
+    EXPECT_LT(world.velocity(last_of(world)).norm(), 1e-3);
+    const auto at = said.find("take substeps=");
+    ASSERT_NE(at, std::string::npos) << said;
+    // What it says would do does.
+    made.scene.settings.substeps = std::stoi(said.substr(at + 14));
+    World finer(made.scene);
+    finer.step(60);
+    EXPECT_TRUE(finer.remarks().empty());
+}
+
+TEST(Responses, KinematicPartsBodiesNoFasterThanThePushLimit)
+{
+    SceneOf made = on_a_floor(Response::kinematic);
+    made.scene.gravity = Vec3::Zero();
+    made.scene.settings.push_limit = 0.6;
+    for (int i = 0; i < 2; ++i) made.ball(0.5, Vec3(0.4 * i, 0, 5)).mass = 1 + i;
+    World world(made.scene);
+    const BodyId a = world.bodies()[1], b = world.bodies()[2];
+    const auto apart = [&] { return (world.pose(b).position - world.pose(a).position).norm(); };
+    world.step(30);
+    EXPECT_NEAR(apart(), 0.4 + 0.6 * 0.5, 1e-9);
+    world.step(60);
+    EXPECT_NEAR(apart(), 1, 1e-6);
+    EXPECT_EQ(world.velocity(a), Vec3(Vec3::Zero()));
+    EXPECT_EQ(world.velocity(b), Vec3(Vec3::Zero()));
+    // Half the way each, whatever they weigh.
+    EXPECT_NEAR(world.pose(a).position.x(), -0.3, 1e-6);
+}
+
+TEST(Responses, KinematicTakesTheSpeedThatClosesAndKeepsTheSpeedAcross)
+{
+    SceneOf made = on_a_floor(Response::kinematic);
+    made.scene.gravity = Vec3::Zero();
+    made.scene.materials[0].friction = 0;
+    made.ball(0.5, Vec3(0, 0, 0.499)).velocity = Vec3(2, 0, -3);
+    World world(made.scene);
+    world.step();
+    EXPECT_NEAR(world.velocity(last_of(world)).x(), 2, 1e-12);
+    EXPECT_NEAR(world.velocity(last_of(world)).z(), 0, 1e-12);
+}
+
+TEST(Responses, AreTheSameBitsOnAnyNumberOfThreads)
+{
+    for (const Response response : {Response::penalty, Response::kinematic}) {
+        Scene scene = testing::mixed_scene();
+        scene.settings.response = response;
+        std::string wanted;
+        for (const int threads : {1, 2, 3}) {
+            World world(scene, threads);
+            world.step(120);
+            if (threads == 1) wanted = world.state_hash();
+            EXPECT_EQ(world.state_hash(), wanted) << threads;
+            EXPECT_EQ(world.report().bodies_quarantined, 0u);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace throng
