@@ -77,6 +77,8 @@ constexpr HardCase kCases[] = {
     {"H45", "shared volumes and depths converge as they should", case_convergence, Fault::shrink},
     {"H46", "springs swing wider beyond the limit, which is told, and not within",
      case_spring_limit, Fault::stiffness},
+    {"H47", "bodies made inside one another part slowly, and come to rest", case_recovery,
+     Fault::float_poses},
 };
 
 constexpr double kShrunk = 0.9;

@@ -33,6 +33,8 @@ void motion_without_friction(CaseBench& bench);
 void case_turntable(CaseBench& bench);  // H24, turntable.cpp
 void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
+void case_recovery(CaseBench& bench);  // H47, recovery.cpp
+
 // Bodies that go far in a step: fast_bodies.cpp, and the sets of exact_paths.cpp.
 void case_bullet_plate(CaseBench& bench);  // H38
 void case_spinning_rod(CaseBench& bench);  // H39
