@@ -33,7 +33,7 @@ constexpr Choice kResponse[] = {{"impulse"}, {"penalty"}, {"kinematic"}};
 constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct"}};
 constexpr Choice kFrictionCone[] = {{"cone"}, {"pyramid", kNotYet}};
 constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous"}};
-constexpr Choice kOverlap[] = {{"allow"}, {"back_up", kNotYet}, {"subdivide", kNotYet}};
+constexpr Choice kOverlap[] = {{"allow"}, {"back_up"}, {"subdivide", kNotYet}};
 constexpr Choice kToiMethod[] = {{"newton"}, {"bisection"}, {"conservative"}};
 constexpr Choice kSleep[] = {{"on"}, {"off"}};
 
@@ -394,7 +394,7 @@ std::vector<Dial> make_dials()
             "the cone is the same in every direction; the pyramid is cheaper and holds up to 1.41 too much"),
         choice_dial<&S::impact_law, kImpactLaw>("impact_law",
             "sequential passes an impact along one pair at a time; simultaneous shares it, for a joint solve"),
-        fixed_dial<kOverlap>("overlap",
+        choice_dial<&S::overlap, kOverlap>("overlap",
             "backing up or subdividing the step avoids overlap, and repeats work at every impact"),
         choice_dial<&S::toi_method, kToiMethod>("toi_method",
             "time alone: none is ever late; newton asks least, bisection a bit at a time, conservative often where two graze"),

@@ -22,15 +22,20 @@ struct Known {
 
 // In the order of the enumeration.
 constexpr Known kKnown[] = {
-    {"motion", true},        {"gravity", true},        {"forces", true},
-    {"drive", true},         {"rotation", true},       {"gyroscopic", true},
-    {"contact", true},       {"friction", true},       {"rolling friction", true},
-    {"restitution", true},   {"fast motion", true},    {"mesh contact", true},
-    {"voxel contact", true}, {"sphere contact", true}, {"image contact", true},
-    {"springs", true},       {"attractors", true},     {"wind", true},
-    {"drag", true},          {"pivot", true},          {"joints", false},
-    {"motors", false},       {"sleeping", true},       {"sensors", false},
-    {"events", false},       {"agents", false},
+    {"motion", true},         {"gravity", true},
+    {"forces", true},         {"drive", true},
+    {"rotation", true},       {"gyroscopic", true},
+    {"contact", true},        {"no overlap", true},
+    {"friction", true},       {"rolling friction", true},
+    {"restitution", true},    {"fast motion", true},
+    {"mesh contact", true},   {"voxel contact", true},
+    {"sphere contact", true}, {"image contact", true},
+    {"springs", true},        {"attractors", true},
+    {"wind", true},           {"drag", true},
+    {"pivot", true},          {"joints", false},
+    {"motors", false},        {"sleeping", true},
+    {"sensors", false},       {"events", false},
+    {"agents", false},
 };
 static_assert(std::size(kKnown) == kEffects);
 
@@ -47,7 +52,7 @@ public:
         find_motion();
         if (found_.on.has(Effect::motion)) find_forces();
         find_contact();
-        if (found_.on.has(Effect::contact)) find_materials();
+        if (meets()) find_materials();
         find_rotation();
         if (found_.on.has(Effect::contact) && facts_.conditions.settings.sleep)
             if (const auto body =
@@ -81,9 +86,25 @@ private:
         return facts_.states.kind[body] == BodyKind::dynamic
             || facts_.states.kind[body] == BodyKind::kinematic;
     }
-    bool has_contact(std::size_t body) const
+    bool meets() const
     {
-        return found_.on.has(Effect::contact) && facts_.colliders.count[body] > 0;
+        return found_.on.has(Effect::contact) || found_.on.has(Effect::no_overlap);
+    }
+    bool has_contact(std::size_t body) const { return meets() && facts_.colliders.count[body] > 0; }
+    // Whether bodies may be carried from touch to touch: see back_up.cpp.
+    bool backs_up() const
+    {
+        const Settings& settings = facts_.conditions.settings;
+        const auto& hangs = facts_.forces.hangs;
+        if (settings.overlap != Overlap::back_up || settings.response != Response::impulse)
+            return false;
+        if (std::find(hangs.begin(), hangs.end(), 1) != hangs.end()) return false;
+        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
+            const ShapeKind kind = facts_.colliders.shape[i].kind;
+            const bool whole = kind != ShapeKind::mesh && kind != ShapeKind::solid;
+            if (facts_.colliders.body[i] != kNobody && !whole) return false;
+        }
+        return true;
     }
 
     void find_motion()
@@ -152,7 +173,11 @@ private:
                 if (a.dynamic == kNobody) continue;
                 const std::uint32_t other = b.first != a.dynamic ? b.first : b.second;
                 if (other == kNobody) continue;
-                call(Effect::contact, name(a.dynamic) + " may touch " + name(other));
+                const bool backs = backs_up();
+                call(backs ? Effect::no_overlap : Effect::contact,
+                     name(a.dynamic) + " may touch " + name(other));
+                // Nobody is swept who is carried from touch to touch.
+                if (backs) found_.on.remove(Effect::fast_motion);
                 find_surfaces();
                 return;
             }

@@ -22,6 +22,7 @@ enum class Effect : std::uint8_t {
     rotation,
     gyroscopic,
     contact,
+    no_overlap,
     friction,
     rolling_friction,
     restitution,

@@ -21,6 +21,7 @@ enum class BoundsFilter : std::uint8_t { none, sphere, k_dop_14, k_dop_6, k_dop_
 enum class NonConvex : std::uint8_t { voxels, parts, spheres, depth_image, hull };
 enum class Response : std::uint8_t { impulse, penalty, kinematic };
 enum class Solver : std::uint8_t { soft_step, pgs, direct };
+enum class Overlap : std::uint8_t { allow, back_up, subdivide };
 enum class ImpactLaw : std::uint8_t { sequential, simultaneous };
 enum class FrictionAt : std::uint8_t { manifold, points };
 enum class FrictionCone : std::uint8_t { cone, pyramid };
@@ -61,6 +62,7 @@ struct Settings {
     ImpactLaw impact_law = ImpactLaw::sequential;
     FrictionAt friction_at = FrictionAt::manifold;
     FrictionCone friction_cone = FrictionCone::cone;
+    Overlap overlap = Overlap::allow;
     ToiMethod toi_method = ToiMethod::newton;
     double toi_tolerance = 1e-4;  // of the smallest half extent of the two shapes
     bool sleep = true;

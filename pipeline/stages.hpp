@@ -128,6 +128,22 @@ void solve_impulses(const Conditions&,
                     Velocities&,
                     Trouble&);
 
+/// Dynamic bodies in place of all stages of contact: carried from touch to touch, with those that
+/// they may meet in this step, so that none ever overlap.
+void back_up(const Conditions&,
+             const Shapes&,
+             const Surfaces&,
+             const PairFilter&,
+             const Colliders&,
+             const BodyStates&,
+             const Masses&,
+             const Forces&,
+             Poses&,
+             Velocities&,
+             Flights&,
+             Islands&,
+             Trouble&);
+
 /// Bodies that touch nothing: velocities into poses.
 void integrate_poses(const Conditions&,
                      const Islands&,

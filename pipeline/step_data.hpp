@@ -26,6 +26,7 @@ struct Trouble {
     double direct_residual = 0;  // greatest of the islands that were solved directly in this step
     std::uint64_t direct_left = 0;       // islands in it that were too great for that
     std::vector<double> residual_of;     // scratch: [batches]
+    std::uint64_t held_groups = 0;       // in it that could not be carried on without overlap
     int penalty_cuts = 1;                // most that penalty forces cut a substep into
     std::vector<int> cuts_of;            // scratch: [batches]
     BlockLists<std::uint32_t> of_block;  // scratch

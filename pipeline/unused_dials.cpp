@@ -67,6 +67,34 @@ std::string why_meshes_leave(const Scene& scene, std::string_view name)
     return "no moving mesh goes by " + dial_value(by_way, "nonconvex");
 }
 
+/// Why bodies of the scene are not carried from touch to touch as the dial `overlap` asks; empty
+/// where they are, or it does not. As effects.cpp has it.
+std::string why_not_backed_up(const Scene& scene)
+{
+    if (scene.settings.overlap != Overlap::back_up) return {};
+    if (scene.settings.response != Response::impulse)
+        return "response " + dial_value(scene.settings, "response") + " needs overlap";
+    for (const BodyDescription& body : scene.bodies)
+        if (body.pivot) return "bodies on pivots are not held apart; contacts go by allow";
+    for (const auto& [name, shape] : scene.shapes)
+        if (std::holds_alternative<MeshShape>(shape) || std::holds_alternative<VoxelsShape>(shape))
+            return "what is not convex is not held apart; contacts go by allow";
+    return {};
+}
+
+/// Why a dial of contacts does nothing where bodies are carried from touch to touch.
+std::string why_backing_up_leaves(const Scene& scene, std::string_view name)
+{
+    const std::string why = why_not_backed_up(scene);
+    if (name == "overlap") return why;
+    if (scene.settings.overlap != Overlap::back_up || !why.empty()) return {};
+    for (const std::string_view unused :
+         {"solver", "contact_rate", "direct_limit", "narrowphase", "method_start", "bounds_filter",
+          "broadphase", "friction_cone", "friction_at", "sleep"})
+        if (name == unused) return "overlap back_up solves contacts in its own way";
+    return {};
+}
+
 /// Why a dial does nothing under these settings; empty when it does something.
 std::string why_settings_leave(const Settings& settings, std::string_view name)
 {
@@ -92,7 +120,8 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
         && settings.integrator != Integrator::semi_implicit)
         return "integrator " + dial_value(settings, "integrator")
             + " takes the torque as it does all others";
-    if (settings.solver != Solver::direct && name == "impact_law")
+    if (settings.solver != Solver::direct && settings.overlap == Overlap::allow
+        && name == "impact_law")
         return "solver " + solver + " passes an impact along one pair at a time";
     if (settings.solver == Solver::direct && name == "friction_at")
         return "solver " + solver + " has friction at every point";
@@ -110,6 +139,7 @@ std::vector<std::string> unused_dials(const Scene& scene)
     for (const std::string& name : scene.dials_set) {
         std::string why = why_settings_leave(scene.settings, name);
         if (why.empty()) why = why_meshes_leave(scene, name);
+        if (why.empty()) why = why_backing_up_leaves(scene, name);
         if (!why.empty()) unused.push_back(name + ": unused, " + why);
     }
     return unused;

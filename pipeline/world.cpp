@@ -252,7 +252,7 @@ void World::step(int steps)
                 state.step);
             state.report.fallbacks += state.get<MethodPairs>().fell_back;
             const Trouble& trouble = state.get<Trouble>();
-            state.report.fallbacks += trouble.direct_left;
+            state.report.fallbacks += trouble.direct_left + trouble.held_groups;
             state.warn_of_cuts(trouble.penalty_cuts);
             state.report.direct_residual =
                 std::max(state.report.direct_residual, trouble.direct_residual);

@@ -200,7 +200,7 @@ void integrate_poses(const Conditions& conditions,
                      Trouble& trouble)
 {
     // Without contact there are no islands: every awake body flies.
-    const bool alone = !conditions.has(Effect::contact);
+    const bool alone = !conditions.has(Effect::contact) && !conditions.has(Effect::no_overlap);
     if (alone) trouble.quarantined.clear();
 
     const FlightRule rule = rule_of(conditions);

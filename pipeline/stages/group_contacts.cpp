@@ -1,0 +1,295 @@
+// Group contacts: what happens where bodies of a group touch.
+//
+// Who closes faster than a fall through the tolerance makes him bounces: all pairs together, or
+// pair by pair in order of pair ids, as impact_law has it, by the generalised reflections that
+// direct_impacts.cpp tells of. Friction comes last, and sees the impulses of all. Who closes slower
+// rests: a joint solve keeps it half the tolerance away. A pair that has bounced too often in a
+// step rests too, so that a step's work is bounded.
+//
+// Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
+#include "kernels/math/rotation.hpp"
+#include "narrowphase/narrowphase.hpp"
+#include "pipeline/stages/group_flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr int kNewtonSteps = 50;
+constexpr int kMostPasses = 500;    // of impacts at a moment; what still closes then is stopped
+constexpr int kMostStrikes = 1000;  // of a pair in a step
+// Slower than this, of the greatest speed, nobody closes.
+constexpr double kRounding = 1e-11;
+// The share of what is missing to the gap at rest that a span gives back.
+constexpr double kPartShare = 0.5;
+// As far as this, in tolerances, at the end of a span, bodies are not held.
+constexpr double kClear = 2;
+// Two methods may see a distance differently by this share.
+constexpr double kAlike = 1.01;
+
+}  // namespace
+
+// Those carried come first; below 0 for what stands still.
+std::int32_t GroupFlight::seat_of(std::uint32_t body)
+{
+    if (const std::int32_t member = member_of(body); member >= 0) return member;
+    const Velocities& velocities = scene_.velocities;
+    const bool moves =
+        scene_.states.kind[body] == BodyKind::kinematic || scene_.states.carries(body);
+    if (!moves || (velocities.linear[body].isZero(0) && velocities.angular[body].isZero(0)))
+        return -1;
+    const auto at = std::find(seats_.begin(), seats_.end(), body);
+    const auto place = static_cast<std::size_t>(at - seats_.begin());
+    if (at == seats_.end()) seats_.push_back(body);
+    return static_cast<std::int32_t>(place);
+}
+
+void GroupFlight::list_touches(double time)
+{
+    touches_.clear();
+    gap_now_.clear();
+    seats_.assign(bodies_.begin(), bodies_.end());
+    for (const PairKey key : pairs_) list_touches_of(key, time);
+}
+
+void GroupFlight::list_touches_of(PairKey key, double time)
+{
+    const Colliders& colliders = scene_.colliders;
+    std::uint32_t a = first_of(key), b = second_of(key);
+    if (colliders.shape[a].kind == ShapeKind::plane) std::swap(a, b);
+    const std::uint32_t body_a = colliders.body[a], body_b = colliders.body[b];
+    const Pose at_a = pose_at(body_a, time), at_b = pose_at(body_b, time);
+    const Pose pose_a = at_a * colliders.local[a], pose_b = at_b * colliders.local[b];
+    const double tolerance = tolerance_of(key);
+    PairCache cache;
+    LocalManifold<double> found;
+    collide<double>(scene_.shapes, colliders.shape[a], colliders.shape[b],
+                    pose_seen_from_a(scene_.shapes, colliders.shape[b], pose_a, pose_b),
+                    tolerance * kAlike, cache, found);
+    if (found.count == 0) return;
+    const Surfaces::Meeting meeting =
+        scene_.surfaces.between(colliders.material[a], colliders.material[b]);
+    Touch touch;
+    touch.key = key;
+    touch.tolerance = tolerance;
+    touch.rest_gap = tolerance / 2;
+    touch.restitution = meeting.restitution;
+    touch.least_speed = std::sqrt(2 * scene_.conditions.gravity.norm() * tolerance);
+    DirectPoint& point = touch.point;
+    point.a = seat_of(body_a);
+    point.b = seat_of(body_b);
+    point.normal = (pose_a.orientation * found.normal).normalized();
+    point.friction = meeting.friction;
+    point.rolling = meeting.rolling_friction;
+    double least = found.points[0].separation;
+    for (int k = 0; k < found.count; ++k) {
+        const auto& at = found.points[static_cast<std::size_t>(k)];
+        const Vec3 middle = pose_a * at.position, half = point.normal * (at.separation / 2);
+        touch.gap = at.separation;
+        point.arm_a = middle - half - at_a.position;
+        point.arm_b = middle + half - at_b.position;
+        least = std::min(least, touch.gap);
+        touches_.push_back(touch);
+    }
+    gap_now_[key] = least;
+}
+
+// As they are, or as they will be at the end of the way ahead.
+GroupFlight::Motions GroupFlight::motions(bool ends) const
+{
+    Motions bodies(seats_.size());
+    for (std::size_t i = 0; i < seats_.size(); ++i) {
+        const std::uint32_t body = seats_[i];
+        const bool carried = i < bodies_.size();
+        bodies[i].velocity = carried && ends ? ends_[i].velocity : scene_.velocities.linear[body];
+        bodies[i].spin = carried && ends ? ends_[i].spin : scene_.velocities.angular[body];
+        if (!carried) continue;
+        bodies[i].inverse_mass = scene_.masses.inverse_mass[body];
+        if (rule_.turns)
+            bodies[i].inverse_inertia =
+                in_world_axes(scene_.masses.inverse_inertia[body], scene_.poses.orientation[body]);
+    }
+    return bodies;
+}
+
+// m/s along the normal, of b against a: below 0 while they close.
+double GroupFlight::approach(const DirectPoint& point, const Motions& bodies)
+{
+    const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
+        if (seat < 0) return Vec3::Zero();
+        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+        return body.velocity + body.spin.cross(arm);
+    };
+    return point.normal.dot(speed(point.b, point.arm_b) - speed(point.a, point.arm_a));
+}
+
+void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
+{
+    const int asked = scene_.conditions.settings.iterations;
+    residual_ = std::max(residual_,
+                         solver_.solve(bodies, points, asked > 0 ? asked : kNewtonSteps).residual);
+}
+
+double GroupFlight::restitution_of(const Touch& touch) const
+{
+    const auto strikes = strikes_.find(touch.key);
+    const bool worn = strikes != strikes_.end() && strikes->second >= kMostStrikes;
+    return worn ? 0 : touch.restitution;
+}
+
+// Gives those that close among the touches from `begin` to before `end` back their share of what
+// stops them. False if none does.
+bool GroupFlight::reflect(std::size_t begin, std::size_t end, Motions& bodies)
+{
+    std::vector<std::size_t> hits;
+    std::vector<DirectPoint> points;
+    std::vector<double> speeds;
+    for (std::size_t i = begin; i < end; ++i) {
+        const double speed = approach(touches_[i].point, bodies);
+        if (!(speed < -touches_[i].least_speed)) continue;
+        hits.push_back(i);
+        speeds.push_back(-speed);
+        points.push_back(touches_[i].point);
+        points.back().friction = points.back().rolling = 0;
+    }
+    if (hits.empty()) return false;
+    Motions stopped = bodies;
+    solve(stopped, points);
+    // The mean over the work done: where coefficients differ none gains energy.
+    double all = 0, kept = 0;
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        const double work = points[k].normal.dot(points[k].impulse) * speeds[k];
+        all += work;
+        kept += work * restitution_of(touches_[hits[k]]);
+    }
+    const double twice = all > 0 ? 1 + kept / all : 1;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        bodies[i].velocity += (stopped[i].velocity - bodies[i].velocity) * twice;
+        bodies[i].spin += (stopped[i].spin - bodies[i].spin) * twice;
+    }
+    for (std::size_t k = 0; k < hits.size(); ++k)
+        struck_[hits[k]] += points[k].normal.dot(points[k].impulse) * twice;
+    return true;
+}
+
+// Pair by pair: the points of one meet together.
+bool GroupFlight::reflect_in_order(Motions& bodies)
+{
+    bool any = false;
+    for (std::size_t begin = 0, end = 0; begin < touches_.size(); begin = end) {
+        while (end < touches_.size() && touches_[end].key == touches_[begin].key) ++end;
+        any = reflect(begin, end, bodies) || any;
+    }
+    return any;
+}
+
+// The same impacts with friction: every struck point leaves with the speed that it has now.
+void GroupFlight::grip(Motions& bodies)
+{
+    std::vector<DirectPoint> points;
+    bool grips = false;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        if (!(struck_[i] > 0)) continue;
+        points.push_back(touches_[i].point);
+        points.back().least = std::max(0.0, approach(points.back(), bodies));
+        grips = grips || points.back().friction > 0 || points.back().rolling > 0;
+    }
+    if (!grips) return;
+    bodies = motions(false);
+    solve(bodies, points);
+}
+
+// Impacts of this moment. False if there is none.
+bool GroupFlight::strike()
+{
+    Motions bodies = motions(false);
+    double greatest = 0;
+    for (const Touch& touch : touches_)
+        greatest = std::max(greatest, std::abs(approach(touch.point, bodies)));
+    bool any = false;
+    for (Touch& touch : touches_) {
+        touch.least_speed = std::max(touch.least_speed, kRounding * greatest);
+        any = any
+            || (restitution_of(touch) > 0 && approach(touch.point, bodies) < -touch.least_speed);
+    }
+    if (!any) return false;
+    struck_.assign(touches_.size(), 0);
+    const bool together = scene_.conditions.settings.impact_law == ImpactLaw::simultaneous;
+    int passes = 0;
+    while (passes < kMostPasses
+           && (together ? reflect(0, touches_.size(), bodies) : reflect_in_order(bodies)))
+        ++passes;
+    grip(bodies);
+    for (std::size_t i = 0; i < touches_.size(); ++i)
+        if (struck_[i] > 0) strikes_[touches_[i].key] += passes < kMostPasses ? 1 : kMostStrikes;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        scene_.velocities.linear[bodies_[i]] = bodies[i].velocity;
+        scene_.velocities.angular[bodies_[i]] = bodies[i].spin;
+    }
+    return true;
+}
+
+// Holds those that would be too near at the end of the way ahead. False if there are none.
+bool GroupFlight::rest(double span)
+{
+    const Motions bodies = motions(true), now = motions(false);
+    std::vector<DirectPoint> points;
+    resting_.clear();
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        const Touch& touch = touches_[i];
+        // Who has just bounced flies, and falls back in a span of its own.
+        if (restitution_of(touch) > 0 && approach(touch.point, now) > touch.least_speed) continue;
+        const double gap = touch.gap + approach(touch.point, bodies) * span;
+        if (gap > kClear * touch.tolerance) continue;
+        resting_.push_back(i);
+        points.push_back(touch.point);
+        points.back().least = -std::max(touch.gap - touch.rest_gap, 0.0) / span;
+    }
+    if (resting_.empty()) return false;
+    Motions held = bodies;
+    solve(held, points);
+    part(span, held);
+    return true;
+}
+
+// Those nearer than they rest are moved apart, on top of what else they do.
+void GroupFlight::part(double span, const Motions& solved)
+{
+    std::vector<DirectPoint> points;
+    bool any = false;
+    for (const std::size_t at : resting_) {
+        const Touch& touch = touches_[at];
+        points.push_back(touch.point);
+        points.back().friction = points.back().rolling = 0;
+        points.back().least = -std::max(touch.gap - touch.rest_gap, 0.0) / span;
+        if (!(touch.gap < touch.rest_gap * (1 - kRounding))) continue;
+        any = true;
+        points.back().least = std::min((touch.rest_gap - touch.gap) * kPartShare / span,
+                                       scene_.conditions.settings.push_limit);
+    }
+    Motions ways = solved;
+    if (any) solve(ways, points);
+    end_with(solved, ways, span);
+}
+
+// Bodies that a contact may hold go where the solve has them go; others fly.
+void GroupFlight::end_with(const Motions& speeds, const Motions& ways, double span)
+{
+    for (const std::size_t at : resting_)
+        for (const std::int32_t seat : {touches_[at].point.a, touches_[at].point.b}) {
+            const auto i = static_cast<std::size_t>(seat);
+            if (seat < 0 || i >= bodies_.size()) continue;
+            End& end = ends_[i];
+            const std::uint32_t body = bodies_[i];
+            end.flew = false;
+            end.velocity = speeds[i].velocity;
+            end.spin = speeds[i].spin;
+            end.pose.position = scene_.poses.position[body] + ways[i].velocity * span;
+            end.pose.orientation = turned(scene_.poses.orientation[body], ways[i].spin, span);
+        }
+}
+
+}  // namespace throng

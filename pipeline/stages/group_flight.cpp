@@ -1,0 +1,253 @@
+#include "pipeline/stages/group_flight.hpp"
+
+#include "kernels/geometry/shape_bounds.hpp"
+#include "kernels/math/rotation.hpp"
+#include "narrowphase/narrowphase.hpp"
+#include "pipeline/stages/rigid_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+// Spans that a step is cut into at most, and the shortest of them as a share of it.
+constexpr int kMostSpans = 20000;
+constexpr double kLeastSpan = 1e-9;
+// A time that is a step but for rounding.
+constexpr double kWhole = 1 - 1e-12;
+// Where a body flies on a curve it is not yet there when the chord touches: the span is cut to this
+// share, and the curve is that share squared as far from its chord.
+constexpr double kCloser = 0.125;
+// Of its gap a pair that touches may lose this share while it rests; it is given back after.
+constexpr double kKept = 0.9;
+
+}  // namespace
+
+GroupFlight::GroupFlight(GroupScene& scene, std::span<const std::uint32_t> bodies)
+    : scene_(scene), bodies_(bodies), rule_(rigid_rule(scene.conditions)),
+      law_(rule_, {scene.forces, scene.masses, scene.poses, scene.velocities}), ends_(bodies.size())
+{ }
+
+std::int32_t GroupFlight::member_of(std::uint32_t body) const
+{
+    const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), body);
+    return at != bodies_.end() && *at == body ? static_cast<std::int32_t>(at - bodies_.begin())
+                                              : -1;
+}
+
+// s since the step began; others than its own move by themselves, or not at all.
+Pose GroupFlight::pose_at(std::uint32_t body, double time) const
+{
+    const Pose now = scene_.poses.at(body);
+    if (member_of(body) >= 0 || scene_.states.kind[body] != BodyKind::kinematic) return now;
+    const Velocities& velocities = scene_.velocities;
+    return {now.position + velocities.linear[body] * time,
+            turned(now.orientation, velocities.angular[body], time)};
+}
+
+Pose GroupFlight::end_of(std::uint32_t body, double time) const
+{
+    const std::int32_t member = member_of(body);
+    return member >= 0 ? ends_[static_cast<std::size_t>(member)].pose : pose_at(body, time);
+}
+
+double GroupFlight::tolerance_of(PairKey key) const
+{
+    const auto& shape = scene_.colliders.shape;
+    return scene_.conditions.settings.toi_tolerance
+        * impact_size(scene_.shapes, shape[first_of(key)], shape[second_of(key)]);
+}
+
+// m, of bodies at these poses; `reach` where it is more.
+double GroupFlight::gap_of(PairKey key, const Pose& a, const Pose& b, double reach) const
+{
+    const Colliders& colliders = scene_.colliders;
+    std::uint32_t first = first_of(key), second = second_of(key);
+    Pose pose_a = a * colliders.local[first], pose_b = b * colliders.local[second];
+    if (colliders.shape[first].kind == ShapeKind::plane) {
+        std::swap(first, second);
+        std::swap(pose_a, pose_b);
+    }
+    const ShapeRef shape_a = colliders.shape[first], shape_b = colliders.shape[second];
+    PairCache cache;
+    LocalManifold<double> found;
+    collide<double>(scene_.shapes, shape_a, shape_b,
+                    pose_seen_from_a(scene_.shapes, shape_b, pose_a, pose_b), reach, cache, found);
+    double gap = reach;
+    for (int k = 0; k < found.count; ++k)
+        gap = std::min(gap, found.points[static_cast<std::size_t>(k)].separation);
+    return gap;
+}
+
+// Where the bodies will be when nothing meets them. False where a step cannot hold that.
+bool GroupFlight::fly(double begin, double span)
+{
+    const auto& integrator =
+        integrators()[static_cast<std::size_t>(scene_.conditions.settings.integrator)];
+    law_.take(bodies_, scene_.flights);
+    integrator.advance(law_, begin, span, room_, law_.state());
+    law_.settle();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const RigidMotion::Outcome now = law_.outcome(i);
+        ends_[i] = {
+            {now.position, now.orientation}, now.velocity, now.angular_velocity, now.memory, true};
+        if (!holdable(now.position) || !now.orientation.coeffs().allFinite()
+            || !holdable(now.velocity) || !holdable(now.angular_velocity))
+            return false;
+    }
+    return true;
+}
+
+Box3 GroupFlight::box_of(std::uint32_t collider, const Pose& body) const
+{
+    const Colliders& colliders = scene_.colliders;
+    return shape_bounds(scene_.shapes, colliders.shape[collider], body * colliders.local[collider]);
+}
+
+void GroupFlight::add_pair(std::uint32_t a, std::uint32_t b)
+{
+    if (scene_.filter.allows(a, b)) pairs_.push_back(pair_key(a, b));
+}
+
+// Those whose boxes round the way just ahead meet.
+void GroupFlight::find_pairs(double begin, double span)
+{
+    const Colliders& colliders = scene_.colliders;
+    boxes_.clear();
+    pairs_.clear();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const std::uint32_t body = bodies_[i];
+        const double angle = std::min(ends_[i].spin.norm() * span, 2.0);
+        for (std::uint32_t k = 0; k < colliders.count[body]; ++k) {
+            const std::uint32_t at = colliders.begin[body] + k;
+            Box3 box = joined(box_of(at, scene_.poses.at(body)), box_of(at, ends_[i].pose));
+            const double slack = angle * colliders.outer_radius[at]
+                + 2 * scene_.conditions.settings.toi_tolerance * colliders.inner_extent[at];
+            box.lower.array() -= slack;
+            box.upper.array() += slack;
+            scene_.ways[body] = joined(scene_.ways[body], box);
+            boxes_.emplace_back(at, box);
+        }
+    }
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+        for (std::size_t j = i + 1; j < boxes_.size(); ++j)
+            if (boxes_[i].second.overlaps(boxes_[j].second))
+                add_pair(boxes_[i].first, boxes_[j].first);
+        for (const std::uint32_t at : scene_.obstacles) {
+            const std::uint32_t body = colliders.body[at];
+            Box3 box = box_of(at, pose_at(body, begin));
+            if (scene_.states.kind[body] == BodyKind::kinematic) {
+                box = joined(box, box_of(at, pose_at(body, begin + span)));
+                const double angle = scene_.velocities.angular[body].norm() * span;
+                const double slack = std::min(angle, 2.0) * colliders.outer_radius[at];
+                box.lower.array() -= slack;
+                box.upper.array() += slack;
+            }
+            if (boxes_[i].second.overlaps(box)) add_pair(boxes_[i].first, at);
+        }
+    }
+    std::sort(pairs_.begin(), pairs_.end());
+}
+
+// The first touch of those that do not touch yet.
+FirstImpact GroupFlight::look_ahead(double begin, double span)
+{
+    const Colliders& colliders = scene_.colliders;
+    std::vector<MovingShape> shapes;
+    std::vector<ImpactPair> pairs;
+    const auto add = [&](std::uint32_t at) {
+        const std::uint32_t body = colliders.body[at];
+        const std::int32_t member = member_of(body);
+        const Vec3 spin = member >= 0 ? ends_[static_cast<std::size_t>(member)].spin
+                                      : scene_.velocities.angular[body];
+        const Pose from = pose_at(body, begin), to = end_of(body, begin + span);
+        shapes.push_back(
+            {colliders.shape[at], sweep_between(from, to, spin * span), colliders.local[at]});
+        return static_cast<std::uint32_t>(shapes.size() - 1);
+    };
+    for (const PairKey key : pairs_) {
+        const std::uint32_t a = add(first_of(key)), b = add(second_of(key));
+        pairs.push_back({a, b});
+    }
+    const Settings& settings = scene_.conditions.settings;
+    return first_impact(scene_.shapes, shapes, pairs, 0, 1, settings.toi_method,
+                        settings.toi_tolerance);
+}
+
+// Whether none will have come nearer than a quarter of the tolerance at the end of the way ahead;
+// of those that are there already, whether none will have come much nearer.
+bool GroupFlight::stay_apart(double time)
+{
+    for (const PairKey key : pairs_) {
+        double least = tolerance_of(key) / 4;
+        if (const auto now = gap_now_.find(key); now != gap_now_.end()) {
+            const double gap = now->second;
+            least = std::min(least, gap > 0 ? gap * kKept : gap - least * (1 - kKept));
+        }
+        const std::uint32_t a = scene_.colliders.body[first_of(key)];
+        const std::uint32_t b = scene_.colliders.body[second_of(key)];
+        const double reach = std::max(least, 0.0);
+        if (gap_of(key, end_of(a, time), end_of(b, time), reach) < least) return false;
+    }
+    return true;
+}
+
+void GroupFlight::commit()
+{
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const std::uint32_t body = bodies_[i];
+        const End& end = ends_[i];
+        scene_.poses.position[body] = end.pose.position;
+        scene_.poses.orientation[body] = end.pose.orientation;
+        scene_.velocities.linear[body] = end.velocity;
+        scene_.velocities.angular[body] = end.spin;
+        if (end.flew) scene_.flights.memory[body] = end.memory;
+    }
+}
+
+// Where the bodies will be after a span: flown, or held by what they rest on.
+void GroupFlight::carry(double begin, double span)
+{
+    fly(begin, span);
+    rest(span);
+}
+
+void GroupFlight::run()
+{
+    const double dt = scene_.conditions.settings.dt, whole = scene_.conditions.substep();
+    double time = 0, span = whole;
+    for (int round = 0; round < kMostSpans && time < dt * kWhole; ++round) {
+        double next = std::min(span, dt - time);
+        if (dt - time - next < dt * (1 - kWhole)) next = dt - time;
+        touches_.clear();
+        if (!fly(time, next)) break;
+        find_pairs(time, next);
+        list_touches(time);
+        if (strike()) continue;
+        if (rest(next)) find_pairs(time, next);
+        const FirstImpact first = look_ahead(time, next);
+        const bool meets = first.impact.meeting == Meeting::meet;
+        if (meets) next *= first.impact.time;
+        if (meets) carry(time, next);
+        if (!stay_apart(time + next)) {
+            span = next / 2;
+            if (!(span > dt * kLeastSpan)) break;
+            continue;
+        }
+        commit();
+        time += next;
+        span = std::min(whole, 2 * span);
+        if (!meets) continue;
+        const PairKey key = pairs_[first.pair];
+        const std::uint32_t a = scene_.colliders.body[first_of(key)];
+        const std::uint32_t b = scene_.colliders.body[second_of(key)];
+        const double tolerance = tolerance_of(key), wider = 2 * tolerance;
+        if (gap_of(key, pose_at(a, time), pose_at(b, time), wider) > tolerance)
+            span = std::max(next * kCloser, dt * kLeastSpan);
+    }
+    held_ = time < dt * kWhole;
+}
+
+}  // namespace throng

@@ -1,0 +1,225 @@
+// What overlap=back_up keeps to, through the public door.
+#include "pipeline/unused_dials.hpp"
+#include "tests/pipeline/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace throng {
+namespace {
+
+using testing::SceneOf;
+
+constexpr double kGravity = 9.81;
+
+SceneOf backed_up(double friction, double restitution)
+{
+    SceneOf made;
+    made.scene.settings.overlap = Overlap::back_up;
+    made.scene.settings.precision = Precision::double_;
+    made.scene.settings.substeps = 1;
+    made.scene.materials[0].friction = friction;
+    made.scene.materials[0].restitution = restitution;
+    return made;
+}
+
+Vec3 place_of(const World& world, std::size_t i) { return world.pose(world.bodies()[i]).position; }
+Vec3 velocity_of(const World& world, std::size_t i) { return world.velocity(world.bodies()[i]); }
+
+double energy_of(const World& world)
+{
+    const Measures measures = world.measure();
+    return measures.kinetic_energy + measures.potential_energy;
+}
+
+// The least distance between any two of balls of one radius, and of them from the floor.
+double least_gap(const World& world, std::size_t first, double radius)
+{
+    double least = 1e30;
+    for (std::size_t i = first; i < world.bodies().size(); ++i) {
+        least = std::min(least, place_of(world, i).z() - radius);
+        for (std::size_t k = first; k < i; ++k)
+            least = std::min(least, (place_of(world, i) - place_of(world, k)).norm() - 2 * radius);
+    }
+    return least;
+}
+
+Scene row_of_balls()
+{
+    SceneOf made = backed_up(0, 1);
+    made.scene.gravity = Vec3::Zero();
+    made.scene.settings.dt = 0.1;
+    for (int i = 0; i < 3; ++i) made.ball(0.5, Vec3(2 * i, 0, 0));
+    made.scene.bodies[0].velocity = Vec3(100, 0, 0);
+    return made.scene;
+}
+
+// Balls over a floor, of which some strike others in the air.
+Scene heap_of_balls(double restitution)
+{
+    SceneOf made = backed_up(0.3, restitution);
+    made.scene.settings.dt = 0.01;
+    made.floor();
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            for (int j = 0; j < 3; ++j)
+                made.ball(0.1, Vec3(0.21 * i + 0.003 * j, 0.21 * k - 0.002 * j, 0.2 + 0.21 * j));
+    return made.scene;
+}
+
+TEST(BackUp, FindsContactsThatExistBecauseOfAnEarlierOneInTheStep)
+{
+    World world(row_of_balls());
+    world.step();
+    // Each impact is told up to a tolerance early.
+    const double early = 2 * 1e-4 * 0.5;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double wanted = i == 0 ? 1 : i == 1 ? 3 : 12;
+        EXPECT_NEAR(place_of(world, i).x(), wanted, early);
+        EXPECT_NEAR(velocity_of(world, i).x(), i == 2 ? 100 : 0, 1e-9);
+    }
+    EXPECT_GT(place_of(world, 1).x() - place_of(world, 0).x(), 1);
+    EXPECT_EQ(world.report().fallbacks, 0u);
+}
+
+TEST(BackUp, ElasticBallKeepsItsEnergyWhereItsFlightDoes)
+{
+    for (const Integrator integrator :
+         {Integrator::midpoint, Integrator::splitting, Integrator::rk4}) {
+        SceneOf made = backed_up(0, 1);
+        made.scene.settings.integrator = integrator;
+        made.scene.settings.dt = 0.01;
+        made.floor();
+        made.ball(0.1, Vec3(0, 0, 1));
+        World world(made.scene);
+        const double before = energy_of(world);
+        double least = 1;
+        for (int step = 0; step < 1000; ++step) {
+            world.step();
+            least = std::min(least, least_gap(world, 1, 0.1));
+            ASSERT_NEAR(energy_of(world), before, 1e-9 * before);
+        }
+        EXPECT_GT(least, 0);
+        EXPECT_LT(least, 0.05);  // it does come down
+        EXPECT_EQ(world.report().fallbacks, 0u);
+    }
+}
+
+TEST(BackUp, BouncingBallComesToRestInTheTimeItShould)
+{
+    SceneOf made = backed_up(0, 0.5);
+    made.scene.settings.integrator = Integrator::midpoint;
+    made.scene.settings.dt = 0.01;
+    made.floor();
+    made.ball(0.1, Vec3(0, 0, 1.1));
+    World world(made.scene);
+    int last = 0;
+    for (int step = 1; step <= 200; ++step) {
+        world.step();
+        ASSERT_GT(least_gap(world, 1, 0.1), 0);
+        if (velocity_of(world, 1).norm() > 1e-3) last = step;
+    }
+    // Of the endless row of bounces those within the tolerance are left out.
+    const double left_out = 4 * std::sqrt(2 * 1e-5 / kGravity) / (1 - 0.5);
+    EXPECT_NEAR(last * 0.01, 1.354571, 0.01 + left_out);
+    EXPECT_NEAR(place_of(world, 1).z(), 0.1 + 0.5e-5, 1e-7);  // half the tolerance above the floor
+    EXPECT_EQ(world.report().fallbacks, 0u);
+}
+
+TEST(BackUp, StackStandsApartAndStill)
+{
+    SceneOf made = backed_up(0.5, 0);
+    made.scene.settings.dt = 1.0 / 60;
+    made.floor();
+    for (int i = 0; i < 4; ++i) made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.501 + 1.001 * i));
+    World world(made.scene);
+    for (int step = 0; step < 120; ++step) {
+        world.step();
+        ASSERT_EQ(world.measure().overlapping_pairs, 0u) << "step " << step;
+    }
+    EXPECT_LT(testing::greatest_speed(world), 1e-6);
+    for (std::size_t i = 1; i <= 4; ++i)  // each half of 1e-4 times 0.5 m over the one below
+        EXPECT_NEAR(place_of(world, i).z(), static_cast<double>(i) * (1 + 2.5e-5) - 0.5, 1e-5);
+    EXPECT_EQ(world.report().fallbacks, 0u);
+}
+
+TEST(BackUp, BallsNeverOverlapAndGainNoEnergy)
+{
+    for (const double restitution : {0.0, 0.5}) {
+        World world(heap_of_balls(restitution));
+        double energy = energy_of(world);
+        for (int step = 0; step < 60; ++step) {
+            world.step();
+            ASSERT_GT(least_gap(world, 1, 0.1), 0) << "step " << step;
+            ASSERT_LT(energy_of(world), energy * (1 + 1e-6));
+        }
+        EXPECT_LT(energy_of(world), 0.9 * energy);
+        EXPECT_EQ(world.report().fallbacks, 0u);
+    }
+}
+
+TEST(BackUp, BoxesThatTumbleNeverOverlap)
+{
+    SceneOf made = backed_up(0.4, 0.3);
+    made.scene.settings.dt = 0.01;
+    made.floor();
+    for (int i = 0; i < 4; ++i) {
+        BodyDescription& box = made.box(Vec3(0.3, 0.2, 0.1), Vec3(0.1 * i, 0, 0.5 + 0.7 * i));
+        box.angular_velocity = Vec3(3, 2.0 * i, 1);
+    }
+    World world(made.scene);
+    for (int step = 0; step < 150; ++step) {
+        world.step();
+        ASSERT_EQ(world.measure().overlapping_pairs, 0u) << "step " << step;
+    }
+    EXPECT_LT(place_of(world, 1).z(), 0.5);  // it has come down
+}
+
+TEST(BackUp, SameBitsForAnyNumberOfThreads)
+{
+    std::string hashes[3];
+    for (int threads = 1; threads <= 3; ++threads) {
+        World world(heap_of_balls(0.5), threads);
+        world.step(30);
+        hashes[threads - 1] = world.state_hash();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+    EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+TEST(BackUp, PlatformCarriesWhatRestsOnIt)
+{
+    SceneOf made = backed_up(0.8, 0);
+    made.scene.settings.dt = 0.01;
+    BodyDescription& lift = made.box(Vec3(1, 1, 0.1), Vec3(0, 0, -0.1));
+    lift.motion = Motion::kinematic;
+    lift.velocity = Vec3(0.2, 0, 1);
+    made.box(Vec3(0.2, 0.2, 0.2), Vec3(0, 0, 0.2001));
+    World world(made.scene);
+    for (int step = 0; step < 100; ++step) {
+        world.step();
+        ASSERT_EQ(world.measure().overlapping_pairs, 0u) << "step " << step;
+    }
+    EXPECT_LT((velocity_of(world, 1) - Vec3(0.2, 0, 1)).norm(), 1e-6);
+}
+
+TEST(BackUp, MeshesGoByOverlapAndItIsSaid)
+{
+    SceneOf made = backed_up(0.5, 0);
+    MeshShape mesh;
+    mesh.vertices = {{-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    made.body(made.shape(mesh), Vec3::Zero()).motion = Motion::static_;
+    made.ball(0.1, Vec3(0, 0, 0.2));
+    World world(made.scene);
+    EXPECT_TRUE(world.effects().on.has(Effect::contact));
+    EXPECT_FALSE(world.effects().on.has(Effect::no_overlap));
+    made.scene.dials_set = {"overlap"};
+    ASSERT_EQ(unused_dials(made.scene).size(), 1u);
+    EXPECT_EQ(unused_dials(made.scene)[0],
+              "overlap: unused, what is not convex is not held apart; contacts go by allow");
+}
+
+}  // namespace
+}  // namespace throng
