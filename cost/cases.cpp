@@ -37,7 +37,7 @@ constexpr HardCase kCases[] = {
     {"H13", "a box on a slope sticks or slides, either side of the limit", case_slope_limit,
      Fault::friction},
     {"H14", "balls slip, then roll", case_rolling, Fault::friction},
-    {"H15", "a ball that spins bounces as friction has it", case_spin_bounce, Fault::friction},
+    {"H15", "balls bounce as spin, friction and time have it", case_spin_bounce, Fault::friction},
     {"H17", "impacts pass through touching balls, by either law", case_cradle, Fault::mass},
     {"H18", "a billiard break is mirrored and loses nothing", case_break, Fault::mass},
     {"H21",
@@ -69,6 +69,8 @@ constexpr HardCase kCases[] = {
     {"H39", "a rod that turns by 150 degrees in a step meets the wall", case_spinning_rod,
      Fault::late},
     {"H40", "two fast bodies meet, graze or miss as they should", case_fast_pair, Fault::late},
+    {"H41", "a ball strikes the next, and that the next, all in one step", case_backed_up,
+     Fault::overlap},
     {"H42", "exact queries of public sets: no touch is missed", case_exact_paths, Fault::late},
     {"H43", "holes are gone through, chains hold and a bolt turns down its nut", case_through_hole,
      Fault::shrink},
@@ -79,6 +81,7 @@ constexpr HardCase kCases[] = {
      case_spring_limit, Fault::stiffness},
     {"H47", "bodies made inside one another part slowly, and come to rest", case_recovery,
      Fault::float_poses},
+    {"H48", "a tower stands without a touch, and what that costs", case_no_overlap, Fault::overlap},
 };
 
 constexpr double kShrunk = 0.9;
@@ -115,6 +118,9 @@ void plant(Fault fault, Scene& scene)
         break;
     case Fault::stiffness:
         for (Spring& spring : scene.springs) spring.stiffness *= 1.1;
+        break;
+    case Fault::overlap:
+        scene.settings.overlap = Overlap::allow;
         break;
     case Fault::shrink:
         for (ShapeDescription& shape : scene.shapes) shrink(shape);

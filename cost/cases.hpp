@@ -44,6 +44,7 @@ enum class Fault : std::uint8_t {
     spin,         // bodies that turn 5 % too fast
     stiffness,    // springs 10 % too stiff
     late,         // times of impact a hundredth too late, and touches at the start not seen
+    overlap,      // bodies that may overlap, whatever was asked
     shrink,       // meshes a tenth too small, and all that is asked for its shared volume
 };
 

@@ -23,7 +23,7 @@ void case_arch(CaseBench& bench);         // H11, cards_and_arches.cpp
 void case_sliding(CaseBench& bench);      // H12, sliding.cpp
 void case_slope_limit(CaseBench& bench);  // H13, slope_limit.cpp
 void case_rolling(CaseBench& bench);      // H14, rolling.cpp
-void case_spin_bounce(CaseBench& bench);  // H15, impacts.cpp
+void case_spin_bounce(CaseBench& bench);  // H15, impacts.cpp, and bounces()
 void case_cradle(CaseBench& bench);       // H17, impacts.cpp
 void case_break(CaseBench& bench);        // H18, impacts.cpp
 void case_painleve(CaseBench& bench);     // H21, slid_rods.cpp
@@ -34,6 +34,11 @@ void case_turntable(CaseBench& bench);  // H24, turntable.cpp
 void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
 void case_recovery(CaseBench& bench);  // H47, recovery.cpp
+
+// Bodies that are never to overlap: no_overlap.cpp.
+void bounces(CaseBench& bench);          // H15 (a), (b)
+void case_backed_up(CaseBench& bench);   // H41
+void case_no_overlap(CaseBench& bench);  // H48
 
 // Bodies that go far in a step: fast_bodies.cpp, and the sets of exact_paths.cpp.
 void case_bullet_plate(CaseBench& bench);  // H38

@@ -157,6 +157,7 @@ void case_spin_bounce(CaseBench& bench)
     spin_bounce(bench, "(c) mu 0.2, no spin", 0.2, 0, Vec3(grips, 3.2, -grips / 0.1));
     spin_bounce(bench, "(c) mu 0.2, spin -60", 0.2, -60, Vec3(fast, 3.2, -fast / 0.1));
     spin_bounce(bench, "(c) mu 0.05, no spin", 0.05, 0, Vec3(2.64, 3.2, -9));
+    bounces(bench);
 }
 
 void case_cradle(CaseBench& bench)
