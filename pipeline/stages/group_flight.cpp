@@ -20,6 +20,8 @@ constexpr double kWhole = 1 - 1e-12;
 // Where a body flies on a curve it is not yet there when the chord touches: the span is cut to this
 // share, and the curve is that share squared as far from its chord.
 constexpr double kCloser = 0.125;
+// Spans that went well before a longer one is tried.
+constexpr int kCalm = 4;
 // Of its gap a pair that touches may lose this share while it rests; it is given back after.
 constexpr double kKept = 0.9;
 
@@ -218,6 +220,7 @@ void GroupFlight::run()
 {
     const double dt = scene_.conditions.settings.dt, whole = scene_.conditions.substep();
     double time = 0, span = whole;
+    int calm = kCalm;
     for (int round = 0; round < kMostSpans && time < dt * kWhole; ++round) {
         double next = std::min(span, dt - time);
         if (dt - time - next < dt * (1 - kWhole)) next = dt - time;
@@ -233,12 +236,13 @@ void GroupFlight::run()
         if (meets) carry(time, next);
         if (!stay_apart(time + next)) {
             span = next / 2;
+            calm = 0;
             if (!(span > dt * kLeastSpan)) break;
             continue;
         }
         commit();
         time += next;
-        span = std::min(whole, 2 * span);
+        if (++calm > kCalm) span = std::min(whole, 2 * span);
         if (!meets) continue;
         const PairKey key = pairs_[first.pair];
         const std::uint32_t a = scene_.colliders.body[first_of(key)];

@@ -87,6 +87,7 @@ private:
     Motions motions(bool ends) const;
     static double approach(const DirectPoint& point, const Motions& bodies);
     void solve(Motions& bodies, std::vector<DirectPoint>& points);
+    static void push(DirectPoint& point, Motions& bodies);
     bool strike();
     bool reflect(std::size_t begin, std::size_t end, Motions& bodies);
     bool reflect_in_order(Motions& bodies);
