@@ -16,6 +16,9 @@ void case_ballistic(CaseBench& bench);       // H7, ballistic.cpp
 void case_spring_limit(CaseBench& bench);    // H46, spring_limit.cpp, and penalty_limit.cpp
 void penalty_limit(CaseBench& bench);
 
+// Every dial beside every other.
+void case_dial_pairs(CaseBench& bench);  // pairs, dial_pairs.cpp
+
 void case_stack(CaseBench& bench);        // H8, stack.cpp
 void case_mass_ratio(CaseBench& bench);   // H9, mass_ratio.cpp
 void case_cards(CaseBench& bench);        // H10, cards_and_arches.cpp
