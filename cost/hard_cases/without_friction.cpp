@@ -18,6 +18,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kGravity = 9.81;
 constexpr double kBound = 1e-3, kStep = 1e-3;
+const std::string kDirect = ", direct, dt 1e-3";
 
 void beside(CaseBench& bench, const char* name, const char* quantity, double figure)
 {
@@ -118,38 +119,45 @@ Tipped tip(CaseBench& bench, const Scene& scene)
     return tipped;
 }
 
+void on_the_wedge(CaseBench& bench)
+{
+    Scene scene = block_on_wedge(bench);
+    const char *const name = "block of 1 kg on a wedge of 3 kg",
+                      *const wedge = "error of the wedge's acceleration",
+                      *const block = "error of the block's against it";
+    const auto soft = slide_down(bench, scene);
+    beside(bench, name, wedge, soft.first);
+    beside(bench, name, block, soft.second);
+    ask_exactly(scene.settings);
+    scene.settings.dt = kStep;
+    const auto exact = slide_down(bench, scene);
+    bench.report(name + kDirect, wedge, exact.first, kBound, "1");
+    bench.report(name + kDirect, block, exact.second, kBound, "1");
+}
+
+void rod_that_tips(CaseBench& bench)
+{
+    Scene scene = tipping_rod(bench, 0.1);
+    const char *const name = "rod of 2 m that tips", *const spin = "error of the spin",
+                      *const sideways = "way of its center sideways";
+    const Tipped soft = tip(bench, scene);
+    beside(bench, name, spin, soft.spin);
+    beside(bench, name, sideways, soft.sideways);
+    ask_exactly(scene.settings);
+    scene.settings.dt = kStep;
+    const Tipped exact = tip(bench, scene);
+    bench.report(name + kDirect, spin, exact.spin, kBound, "1");
+    bench.report(name + kDirect, sideways, exact.sideways, kBound, "m");
+    bench.report(name + kDirect, "angle it was not watched to", std::max(0.0, 1.5 - exact.angle), 0,
+                 "rad");
+}
+
 }  // namespace
 
 void motion_without_friction(CaseBench& bench)
 {
-    Scene block = block_on_wedge(bench);
-    const char *const wedge_name = "block of 1 kg on a wedge of 3 kg",
-                      *const wedges = "error of "
-                                      "the wedge's acceleration",
-                      *const blocks = "error of the block's against it";
-    const auto soft = slide_down(bench, block);
-    beside(bench, wedge_name, wedges, soft.first);
-    beside(bench, wedge_name, blocks, soft.second);
-    ask_exactly(block.settings);
-    block.settings.dt = kStep;
-    const auto exact = slide_down(bench, block);
-    const std::string direct = ", direct, dt 1e-3";
-    bench.report(wedge_name + direct, wedges, exact.first, kBound, "1");
-    bench.report(wedge_name + direct, blocks, exact.second, kBound, "1");
-
-    Scene rod = tipping_rod(bench, 0.1);
-    const char *const rod_name = "rod of 2 m that tips", *const spins = "error of the spin",
-                      *const sideways = "way of its center sideways";
-    const Tipped soft_rod = tip(bench, rod);
-    beside(bench, rod_name, spins, soft_rod.spin);
-    beside(bench, rod_name, sideways, soft_rod.sideways);
-    ask_exactly(rod.settings);
-    rod.settings.dt = kStep;
-    const Tipped exact_rod = tip(bench, rod);
-    bench.report(rod_name + direct, spins, exact_rod.spin, kBound, "1");
-    bench.report(rod_name + direct, sideways, exact_rod.sideways, kBound, "m");
-    bench.report(rod_name + direct, "angle it was not watched to",
-                 std::max(0.0, 1.5 - exact_rod.angle), 0, "rad");
+    on_the_wedge(bench);
+    rod_that_tips(bench);
 }
 
 }  // namespace throng
