@@ -18,11 +18,8 @@ namespace throng {
 
 namespace {
 
-constexpr int kNewtonSteps = 50;
 constexpr int kMostPasses = 500;    // of impacts at a moment; what still closes then is stopped
 constexpr int kMostStrikes = 1000;  // of a pair in a step
-// Visits to every point, where the joint solve comes to no sound answer.
-constexpr int kPlainSweeps = 200;
 // Slower than this, of the greatest speed, nobody closes.
 constexpr double kRounding = 1e-11;
 // The share of what is missing to the gap at rest that a span gives back.
@@ -115,83 +112,6 @@ GroupFlight::Motions GroupFlight::motions(bool ends) const
                 in_world_axes(scene_.masses.inverse_inertia[body], scene_.poses.orientation[body]);
     }
     return bodies;
-}
-
-// m/s along the normal, of b against a: below 0 while they close.
-double GroupFlight::approach(const DirectPoint& point, const Motions& bodies)
-{
-    const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
-        if (seat < 0) return Vec3::Zero();
-        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
-        return body.velocity + body.spin.cross(arm);
-    };
-    return point.normal.dot(speed(point.b, point.arm_b) - speed(point.a, point.arm_a));
-}
-
-void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
-{
-    const int asked = scene_.conditions.settings.iterations;
-    const Motions before = bodies;
-    const DirectAnswer answer = solver_.solve(bodies, points, asked > 0 ? asked : kNewtonSteps);
-    const bool sound = std::all_of(bodies.begin(), bodies.end(), [](const DirectBody& body) {
-        return holdable(body.velocity) && holdable(body.spin);
-    });
-    if (sound) {
-        residual_ = std::max(residual_, answer.residual);
-        return;
-    }
-    residual_ = std::max(residual_, 1.0);
-    bodies = before;
-    for (DirectPoint& point : points) point.impulse = point.torque = Vec3::Zero();
-    for (int sweep = 0; sweep < kPlainSweeps; ++sweep)
-        for (DirectPoint& point : points) push(point, bodies);
-}
-
-// One visit to a point: to its least speed along the normal, then against sliding, within what the
-// normal impulse allows. It resists no rolling.
-void GroupFlight::push(DirectPoint& point, Motions& bodies)
-{
-    const auto body_at = [&](std::int32_t seat) {
-        return seat < 0 ? nullptr : &bodies[static_cast<std::size_t>(seat)];
-    };
-    DirectBody *const a = body_at(point.a), *const b = body_at(point.b);
-    const auto ease_of = [](const DirectBody* body, const Vec3& arm, const Vec3& along) {
-        if (body == nullptr) return 0.0;
-        const Vec3 turn = arm.cross(along);
-        return body->inverse_mass + turn.dot(body->inverse_inertia.matrix() * turn);
-    };
-    const auto give = [](DirectBody* body, const Vec3& arm, const Vec3& impulse) {
-        if (body == nullptr) return;
-        body->velocity += impulse * body->inverse_mass;
-        body->spin += body->inverse_inertia.matrix() * arm.cross(impulse);
-    };
-    const auto change_to = [&](const Vec3& impulse) {
-        const Vec3 more = impulse - point.impulse;
-        give(a, point.arm_a, -more);
-        give(b, point.arm_b, more);
-        point.impulse = impulse;
-    };
-    const auto along = [&](const Vec3& direction) {
-        return ease_of(a, point.arm_a, direction) + ease_of(b, point.arm_b, direction);
-    };
-    const double ease = along(point.normal);
-    if (!(ease > 0)) return;
-    const double before = point.normal.dot(point.impulse);
-    const double wanted = before + (point.least - approach(point, bodies)) / ease;
-    change_to(point.impulse + point.normal * (std::max(wanted, 0.0) - before));
-
-    const auto speed = [](const DirectBody* body, const Vec3& arm) -> Vec3 {
-        return body == nullptr ? Vec3(Vec3::Zero()) : Vec3(body->velocity + body->spin.cross(arm));
-    };
-    Vec3 slide = speed(b, point.arm_b) - speed(a, point.arm_a);
-    slide -= point.normal * point.normal.dot(slide);
-    const double sliding = slide.norm();
-    const double normal = point.normal.dot(point.impulse);
-    Vec3 across = point.impulse - point.normal * normal;
-    if (sliding > 0) across -= slide / along(slide / sliding);
-    const double length = across.norm(), most = point.friction * normal;
-    if (length > most) across *= most / length;
-    change_to(point.normal * normal + across);
 }
 
 double GroupFlight::restitution_of(const Touch& touch) const

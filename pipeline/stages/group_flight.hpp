@@ -85,9 +85,6 @@ private:
     void list_touches_of(PairKey key, double time);
     std::int32_t seat_of(std::uint32_t body);
     Motions motions(bool ends) const;
-    static double approach(const DirectPoint& point, const Motions& bodies);
-    void solve(Motions& bodies, std::vector<DirectPoint>& points);
-    static void push(DirectPoint& point, Motions& bodies);
     bool strike();
     bool reflect(std::size_t begin, std::size_t end, Motions& bodies);
     bool reflect_in_order(Motions& bodies);
@@ -96,6 +93,14 @@ private:
     bool rest(double span);
     void part(double span, const Motions& solved);
     void end_with(const Motions& speeds, const Motions& ways, double span);
+
+    // What contacts are solved by: see group_solve.cpp.
+    static Vec3 closing(const DirectPoint& point, const Motions& bodies);
+    static double approach(const DirectPoint& point, const Motions& bodies);
+    static double ease(const DirectPoint& point, const Vec3& along, const Motions& bodies);
+    static void change(DirectPoint& point, const Vec3& impulse, Motions& bodies);
+    static void push(DirectPoint& point, Motions& bodies);
+    void solve(Motions& bodies, std::vector<DirectPoint>& points);
 
     GroupScene& scene_;
     std::span<const std::uint32_t> bodies_;
