@@ -38,6 +38,7 @@ constexpr HardCase kCases[] = {
      Fault::friction},
     {"H14", "balls slip, then roll", case_rolling, Fault::friction},
     {"H15", "balls bounce as spin, friction and time have it", case_spin_bounce, Fault::friction},
+    {"H16", "a pile of elastic balls keeps its energy", case_elastic_pile, Fault::overlap},
     {"H17", "impacts pass through touching balls, by either law", case_cradle, Fault::mass},
     {"H18", "a billiard break is mirrored and loses nothing", case_break, Fault::mass},
     {"H21",
