@@ -19,6 +19,9 @@
 
 namespace throng {
 
+/// A substep is cut no finer than this for penalty forces.
+inline constexpr int kMostPenaltyCuts = 1000;
+
 /// What a step has to tell of trouble.
 struct Trouble {
     std::vector<std::uint32_t>

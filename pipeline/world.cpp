@@ -140,11 +140,12 @@ void World::State::warn_of_cuts(int cuts)
     if (cuts <= most_cuts) return;
     most_cuts = cuts;
     const Settings& settings = get<Conditions>().settings;
-    remarks.push_back("penalty_stiffness: " + dial_value(settings, "penalty_stiffness")
-                      + " N/m swings wider at a substep of "
-                      + number_text(settings.dt / settings.substeps) + " s, so each is cut in "
-                      + std::to_string(cuts) + "; take substeps="
-                      + std::to_string(settings.substeps * cuts) + ", or auto");
+    remarks.push_back(
+        "penalty_stiffness: " + dial_value(settings, "penalty_stiffness")
+        + " N/m swings wider at a substep of " + number_text(settings.dt / settings.substeps)
+        + " s, so each is cut in " + std::to_string(cuts)
+        + (cuts >= kMostPenaltyCuts ? ", and contacts give way as far as that bears" : "")
+        + "; take substeps=" + std::to_string(settings.substeps * cuts) + ", or auto");
 }
 
 Vec3 World::State::arm(std::uint32_t body) const

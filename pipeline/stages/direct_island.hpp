@@ -80,7 +80,7 @@ private:
     void count_touching(const Conditions& conditions, double ahead);
     double ease_of(const DirectPoint& point, const Vec3& along) const;
     Give give_of(std::size_t at, const Settings& settings, double time) const;
-    void push_by_forces(const Conditions& conditions, double time);
+    void push_by_forces(const Conditions& conditions, double time, bool finest);
     void separate(const Conditions& conditions);
     void stop_approach(std::size_t at);
     void push_apart(std::size_t at, double most);

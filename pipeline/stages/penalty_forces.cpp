@@ -15,8 +15,7 @@ namespace {
 // Of auto: by how many radians it swings in a substep, and the share of critical damping where
 // nothing bounces; together half of what a semi-implicit step bears.
 constexpr double kSwing = 0.5, kDamped = 0.7;
-// A substep is cut no finer than this, and to this share of the limit.
-constexpr int kMostCuts = 1000;
+// A substep is cut to this share of the limit.
 constexpr double kWithin = 0.9;
 
 }  // namespace
@@ -85,15 +84,21 @@ DirectIsland::give_of(std::size_t at, const Settings& settings, double time) con
 }
 
 // All forces are of the velocities before, so that no order of touches has a say.
-void DirectIsland::push_by_forces(const Conditions& conditions, double time)
+void DirectIsland::push_by_forces(const Conditions& conditions, double time, bool finest)
 {
     place_points();
     move_freely(conditions, time);
     count_touching(conditions, 0);
+    // What is too stiff for the finest cut, or met more than was to be seen when the substep was
+    // cut, gives way as far as that bears. The limit is that of the worst way to share a body;
+    // twice as far there is no better one.
+    Settings softened = conditions.settings;
+    softened.penalty_stiffness = softened.penalty_damping = -1;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         if (!(gaps_[i] < 0)) continue;
         DirectPoint& point = points_[i];
-        const Give give = give_of(i, conditions.settings, time);
+        Give give = give_of(i, conditions.settings, time);
+        if (finest && give.longest < time) give = give_of(i, softened, time);
         const double force =
             std::max(0.0, -give.stiffness * gaps_[i] - give.damping * approach(i, before_));
         const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
@@ -133,10 +138,11 @@ void DirectIsland::penalise(const Conditions& conditions)
         const double bears = give_of(i, conditions.settings, time).longest;
         if (bears > 0 && bears < time) longest = std::min(longest, kWithin * bears);
     }
-    const int cuts =
-        static_cast<int>(std::min(std::ceil(time / longest), static_cast<double>(kMostCuts)));
+    const int cuts = static_cast<int>(
+        std::min(std::ceil(time / longest), static_cast<double>(kMostPenaltyCuts)));
     cuts_ = std::max(cuts_, cuts);
-    for (int cut = 0; cut < cuts; ++cut) push_by_forces(conditions, time / cuts);
+    for (int cut = 0; cut < cuts; ++cut)
+        push_by_forces(conditions, time / cuts, cuts == kMostPenaltyCuts);
 }
 
 }  // namespace throng
