@@ -89,9 +89,7 @@ void DirectIsland::push_by_forces(const Conditions& conditions, double time, boo
     place_points();
     move_freely(conditions, time);
     count_touching(conditions, 0);
-    // What is too stiff for the finest cut, or met more than was to be seen when the substep was
-    // cut, gives way as far as that bears. The limit is that of the worst way to share a body;
-    // twice as far there is no better one.
+    // What is too stiff for the finest cut gives way as far as that bears.
     Settings softened = conditions.settings;
     softened.penalty_stiffness = softened.penalty_damping = -1;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
