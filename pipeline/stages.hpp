@@ -95,6 +95,7 @@ void color_rows(const Conditions&,
 /// for themselves, as often as their integrator does.
 void apply_forces(const Conditions&,
                   const Forces&,
+                  const Rest&,
                   const Poses&,
                   const Velocities&,
                   const Masses&,

@@ -139,7 +139,7 @@ void World::State::empty_unused()
             if (!on.meets(kSolidContact)) empty(SolidContacts<Real>{});
             if (on.has(Effect::contact)) return;
             empty(Pairs{}, ConvexContacts<Real>{}, MethodPairs{}, ActiveContacts{}, Islands{},
-                  Layout{}, Rows<Real>{});
+                  Layout{}, Rows<Real>{}, Pulls{});
         },
         step);
 }

@@ -13,6 +13,7 @@ constexpr std::size_t kGrain = 64;  // bodies a block
 
 void apply_forces(const Conditions& conditions,
                   const Forces& forces,
+                  const Rest& rest,
                   const Poses& poses,
                   const Velocities& velocities,
                   const Masses& masses,
@@ -24,7 +25,9 @@ void apply_forces(const Conditions& conditions,
     pulls.angular.resize(states.kind.size());
     const RigidRule rule = rigid_rule(conditions);
     const Flights none;
-    const auto& movers = states.movers.dynamic;
+    std::vector<std::uint32_t> movers = states.movers.dynamic;
+    if (conditions.has(Effect::sleeping))  // who awoke in this step is moved in it
+        movers.insert(movers.end(), rest.awoken.begin(), rest.awoken.end());
     for_each_block(movers.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         RigidMotion law(rule, {forces, masses, poses, velocities});
         for (std::size_t i = begin; i < end; ++i) {

@@ -119,8 +119,9 @@ public:
                 if (group == kNobody) {
                     carry(law, {&body, 1}, landings[block]);
                 } else if (!whole(group)) {
+                    // Where nothing touches there are no pulls, and who does not fly stands still.
                     RigidMotion held(rule_, facts_);
-                    held.hold(pulls_);
+                    if (body < pulls_.linear.size()) held.hold(pulls_);
                     carry(held, {&body, 1}, landings[block]);
                 } else if (forces.groups[group].front() == body) {
                     carry(law, forces.groups[group], landings[block]);
@@ -130,6 +131,7 @@ public:
         for (const auto& list : landings)
             for (const Landing& landing : list)
                 if (!land(landing)) trouble.quarantined.push_back(landing.body);
+        std::sort(trouble.quarantined.begin(), trouble.quarantined.end());
     }
 
 private:

@@ -216,6 +216,25 @@ TEST(Forces, OfASpringGoWithEitherOfItsBodies)
     EXPECT_FALSE(world.effects().on.has(Effect::springs));
 }
 
+TEST(Forces, OfASpringGoOnWhereItsOtherBodyWasQuarantined)
+{
+    Scene scene = empty_scene();
+    add_body(scene);
+    add_body(scene, Vec3(2, 0, 0));
+    scene.springs.push_back(spring_between(0, 1, 10, 1));
+    World world(scene);
+    const auto ids = world.bodies();
+    world.set_force_field([](const FieldPlace& place) {
+        const double force = place.body == 1 && place.time > 0.05 ? std::nan("") : 0.0;
+        return Wrench{Vec3(force, 0, 0), Vec3::Zero()};
+    });
+    world.step(20);
+    EXPECT_EQ(world.report().bodies_quarantined, 1u);
+    EXPECT_TRUE(world.quarantined(ids[1]));
+    EXPECT_TRUE(world.pose(ids[0]).position.allFinite());
+    EXPECT_GT(world.velocity(ids[0]).x(), 0.3);
+}
+
 TEST(Forces, OfAProgramsOwnFieldAreAskedForAtEveryStage)
 {
     Scene scene = empty_scene();
