@@ -151,17 +151,31 @@ private:
             integrator_.advance(law, step * span, span, room, law.state());
             law.settle();
         }
+        const std::size_t first = landings.size();
         for (std::size_t i = 0; i < bodies.size(); ++i)
             landings.push_back({bodies[i], law.outcome(i)});
+        // One that is lost takes none along that a spring joins to it.
+        const auto lost = [](const Landing& landing) { return !sound(landing.outcome); };
+        if (bodies.size() == 1
+            || std::none_of(landings.begin() + static_cast<std::ptrdiff_t>(first), landings.end(),
+                            lost))
+            return;
+        landings.resize(first);
+        for (const std::uint32_t body : bodies) carry(law, {&body, 1}, landings);
+    }
+
+    // Whether a step can hold it.
+    static bool sound(const RigidMotion::Outcome& now)
+    {
+        return holdable(now.position) && now.orientation.coeffs().allFinite()
+            && holdable(now.velocity) && holdable(now.angular_velocity);
     }
 
     // False, and the body as it was, where it would become what a step cannot hold.
     bool land(const Landing& landing)
     {
         const RigidMotion::Outcome& now = landing.outcome;
-        if (!holdable(now.position) || !now.orientation.coeffs().allFinite()
-            || !holdable(now.velocity) || !holdable(now.angular_velocity))
-            return false;
+        if (!sound(now)) return false;
         poses_.position[landing.body] = now.position;
         poses_.orientation[landing.body] = now.orientation;
         velocities_.linear[landing.body] = now.velocity;
