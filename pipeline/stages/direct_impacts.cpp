@@ -43,41 +43,30 @@ void DirectIsland::list_touching(double threshold)
     if (!any) touching_.clear();
 }
 
-// The restitution of the hits together: the mean over what each lost by being stopped.
-double DirectIsland::share_of_restitution() const
-{
-    double all = 0, kept = 0;
-    for (std::size_t k = 0; k < hits_.size(); ++k) {
-        const double work = struck_points_[k].normal.dot(struck_points_[k].impulse)
-            * std::abs(approach(hits_[k], struck_));
-        all += work;
-        kept += work * touches_[hits_[k]].restitution;
-    }
-    return all > 0 ? kept / all : 0;
-}
-
 // Reflects those that close among the touching from `begin` to before `end`. False if none does.
 bool DirectIsland::reflect(std::size_t begin, std::size_t end, double least_speed)
 {
     hits_.clear();
     struck_points_.clear();
+    hit_speeds_.clear();
+    hit_restitution_.clear();
     for (std::size_t k = begin; k < end; ++k) {
         const std::size_t at = touching_[k];
-        if (!(approach(at, struck_) < -least_speed)) continue;
+        const double speed = approach(at, struck_);
+        if (!(speed < -least_speed)) continue;
         DirectPoint point = points_[at];
         point.friction = point.rolling = point.least = 0;
         point.impulse = point.torque = Vec3::Zero();
         hits_.push_back(at);
+        hit_speeds_.push_back(-speed);
+        hit_restitution_.push_back(touches_[at].restitution);
         struck_points_.push_back(point);
     }
     if (hits_.empty()) return false;
     stopped_ = struck_;
     solve(stopped_, struck_points_);
-    const double twice = 1 + share_of_restitution();
-    for (std::size_t i = 0; i < struck_.size(); ++i) {
-        struck_[i].velocity += (stopped_[i].velocity - struck_[i].velocity) * twice;
-        struck_[i].spin += (stopped_[i].spin - struck_[i].spin) * twice;
-    }
+    const double twice = 1 + shared_restitution(struck_points_, hit_speeds_, hit_restitution_);
+    mirror(stopped_, twice, struck_);
     for (std::size_t k = 0; k < hits_.size(); ++k)
         struck_impulse_[hits_[k]] +=
             struck_points_[k].normal.dot(struck_points_[k].impulse) * twice;

@@ -77,13 +77,7 @@ void DirectIsland::solve(std::vector<DirectBody>& bodies, std::vector<DirectPoin
 // Speed along the normal, of b against a.
 double DirectIsland::approach(std::size_t at, std::span<const DirectBody> bodies) const
 {
-    const DirectPoint& point = points_[at];
-    const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
-        if (seat < 0) return Vec3::Zero();
-        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
-        return body.velocity + body.spin.cross(arm);
-    };
-    return point.normal.dot(speed(point.b, point.arm_b) - speed(point.a, point.arm_a));
+    return speed_apart(points_[at], bodies);
 }
 
 // Who overlaps is moved apart in this substep, on top of what else it does.

@@ -1,7 +1,7 @@
 // Direct island: the bodies and touching points of one island as they go through a step.
 #pragma once
 
-#include "kernels/solve/direct.hpp"
+#include "kernels/solve/direct_points.hpp"
 #include "pipeline/stages/solve_direct.hpp"
 
 namespace throng {
@@ -70,7 +70,6 @@ private:
     void list_touching(double threshold);
     bool reflect(std::size_t begin, std::size_t end, double least_speed);
     bool reflect_in_order(double least_speed);
-    double share_of_restitution() const;
     void settle_after_impacts();
 
     // Other responses: see penalty_forces.cpp and kinematic_pushes.cpp.
@@ -78,7 +77,6 @@ private:
     void penalise(const Conditions& conditions);
     bool presses(std::size_t at, const Conditions& conditions, double ahead) const;
     void count_touching(const Conditions& conditions, double ahead);
-    double ease_of(const DirectPoint& point, const Vec3& along) const;
     Give give_of(std::size_t at, const Settings& settings, double time) const;
     void push_by_forces(const Conditions& conditions, double time, bool finest);
     void separate(const Conditions& conditions);
@@ -97,6 +95,7 @@ private:
     std::vector<DirectBody> struck_, stopped_;               // [seats] after impacts; and if e = 0
     std::vector<std::size_t> touching_, hits_;               // touches that may be struck; that are
     std::vector<DirectPoint> struck_points_;                 // [hits]
+    std::vector<double> hit_speeds_, hit_restitution_;       // [hits] m/s closing
     std::vector<double> struck_impulse_;                     // [touches] N s, of all impacts
     std::vector<Sym3> inertia_, inverse_inertia_;            // [seats] body axes
     std::vector<std::uint32_t> pressed_;                     // [seats] touches that overlap

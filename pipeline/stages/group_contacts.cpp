@@ -127,30 +127,21 @@ bool GroupFlight::reflect(std::size_t begin, std::size_t end, Motions& bodies)
 {
     std::vector<std::size_t> hits;
     std::vector<DirectPoint> points;
-    std::vector<double> speeds;
+    std::vector<double> speeds, restitution;
     for (std::size_t i = begin; i < end; ++i) {
-        const double speed = approach(touches_[i].point, bodies);
+        const double speed = speed_apart(touches_[i].point, bodies);
         if (!(speed < -touches_[i].least_speed)) continue;
         hits.push_back(i);
         speeds.push_back(-speed);
+        restitution.push_back(restitution_of(touches_[i]));
         points.push_back(touches_[i].point);
         points.back().friction = points.back().rolling = 0;
     }
     if (hits.empty()) return false;
     Motions stopped = bodies;
     solve(stopped, points);
-    // The mean over the work done: where coefficients differ none gains energy.
-    double all = 0, kept = 0;
-    for (std::size_t k = 0; k < hits.size(); ++k) {
-        const double work = points[k].normal.dot(points[k].impulse) * speeds[k];
-        all += work;
-        kept += work * restitution_of(touches_[hits[k]]);
-    }
-    const double twice = all > 0 ? 1 + kept / all : 1;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        bodies[i].velocity += (stopped[i].velocity - bodies[i].velocity) * twice;
-        bodies[i].spin += (stopped[i].spin - bodies[i].spin) * twice;
-    }
+    const double twice = 1 + shared_restitution(points, speeds, restitution);
+    mirror(stopped, twice, bodies);
     for (std::size_t k = 0; k < hits.size(); ++k)
         struck_[hits[k]] += points[k].normal.dot(points[k].impulse) * twice;
     return true;
@@ -175,7 +166,7 @@ void GroupFlight::grip(Motions& bodies)
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         if (!(struck_[i] > 0)) continue;
         points.push_back(touches_[i].point);
-        points.back().least = std::max(0.0, approach(points.back(), bodies));
+        points.back().least = std::max(0.0, speed_apart(points.back(), bodies));
         grips = grips || points.back().friction > 0 || points.back().rolling > 0;
     }
     if (!grips) return;
@@ -189,12 +180,12 @@ bool GroupFlight::strike()
     Motions bodies = motions(false);
     double greatest = 0;
     for (const Touch& touch : touches_)
-        greatest = std::max(greatest, std::abs(approach(touch.point, bodies)));
+        greatest = std::max(greatest, std::abs(speed_apart(touch.point, bodies)));
     bool any = false;
     for (Touch& touch : touches_) {
         touch.least_speed = std::max(touch.least_speed, kRounding * greatest);
         any = any
-            || (restitution_of(touch) > 0 && approach(touch.point, bodies) < -touch.least_speed);
+            || (restitution_of(touch) > 0 && speed_apart(touch.point, bodies) < -touch.least_speed);
     }
     if (!any) return false;
     struck_.assign(touches_.size(), 0);
@@ -222,8 +213,9 @@ bool GroupFlight::rest(double span)
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         const Touch& touch = touches_[i];
         // Who has just bounced flies, and falls back in a span of its own.
-        if (restitution_of(touch) > 0 && approach(touch.point, now) > touch.least_speed) continue;
-        const double gap = touch.gap + approach(touch.point, bodies) * span;
+        if (restitution_of(touch) > 0 && speed_apart(touch.point, now) > touch.least_speed)
+            continue;
+        const double gap = touch.gap + speed_apart(touch.point, bodies) * span;
         if (gap > kClear * touch.tolerance) continue;
         resting_.push_back(i);
         points.push_back(touch.point);

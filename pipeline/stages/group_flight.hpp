@@ -6,7 +6,7 @@
 #pragma once
 
 #include "kernels/motion/rigid_motion.hpp"
-#include "kernels/solve/direct.hpp"
+#include "kernels/solve/direct_points.hpp"
 #include "narrowphase/impact/first_impact.hpp"
 #include "pipeline/step_data.hpp"
 
@@ -95,10 +95,6 @@ private:
     void end_with(const Motions& speeds, const Motions& ways, double span);
 
     // What contacts are solved by: see group_solve.cpp.
-    static Vec3 closing(const DirectPoint& point, const Motions& bodies);
-    static double approach(const DirectPoint& point, const Motions& bodies);
-    static double ease(const DirectPoint& point, const Vec3& along, const Motions& bodies);
-    static void change(DirectPoint& point, const Vec3& impulse, Motions& bodies);
     static void push(DirectPoint& point, Motions& bodies);
     void solve(Motions& bodies, std::vector<DirectPoint>& points);
 

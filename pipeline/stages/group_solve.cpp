@@ -13,23 +13,6 @@ constexpr int kPlainSweeps = 200;
 
 }  // namespace
 
-// m/s, of b against a.
-Vec3 GroupFlight::closing(const DirectPoint& point, const Motions& bodies)
-{
-    const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
-        if (seat < 0) return Vec3::Zero();
-        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
-        return body.velocity + body.spin.cross(arm);
-    };
-    return speed(point.b, point.arm_b) - speed(point.a, point.arm_a);
-}
-
-// Along the normal: below 0 while they close.
-double GroupFlight::approach(const DirectPoint& point, const Motions& bodies)
-{
-    return point.normal.dot(closing(point, bodies));
-}
-
 void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
 {
     const int asked = scene_.conditions.settings.iterations;
@@ -49,51 +32,29 @@ void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
         for (DirectPoint& point : points) push(point, bodies);
 }
 
-// kg-1: by how much an impulse along a direction changes the speed of b against a along it.
-double GroupFlight::ease(const DirectPoint& point, const Vec3& along, const Motions& bodies)
-{
-    const auto of = [&](std::int32_t seat, const Vec3& arm) {
-        if (seat < 0) return 0.0;
-        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
-        const Vec3 turn = arm.cross(along);
-        return body.inverse_mass + turn.dot(body.inverse_inertia.matrix() * turn);
-    };
-    return of(point.a, point.arm_a) + of(point.b, point.arm_b);
-}
-
-void GroupFlight::change(DirectPoint& point, const Vec3& impulse, Motions& bodies)
-{
-    const auto give = [&](std::int32_t seat, const Vec3& arm, const Vec3& more) {
-        if (seat < 0) return;
-        DirectBody& body = bodies[static_cast<std::size_t>(seat)];
-        body.velocity += more * body.inverse_mass;
-        body.spin += body.inverse_inertia.matrix() * arm.cross(more);
-    };
-    const Vec3 more = impulse - point.impulse;
-    give(point.a, point.arm_a, -more);
-    give(point.b, point.arm_b, more);
-    point.impulse = impulse;
-}
-
 // One visit to a point: to its least speed along the normal, then against sliding, within what the
 // normal impulse allows. It resists no rolling.
 void GroupFlight::push(DirectPoint& point, Motions& bodies)
 {
-    const double normal_ease = ease(point, point.normal, bodies);
+    const auto change = [&](const Vec3& impulse) {
+        apply_impulse(point, impulse - point.impulse, bodies);
+        point.impulse = impulse;
+    };
+    const double normal_ease = ease_along(point, point.normal, bodies);
     if (!(normal_ease > 0)) return;
     const double before = point.normal.dot(point.impulse);
-    const double missing = point.least - approach(point, bodies);
+    const double missing = point.least - speed_apart(point, bodies);
     const double normal = std::max(before + missing / normal_ease, 0.0);
-    change(point, point.impulse + point.normal * (normal - before), bodies);
+    change(point.impulse + point.normal * (normal - before));
 
-    Vec3 slide = closing(point, bodies);
+    Vec3 slide = velocity_between(point, bodies);
     slide -= point.normal * point.normal.dot(slide);
     const double sliding = slide.norm(), most = point.friction * normal;
     Vec3 across = point.impulse - point.normal * normal;
-    if (sliding > 0) across -= slide / ease(point, slide / sliding, bodies);
+    if (sliding > 0) across -= slide / ease_along(point, slide / sliding, bodies);
     const double length = across.norm();
     if (length > most) across *= most / length;
-    change(point, point.normal * normal + across, bodies);
+    change(point.normal * normal + across);
 }
 
 }  // namespace throng

@@ -45,21 +45,6 @@ void DirectIsland::count_touching(const Conditions& conditions, double ahead)
     }
 }
 
-// By how much an impulse along a direction changes the speed between the two, 1/kg.
-double DirectIsland::ease_of(const DirectPoint& point, const Vec3& along) const
-{
-    double ease = 0;
-    const auto add = [&](std::int32_t seat, const Vec3& arm) {
-        if (seat < 0) return;
-        const DirectBody& body = after_[static_cast<std::size_t>(seat)];
-        const Vec3 turn = arm.cross(along);
-        ease += body.inverse_mass + turn.dot(Vec3(body.inverse_inertia.matrix() * turn));
-    };
-    add(point.a, point.arm_a);
-    add(point.b, point.arm_b);
-    return ease;
-}
-
 // Points that share a body add up: each takes its part of what the step bears.
 DirectIsland::Give
 DirectIsland::give_of(std::size_t at, const Settings& settings, double time) const
@@ -68,7 +53,7 @@ DirectIsland::give_of(std::size_t at, const Settings& settings, double time) con
     std::uint32_t share = 1;
     for (const std::int32_t seat : {touch.a, touch.b})
         if (seat >= 0) share = std::max(share, pressed_[static_cast<std::size_t>(seat)]);
-    const double ease = ease_of(points_[at], touch.normal) * share;
+    const double ease = ease_along(points_[at], touch.normal, after_) * share;
     if (!(ease > 0)) return {};
     Give give;
     give.stiffness = settings.penalty_stiffness > 0 ? settings.penalty_stiffness
@@ -99,26 +84,14 @@ void DirectIsland::push_by_forces(const Conditions& conditions, double time, boo
         if (finest && give.longest < time) give = give_of(i, softened, time);
         const double force =
             std::max(0.0, -give.stiffness * gaps_[i] - give.damping * approach(i, before_));
-        const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
-            if (seat < 0) return Vec3::Zero();
-            const DirectBody& body = before_[static_cast<std::size_t>(seat)];
-            return body.velocity + body.spin.cross(arm);
-        };
-        const Vec3 between = speed(point.b, point.arm_b) - speed(point.a, point.arm_a);
+        const Vec3 between = velocity_between(point, before_);
         const Vec3 sliding = between - point.normal * point.normal.dot(between);
         const double fast = std::sqrt(sliding.squaredNorm());
         const double hold = std::min(give.across * fast, point.friction * force);
         Vec3 impulse = point.normal * (force * time);
         if (fast > 0) impulse -= sliding * (hold * time / fast);
         point.impulse += impulse;
-        const auto push = [&](std::int32_t seat, const Vec3& arm, double sign) {
-            if (seat < 0) return;
-            DirectBody& body = after_[static_cast<std::size_t>(seat)];
-            body.velocity += sign * body.inverse_mass * impulse;
-            body.spin += sign * Vec3(body.inverse_inertia.matrix() * arm.cross(impulse));
-        };
-        push(point.a, point.arm_a, -1);
-        push(point.b, point.arm_b, 1);
+        apply_impulse(point, impulse, after_);
     }
     going_ = after_;
     advance(time);

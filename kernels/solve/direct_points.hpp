@@ -1,0 +1,83 @@
+// Direct points: what bodies do at a point where they meet, and what an impulse there does to them.
+#pragma once
+
+#include "kernels/solve/direct.hpp"
+
+namespace throng {
+
+/// Velocity of b against a at a point, m/s.
+inline Vec3 velocity_between(const DirectPoint& point, std::span<const DirectBody> bodies)
+{
+    const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
+        if (seat < 0) return Vec3::Zero();
+        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+        return body.velocity + body.spin.cross(arm);
+    };
+    return speed(point.b, point.arm_b) - speed(point.a, point.arm_a);
+}
+
+/// Of that, the part along the normal: below 0 while they close.
+inline double speed_apart(const DirectPoint& point, std::span<const DirectBody> bodies)
+{
+    return point.normal.dot(velocity_between(point, bodies));
+}
+
+/// By how much an impulse along a direction changes the speed of b against a along it, 1/kg.
+inline double
+ease_along(const DirectPoint& point, const Vec3& along, std::span<const DirectBody> bodies)
+{
+    const auto of = [&](std::int32_t seat, const Vec3& arm) {
+        if (seat < 0) return 0.0;
+        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+        const Vec3 turn = arm.cross(along);
+        return body.inverse_mass + turn.dot(Vec3(body.inverse_inertia.matrix() * turn));
+    };
+    return of(point.a, point.arm_a) + of(point.b, point.arm_b);
+}
+
+/// Gives an impulse, N s, to b, and its opposite to a.
+inline void
+apply_impulse(const DirectPoint& point, const Vec3& impulse, std::span<DirectBody> bodies)
+{
+    const auto push = [&](std::int32_t seat, const Vec3& arm, double sign) {
+        if (seat < 0) return;
+        DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+        body.velocity += sign * body.inverse_mass * impulse;
+        body.spin += sign * Vec3(body.inverse_inertia.matrix() * arm.cross(impulse));
+    };
+    push(point.a, point.arm_a, -1);
+    push(point.b, point.arm_b, 1);
+}
+
+/// The restitution of points that are struck together: the mean over the work that stopping each
+/// took, so that where coefficients differ none gains energy.
+///
+///   points       with the impulses that stopped them
+///   speeds       [points] m/s, at which they closed
+///   restitution  [points]
+inline double shared_restitution(std::span<const DirectPoint> points,
+                                 std::span<const double> speeds,
+                                 std::span<const double> restitution)
+{
+    double all = 0, kept = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double work = points[i].normal.dot(points[i].impulse) * speeds[i];
+        all += work;
+        kept += work * restitution[i];
+    }
+    return all > 0 ? kept / all : 0;
+}
+
+/// Takes bodies from how they were beyond where they were stopped: `times` the change, so that 2
+/// mirrors them.
+///
+/// Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
+inline void mirror(std::span<const DirectBody> stopped, double times, std::span<DirectBody> bodies)
+{
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        bodies[i].velocity += (stopped[i].velocity - bodies[i].velocity) * times;
+        bodies[i].spin += (stopped[i].spin - bodies[i].spin) * times;
+    }
+}
+
+}  // namespace throng
