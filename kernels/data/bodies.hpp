@@ -24,6 +24,14 @@ inline bool holdable(const Vec3& v)
     return std::abs(v.x()) < kMost && std::abs(v.y()) < kMost && std::abs(v.z()) < kMost;
 }
 
+/// The same of all that a step gives a body.
+inline bool
+holdable(const Vec3& position, const Quat& orientation, const Vec3& linear, const Vec3& angular)
+{
+    return holdable(position) && orientation.coeffs().allFinite() && holdable(linear)
+        && holdable(angular);
+}
+
 /// Where each body's center of mass is and how its axes are turned.
 struct Poses {
     std::vector<Vec3> position;

@@ -160,8 +160,7 @@ void DirectIsland::give_states(const DirectScene<Real>& scene,
         const Vec3 position = scene.poses.position[seat.body] + seat.moved;
         Quat orientation = seat.turned * seat.orientation;
         orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
-        const bool sound = holdable(position) && orientation.coeffs().allFinite()
-            && holdable(after_[i].velocity) && holdable(after_[i].spin);
+        const bool sound = holdable(position, orientation, after_[i].velocity, after_[i].spin);
         rows.settled[slice.first_body + i] = sound ? Settled::yes : Settled::lost;
         if (!sound) continue;
         scene.poses.position[seat.body] = position;

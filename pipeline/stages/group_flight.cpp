@@ -95,8 +95,7 @@ bool GroupFlight::fly(double begin, double span)
         const RigidMotion::Outcome now = law_.outcome(i);
         ends_[i] = {
             {now.position, now.orientation}, now.velocity, now.angular_velocity, now.memory, true};
-        if (!holdable(now.position) || !now.orientation.coeffs().allFinite()
-            || !holdable(now.velocity) || !holdable(now.angular_velocity))
+        if (!holdable(now.position, now.orientation, now.velocity, now.angular_velocity))
             return false;
     }
     return true;

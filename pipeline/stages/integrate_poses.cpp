@@ -68,9 +68,7 @@ bool fly_one(const Conditions& conditions,
         orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
         if (precesses) angular = orientation * w;
     }
-    if (!holdable(position) || !orientation.coeffs().allFinite() || !holdable(linear)
-        || !holdable(angular))
-        return false;
+    if (!holdable(position, orientation, linear, angular)) return false;
     poses.position[body] = position;
     poses.orientation[body] = orientation;
     velocities.linear[body] = linear;
@@ -167,8 +165,7 @@ private:
     // Whether a step can hold it.
     static bool sound(const RigidMotion::Outcome& now)
     {
-        return holdable(now.position) && now.orientation.coeffs().allFinite()
-            && holdable(now.velocity) && holdable(now.angular_velocity);
+        return holdable(now.position, now.orientation, now.velocity, now.angular_velocity);
     }
 
     // False, and the body as it was, where it would become what a step cannot hold.

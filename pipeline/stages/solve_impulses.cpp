@@ -78,9 +78,7 @@ bool take_back(const SolverBody<Real>& seat,
     Quat orientation = turn_of(seat) * poses.orientation[body];
     const double length = std::sqrt(orientation.squaredNorm());
     orientation.coeffs() /= length;
-    if (ran_away(seat) || !holdable(position) || !orientation.coeffs().allFinite() || !holdable(v)
-        || !holdable(w))
-        return false;
+    if (ran_away(seat) || !holdable(position, orientation, v, w)) return false;
     poses.position[body] = position;
     poses.orientation[body] = orientation;
     velocities.linear[body] = v;
