@@ -29,13 +29,15 @@ Impact at_end(double end, int evaluations)
     return impact;
 }
 
-Impact impact_of(const MovingCores& cores, double begin, double end, const ImpactRule& rule)
+// Along the direction that parts them now until that no longer does, then along the next.
+template <class Ways>
+Impact impact_of(const Ways& ways, double begin, double end, const ImpactRule& rule)
 {
     Impact impact;
     double time = begin;
     const int most = most_rounds(rule.method);
     for (int round = 0;; ++round) {
-        const Apart apart = cores.distance_at(time);
+        const Apart apart = ways.distance_at(time);
         ++impact.evaluations;
         impact.time = time;
         impact.distance = std::max(0.0, apart.gap.value);
@@ -47,48 +49,10 @@ Impact impact_of(const MovingCores& cores, double begin, double end, const Impac
         if (round == most) break;
         const auto gap_at = [&](double at) {
             ++impact.evaluations;
-            return cores.gap_along(apart.normal, at);
+            return ways.gap_along(apart.normal, at);
         };
         const Fall fall = first_fall(rule.method, gap_at, time, apart.gap, end, rule.level,
-                                     rule.close, cores.limits_along(apart.normal));
-        if (fall.clear) return at_end(end, impact.evaluations);
-        if (!(fall.time > time)) break;
-        time = fall.time;
-    }
-    impact.meeting = Meeting::meet;
-    impact.cut_short = true;
-    return impact;
-}
-
-// A plane is its own direction, and turns with its body.
-Impact impact_with_plane(const Shapes& shapes,
-                         const MovingShape& plane,
-                         const MovingShape& other,
-                         double begin,
-                         double end,
-                         const ImpactRule& rule)
-{
-    const OverPlane over(shapes, plane, other);
-    Impact impact;
-    const auto gap_at = [&](double at) {
-        ++impact.evaluations;
-        return over.gap_at(at);
-    };
-    const GapLimits limits = over.limits();
-    const int most = most_rounds(rule.method);
-    double time = begin;
-    for (int round = 0;; ++round) {
-        const Gap gap = gap_at(time);
-        impact.time = time;
-        impact.distance = std::max(0.0, gap.value);
-        impact.normal = over.normal_at(time);
-        if (!(gap.value > rule.close)) {
-            impact.meeting = round == 0 ? Meeting::at_start : Meeting::meet;
-            return impact;
-        }
-        if (round == most) break;
-        const Fall fall =
-            first_fall(rule.method, gap_at, time, gap, end, rule.level, rule.close, limits);
+                                     rule.close, ways.limits_along(apart.normal));
         if (fall.clear) return at_end(end, impact.evaluations);
         if (!(fall.time > time)) break;
         time = fall.time;
@@ -181,9 +145,10 @@ Impact impact_time(const Shapes& shapes,
 {
     if (a.shape.kind == ShapeKind::plane && b.shape.kind == ShapeKind::plane) return at_end(end, 0);
     const Mesh *on_a = mesh_of(shapes, a), *on_b = mesh_of(shapes, b);
-    if (a.shape.kind == ShapeKind::plane) return impact_with_plane(shapes, a, b, begin, end, rule);
+    if (a.shape.kind == ShapeKind::plane)
+        return impact_of(OverPlane(shapes, a, b), begin, end, rule);
     if (b.shape.kind == ShapeKind::plane)
-        return turned_round(impact_with_plane(shapes, b, a, begin, end, rule));
+        return turned_round(impact_of(OverPlane(shapes, b, a), begin, end, rule));
     if (on_a && on_b) return impact_of_meshes(shapes, a, b, begin, end, rule);
     if (on_a) {
         const Core<double> core = moving_core(shapes, b);
@@ -191,7 +156,7 @@ Impact impact_time(const Shapes& shapes,
     }
     const Core<double> core = moving_core(shapes, a);
     if (on_b) return turned_round(impact_with_mesh(*on_b, b, core, a, begin, end, rule));
-    return impact_of({core, a, moving_core(shapes, b), b}, begin, end, rule);
+    return impact_of(MovingCores(core, a, moving_core(shapes, b), b), begin, end, rule);
 }
 
 }  // namespace throng

@@ -150,7 +150,13 @@ Vec3 OverPlane::normal_at(double time) const
     return (sweep_.at(time) * local_).orientation * plane_.normal;
 }
 
-Gap OverPlane::gap_at(double time) const
+Apart OverPlane::distance_at(double time) const
+{
+    const Vec3 normal = normal_at(time);
+    return {gap_along(normal, time), normal};
+}
+
+Gap OverPlane::gap_along(const Vec3&, double time) const
 {
     const Pose body = sweep_.at(time);
     const Pose placed = body * local_;
@@ -163,7 +169,7 @@ Gap OverPlane::gap_at(double time) const
             normal.dot(speed)};
 }
 
-GapLimits OverPlane::limits() const
+GapLimits OverPlane::limits_along(const Vec3&) const
 {
     const Vec3 normal = normal_at(0);
     const GapLimits turning = other_.turning_limits(normal);

@@ -68,11 +68,15 @@ class OverPlane {
 public:
     OverPlane(const Shapes& shapes, const MovingShape& plane, const MovingShape& other);
 
-    Vec3 normal_at(double time) const;
-    Gap gap_at(double time) const;
-    GapLimits limits() const;
+    // As MovingCores has them. Whatever direction is asked for, it is the plane's own, which turns
+    // with its body.
+    Apart distance_at(double time) const;
+    Gap gap_along(const Vec3& normal, double time) const;
+    GapLimits limits_along(const Vec3& normal) const;
 
 private:
+    Vec3 normal_at(double time) const;
+
     Plane plane_;
     Vec3 from_;    // what places are counted from
     Sweep sweep_;  // of the plane
