@@ -1,37 +1,17 @@
 #include "cost/shared_meshes.hpp"
 
+#include "cost/shared_data.hpp"
 #include "kernels/geometry/mesh_health.hpp"
 #include "scenes/mesh_file.hpp"
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 namespace throng {
 
-namespace {
-
-namespace fs = std::filesystem;
-
-fs::path find_mesh(const std::string& file)
-{
-    const fs::path name = fs::path("meshes") / file;
-    // Cases change no environment.
-    const char* named = std::getenv("THRONG_DATA");  // NOLINT(concurrency-mt-unsafe)
-    if (named != nullptr && fs::exists(fs::path(named) / name)) return fs::path(named) / name;
-    const fs::path source = fs::absolute(__FILE__);
-    for (auto folder = source.parent_path(); folder != folder.root_path();
-         folder = folder.parent_path())
-        if (fs::exists(folder / "shared/data" / name)) return folder / "shared/data" / name;
-    return {};
-}
-
-}  // namespace
-
 std::optional<TriangleSoup> shared_mesh(const std::string& file)
 {
-    const fs::path path = find_mesh(file);
+    const std::filesystem::path path = find_shared(std::filesystem::path("meshes") / file);
     if (path.empty()) return std::nullopt;
     std::stringstream text;
     text << std::ifstream(path).rdbuf();

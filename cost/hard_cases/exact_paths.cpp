@@ -3,10 +3,10 @@
 // Answers: exact ones that come with the sets, in integers. None that meet may be missed; how many
 // of those that do not are told to is printed as their share, for a tolerance of a millionth.
 #include "cost/hard_cases/hard_cases.hpp"
+#include "cost/shared_data.hpp"
 #include "pipeline/dials.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -23,18 +23,6 @@ struct ExactQuery {
     LinearQuestion question;
     bool meets = false;
 };
-
-fs::path find_sets()
-{
-    // Cases change no environment.
-    const char* named = std::getenv("THRONG_DATA");  // NOLINT(concurrency-mt-unsafe)
-    if (named != nullptr && fs::exists(fs::path(named) / "ccd")) return fs::path(named) / "ccd";
-    const fs::path source = fs::absolute(__FILE__);
-    for (auto folder = source.parent_path(); folder != folder.root_path();
-         folder = folder.parent_path())
-        if (fs::exists(folder / "shared/data/ccd")) return folder / "shared/data/ccd";
-    return {};
-}
 
 // Eight rows a query, each of a fraction an axis and the truth: the points at the start, then
 // those at the end.
@@ -101,7 +89,7 @@ void ask_set(CaseBench& bench, const std::string& name, const std::vector<ExactQ
 
 void case_exact_paths(CaseBench& bench)
 {
-    const fs::path sets = find_sets();
+    const fs::path sets = find_shared("ccd");
     if (sets.empty()) {
         bench.skip("public sets", "touches missed", "shared/data/ccd is absent");
         return;

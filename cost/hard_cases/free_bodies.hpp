@@ -41,7 +41,4 @@ double fitted_order(std::span<const double> steps,
 
 inline constexpr Rotation kExponentialRotations[] = {Rotation::quaternion,
                                                      Rotation::rotation_vector, Rotation::matrix};
-inline constexpr Rotation kTextbookRotations[] = {
-    Rotation::quaternion_euler, Rotation::matrix_euler, Rotation::matrix_euler_repaired};
-
 }  // namespace throng

@@ -66,8 +66,7 @@ std::vector<double> steps_to_fit(int order)
 
 struct Flight {
     Quat orientation = Quat::Identity();
-    double loss = 0, momentum_error = 0;  // greatest, relative; loss may be below 0 for a gain
-    double gain = 0;
+    double loss = 0, gain = 0;  // greatest, of the energy
 };
 
 // Where it is after a time, with the greatest errors of what should be kept.
@@ -81,7 +80,6 @@ Flight fly(CaseBench& bench,
     scene.settings.gyroscopic = gyroscopic;
     add_free_body(scene, 10, top.moments, top.spin);
     const double energy = 0.5 * top.moments.dot(top.spin.cwiseAbs2());
-    const double momentum = top.moments.cwiseProduct(top.spin).norm();
     Flight flight;
     const int steps = static_cast<int>(std::llround(time / choice.dt));
     int step = 0;
@@ -91,8 +89,6 @@ Flight fly(CaseBench& bench,
         const Measures now = world.measure();
         flight.loss = std::max(flight.loss, 1 - now.kinetic_energy / energy);
         flight.gain = std::max(flight.gain, now.kinetic_energy / energy - 1);
-        flight.momentum_error =
-            std::max(flight.momentum_error, std::abs(now.angular_momentum.norm() / momentum - 1));
         flight.orientation = world.pose(world.bodies()[0]).orientation;
         return true;
     });

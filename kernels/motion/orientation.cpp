@@ -1,5 +1,6 @@
 #include "kernels/motion/orientation.hpp"
 
+#include "kernels/math/numbers.hpp"
 #include "kernels/math/rotation.hpp"
 
 #include <cmath>
@@ -12,19 +13,11 @@ Quat quaternion_at(const double* numbers)
 {
     return {numbers[3], numbers[0], numbers[1], numbers[2]};
 }
-Vec3 vector_at(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 Mat3 matrix_at(const double* numbers)
 {
     Mat3 m;
     m << vector_at(numbers), vector_at(numbers + 3), vector_at(numbers + 6);
     return m;
-}
-
-// Quaternions, vectors and matrices alike, as the numbers they are of.
-template <class Numbers>
-void put(const Numbers& from, double* to)
-{
-    for (Eigen::Index i = 0; i < from.size(); ++i) to[i] = from.data()[i];
 }
 
 Quat unit(const Quat& q)

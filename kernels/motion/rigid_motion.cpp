@@ -1,5 +1,6 @@
 #include "kernels/motion/rigid_motion.hpp"
 
+#include "kernels/math/numbers.hpp"
 #include "kernels/math/rotation.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -10,13 +11,6 @@
 namespace throng {
 
 namespace {
-
-Vec3 vector_at(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
-
-void put(const Vec3& from, double* to)
-{
-    for (int k = 0; k < 3; ++k) to[k] = from[k];
-}
 
 // Of a list that may be shorter than the bodies.
 template <class T>

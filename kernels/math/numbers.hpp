@@ -1,0 +1,18 @@
+// Numbers: vectors, quaternions and matrices in rows of plain numbers.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+namespace throng {
+
+inline Vec3 vector_at(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+/// Anything of Eigen's as the numbers that it is of, in the order in which it holds them.
+template <class Numbers>
+void put(const Eigen::DenseBase<Numbers>& from, double* to)
+{
+    const typename Numbers::PlainObject plain = from.derived();
+    for (Eigen::Index i = 0; i < plain.size(); ++i) to[i] = plain.data()[i];
+}
+
+}  // namespace throng
