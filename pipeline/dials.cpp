@@ -80,23 +80,6 @@ std::string get_choice(const Settings& settings)
     return std::string(choices[static_cast<std::size_t>(settings.*Member)].text);
 }
 
-/// A dial that nothing in this build reads yet: it stays at its default, however that is spelled.
-template <const auto& choices>
-std::string set_fixed(Settings&, std::string_view text)
-{
-    if (parse_number(text) == parse_number(choices[0].text)) return {};
-    std::size_t place = 0;
-    std::string trouble = choose(choices, text, place);
-    const bool number = !trouble.empty() && !std::isnan(parse_number(text));
-    return number ? trouble + "; nothing else is available in this build" : trouble;
-}
-
-template <const auto& choices>
-std::string get_fixed(const Settings&)
-{
-    return std::string(choices[0].text);
-}
-
 /// A whole number in a range, or 0 where it is none.
 int parse_whole(std::string_view text, int greatest)
 {
@@ -311,26 +294,6 @@ Dial whole_dial(std::string_view name,
 {
     return number_dial(name, values, unit, set_whole<Member, least, greatest>, get_whole<Member>,
                        trades);
-}
-
-template <const auto& choices>
-Dial fixed_dial(std::string_view name, std::string_view trades)
-{
-    return named_dial(name, choices, set_fixed<choices>, get_fixed<choices>, trades);
-}
-
-/// A number that stays at its default in this build.
-template <const auto& choices>
-Dial fixed_number(std::string_view name,
-                  std::string_view values,
-                  std::string_view unit,
-                  std::string_view trades)
-{
-    Dial dial = fixed_dial<choices>(name, trades);
-    dial.values = values;
-    dial.unit = unit;
-    dial.choices = {};
-    return dial;
 }
 
 std::vector<Dial> make_dials()

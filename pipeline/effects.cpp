@@ -132,6 +132,7 @@ private:
         const Forces& forces = facts_.forces;
         if (forces.field) call(Effect::forces, "force field of the program");
         const auto call_for = [&](Effect effect, std::size_t size, auto acts) {
+            if (size == 0) return;
             const auto body = first_body(
                 [&](std::size_t b) { return b < size && facts_.states.dynamic(b) && acts(b); });
             if (body != kNobody) call(effect, name(body));

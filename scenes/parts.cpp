@@ -170,7 +170,7 @@ Quat fitting_turn(Random& random, const Vec3& half_extents, double limit)
     }
 }
 
-Layout heap_layout(int size)
+HeapLayout heap_layout(int size)
 {
     const double cube_root = std::pow(size, 1.0 / 3);
     const int layers = std::max(6, static_cast<int>(std::nearbyint(cube_root * 0.6)));

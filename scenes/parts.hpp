@@ -70,10 +70,10 @@ Vec3 random_drift(Random& random);
 Quat fitting_turn(Random& random, const Vec3& half_extents, double limit);
 
 /// Bodies in layers of side x side cells, so that a heap of them is about as deep as it is wide.
-struct Layout {
+struct HeapLayout {
     int layers = 0, side = 0;
 };
-Layout heap_layout(int size);
+HeapLayout heap_layout(int size);
 
 /// The place of body i in the grid, centered about z; jitter along x and y.
 struct Grid {
