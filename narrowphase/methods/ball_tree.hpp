@@ -1,7 +1,7 @@
 // Ball tree: which of many balls come near a place.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "kernels/geometry/ball.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -9,17 +9,6 @@
 #include <vector>
 
 namespace throng {
-
-struct Ball {
-    Vec3 center = Vec3::Zero();
-    double radius = 0;
-};
-
-/// How far a place is from a ball, m; below 0 inside.
-inline double gap_to(const Ball& ball, const Vec3& place)
-{
-    return (place - ball.center).norm() - ball.radius;
-}
 
 /// The two balls nearest to a place: which is nearest, the first of several, and how far off it and
 /// the next one are.

@@ -1,17 +1,13 @@
 // Bounding ball: a ball round each shape, as a filter: it says `apart` or nothing.
 #pragma once
 
+#include "kernels/geometry/ball.hpp"
 #include "narrowphase/methods/convex_methods.hpp"
 
 namespace throng {
 
-/// A ball round a shape, in the shape's frame: that of the hull about its center, of all others the
-/// least about their middle.
-struct Ball {
-    Vec3 center = Vec3::Zero();
-    double radius = 0;
-};
-
+/// The ball round a shape, in the shape's frame: that of the hull about its center, of all others
+/// the least about their middle.
 Ball ball_round(const Core<double>& core);
 
 /// The filter as a method: `apart` with the normal from center to center, or `undecided`. Never

@@ -1,0 +1,19 @@
+// Ball: a center and a radius.
+#pragma once
+
+#include "kernels/math/types.hpp"
+
+namespace throng {
+
+struct Ball {
+    Vec3 center = Vec3::Zero();
+    double radius = 0;
+};
+
+/// How far a place is from a ball, m; below 0 inside.
+inline double gap_to(const Ball& ball, const Vec3& place)
+{
+    return (place - ball.center).norm() - ball.radius;
+}
+
+}  // namespace throng
