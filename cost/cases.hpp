@@ -11,12 +11,16 @@
 
 #include <functional>
 #include <map>
+#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace throng {
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kGravity = 9.81;  // m/s2, where a case does not say another
 
 enum class Verdict : std::uint8_t { pass, fail, skipped };
 

@@ -13,9 +13,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = 9.81;
-
 // Two cards whose upper ends are cut upright, so that they meet face to face: where edges meet, any
 // normal between their faces would do.
 Scene tent(const CaseBench& bench, double friction)

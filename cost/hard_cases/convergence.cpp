@@ -14,13 +14,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 namespace throng {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kTurns = 32;
 // How far a fitted order may be off.
 constexpr double kOrderSlack = 0.3;

@@ -15,7 +15,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSpeed = 1000;  // m/s
 
 // Each method in turn, by the dial's own words.

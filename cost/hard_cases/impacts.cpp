@@ -13,7 +13,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kExact = 1e-9;
 
 SceneParts without_gravity(const CaseBench& bench, ImpactLaw law)

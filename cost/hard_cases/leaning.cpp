@@ -14,7 +14,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTime = 10;     // s; at 5 % below a threshold things have moved far by then
 constexpr double kMoved = 0.05;  // of the body's size: more is a fall
 

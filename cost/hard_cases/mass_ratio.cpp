@@ -13,7 +13,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kGravity = 9.81;
 constexpr double kTime = 10;  // s
 constexpr double kOverlap = 1e-6;
 

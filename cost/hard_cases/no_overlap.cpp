@@ -12,8 +12,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kGravity = 9.81;
-
 // `radius` m of the smallest ball or half extent, tolerance as the dial has it.
 SceneParts backed_up(const CaseBench& bench, double dt, double tolerance)
 {

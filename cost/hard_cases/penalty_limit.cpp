@@ -13,7 +13,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kGravity = 9.81;
 constexpr double kStiffness = 1e6, kMass = 1, kFrequency = 1000;  // N/m, kg, rad/s
 constexpr double kRests = kMass * kGravity / kStiffness;          // m, overlap at rest
 constexpr double kFirst = 0.1 * kRests;                           // m, the first swing

@@ -18,8 +18,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = 9.81;
 constexpr double kStep = 1e-3;
 
 void slip_to_roll(CaseBench& bench)

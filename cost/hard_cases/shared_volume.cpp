@@ -37,7 +37,6 @@ Points cube()
 
 std::vector<Shared> known_volumes()
 {
-    constexpr double kPi = 3.14159265358979323846;
     const double across = std::sqrt(2.0) - 1;
     const Points tetrahedron = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
     Points mirrored = tetrahedron;

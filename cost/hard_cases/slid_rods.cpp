@@ -17,8 +17,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = 9.81;
 constexpr double kSlop = 1e-6;  // m
 
 // A rod of 1 kg with pointed ends, along x before it is turned.

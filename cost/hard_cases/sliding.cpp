@@ -13,8 +13,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kGravity = 9.81;
-
 Scene sliding_box(const CaseBench& bench, double friction, const Vec3& velocity)
 {
     SceneParts parts(bench.scene());

@@ -13,12 +13,12 @@ namespace throng {
 
 namespace {
 
-constexpr double kGravity = 9.8;
+constexpr double kRoundGravity = 9.8;
 
 Scene box_on_slope(const CaseBench& bench, double friction)
 {
     SceneParts parts(bench.scene());
-    parts.scene().gravity = Vec3(0, 0, -kGravity);
+    parts.scene().gravity = Vec3(0, 0, -kRoundGravity);
     const double angle = std::atan(0.5);
     const Quat turn = exponential(Vec3(0, angle, 0));  // downhill is +x
     const std::uint32_t material = parts.material(friction);
@@ -63,7 +63,7 @@ void slip(CaseBench& bench, bool exact)
 {
     const double friction = 0.49;
     const double angle = std::atan(0.5);
-    const double wanted = kGravity * (std::sin(angle) - friction * std::cos(angle));
+    const double wanted = kRoundGravity * (std::sin(angle) - friction * std::cos(angle));
     const Vec3 downhill = exponential(Vec3(0, angle, 0)) * Vec3::UnitX();
     double early = 0, late = 0;
     Scene scene = box_on_slope(bench, friction);

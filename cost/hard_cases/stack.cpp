@@ -14,7 +14,6 @@ namespace throng {
 namespace {
 
 constexpr int kHigh = 10;
-constexpr double kGravity = 9.81;
 
 Scene stack(const CaseBench& bench, int high, double edge, double gap, const Vec3& at)
 {

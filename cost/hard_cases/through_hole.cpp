@@ -15,13 +15,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace throng {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // H43's torus, and the links of its chain.
 constexpr double kRing = 1, kTube = 0.25, kPeg = 0.5;

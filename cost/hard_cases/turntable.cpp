@@ -13,9 +13,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = 9.81;
-
 // How far the block moves on the disc in a time, as a share of its radius.
 double slides(CaseBench& bench, double friction, double share)
 {

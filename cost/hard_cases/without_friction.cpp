@@ -15,8 +15,6 @@ namespace throng {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = 9.81;
 constexpr double kBound = 1e-3, kStep = 1e-3;
 const std::string kDirect = ", direct, dt 1e-3";
 
