@@ -3,12 +3,12 @@
 namespace throng {
 namespace {
 
-using testing::all_finite;
-using testing::deepest_of;
-using testing::meet;
-using testing::Placement;
-using testing::random_direction;
-using testing::random_turn;
+using given::all_finite;
+using given::deepest_of;
+using given::meet;
+using given::Placement;
+using given::random_direction;
+using given::random_turn;
 
 constexpr ShapeRef kCapsule = {ShapeKind::capsule, 0}, kBox = {ShapeKind::box, 0};
 
@@ -53,7 +53,7 @@ Placement placed(const Capsule& capsule, const Vec3& box, const Vec3& middle, co
 
 void expect_as_searched(const Placement& pair, double exact, double coarse)
 {
-    testing::expect_as_searched(capsule_box<double>, capsule_box<float>, pair, exact, coarse);
+    given::expect_as_searched(capsule_box<double>, capsule_box<float>, pair, exact, coarse);
 }
 
 }  // namespace

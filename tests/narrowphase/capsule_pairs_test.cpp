@@ -3,12 +3,12 @@
 namespace throng {
 namespace {
 
-using testing::all_finite;
-using testing::deepest_of;
-using testing::meet;
-using testing::Placement;
-using testing::random_direction;
-using testing::random_turn;
+using given::all_finite;
+using given::deepest_of;
+using given::meet;
+using given::Placement;
+using given::random_direction;
+using given::random_turn;
 
 constexpr ShapeRef kCapsuleA = {ShapeKind::capsule, 0}, kCapsuleB = {ShapeKind::capsule, 1};
 
@@ -38,8 +38,7 @@ Placement random_placement(std::mt19937& random, double scale, double spread)
 
 void expect_as_searched(const Placement& pair, double exact, double coarse)
 {
-    testing::expect_as_searched(capsule_capsule<double>, capsule_capsule<float>, pair, exact,
-                                coarse);
+    given::expect_as_searched(capsule_capsule<double>, capsule_capsule<float>, pair, exact, coarse);
 }
 
 // The least distance of two segments by trying places on one against the other, then closer ones.

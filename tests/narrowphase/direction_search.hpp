@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace throng::testing {
+namespace throng::given {
 
 /// Points, circles about the axis z and a rounding: enough for every convex kind.
 struct Outline {
@@ -127,4 +127,4 @@ inline Vec3 random_direction(std::mt19937& random)
     return Vec3(bell(random), bell(random), bell(random)).normalized();
 }
 
-}  // namespace throng::testing
+}  // namespace throng::given

@@ -10,8 +10,8 @@
 namespace throng {
 namespace {
 
-using testing::random_direction;
-using testing::random_turn;
+using given::random_direction;
+using given::random_turn;
 
 constexpr ShapeRef kSphere = {ShapeKind::sphere, 0};
 constexpr ShapeRef kCapsule = {ShapeKind::capsule, 0};
@@ -124,7 +124,7 @@ TEST(ConvexPlane, DeepestPointIsTheTrueLowestWhateverTheTurn)
         for (const ShapeRef shape : {kSphere, kCapsule, kCylinder, kBox, kHull}) {
             const Pose body = {Vec3(1, 2, 0.6), random_turn(random)};
             const LocalManifold<double> manifold = meet(shape, kPlane, inverse_of(body), 10);
-            const auto outline = testing::outline_of(shapes, shape);
+            const auto outline = given::outline_of(shapes, shape);
             const double lowest =
                 0.6 - 0.25 - outline.reach(body.orientation.conjugate() * Vec3(0, 0, -1));
             double least = 1e300;
@@ -261,9 +261,9 @@ TEST(CylinderPairs, LogsKeepTheirFeaturesUnderNoise)
                            turn_about(random_direction(random), 1e-5)};
         const LocalManifold<double> manifold = meet(kCylinder, kCylinder, pose);
         EXPECT_EQ(features_of(manifold), names);
-        const testing::Gap gap = {testing::outline_of(some_shapes(), kCylinder),
-                                  testing::outline_of(some_shapes(), kCylinder), pose};
-        const double truth = testing::greatest_gap(gap, {manifold.normal}, 10);
+        const given::Gap gap = {given::outline_of(some_shapes(), kCylinder),
+                                given::outline_of(some_shapes(), kCylinder), pose};
+        const double truth = given::greatest_gap(gap, {manifold.normal}, 10);
         EXPECT_NEAR(gap.along(manifold.normal), truth, 1e-10) << "seed 9, case " << i;
     }
 }

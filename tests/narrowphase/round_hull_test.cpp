@@ -4,10 +4,10 @@
 namespace throng {
 namespace {
 
-using testing::deepest_of;
-using testing::Placement;
-using testing::random_direction;
-using testing::random_turn;
+using given::deepest_of;
+using given::Placement;
+using given::random_direction;
+using given::random_turn;
 
 constexpr ShapeRef kCapsule = {ShapeKind::capsule, 0}, kSphere = {ShapeKind::sphere, 0},
                    kHull = {ShapeKind::hull, 0};
@@ -58,7 +58,7 @@ void expect_cache_never_tells(PairFunction<Real> function, Placement pair, std::
                                   QuatT<Real>(pair.b_in_a.orientation.cast<Real>())};
         LocalManifold<Real> warm;
         function(pair.shapes, pair.a, pair.b, pose, Real(0.5), cache, warm);
-        EXPECT_TRUE(same(warm, testing::meet<Real>(function, pair, 0.5))) << "step " << i;
+        EXPECT_TRUE(same(warm, given::meet<Real>(function, pair, 0.5))) << "step " << i;
     }
 }
 
@@ -72,10 +72,10 @@ TEST(RoundHull, AgreesWithTheSearchWhateverTheSize)
     for (const double scale : {1e-6, 1.0, 1e6}) {
         for (int i = 0; i < 500; ++i) {
             SCOPED_TRACE("seed 61, case " + std::to_string(i));
-            testing::expect_as_searched(capsule_hull<double>, capsule_hull<float>,
-                                        random_placement(kCapsule, random, scale), kExact, kCoarse);
-            testing::expect_as_searched(sphere_hull<double>, sphere_hull<float>,
-                                        random_placement(kSphere, random, scale), kExact, kCoarse);
+            given::expect_as_searched(capsule_hull<double>, capsule_hull<float>,
+                                      random_placement(kCapsule, random, scale), kExact, kCoarse);
+            given::expect_as_searched(sphere_hull<double>, sphere_hull<float>,
+                                      random_placement(kSphere, random, scale), kExact, kCoarse);
             if (HasFailure()) return;
         }
     }
@@ -119,9 +119,9 @@ TEST(RoundHull, CapsuleLyingOnAHullTouchesAsOnTheBoxThatItIs)
         pair.shapes.capsules = {{0.1, 0.3}};
         pair.shapes.boxes = {{half}};
         pair.shapes.hulls = {build_hull(corners).hull};
-        const auto on_hull = testing::meet<double>(capsule_hull<double>, pair, 0.02);
+        const auto on_hull = given::meet<double>(capsule_hull<double>, pair, 0.02);
         pair.b = {ShapeKind::box, 0};
-        const auto on_box = testing::meet<double>(capsule_box<double>, pair, 0.02);
+        const auto on_box = given::meet<double>(capsule_box<double>, pair, 0.02);
         ASSERT_GT(on_hull.count, 0);
         EXPECT_NEAR(deepest_of(on_hull), deepest_of(on_box), 1e-9) << "seed 63, case " << i;
         EXPECT_LT((on_hull.normal - on_box.normal).norm(), 1e-7);

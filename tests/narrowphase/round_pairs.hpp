@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace throng::testing {
+namespace throng::given {
 
 /// Two shapes, one of each kind, and where b is.
 struct Placement {
@@ -93,4 +93,4 @@ inline void expect_as_searched(PairFunction<double> in_double,
     EXPECT_NEAR(pair.along(normal.normalized()) / size, deepest_of(rounded) / size, coarse);
 }
 
-}  // namespace throng::testing
+}  // namespace throng::given

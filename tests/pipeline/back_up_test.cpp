@@ -9,7 +9,7 @@
 namespace throng {
 namespace {
 
-using testing::SceneOf;
+using given::SceneOf;
 
 constexpr double kGravity = 9.81;
 
@@ -138,7 +138,7 @@ TEST(BackUp, StackStandsApartAndStill)
         world.step();
         ASSERT_EQ(world.measure().overlapping_pairs, 0u) << "step " << step;
     }
-    EXPECT_LT(testing::greatest_speed(world), 1e-6);
+    EXPECT_LT(given::greatest_speed(world), 1e-6);
     for (std::size_t i = 1; i <= 4; ++i)  // each half of 1e-4 times 0.5 m over the one below
         EXPECT_NEAR(place_of(world, i).z(), static_cast<double>(i) * (1 + 2.5e-5) - 0.5, 1e-5);
     EXPECT_EQ(world.report().fallbacks, 0u);

@@ -191,7 +191,7 @@ struct Row {
 
     explicit Row(std::initializer_list<double> places) : world(Settings{})
     {
-        testing::SceneOf made;
+        given::SceneOf made;
         for (const double x : places) made.ball(0.5, Vec3(x, 0, 0));
         balls = world.add(made.scene);
     }
@@ -217,7 +217,7 @@ TEST(ContactPlaces, AFreePlaceIsTakenAgainWithoutWhatWasInIt)
     EXPECT_EQ(row.contacts().contacts.size(), 2u);
     EXPECT_EQ(row.contacts().free.size(), 0u);
     EXPECT_LT(row.impulse(0), 1);
-    EXPECT_LT(testing::greatest_speed(row.world), 3.1);
+    EXPECT_LT(given::greatest_speed(row.world), 3.1);
 }
 
 TEST(ContactPlaces, APairThatComesBackBeginsAnew)
@@ -235,7 +235,7 @@ TEST(ContactPlaces, APairThatComesBackBeginsAnew)
     row.put(0, 0);
     row.world.step();
     EXPECT_EQ(row.contacts().free.size(), 0u);
-    EXPECT_LT(testing::greatest_speed(row.world), 3.1);
+    EXPECT_LT(given::greatest_speed(row.world), 3.1);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace throng {
 namespace {
 
-using testing::SceneOf;
+using given::SceneOf;
 
 double height_of(const World& world, std::size_t body)
 {
@@ -61,7 +61,7 @@ TEST(LockedBodies, ABallThatCannotYieldIsNotSpun)
             World world(made.scene);
             for (int i = 0; i < 60; ++i) {
                 world.step();
-                ASSERT_LT(testing::greatest_speed(world), 3 + 1e-6) << depth << " " << tilt;
+                ASSERT_LT(given::greatest_speed(world), 3 + 1e-6) << depth << " " << tilt;
             }
             EXPECT_FALSE(world.quarantined(world.bodies()[1]));
         }

@@ -9,7 +9,7 @@
 namespace throng {
 namespace {
 
-using testing::SceneOf;
+using given::SceneOf;
 
 std::string causes_of(World& world, Effect effect) { return world.effects().cause_of(effect); }
 

@@ -11,8 +11,8 @@
 namespace throng {
 namespace {
 
+using given::SceneOf;
 using test::Dice;
-using testing::SceneOf;
 
 constexpr ToiMethod kMethods[] = {ToiMethod::newton, ToiMethod::bisection, ToiMethod::conservative};
 
@@ -281,7 +281,7 @@ TEST(FastBodies, HaveTheSameBitsOnAnyNumberOfThreads)
 
 TEST(FastBodies, AreNoneInAHeapAtRest)
 {
-    World world(testing::mixed_scene());
+    World world(given::mixed_scene());
     world.step(30);
     EXPECT_FALSE(world.effects().on.has(Effect::fast_motion));
 }

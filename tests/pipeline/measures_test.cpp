@@ -7,7 +7,7 @@
 namespace throng {
 namespace {
 
-using testing::SceneOf;
+using given::SceneOf;
 
 TEST(Measures, OverlapsAreTheLeastTranslationOfEachPair)
 {
@@ -65,7 +65,7 @@ TEST(Measures, TurnWithTheWorld)
 
 TEST(Measures, ChangeNothing)
 {
-    World world(testing::mixed_scene(), 2);
+    World world(given::mixed_scene(), 2);
     world.step(20);
     const std::string before = world.state_hash();
     static_cast<void>(world.measure());
@@ -89,9 +89,9 @@ TEST(Measures, LeaveOutWhatWasRemoved)
 
 TEST(Measures, MemoryGrowsWithTheBodies)
 {
-    World small(testing::mixed_scene());
-    World large(testing::mixed_scene());
-    for (int i = 0; i < 5; ++i) large.add(testing::mixed_scene());
+    World small(given::mixed_scene());
+    World large(given::mixed_scene());
+    for (int i = 0; i < 5; ++i) large.add(given::mixed_scene());
     EXPECT_GT(small.memory_bytes(), 0u);
     EXPECT_GT(large.memory_bytes(), small.memory_bytes());
 }

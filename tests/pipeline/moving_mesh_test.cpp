@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace throng::testing {
+namespace throng::given {
 namespace {
 
 // Of a size that no other test has.
@@ -68,4 +68,4 @@ TEST(MovingMesh, IsKeptFromTheCheckUntilTheWorldHasIt)
 }
 
 }  // namespace
-}  // namespace throng::testing
+}  // namespace throng::given

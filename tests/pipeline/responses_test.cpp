@@ -7,7 +7,7 @@
 namespace throng {
 namespace {
 
-using testing::SceneOf;
+using given::SceneOf;
 
 constexpr double kGravity = 9.81;
 
@@ -174,7 +174,7 @@ TEST(Responses, KinematicTakesTheSpeedThatClosesAndKeepsTheSpeedAcross)
 TEST(Responses, AreTheSameBitsOnAnyNumberOfThreads)
 {
     for (const Response response : {Response::penalty, Response::kinematic}) {
-        Scene scene = testing::mixed_scene();
+        Scene scene = given::mixed_scene();
         scene.settings.response = response;
         std::string wanted;
         for (const int threads : {1, 2, 3}) {

@@ -7,7 +7,7 @@
 namespace throng {
 namespace {
 
-using testing::SceneOf;
+using given::SceneOf;
 
 Scene two_towers(bool sleep = true)
 {
@@ -41,7 +41,7 @@ TEST(Sleep, APileThatRestsFallsAsleepAndNothingOfItChanges)
     const std::string hash = world.state_hash();
     world.step(100);
     EXPECT_EQ(world.state_hash(), hash);
-    EXPECT_EQ(testing::greatest_speed(world), 0);
+    EXPECT_EQ(given::greatest_speed(world), 0);
 }
 
 TEST(Sleep, AWorldThatSleepsIsNotLookedAtUntilSomebodyTouchesIt)

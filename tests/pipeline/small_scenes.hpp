@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace throng::testing {
+namespace throng::given {
 
 /// A scene that is filled in piece by piece.
 class SceneOf {
@@ -84,4 +84,4 @@ inline double greatest_speed(const World& world)
     return greatest;
 }
 
-}  // namespace throng::testing
+}  // namespace throng::given

@@ -35,7 +35,7 @@ class SolidBits : public ::testing::TestWithParam<NonConvex> {
 protected:
     Scene scene(Precision precision) const
     {
-        Scene made = testing::solids_on_voxels(GetParam());
+        Scene made = given::solids_on_voxels(GetParam());
         made.settings.precision = precision;
         return made;
     }
@@ -89,7 +89,7 @@ TEST(SolidWays, EachLeadsItsOwnWay)
     std::set<std::string> seen;
     for (const NonConvex way : {NonConvex::voxels, NonConvex::parts, NonConvex::spheres,
                                 NonConvex::depth_image, NonConvex::hull})
-        seen.insert(hash_after(testing::solids_on_voxels(way), {}));
+        seen.insert(hash_after(given::solids_on_voxels(way), {}));
     EXPECT_EQ(seen.size(), 5u);
 }
 

@@ -8,7 +8,7 @@
 
 #include <stdexcept>
 
-namespace throng::testing {
+namespace throng::given {
 
 /// A block whose top is z = height(x, y), 1 m thick at the least; a square of so many cells of
 /// `cell` m about the origin.
@@ -92,4 +92,4 @@ inline Scene solids_on_voxels(NonConvex way)
     return made.scene;
 }
 
-}  // namespace throng::testing
+}  // namespace throng::given

@@ -34,7 +34,7 @@ Set<Effect> subset(unsigned bits)
 // The mixed scene after some steps with a set of effects forced on it.
 std::string run_with(Set<Effect> effects, bool in_order, int threads)
 {
-    World world(testing::mixed_scene(), threads);
+    World world(given::mixed_scene(), threads);
     world.run_in_order(in_order);
     static_cast<void>(world.effects());
     auto& state = world.state();
@@ -94,7 +94,7 @@ TEST(StepGraph, WaitsAreTheLeastThatKeepTheOrder)
 
 TEST(StepGraph, MeasuresEveryStage)
 {
-    World world(testing::mixed_scene(), 2);
+    World world(given::mixed_scene(), 2);
     world.step(2);
     ASSERT_FALSE(world.stages().empty());
     for (const StageReport& stage : world.stages()) EXPECT_GT(stage.time_ms, 0) << stage.name;

@@ -48,23 +48,23 @@ double clearance(const World& world, BodyId body, const std::vector<Vec3>& middl
 
 TEST(VoxelTerrain, BodiesOfEveryKindComeToRestOnTheSurface)
 {
-    testing::SceneOf made;
+    given::SceneOf made;
     made.scene.materials[0].rolling_friction = 0.02;
     static const VoxelsShape hills =
-        testing::voxels_of(testing::block_under(height, 90, 0.1), kVoxel, 0.5);
+        given::voxels_of(given::block_under(height, 90, 0.1), kVoxel, 0.5);
     made.body(made.shape(hills), Vec3::Zero()).motion = Motion::static_;
     made.ball(0.25, Vec3(1.1, -1, 0.5));
     const Vec3 half(0.3, 0.2, 0.15);
     made.box(half, Vec3(-1, 1.05, 0.5));
     made.body(made.shape(CapsuleShape{0.15, 0.25}), Vec3(3, 1, 0.5)).orientation =
         Quat(std::sqrt(0.5), 0, std::sqrt(0.5), 0);
-    made.body(made.shape(testing::mesh_of(torus_mesh(0.3, 0.12, 48, 24))), Vec3(-3, -1, 0.5));
+    made.body(made.shape(given::mesh_of(torus_mesh(0.3, 0.12, 48, 24))), Vec3(-3, -1, 0.5));
     World world(made.scene);
     ASSERT_EQ(world.solids().size(), 2u);
     EXPECT_NE(world.solids()[0].find("depths within 0.05 m"), std::string::npos)
         << world.solids()[0];
     world.step(300);
-    EXPECT_LT(testing::greatest_speed(world), 0.02);
+    EXPECT_LT(given::greatest_speed(world), 0.02);
 
     std::vector<Vec3> box, axis, ring;
     for (int i = -10; i <= 10; ++i)
@@ -92,7 +92,7 @@ TEST(VoxelTerrain, BodiesOfEveryKindComeToRestOnTheSurface)
 
 TEST(VoxelTerrain, CallsForVoxelContactAndNoOtherWay)
 {
-    World world(testing::solids_on_voxels(NonConvex::hull));
+    World world(given::solids_on_voxels(NonConvex::hull));
     const Effects& effects = world.effects();
     EXPECT_TRUE(effects.on.has(Effect::voxel_contact));
     EXPECT_FALSE(effects.on.has(Effect::mesh_contact));
@@ -103,7 +103,7 @@ TEST(VoxelTerrain, CallsForVoxelContactAndNoOtherWay)
                            [](const auto& stage) { return stage.name == "collide_solids"; });
     };
     EXPECT_TRUE(collides_solids(world));
-    World without(testing::mixed_scene());
+    World without(given::mixed_scene());
     EXPECT_FALSE(collides_solids(without));
 }
 

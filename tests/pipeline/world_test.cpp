@@ -11,9 +11,9 @@
 namespace throng {
 namespace {
 
-using testing::greatest_speed;
-using testing::mixed_scene;
-using testing::SceneOf;
+using given::greatest_speed;
+using given::mixed_scene;
+using given::SceneOf;
 
 constexpr double kG = 9.81;
 

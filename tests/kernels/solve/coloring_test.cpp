@@ -13,9 +13,9 @@
 namespace throng {
 namespace {
 
-using testing::add_body;
-using testing::Graph;
-using testing::random_graph;
+using given::add_body;
+using given::Graph;
+using given::random_graph;
 
 void lay_out_again(const Graph& graph, Painter& painter, Layout& layout)
 {

@@ -9,9 +9,9 @@
 namespace throng {
 namespace {
 
-using testing::random_block;
-using testing::random_number;
-using testing::random_vector;
+using given::random_block;
+using given::random_number;
+using given::random_vector;
 
 // The change of relative velocity at two arms when a unit impulse acts there along a direction:
 // done to two bodies, not computed.
@@ -37,7 +37,7 @@ using Six = Eigen::Matrix<double, 6, 1>;
 struct Axes {
     Vec3 normal, tangent, other;
 
-    Axes(const testing::BlockCase<double>& made, std::size_t lane)
+    Axes(const given::BlockCase<double>& made, std::size_t lane)
     {
         const auto get = [lane](const Lane16<double>(&of)[3]) {
             return Vec3(of[0].at[lane], of[1].at[lane], of[2].at[lane]);
@@ -57,13 +57,13 @@ struct Axes {
 
 // A block of contacts, with the centers of one lane's points.
 struct Lane {
-    testing::BlockCase<double>& made;
+    given::BlockCase<double>& made;
     std::size_t lane;
     const Contact<double>& contact;
     const SolverBody<double>&a, &b;
     Vec3 center_a = Vec3::Zero(), center_b = Vec3::Zero();
 
-    Lane(testing::BlockCase<double>& in, std::size_t at)
+    Lane(given::BlockCase<double>& in, std::size_t at)
         : made(in), lane(at), contact(in.contacts[at]), a(in.body_a(at)), b(in.body_b(at))
     {
         for (int k = 0; k < contact.count; ++k) {
@@ -73,7 +73,7 @@ struct Lane {
     }
 };
 
-void for_lanes(unsigned seeds, const testing::BlockWish& wish, const std::function<void(Lane)>& see)
+void for_lanes(unsigned seeds, const given::BlockWish& wish, const std::function<void(Lane)>& see)
 {
     for (unsigned seed = 0; seed < seeds; ++seed) {
         std::mt19937 random(seed);
@@ -222,7 +222,7 @@ TEST(ContactRows, APointRemembersHowFastItCame)
             };
             for (int k = 0; k < at.contact.count; ++k) {
                 const BounceRows<double>& bounce =
-                    at.made.rows.bounces[testing::kFirstPoint + static_cast<unsigned>(k)];
+                    at.made.rows.bounces[given::kFirstPoint + static_cast<unsigned>(k)];
                 EXPECT_NEAR(
                     bounce.approach.at[at.lane],
                     speed(at.b, at.contact.from_b(k))
@@ -249,14 +249,14 @@ TEST(ContactRows, ALaneOfNothingHasNoMassAndHoldsNothing)
         EXPECT_EQ(block.twist_mass.at[lane], 0);
         EXPECT_EQ(block.twist_impulse.at[lane], 0);
         EXPECT_EQ(block.friction_impulse[1].at[lane], 0);
-        EXPECT_EQ(made.rows.rollings[testing::kPlace].mass.at[lane], 0);
-        EXPECT_EQ(made.rows.rollings[testing::kPlace].impulse[1].at[lane], 0);
+        EXPECT_EQ(made.rows.rollings[given::kPlace].mass.at[lane], 0);
+        EXPECT_EQ(made.rows.rollings[given::kPlace].impulse[1].at[lane], 0);
         for (const auto& response : block.response) EXPECT_EQ(response.at[lane], 0);
     }
 }
 
 // The friction that a contact came with, cut to the cone of its normal impulses.
-Vec3 within_cone(const testing::BlockCase<double>& made, int lane)
+Vec3 within_cone(const given::BlockCase<double>& made, int lane)
 {
     const Contact<double>& contact = made.contacts[static_cast<std::size_t>(lane)];
     double load = 0;
@@ -288,7 +288,7 @@ TEST(ContactRows, FrictionOfAnyGreatnessStaysANumber)
     for (int power = -46; power <= 36; ++power)
         for (const float share : {0.0f, 0.3f, 3.0f}) {
             std::mt19937 random(1);
-            auto made = testing::loose_block<float>(random, {.lanes = 1, .points = 1});
+            auto made = given::loose_block<float>(random, {.lanes = 1, .points = 1});
             const auto size = static_cast<float>(std::pow(10.0, power));
             made.contacts[0].points[0].impulse = size;
             made.contacts[0].normal = Vec3T<float>::UnitZ();
@@ -319,7 +319,7 @@ TEST(ContactRows, ImpulsesComeBackAsTheyWentIn)
             after.rolling.setZero();
             after.twist = 0;
             for (auto& point : after.points) point.impulse = -1;
-            store_impulses(made.view(), testing::kPlace, lane, after);
+            store_impulses(made.view(), given::kPlace, lane, after);
             for (std::size_t k = 0; k < static_cast<std::size_t>(before.count); ++k)
                 EXPECT_EQ(after.points[k].impulse, before.points[k].impulse);
             EXPECT_LE((after.friction - within_cone(made, lane)).norm(), 1e-15);
@@ -334,7 +334,7 @@ TEST(ContactRows, WhereNothingResistsRollingItsImpulseStays)
     std::mt19937 random(3);
     auto made = random_block<double>(random, {.rolls = false});
     Contact<double> contact = made.contacts[0];
-    store_impulses(made.view(), testing::kPlace, 0, contact);
+    store_impulses(made.view(), given::kPlace, 0, contact);
     EXPECT_EQ(contact.rolling, made.contacts[0].rolling);
 }
 
@@ -343,7 +343,7 @@ TEST(Contact, AnchorsAreTheSamePointOnEitherSurface)
     std::mt19937 random(4);
     for (int i = 0; i < 100; ++i) {
         const Vec3 a = random_vector(random, 1), b = random_vector(random, 1);
-        const auto contact = testing::random_contact<double>(random, a, b, {});
+        const auto contact = given::random_contact<double>(random, a, b, {});
         for (int k = 0; k < contact.count; ++k) {
             const auto& point = contact.points[static_cast<std::size_t>(k)];
             const Vec3 apart = (b + contact.from_b(k)) - (a + point.from_a);

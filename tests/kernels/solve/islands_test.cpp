@@ -11,8 +11,8 @@
 namespace throng {
 namespace {
 
-using testing::Graph;
-using testing::random_graph;
+using given::Graph;
+using given::random_graph;
 
 // Breadth first from each body in turn, smallest first.
 Islands islands_by_search(const Graph& graph)

@@ -8,7 +8,7 @@
 namespace throng {
 namespace {
 
-using testing::BlockWish;
+using given::BlockWish;
 
 // Bodies that share many contacts, block after block.
 template <class Real>
@@ -22,8 +22,8 @@ struct Heap {
         const std::size_t count = 3 * kBlock;
         std::vector<Vec3> positions;
         for (std::size_t i = 0; i < count; ++i) {
-            rows.bodies.push_back(testing::random_body<Real>(random));
-            positions.push_back(testing::random_vector(random, 0.5));
+            rows.bodies.push_back(given::random_body<Real>(random));
+            positions.push_back(given::random_vector(random, 0.5));
             inertias.push_back({{Real(0.3), Real(0.2), Real(0.5), 0, 0, 0, 1, 0}});
         }
         // A still one and one that moves by itself.
@@ -31,7 +31,7 @@ struct Heap {
         for (const std::size_t i : {0, 1})
             for (Real& number : rows.bodies[i].inertia) number = 0;
         for (const std::size_t i : {0, 1}) inertias[i] = {};
-        visit = testing::random_visit<Real>(random, wish);
+        visit = given::random_visit<Real>(random, wish);
         visit.push = true;
         visit.grips = visit.grips || wish.rolls;
 
@@ -74,9 +74,9 @@ struct Heap {
             if (a > 1) block.writes_a |= bit;
             if (b > 1) block.writes_b |= bit;
             contacts[lane] =
-                testing::random_contact<Real>(random, positions[static_cast<std::size_t>(a)],
-                                              positions[static_cast<std::size_t>(b)], wish);
-            loosen(contacts[lane], testing::random_terms<Real>(random), static_cast<int>(lane),
+                given::random_contact<Real>(random, positions[static_cast<std::size_t>(a)],
+                                            positions[static_cast<std::size_t>(b)], wish);
+            loosen(contacts[lane], given::random_terms<Real>(random), static_cast<int>(lane),
                    loose);
         }
         solve_kernels<Real>().prepare(loose, place, RowsView<Real>::of(rows), wish.turns);

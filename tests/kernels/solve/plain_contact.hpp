@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace throng::testing {
+namespace throng::given {
 
 /// A body as a textbook has it. Where nothing turns, it has neither spin nor inertia.
 struct PlainBody {
@@ -299,4 +299,4 @@ private:
     double friction, restitution, rolling, bias_rate, impulse_scale, deep;
 };
 
-}  // namespace throng::testing
+}  // namespace throng::given

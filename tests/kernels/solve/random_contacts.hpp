@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace throng::testing {
+namespace throng::given {
 
 /// What a block is to be made of.
 struct BlockWish {
@@ -277,4 +277,4 @@ BlockCase<Real> random_block(std::mt19937& random, const BlockWish& wish)
     return made;
 }
 
-}  // namespace throng::testing
+}  // namespace throng::given

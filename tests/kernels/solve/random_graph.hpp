@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace throng::testing {
+namespace throng::given {
 
 struct Graph {
     BodyStates states;
@@ -61,4 +61,4 @@ inline Graph random_graph(std::uint32_t bodies, std::size_t contacts, std::mt199
     return graph;
 }
 
-}  // namespace throng::testing
+}  // namespace throng::given

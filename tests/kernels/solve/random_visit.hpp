@@ -3,7 +3,7 @@
 
 #include "tests/kernels/solve/random_contacts.hpp"
 
-namespace throng::testing {
+namespace throng::given {
 
 template <class Real>
 Visit<Real> random_visit(std::mt19937& random, const BlockWish& wish)
@@ -32,4 +32,4 @@ void run_all(const SolveKernels<Real>& kernels, BlockCase<Real>& made, const Vis
     if (!made.rows.bounces.empty()) made.restitute(kernels, Real(0.5), visit);
 }
 
-}  // namespace throng::testing
+}  // namespace throng::given

@@ -7,14 +7,14 @@
 namespace throng {
 namespace {
 
-using testing::BlockCase;
+using given::BlockCase;
 
 // A body of 2 kg that a still one holds from below at one point, on the axis through its center.
 template <class Real>
 BlockCase<Real> on_one_point(const Vec3& velocity, double arm, const ContactTerms<Real>& terms)
 {
     BlockCase<Real> made;
-    testing::make_room(1, true, false, made);
+    given::make_room(1, true, false, made);
     made.block().b[0] = 1;
     made.block().writes_b = 1;
     SolverBody<Real> still = {};
@@ -89,7 +89,7 @@ TEST(SweepCases, ATouchInAnEarlierVisitIsEnoughToBounce)
     // By the last visit it is on its way already.
     made.rows.bodies[1].motion[2] = 1;
     made.sweep(solve_kernels<double>(), plain_visit<double>());
-    EXPECT_GT(made.rows.bounces[testing::kFirstPoint].greatest.at[0], 5);
+    EXPECT_GT(made.rows.bounces[given::kFirstPoint].greatest.at[0], 5);
     EXPECT_LT(made.point(0).impulse.at[0], 5);
     made.restitute(solve_kernels<double>(), 0.5, plain_visit<double>());
     EXPECT_NEAR(made.rows.bodies[1].motion[2], 3, 1e-12);
@@ -136,7 +136,7 @@ TEST(SweepCases, APointWithoutALeverSpinsNobodyWhoCannotBeMoved)
 BlockCase<double> box_on_its_face(double speed, bool turned)
 {
     BlockCase<double> made = falling_ball(speed, 0);
-    testing::make_room(4, true, false, made);
+    given::make_room(4, true, false, made);
     made.block().b[0] = 1;
     made.block().writes_b = 1;
     Contact<double>& contact = made.contacts[0];

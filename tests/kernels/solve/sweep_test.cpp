@@ -10,14 +10,14 @@
 namespace throng {
 namespace {
 
-using testing::BlockCase;
-using testing::BlockWish;
-using testing::PlainBody;
-using testing::PlainContact;
-using testing::PlainVisit;
-using testing::random_block;
-using testing::random_visit;
-using testing::run_all;
+using given::BlockCase;
+using given::BlockWish;
+using given::PlainBody;
+using given::PlainContact;
+using given::PlainVisit;
+using given::random_block;
+using given::random_visit;
+using given::run_all;
 
 template <class Real>
 PlainContact plain_contact(const BlockCase<Real>& made, std::size_t lane)
@@ -78,7 +78,7 @@ void expect_lane(BlockCase<Real>& made,
     expect_body(made.block().a[lane], wanted.a);
     expect_body(made.block().b[lane], wanted.b);
     Contact<Real> stored = made.contacts[lane];
-    store_impulses(made.view(), testing::kPlace, static_cast<int>(lane), stored);
+    store_impulses(made.view(), given::kPlace, static_cast<int>(lane), stored);
     double got_total = 0, wanted_total = 0;
     for (std::size_t k = 0; k < wanted.points.size(); ++k) {
         got_total += double{stored.points[k].impulse};
@@ -221,7 +221,7 @@ void check_limits(double slack)
                           friction * lever + slack * (1 + load));
             }
             if (!wish.rolls || !wish.turns) continue;
-            const RollingRows<Real>& rows = made.rows.rollings[testing::kPlace];
+            const RollingRows<Real>& rows = made.rows.rollings[given::kPlace];
             const Vec3T<Real> rolling(rows.impulse[0].at[lane], rows.impulse[1].at[lane],
                                       rows.impulse[2].at[lane]);
             ASSERT_LE(double{rolling.norm()},
@@ -248,7 +248,7 @@ void check_untouched()
     for (unsigned seed = 0; seed < 200; ++seed) {
         std::mt19937 random(seed);
         const BlockWish wish{.lanes = static_cast<int>(seed % kBlock), .turns = seed % 3 != 0};
-        BlockCase<Real> made = testing::loose_block<Real>(random, wish);
+        BlockCase<Real> made = given::loose_block<Real>(random, wish);
         const BlockCase<Real> before = made;
         made.prepare(solve_kernels<Real>());
         run_all(solve_kernels<Real>(), made, random_visit<Real>(random, wish));
@@ -258,7 +258,7 @@ void check_untouched()
             if (made.writes_b(lane)) written[static_cast<std::size_t>(made.block().b[lane])] = true;
         }
         ASSERT_FALSE(written[0]);
-        ASSERT_FALSE(written[testing::kKinematic]);
+        ASSERT_FALSE(written[given::kKinematic]);
         for (std::size_t i = 0; i < made.rows.bodies.size(); ++i)
             ASSERT_TRUE(written[i] || same_bytes(made.rows.bodies[i], before.rows.bodies[i]))
                 << "seed " << seed << " body " << i;
@@ -269,13 +269,13 @@ void check_untouched()
             ASSERT_EQ(made.block().twist_impulse.at[lane], 0);
         }
         // Neither the blocks before and after it nor their points.
-        const auto end = testing::kFirstPoint + static_cast<unsigned>(made.block().points);
+        const auto end = given::kFirstPoint + static_cast<unsigned>(made.block().points);
         for (std::size_t k = 0; k < made.rows.points.size(); ++k) {
-            if (k >= testing::kFirstPoint && k < end) continue;
+            if (k >= given::kFirstPoint && k < end) continue;
             ASSERT_TRUE(same_bytes(made.rows.points[k], before.rows.points[k]));
             ASSERT_TRUE(same_bytes(made.rows.bounces[k], before.rows.bounces[k]));
         }
-        for (const std::size_t place : {testing::kPlace - 1, testing::kPlace + 1}) {
+        for (const std::size_t place : {given::kPlace - 1, given::kPlace + 1}) {
             ASSERT_TRUE(same_bytes(made.rows.blocks[place], before.rows.blocks[place]));
             ASSERT_TRUE(same_bytes(made.rows.rollings[place], before.rows.rollings[place]));
         }

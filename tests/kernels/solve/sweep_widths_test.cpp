@@ -8,8 +8,8 @@
 namespace throng {
 namespace {
 
-using testing::BlockCase;
-using testing::BlockWish;
+using given::BlockCase;
+using given::BlockWish;
 
 template <class T>
 bool same_bits(const std::vector<T>& x, const std::vector<T>& y)
@@ -57,9 +57,9 @@ void check_contacts(const SolveKernels<Real>& scalar, const SolveKernels<Real>& 
                                      .bounces = random() % 4 != 0,
                                      .rolls = random() % 2 == 0,
                                      .pivots = random() % 4 == 0};
-                BlockCase<Real> narrow = testing::loose_block<Real>(random, wish);
+                BlockCase<Real> narrow = given::loose_block<Real>(random, wish);
                 BlockCase<Real> broad = narrow;
-                const Visit<Real> visit = testing::random_visit<Real>(random, wish);
+                const Visit<Real> visit = given::random_visit<Real>(random, wish);
                 const auto expect_same = [&](const char* after) {
                     ASSERT_TRUE(same_bits(narrow.rows, broad.rows))
                         << after << " of " << wide.name << ", seed " << seed << ", " << lanes
@@ -74,8 +74,8 @@ void check_contacts(const SolveKernels<Real>& scalar, const SolveKernels<Real>& 
                 narrow.sweep(scalar, visit);
                 broad.sweep(wide, visit);
                 ASSERT_NO_FATAL_FAILURE(expect_same("sweep"));
-                testing::run_all(scalar, narrow, visit);
-                testing::run_all(wide, broad, visit);
+                given::run_all(scalar, narrow, visit);
+                given::run_all(wide, broad, visit);
                 ASSERT_NO_FATAL_FAILURE(expect_same("restitute"));
             }
 }
@@ -92,8 +92,8 @@ std::vector<SolverBody<Real>> random_bodies(std::mt19937& random, std::size_t co
 {
     std::vector<SolverBody<Real>> bodies;
     for (std::size_t i = 0; i < count; ++i) {
-        SolverBody<Real> body = testing::random_body<Real>(random);
-        const double faster = std::pow(10.0, testing::random_number(random, -3, 6));
+        SolverBody<Real> body = given::random_body<Real>(random);
+        const double faster = std::pow(10.0, given::random_number(random, -3, 6));
         for (int k = 4; k < 7; ++k) body.motion[k] *= static_cast<Real>(faster);
         switch (random() % 8) {
         case 0:
@@ -120,10 +120,10 @@ std::vector<SpinInertia<Real>> random_inertias(std::mt19937& random, std::size_t
 {
     std::vector<SpinInertia<Real>> inertias(count);
     for (SpinInertia<Real>& inertia : inertias) {
-        const double x = testing::random_number(random, 0.01, 1),
-                     y = testing::random_number(random, 0.01, 1), z = x + y - 0.5 * std::min(x, y);
+        const double x = given::random_number(random, 0.01, 1),
+                     y = given::random_number(random, 0.01, 1), z = x + y - 0.5 * std::min(x, y);
         const Sym3 six =
-            in_world_axes({x, y, z, 0, 0, 0}, exponential(testing::random_vector(random, 2)));
+            in_world_axes({x, y, z, 0, 0, 0}, exponential(given::random_vector(random, 2)));
         const double numbers[6] = {six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
         inertia = {};
         for (int k = 0; k < 6; ++k) inertia.share[k] = static_cast<Real>(numbers[k] / (x + y + z));

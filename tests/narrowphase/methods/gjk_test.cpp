@@ -14,11 +14,11 @@
 namespace throng {
 namespace {
 
-using testing::Gap;
-using testing::greatest_gap;
-using testing::outline_of;
-using testing::random_direction;
-using testing::random_turn;
+using given::Gap;
+using given::greatest_gap;
+using given::outline_of;
+using given::random_direction;
+using given::random_turn;
 
 struct BoxPair {
     Shapes shapes;
