@@ -301,6 +301,46 @@ TEST(HullHull, WhatIsDeepHasContactsThoughTheLeadingFaceHasNothingOverIt)
     EXPECT_NEAR(wide_deepest, -depth, 2e-3);
 }
 
+// A face of the box leads by the bias alone, has nothing over it, and the two touch by less than
+// that.
+TEST(HullHull, WhatIsShallowHasContactsThoughTheLeadingFaceHasNothingOverIt)
+{
+    const Vec3 corners[] = {
+        {-0.28052199141686424, 0.49769798622488259, 0.41012989709939757},
+        {0.14001979770448741, -0.046229106655567495, 0.75608902371184095},
+        {0.43813819073972937, -0.015921059027056959, -0.62535946546216081},
+        {0.37545951316184223, 0.56620549740761328, 0.029999964635480096},
+        {-0.062325513202153626, 0.61124413319938264, -0.27027507540668888},
+        {-0.19556936915570233, 0.22943592188749581, 0.69411444638032771},
+        {-0.12706314291983165, -0.22296500137684619, -0.71368729525960994},
+        {-0.48355529610167575, 0.48613145188421586, 0.13818140234550677},
+        {-0.60883369749069427, 0.21672901129278618, -0.36919190081119346},
+        {-0.038363438285676614, -0.46007659098175874, -0.54797280531094805},
+    };
+    Shapes shapes;
+    shapes.hulls = {build_hull(corners).hull};
+    shapes.boxes = {{Vec3(0.93383758928053862, 0.36127158423582229, 0.30898756252401383)}};
+    const ShapeRef hull{ShapeKind::hull, 0}, box{ShapeKind::box, 0};
+    const Pose box_in_hull{
+        Vec3(-0.77387397471998487, -0.31954754913078809, 0.013452337956385563),
+        Quat(-0.85737060985470459, -0.14616900883047421, 0.47257611031603886, -0.1422043535671523)};
+    const double depth = overlap_depth(shapes, hull, box, box_in_hull);
+    ASSERT_NEAR(depth, 3.28e-4, 1e-6);
+    PairCache cache, wide_cache;
+    LocalManifold<double> exact;
+    LocalManifold<float> wide;
+    collide<double>(shapes, hull, box, box_in_hull, 0, cache, exact);
+    collide<float>(shapes, hull, box,
+                   {box_in_hull.position.cast<float>(), box_in_hull.orientation.cast<float>()}, 0,
+                   wide_cache, wide);
+    ASSERT_GT(exact.count, 0);
+    ASSERT_GT(wide.count, 0);
+    // What takes its place hardly pushes.
+    const double bias = 1e-3 * (shapes.hulls[0].inner_radius + 0.30898756252401383);
+    EXPECT_NEAR(deepest(exact), bias - depth, 1e-9);
+    EXPECT_NEAR(deepest(wide), bias - depth, 1e-6);
+}
+
 // Corners that stray a little from their faces lead nobody to think that edges part what is deep.
 TEST(HullHull, WhatIsDeepHasContactsHoweverUnevenTheFaces)
 {
