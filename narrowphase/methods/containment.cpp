@@ -4,6 +4,7 @@
 #include "narrowphase/methods/polytope_side.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace throng {
 namespace {
@@ -93,6 +94,13 @@ WalkEnd recall(Side& side, Remembered kind)
     return meets(side, from, to, part) ? WalkEnd::inside : WalkEnd::open;
 }
 
+// Of the face that parts the two, from a to b in a's frame, whichever of them has it.
+Vec3 normal_of(const Side& side)
+{
+    const Vec3& normal = side.pair.a.normals[side.best.face];
+    return side.mirrored ? Vec3(-(side.pair.turn.transpose() * normal)) : normal;
+}
+
 // Looks for a face that parts the two or for a vertex inside, from the face nearest the other's
 // center onwards.
 WalkEnd look_round(PolytopeSide& side)
@@ -108,12 +116,16 @@ void remember(const Side& side, Remembered kind, MethodMemory& memory)
     memory.kind = static_cast<std::uint32_t>(kind) * 2 + (side.mirrored ? 1 : 0);
 }
 
-// What the balls round the two and inside them tell.
-Touch touch_of_balls(const PolytopePair& pair, double noise)
+// What the balls round the two and inside them tell, and the direction between them if that parts
+// the two.
+Touch touch_of_balls(const PolytopePair& pair, double noise, Vec3& normal)
 {
     const double square = pair.offset.squaredNorm();
     const double outer = pair.a.outer_radius + pair.b.outer_radius + noise;
-    if (square > outer * outer) return Touch::apart;
+    if (square > outer * outer) {
+        normal = pair.offset / std::sqrt(square);
+        return Touch::apart;
+    }
     const double inner = pair.a.inner_radius + pair.b.inner_radius - noise;
     return inner > 0 && square < inner * inner ? Touch::touching : Touch::undecided;
 }
@@ -127,11 +139,13 @@ Touch touch_by_looking(const PolytopePair& pair, int& rounds)
     return either || or_other ? Touch::touching : Touch::apart;
 }
 
-Touch touch_by_walking(const PolytopePair& pair, bool cached, MethodMemory& memory, int& rounds)
+Touch touch_by_walking(
+    const PolytopePair& pair, bool cached, MethodMemory& memory, int& rounds, Vec3& normal)
 {
     const double noise = pair.noise();
     ++rounds;
-    if (const Touch touch = touch_of_balls(pair, noise); touch != Touch::undecided) return touch;
+    const Touch of_balls = touch_of_balls(pair, noise, normal);
+    if (of_balls != Touch::undecided) return of_balls;
 
     auto kind = static_cast<Remembered>(memory.kind / 2);
     if (!cached || !fits(pair.a, memory.a) || !fits(pair.b, memory.b)) kind = Remembered::nothing;
@@ -147,6 +161,7 @@ Touch touch_by_walking(const PolytopePair& pair, bool cached, MethodMemory& memo
         if (outcome == WalkEnd::open) return Touch::undecided;
         const bool parted = outcome == WalkEnd::parted;
         remember(side, parted ? Remembered::parted : inside, memory);
+        if (parted) normal = normal_of(side);
         return parted ? Touch::apart : Touch::touching;
     };
 
@@ -222,7 +237,8 @@ ask_containment(const ConvexPair& pair, double, MethodStart start, MethodMemory&
     if (!shapes.offset.allFinite()) return answer;
     answer.touch = start == MethodStart::plain
         ? touch_by_looking(shapes, answer.rounds)
-        : touch_by_walking(shapes, start == MethodStart::cached, memory, answer.rounds);
+        : touch_by_walking(shapes, start == MethodStart::cached, memory, answer.rounds,
+                           answer.normal);
     return answer;
 }
 

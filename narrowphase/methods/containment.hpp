@@ -24,6 +24,9 @@ namespace throng {
 /// says which edges may meet: those with an end beneath it, gathered from the lowest vertex
 /// outwards, each cut by all faces for as long as something is left of it.
 ///
+/// The normal is that of a face, or the line between two balls, where either parts the two; else no
+/// more than a direction.
+///
 /// Remembered: the faces last looked at, and the vertex or edge found; these are asked first.
 /// `rounds` counts looks: a vertex or an edge against a face or a ball, or a step of a climb.
 ///

@@ -101,11 +101,12 @@ bool collide_by(const ConvexMethod& method,
     const MethodAnswer answer = method.ask(pair, reach, start, memory);
     if (answer.touch == Touch::undecided) return false;
     const bool apart = answer.touch == Touch::apart;
-    if (apart && !depth) return true;
-    if (!apart && !depth && !volume) return false;
-
     const CorePair& cores = pair.cores();
     const double rounding = cores.a.radius + cores.b.radius;
+    // Whatever direction is told: further apart along it is further apart.
+    if (!depth && !volume)
+        return apart && separation_along(cores, answer.normal) - rounding > reach;
+    if (apart && !depth) return true;
     ContactAxis axis;
     axis.normal = answer.normal;
     if (depth) {

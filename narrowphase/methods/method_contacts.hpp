@@ -10,12 +10,14 @@
 namespace throng {
 
 /// The points of touch by a method's own answer. False where it cannot give them: it does not serve
-/// the pair, is undecided, or tells of touch alone and the two do touch.
+/// the pair, is undecided, or tells of touch alone and the two are not shown to be further apart
+/// than `reach`. A body at rest hardly overlaps what bears it: were points within reach of each
+/// other left out, it would rock from one contact to the next for ever.
 ///
 /// gjk gives points out to `reach`, and so does sat, whose points are those of hull_hull_by_axes()
-/// unless it starts `plain`. The others know nothing of how far apart shapes are: points where they
-/// overlap, none where they do not. The normal of clip_volume is that of the shared volume's
-/// surface, or of the face near it along which less must be moved; its depth is that move.
+/// unless it starts `plain`. clip_volume knows nothing of how far apart shapes are: points where
+/// they overlap, none where they do not. Its normal is that of the shared volume's surface, or of
+/// the face near it along which less must be moved; its depth is that move.
 ///
 ///   out   in a's frame; count 0 where nothing is within reach
 bool collide_by(const ConvexMethod& method,

@@ -139,5 +139,30 @@ TEST(CollideBy, WhoTellsOfTouchAloneLeavesTheRestToOthers)
     }
 }
 
+TEST(CollideBy, WhoTellsOfTouchAloneLeavesWhatIsWithinReachToOthers)
+{
+    const Shapes all = shapes();
+    for (const char* name : {"chung_wang", "containment"})
+        for (const int axis : {0, 1, 2})
+            for (const bool swapped : {false, true}) {
+                const Vec3 way = Vec3::Unit(axis);
+                // A small box, turned about the way to it, out from a face of another.
+                const auto told = [&](double gap, LocalManifold<double>& out) {
+                    const Pose b_in_a{way * (0.75 + gap), Quat(Eigen::AngleAxisd(0.3, way))};
+                    const Pose a_in_b{b_in_a.orientation.conjugate() * -b_in_a.position,
+                                      b_in_a.orientation.conjugate()};
+                    MethodMemory memory;
+                    return collide_by(*find_convex_method(name), MethodStart::cached, all,
+                                      swapped ? kSmall : kBox, swapped ? kBox : kSmall,
+                                      swapped ? a_in_b : b_in_a, 0.01, memory, out);
+                };
+                LocalManifold<double> out;
+                EXPECT_FALSE(told(0.005, out)) << name << ' ' << way.transpose();
+                EXPECT_FALSE(told(0.0099, out)) << name << ' ' << way.transpose();
+                EXPECT_TRUE(told(0.5, out)) << name << ' ' << way.transpose();
+                EXPECT_EQ(out.count, 0);
+            }
+}
+
 }  // namespace
 }  // namespace throng
