@@ -5,6 +5,8 @@
 // alike hold for it. The weights are the same for all nodes of a pair. Single faces are placed
 // corner by corner.
 //
+// There to be compared with: of convex shapes GJK takes less at any distance, and tells more.
+//
 // Source: Klosowski, Held, Mitchell, Sowizral, Zikan, Efficient Collision Detection Using Bounding
 //         Volume Hierarchies of k-DOPs (1998), sections 3 and 4.
 #pragma once
