@@ -12,6 +12,16 @@
 
 namespace throng {
 
+/// How a time of impact is sought.
+///
+///   level, close  m, an impact is a distance between the two: the shapes are brought no nearer
+///   than
+///                 `level`, and have met once they are within `close`. 0 < level < close
+struct ImpactRule {
+    ToiMethod method = ToiMethod::newton;
+    double level = 0, close = 0;
+};
+
 /// A separation and how fast it changes.
 struct Gap {
     double value = 0, slope = 0;  // m, m a unit of time
@@ -118,30 +128,29 @@ Fall approach(
 
 }  // namespace detail
 
-/// How far past `begin` a gap is sure to stay at or above a level: to a time at which it is no more
-/// than `close`, or to the end. `conservative` takes a single step, which is up to its caller to
-/// repeat. Every form ends in a bounded number of rounds, and where that is not enough, early.
+/// How far past `begin` a gap is sure to stay at or above the rule's level: to a time at which it
+/// is no more than `close`, or to the end. `conservative` takes a single step, which is up to its
+/// caller to repeat. Every form ends in a bounded number of rounds, and where that is not enough,
+/// early.
 ///
 ///   gap_at  (time) -> Gap
 ///   gap     at `begin`; its value is above `close`, which is above `level`
 template <class GapAt>
-Fall first_fall(ToiMethod method,
+Fall first_fall(const ImpactRule& rule,
                 GapAt gap_at,
                 double begin,
                 Gap gap,
                 double end,
-                double level,
-                double close,
                 const GapLimits& limits)
 {
-    if (!(limits.speed * (end - begin) > gap.value - level)) return {end, true};
-    switch (method) {
+    if (!(limits.speed * (end - begin) > gap.value - rule.level)) return {end, true};
+    switch (rule.method) {
     case ToiMethod::bisection:
-        return detail::bisect(gap_at, begin, gap, end, level, close, limits.bend);
+        return detail::bisect(gap_at, begin, gap, end, rule.level, rule.close, limits.bend);
     case ToiMethod::conservative:
-        return {std::min(end, begin + (gap.value - level) / limits.speed), false};
+        return {std::min(end, begin + (gap.value - rule.level) / limits.speed), false};
     default:
-        return detail::approach(gap_at, begin, gap, end, level, close, limits.bend);
+        return detail::approach(gap_at, begin, gap, end, rule.level, rule.close, limits.bend);
     }
 }
 

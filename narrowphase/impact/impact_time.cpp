@@ -51,8 +51,8 @@ Impact impact_of(const Ways& ways, double begin, double end, const ImpactRule& r
             ++impact.evaluations;
             return ways.gap_along(apart.normal, at);
         };
-        const Fall fall = first_fall(rule.method, gap_at, time, apart.gap, end, rule.level,
-                                     rule.close, ways.limits_along(apart.normal));
+        const Fall fall =
+            first_fall(rule, gap_at, time, apart.gap, end, ways.limits_along(apart.normal));
         if (fall.clear) return at_end(end, impact.evaluations);
         if (!(fall.time > time)) break;
         time = fall.time;

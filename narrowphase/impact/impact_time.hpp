@@ -26,16 +26,6 @@ struct MovingShape {
     double scale = 1;
 };
 
-/// How a time of impact is sought.
-///
-///   level, close  m, an impact is a distance between the two: the shapes are brought no nearer
-///   than
-///                 `level`, and have met once they are within `close`. 0 < level < close
-struct ImpactRule {
-    ToiMethod method = ToiMethod::newton;
-    double level = 0, close = 0;
-};
-
 enum class Meeting : std::uint8_t {
     none,      // they do not come within `close`
     meet,      // at `time` for the first time

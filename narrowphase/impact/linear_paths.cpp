@@ -89,22 +89,22 @@ double rounding_of(const LinearPaths& paths)
     return kRoundings * most;
 }
 
-Impact impact_time(const LinearPaths& given, ToiMethod method, double tolerance)
+Impact impact_time(const LinearPaths& paths, ToiMethod method, double tolerance)
 {
-    const Paths paths(given);
-    const ImpactRule rule = impact_rule(method, std::max(tolerance, 8 * paths.rounding()));
+    const Paths ways(paths);
+    const ImpactRule rule = impact_rule(method, std::max(tolerance, 8 * ways.rounding()));
     Impact impact;
     double time = 0;
     const int most = method == ToiMethod::conservative ? kMostAdvances : kMostRounds;
     for (int round = 0;; ++round) {
-        const Vec3 between = paths.between(time);
+        const Vec3 between = ways.between(time);
         const double length = between.norm();
         ++impact.evaluations;
         impact.time = time;
         Gap gap;
         if (length > 0) {
             impact.normal = between / length;
-            gap = paths.gap_along(impact.normal, time);
+            gap = ways.gap_along(impact.normal, time);
         }
         impact.distance = std::max(0.0, gap.value);
         if (!(gap.value > rule.close)) {
@@ -114,10 +114,10 @@ Impact impact_time(const LinearPaths& given, ToiMethod method, double tolerance)
         if (round == most) break;
         const auto gap_at = [&](double at) {
             ++impact.evaluations;
-            return paths.gap_along(impact.normal, at);
+            return ways.gap_along(impact.normal, at);
         };
-        const Fall fall = first_fall(method, gap_at, time, gap, 1.0, rule.level, rule.close,
-                                     {0, paths.greatest_speed(impact.normal)});
+        const Fall fall =
+            first_fall(rule, gap_at, time, gap, 1.0, {0, ways.greatest_speed(impact.normal)});
         if (fall.clear) {
             impact.time = 1;
             return impact;
