@@ -125,6 +125,8 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
         return "solver " + solver + " passes an impact along one pair at a time";
     if (settings.solver == Solver::direct && name == "friction_at")
         return "solver " + solver + " has friction at every point";
+    if (settings.solver == Solver::direct && name == "friction_cone")
+        return "solver " + solver + " holds a round cone";
     if (settings.response != Response::penalty
         && is_one_of({"penalty_stiffness", "penalty_damping"}))
         return "response " + response + " has no penalty forces";

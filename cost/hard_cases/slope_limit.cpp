@@ -1,13 +1,15 @@
 // Slope at the limit: H13.
 //
 // A box on a slope of angle arctan(0.5) sticks when mu is above 0.5, and slides with
-// g (sin - mu cos) below. g is 9.8 here, as in the published setting.
+// g (sin - mu cos) below. g is 9.8 here, as in the published setting. Within a pyramid whose side
+// is at an angle s to the way down, it is above 0.5 cos s that it sticks.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
 #include "pipeline/world.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace throng {
 
@@ -15,12 +17,13 @@ namespace {
 
 constexpr double kRoundGravity = 9.8;
 
-Scene box_on_slope(const CaseBench& bench, double friction)
+// Downhill is +x, turned about the vertical.
+Scene box_on_slope(const CaseBench& bench, double friction, double heading = 0)
 {
     SceneParts parts(bench.scene());
     parts.scene().gravity = Vec3(0, 0, -kRoundGravity);
     const double angle = std::atan(0.5);
-    const Quat turn = exponential(Vec3(0, angle, 0));  // downhill is +x
+    const Quat turn = exponential(Vec3(0, 0, heading)) * exponential(Vec3(0, angle, 0));
     const std::uint32_t material = parts.material(friction);
     parts.plane(material, turn * Vec3::UnitZ(), 0);
     parts.box(material, 1, Vec3(0.5, 0.5, 0.25), Pose{turn * Vec3(0, 0, 0.25), turn});
@@ -29,11 +32,10 @@ Scene box_on_slope(const CaseBench& bench, double friction)
 
 Vec3 place_of_box(const World& world) { return world.pose(world.bodies().back()).position; }
 
-void stick(CaseBench& bench)
+void stick(CaseBench& bench, const std::string& name, Scene scene)
 {
     Vec3 settled = Vec3::Zero();
     double creep = 0;
-    Scene scene = box_on_slope(bench, 0.505);
     scene.settings.sleep = false;  // asleep it could not creep
     bench.run(scene, 11, [&](World& world, double now) {
         if (now < 1 + 1e-9) settled = place_of_box(world);
@@ -41,7 +43,31 @@ void stick(CaseBench& bench)
         if (now < 1 + 1e-9) creep = 0;
         return true;
     });
-    bench.report("mu=0.505, sleep=off", "creep in 10 s after the first", creep, 1e-5, "m");
+    bench.report(name + ", sleep=off", "creep in 10 s after the first", creep, 1e-5, "m");
+}
+
+// Down the diagonal between x and y, 0.745 of it along a side of the pyramid: there a cone would
+// need a friction of 0.5.
+void in_a_pyramid(CaseBench& bench)
+{
+    const double heading = std::atan(1.0), cos = std::sqrt(5.0) / 3;
+    const double slope = std::sqrt(0.2), level = 2 * slope;  // sine and cosine
+    Scene held = box_on_slope(bench, 0.375, heading);
+    held.settings.friction_cone = FrictionCone::pyramid;
+    stick(bench, "mu=0.375 aslant, friction within a pyramid", held);
+    const double friction = 0.36;
+    Scene slips = box_on_slope(bench, friction, heading);
+    slips.settings.friction_cone = FrictionCone::pyramid;
+    Vec3 early = Vec3::Zero(), late = Vec3::Zero();
+    bench.run(slips, 5, [&](World& world, double now) {
+        const Vec3 velocity = world.velocity(world.bodies().back());
+        if (now < 1 + 1e-9) early = velocity;
+        late = velocity;
+        return true;
+    });
+    const double wanted = kGravity * (slope * cos - friction * level);
+    bench.report("mu=0.36 aslant, friction within a pyramid", "error of the acceleration",
+                 std::abs((late - early).norm() / 4 / wanted - 1), 1e-2, "1");
 }
 
 // At the very limit, solved exactly.
@@ -83,7 +109,11 @@ void slip(CaseBench& bench, bool exact)
 
 void case_slope_limit(CaseBench& bench)
 {
-    stick(bench);
+    stick(bench, "mu=0.505", box_on_slope(bench, 0.505));
+    Scene on_points = box_on_slope(bench, 0.505);
+    on_points.settings.friction_at = FrictionAt::points;
+    stick(bench, "mu=0.505, friction at points", on_points);
+    in_a_pyramid(bench);
     stick_at_the_limit(bench);
     slip(bench, false);
     slip(bench, true);

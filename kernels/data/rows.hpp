@@ -106,6 +106,12 @@ struct RollingRows {
     Lane16<Real> impulse[3];  // N m s on b, along tangent, other tangent, normal
 };
 
+/// Friction at a point of 16 contacts, in the plane of their centers.
+template <class Real>
+struct GripRows {
+    Lane16<Real> impulse[2];  // N s on b, along tangent, other tangent
+};
+
 /// Where a lane came from, to give its impulses back.
 struct LaneSource {
     std::uint32_t entry = 0xffffffffu;  // place in ActiveContacts; none for an idle lane
@@ -163,6 +169,7 @@ struct Layout {
 ///   first_point  [blocks] place of the first among the points
 ///   bounces      [points] while restitution acts
 ///   rollings     [blocks] while rolling friction acts
+///   grips        [points] while friction acts at points or within a pyramid
 ///   inertias     [bodies] while the gyroscopic torque acts
 ///   pulls        [bodies] while forces act
 ///   settled      [bodies] while the direct solver acts: who has its new state already, and who
@@ -174,6 +181,7 @@ struct Rows {
     std::vector<PointRows<Real>> points;
     std::vector<BounceRows<Real>> bounces;
     std::vector<RollingRows<Real>> rollings;
+    std::vector<GripRows<Real>> grips;
     std::vector<SolverBody<Real>> bodies;
     std::vector<SpinInertia<Real>> inertias;
     std::vector<SolverPull<Real>> pulls;

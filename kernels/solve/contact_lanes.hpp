@@ -196,6 +196,50 @@ struct Frame {
     }
 };
 
+/// Nothing is divided by numbers whose inverse is not one.
+template <class L>
+L inverse_or_zero(L x)
+{
+    using Real = typename L::Number;
+    constexpr Real kLeast = sizeof(Real) == 4 ? Real(1.2e-38) : Real(2.3e-308);
+    return select(x > L(kLeast), L(Real(1)) / x, L(Real(0)));
+}
+
+/// A direction across the normal that depends on it alone. For a round cone any would do; a pyramid
+/// has its sides along and across this one.
+template <class L>
+V3<L> across(const V3<L>& n)
+{
+    using Real = typename L::Number;
+    const L zero = Real(0);
+    const auto flat = max(n.x, -n.x) < L(Real(0.6));
+    // normal x (the x axis where the normal leans away from it, else the y axis)
+    const V3<L> t = {select(flat, zero, -n.z), select(flat, n.z, zero), select(flat, -n.y, n.x)};
+    return t * (L(Real(1)) / sqrt(dot(t, t)));
+}
+
+/// What friction needs of a place: the inverse of its 2x2 matrix (11, 22, 12), that matrix'
+/// greatest eigenvalue as a speed that an impulse gives, 1/kg, and one over it.
+template <class L>
+struct FrictionMass {
+    L m11, m22, m12, sliding_mass, sliding_answer;
+
+    /// Of a matrix k, 1/kg.
+    static FrictionMass of(L k11, L k22, L k12)
+    {
+        using Real = typename L::Number;
+        // In units of its own size: squares of 1/kg leave float where bodies are huge or tiny.
+        const L size = (k11 + k22) * L(Real(0.5)), unit = inverse_or_zero(size);
+        k11 = k11 * unit;
+        k22 = k22 * unit;
+        k12 = k12 * unit;
+        const L inverse = inverse_or_zero(k11 * k22 - k12 * k12) * unit;
+        const L half = (k11 - k22) * L(Real(0.5));
+        const L greatest = L(Real(1)) + sqrt(half * half + k12 * k12);
+        return {k22 * inverse, k11 * inverse, -k12 * inverse, unit / greatest, size * greatest};
+    }
+};
+
 /// Places of ContactBlock::response.
 namespace response {
 enum Place : int { nn, n1, n2, v11, v12, v22 };  // among the velocities

@@ -69,6 +69,16 @@ void loosen_nothing(int lane, LooseBlock<Real>& loose)
 }
 
 template <class Real>
+void hold_uncut(const Contact<Real>& contact, int lane_at, ContactBlock<Real>& block)
+{
+    const auto lane = static_cast<std::size_t>(lane_at);
+    const Vec3T<Real> tangent = get3(block.tangent, lane);
+    const Vec3T<Real> other = contact.normal.cross(tangent);
+    block.friction_impulse[0].at[lane] = tangent.dot(contact.friction);
+    block.friction_impulse[1].at[lane] = other.dot(contact.friction);
+}
+
+template <class Real>
 void store_impulses(const RowsView<Real>& rows,
                     std::size_t place,
                     int lane_at,
@@ -118,6 +128,7 @@ void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& cont
     template void loosen<Real>(const Contact<Real>&, const ContactTerms<Real>&, int,               \
                                LooseBlock<Real>&);                                                 \
     template void loosen_nothing<Real>(int, LooseBlock<Real>&);                                    \
+    template void hold_uncut<Real>(const Contact<Real>&, int, ContactBlock<Real>&);                \
     template void store_impulses<Real>(const RowsView<Real>&, std::size_t, int, Contact<Real>&);   \
     template void carry_impulses<Real>(const Contact<Real>&, Real, Contact<Real>&);
 THRONG_INSTANTIATE(float)

@@ -43,6 +43,11 @@ void loosen(const Contact<Real>& contact,
 template <class Real>
 void loosen_nothing(int lane, LooseBlock<Real>& loose);
 
+/// Starts a lane from all the friction that its contact holds, within whatever limit: prepare() has
+/// cut it to the round cone.
+template <class Real>
+void hold_uncut(const Contact<Real>& contact, int lane, ContactBlock<Real>& block);
+
 /// Gives the impulses of a lane of the block at `place` back to its contact, to start the next step
 /// from.
 template <class Real>

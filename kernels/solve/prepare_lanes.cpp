@@ -5,27 +5,6 @@ namespace throng::THRONG_LANES {
 
 namespace {
 
-// Nothing is divided by numbers whose inverse is not one.
-template <class L>
-L inverse_or_zero(L x)
-{
-    using Real = typename L::Number;
-    constexpr Real kLeast = sizeof(Real) == 4 ? Real(1.2e-38) : Real(2.3e-308);
-    return select(x > L(kLeast), L(Real(1)) / x, L(Real(0)));
-}
-
-// Any direction across the normal; which one does not matter, friction is a round cone.
-template <class L>
-V3<L> across(const V3<L>& n)
-{
-    using Real = typename L::Number;
-    const L zero = Real(0);
-    const auto flat = max(n.x, -n.x) < L(Real(0.6));
-    // normal x (the x axis where the normal leans away from it, else the y axis)
-    const V3<L> t = {select(flat, zero, -n.z), select(flat, n.z, zero), select(flat, -n.y, n.x)};
-    return t * (L(Real(1)) / sqrt(dot(t, t)));
-}
-
 // Loose contacts, their numbers side by side.
 template <class L>
 struct Loose {
@@ -170,22 +149,14 @@ void fill_response(ContactBlock<typename L::Number>& block,
 template <class L>
 void fill_friction(ContactBlock<typename L::Number>& block, int at)
 {
-    using Real = typename L::Number;
-    // In units of its own size: squares of 1/kg leave float where bodies are huge or tiny.
-    L k11 = lane<L>(block.response[response::v11], at);
-    L k22 = lane<L>(block.response[response::v22], at);
-    const L size = (k11 + k22) * L(Real(0.5)), unit = inverse_or_zero(size);
-    k11 = k11 * unit;
-    k22 = k22 * unit;
-    const L k12 = lane<L>(block.response[response::v12], at) * unit;
-    const L inverse = inverse_or_zero(k11 * k22 - k12 * k12) * unit;
-    (k22 * inverse).store(block.friction_mass[0].at + at);
-    (k11 * inverse).store(block.friction_mass[1].at + at);
-    (-k12 * inverse).store(block.friction_mass[2].at + at);
-    const L half = (k11 - k22) * L(Real(0.5));
-    const L greatest = L(Real(1)) + sqrt(half * half + k12 * k12);
-    (unit / greatest).store(block.sliding_mass.at + at);
-    (size * greatest).store(block.sliding_answer.at + at);
+    const auto mass = FrictionMass<L>::of(lane<L>(block.response[response::v11], at),
+                                          lane<L>(block.response[response::v22], at),
+                                          lane<L>(block.response[response::v12], at));
+    mass.m11.store(block.friction_mass[0].at + at);
+    mass.m22.store(block.friction_mass[1].at + at);
+    mass.m12.store(block.friction_mass[2].at + at);
+    mass.sliding_mass.store(block.sliding_mass.at + at);
+    mass.sliding_answer.store(block.sliding_answer.at + at);
 }
 
 // The effective mass of a point along the normal. Where neither body can be moved, only turned, a
@@ -328,8 +299,10 @@ template <class L, bool turns>
         const L mass = normal_mass(a, b, normal, arm, arm + normal * separation + between);
         (mass * there).store(to.mass.at + at);
     }
-    // A single point has no lever: only what resists rolling asks what spins do.
-    fill_response(block, at, block.points > 1 || rows.rollings != nullptr, a, b);
+    // A single point has no lever: only what resists rolling asks what spins do, and friction of
+    // another kind than the usual, which goes one way for any number of points.
+    const bool asked = rows.rollings != nullptr || rows.grips != nullptr;
+    fill_response(block, at, block.points > 1 || asked, a, b);
     if constexpr (turns)
         inverse_or_zero(dot(normal, a.turned_by(normal)) + dot(normal, b.turned_by(normal)))
             .store(block.twist_mass.at + at);

@@ -21,4 +21,16 @@ void begin_substep(SolverBody<Real>* bodies,
 template <class Real>
 std::size_t advance(SolverBody<Real>* bodies, std::size_t count, Real time, bool turns);
 
+template <class Real>
+void warm_start_grips(const RowsView<Real>& rows,
+                      std::size_t begin,
+                      std::size_t end,
+                      const Visit<Real>& visit);
+
+template <class Real>
+void sweep_grips(const RowsView<Real>& rows,
+                 std::size_t begin,
+                 std::size_t end,
+                 const Visit<Real>& visit);
+
 }  // namespace throng::THRONG_LANES

@@ -24,6 +24,8 @@ struct Visit {
     bool grips = true;         // some contact has friction
     bool rolls = false;        // some contact resists rolling: rows.rollings is there
     int normal_sweeps = 2;     // times the points are gone through; the last one after friction
+    bool at_points = false;    // friction at each point: asked by sweep_grips alone
+    bool pyramid = false;      // friction within a pyramid: likewise
 };
 
 /// Where the numbers of a contact are, counted in numbers of its kind (see Contact): the kernels
@@ -52,12 +54,16 @@ struct RowsView {
     BounceRows<Real>* bounces = nullptr;
     RollingRows<Real>* rollings = nullptr;
     SolverBody<Real>* bodies = nullptr;
+    GripRows<Real>* grips = nullptr;
 
     static RowsView of(Rows<Real>& rows)
     {
-        return {rows.blocks.data(), rows.points.data(),
+        return {rows.blocks.data(),
+                rows.points.data(),
                 rows.bounces.empty() ? nullptr : rows.bounces.data(),
-                rows.rollings.empty() ? nullptr : rows.rollings.data(), rows.bodies.data()};
+                rows.rollings.empty() ? nullptr : rows.rollings.data(),
+                rows.bodies.data(),
+                rows.grips.empty() ? nullptr : rows.grips.data()};
     }
 };
 
@@ -85,6 +91,13 @@ struct Substep {
 ///                  has to be asked. `inertias` null: no gyroscopic torque
 ///   advance        moves and turns bodies by their velocities for a time; returns how many turn
 ///                  too fast for it and were moved only (see turn_fast)
+///
+/// Two more for friction of another kind, at each point or within a pyramid, as the visit asks.
+/// They need RowsView::grips, and rows prepared as for bodies that turn.
+///
+///   warm_start_grips  shares the friction that a contact holds among its points by their loads, so
+///                     that they add up to the same force and torque; then as warm_start
+///   sweep_grips       as sweep, with friction of that kind
 ///
 /// Source: Catto, Iterative Dynamics with Temporal Coherence (2005) for impulses that accumulate;
 ///         Catto, Solver2D (2024) for substeps of soft contacts with a relaxing visit.
@@ -114,6 +127,14 @@ struct SolveKernels {
                           std::size_t count,
                           const Substep<Real>& substep);
     std::size_t (*advance)(SolverBody<Real>* bodies, std::size_t count, Real time, bool turns);
+    void (*warm_start_grips)(const RowsView<Real>& rows,
+                             std::size_t begin,
+                             std::size_t end,
+                             const Visit<Real>& visit);
+    void (*sweep_grips)(const RowsView<Real>& rows,
+                        std::size_t begin,
+                        std::size_t end,
+                        const Visit<Real>& visit);
 };
 
 /// The kernels of one width: "scalar", "avx2" or "avx512"; none where the machine has not got it

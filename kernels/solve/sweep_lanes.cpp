@@ -1,313 +1,25 @@
-// One visit of the solver, written once over the width of the machine's registers.
-//
-// A visit works in the axes of the contact: it asks the bodies once for the six numbers of their
-// relative motion, solves all rows of the contact among these six by what each row does to them
-// (ContactBlock::response), and gives the bodies the sum. It is the same Gauss-Seidel over the same
-// rows as going back to the bodies after each, at a third of the arithmetic.
-#include "kernels/solve/solve_lanes.hpp"
+// One visit of the solver, written once over the width of the machine's registers: friction at the
+// middle of a contact's points, in a round cone. For the other choices see grip_lanes.cpp.
+#include "kernels/solve/visit_lanes.hpp"
 
 namespace throng::THRONG_LANES {
 
 namespace {
 
-// The rows of W contacts in the middle of a visit.
-template <class L, bool turns>
-struct Contacts {
-    using Real = typename L::Number;
-    ContactBlock<Real>& block;
-    PointRows<Real>* points;
-    int at;  // first lane
-    Motion<L, turns> a, b;
-    Frame<L, turns> frame;
-    Six<L> rel;  // relative motion as the rows leave it
-    Six<L> given = {L(Real(0)), L(Real(0)), L(Real(0)), L(Real(0)), L(Real(0)), L(Real(0))};
-
-    Contacts(const RowsView<Real>& rows, std::size_t place, int first)
-        : block(rows.blocks[place]), points(rows.points + block.first_point), at(first),
-          a(rows.bodies, block.a + at), b(rows.bodies, block.b + at), frame(block, at),
-          rel(frame.between(a, b))
-    { }
-    L answer(int row) const { return lane<L>(block.response[row], at); }
-    L spin_answer(int spin, int velocity) const
-    {
-        return answer(response::kSpin + 3 * spin + velocity);
-    }
-    void write(SolverBody<Real>* bodies)
-    {
-        const Mobility<L, turns> how_a(bodies, block.a + at), how_b(bodies, block.b + at);
-        frame.push(given, how_a, how_b, a, b);
-        a.write(bodies, block.a + at, unsigned{block.writes_a} >> at);
-        b.write(bodies, block.b + at, unsigned{block.writes_b} >> at);
-    }
-};
-
-// How much deeper a contact may be that three or four points carry before it turns rigid.
-constexpr int kShared = 3;
-
-// What a point of a visit aims at, and what an impulse on it does to vn, w1, w2.
-template <class L>
-struct Aim {
-    L bias, keep, leak;  // keep: mass, less the share that leaks
-    L to_n, to_1, to_2;
-    L impulse;
-};
-
-// How far apart the surfaces are at the center, beyond the gap, and by how much that changes per
-// lever.
-template <class L>
-struct Opening {
-    L center, along_0, along_1;
-};
-
-template <class L, bool turns>
-Opening<L> opening_of(const Contacts<L, turns>& c, const SolverBody<typename L::Number>* bodies)
-{
-    const Drift<L, turns> drift_a(bodies, c.block.a + c.at);
-    const Drift<L, turns> drift_b(bodies, c.block.b + c.at);
-    Opening<L> opening{dot(c.frame.normal, drift_b.moved - drift_a.moved), {}, {}};
-    if constexpr (turns) {
-        const V3<L> turn_a = drift_a.turned_back(c.frame.normal);
-        const V3<L> turn_b = drift_b.turned_back(c.frame.normal);
-        // A round side is the same however it turns: only what lies within it turns with the body.
-        const V3<L> arm_a = c.frame.center_a - c.frame.normal * lane<L>(c.block.round_a, c.at);
-        const V3<L> arm_b = c.frame.center_b + c.frame.normal * lane<L>(c.block.round_b, c.at);
-        opening.center = opening.center + (dot(turn_b, arm_b) - dot(turn_a, arm_a));
-        const V3<L> turn = turn_b - turn_a;
-        opening.along_0 = dot(turn, c.frame.other);
-        opening.along_1 = -dot(turn, c.frame.tangent);
-    }
-    return opening;
-}
-
-template <class L, bool turns, int most>
-void take_aim(const Contacts<L, turns>& c,
-              const SolverBody<typename L::Number>* bodies,
-              const Visit<typename L::Number>& visit,
-              Aim<L> (&aims)[most])
-{
-    using Real = typename L::Number;
-    const L zero = Real(0), one = Real(1);
-    const L limit = -visit.push_limit;
-    const Opening<L> opening = opening_of(c, bodies);
-    const int count = most == 1 ? 1 : c.block.points;
-    L separation[most], loaded = zero;
-    for (int k = 0; k < count; ++k) {
-        const PointRows<Real>& point = c.points[k];
-        separation[k] = lane<L>(point.gap, c.at) + opening.center;
-        if constexpr (turns && most > 1)
-            separation[k] += lane<L>(point.lever[0], c.at) * opening.along_0
-                + lane<L>(point.lever[1], c.at) * opening.along_1;
-        // A point that this contact has not got, but another of the block has, bears nothing.
-        if constexpr (most > 1) {
-            const L there = select(lane<L>(point.mass, c.at) > zero, one, zero);
-            loaded += select(separation[k] < zero, there, zero);
-        }
-    }
-    // Three points or four share a load well; one or two may be a corner that carries everything.
-    L eased = one;
-    if constexpr (most > 1) eased = select(loaded > L(Real(2.5)), L(Real(1) / Real(kShared)), one);
-    for (int k = 0; k < count; ++k) {
-        const PointRows<Real>& point = c.points[k];
-        Aim<L>& aim = aims[k];
-        aim.impulse = lane<L>(point.impulse, c.at);
-        const L mass = lane<L>(point.mass, c.at);
-        // Apart: let it close, but no further. Overlapping: a soft spring, within the push limit.
-        const auto open = separation[k] > zero;
-        const L closing = separation[k] * L(visit.inverse_substep);
-        if (visit.push) {
-            const L soft = max(lane<L>(c.block.bias_rate, c.at) * separation[k], limit);
-            aim.bias = select(open, closing, soft);
-            // A corner under a heavy load would sink without end: from `deep` on its spring leaks
-            // less, and at twice that not at all.
-            const L depth = -separation[k] * lane<L>(c.block.inverse_deep, c.at) * eased;
-            const L soft_share = max(min(L(Real(2)) - depth, one), zero);
-            aim.leak = select(open, zero, lane<L>(c.block.impulse_scale, c.at) * soft_share);
-            aim.keep = mass * (one - aim.leak);
-        } else {
-            aim.bias = select(open, closing, zero);
-            aim.leak = zero;
-            aim.keep = mass;
-        }
-        if constexpr (turns && most > 1) {
-            const L u = lane<L>(point.lever[0], c.at), w = lane<L>(point.lever[1], c.at);
-            const L n1 = c.spin_answer(0, 0), n2 = c.spin_answer(1, 0);
-            const L w12 = c.answer(response::w12);
-            aim.to_n = c.answer(response::nn) + u * n1 + w * n2;
-            aim.to_1 = n1 + u * c.answer(response::w11) + w * w12;
-            aim.to_2 = n2 + u * w12 + w * c.answer(response::w22);
-        } else {
-            aim.to_n = c.answer(response::nn);
-        }
-    }
-}
-
-// Every point towards its wanted normal speed; then refuse to pull.
-template <class L, bool turns, int most>
-void push_points(Contacts<L, turns>& c, Aim<L> (&aims)[most])
-{
-    using Real = typename L::Number;
-    const int count = most == 1 ? 1 : c.block.points;
-    for (int k = 0; k < count; ++k) {
-        Aim<L>& aim = aims[k];
-        L speed = c.rel.n, u, w;
-        if constexpr (turns && most > 1) {
-            u = lane<L>(c.points[k].lever[0], c.at);
-            w = lane<L>(c.points[k].lever[1], c.at);
-            speed += u * c.rel.w1 + w * c.rel.w2;
-        }
-        const L wanted = aim.impulse - aim.keep * (speed + aim.bias) - aim.leak * aim.impulse;
-        const L total = max(wanted, L(Real(0)));
-        const L more = total - aim.impulse;
-        aim.impulse = total;
-        c.given.n += more;
-        c.rel.n += aim.to_n * more;
-        if constexpr (turns && most > 1) {
-            c.given.w1 += u * more;
-            c.given.w2 += w * more;
-            c.rel.w1 += aim.to_1 * more;
-            c.rel.w2 += aim.to_2 * more;
-        }
-    }
-}
-
-// Least that a point gives way, as a share of what it answers alone, while all are pushed at once:
-// four points of a face are one more than what they hold, and without it there would be many
-// answers.
-constexpr float kGive = 0.03f;
-
-// All points at once, as if none had to be held back from pulling: exact where none has, left to
-// the sweeps where one has. A sweep alone gives the first of four points too much and tilts the
-// body a little, always the same way: tall walls come down by it.
-//
-// Each point gives way by leak / keep of its impulse, so with S the sum of levers over that, and K
-// what impulses do to (vn, w1, w2), the impulses add up to p with (1 + S K) p = -pull.
-template <class L>
-void push_together(Contacts<L, true>& c, Aim<L> (&aims)[4])
-{
-    using Real = typename L::Number;
-    const L zero = Real(0), one = Real(1), least = Real(kGive);
-    const int count = c.block.points;
-    V3<L> s_n{zero, zero, zero}, pull{zero, zero, zero};
-    L s_11 = zero, s_12 = zero, s_22 = zero;
-    L stiff[4], alone[4];
-    for (int k = 0; k < count; ++k) {
-        const L u = lane<L>(c.points[k].lever[0], c.at), w = lane<L>(c.points[k].lever[1], c.at);
-        const Aim<L>& aim = aims[k];
-        const L give = one / max(aim.leak, least);
-        stiff[k] = aim.keep * give;
-        const L speed = c.rel.n + u * c.rel.w1 + w * c.rel.w2;
-        alone[k] = (speed + aim.bias) * stiff[k] + aim.impulse * (aim.leak * give);
-        pull = pull + V3<L>{alone[k], u * alone[k], w * alone[k]};
-        const L su = stiff[k] * u, sw = stiff[k] * w;
-        s_n = s_n + V3<L>{stiff[k], su, sw};
-        s_11 += su * u;
-        s_12 += su * w;
-        s_22 += sw * w;
-    }
-    const V3<L> s_1{s_n.y, s_11, s_12}, s_2{s_n.z, s_12, s_22};
-    const L n1 = c.spin_answer(0, 0), n2 = c.spin_answer(1, 0), w12 = c.answer(response::w12);
-    const V3<L> k_n{c.answer(response::nn), n1, n2}, k_1{n1, c.answer(response::w11), w12},
-        k_2{n2, w12, c.answer(response::w22)};
-    const V3<L> x{one + dot(s_n, k_n), dot(s_1, k_n), dot(s_2, k_n)};
-    const V3<L> y{dot(s_n, k_1), one + dot(s_1, k_1), dot(s_2, k_1)};
-    const V3<L> z{dot(s_n, k_2), dot(s_1, k_2), one + dot(s_2, k_2)};
-    const V3<L> yz = cross(y, z);
-    const L inverse = -(one / dot(x, yz));
-    const V3<L> p{dot(pull, yz) * inverse, dot(pull, cross(z, x)) * inverse,
-                  dot(pull, cross(x, y)) * inverse};
-    const V3<L> moved{dot(k_n, p), dot(k_1, p), dot(k_2, p)};
-
-    // What the bodies get is the sum of what the points do, to the last bit: the totals are kept.
-    L total[4], smallest = zero;
-    V3<L> by{zero, zero, zero};
-    for (int k = 0; k < count; ++k) {
-        const L u = lane<L>(c.points[k].lever[0], c.at), w = lane<L>(c.points[k].lever[1], c.at);
-        const L there = moved.x + u * moved.y + w * moved.z;
-        total[k] = aims[k].impulse - (alone[k] + stiff[k] * there);
-        smallest = min(smallest, total[k]);
-        const L more = total[k] - aims[k].impulse;
-        by = by + V3<L>{more, u * more, w * more};
-    }
-    // On needles the soft direction may drown in rounding: such an answer, or one that is no
-    // number, is not taken.
-    const L doubt = max(by.x - p.x, p.x - by.x) - max(p.x, -p.x) * L(Real(1e-3));
-    const auto all = select(smallest < zero, one, doubt) < L(Real(1e-30));
-    for (int k = 0; k < count; ++k) aims[k].impulse = select(all, total[k], aims[k].impulse);
-    const auto add = [&](L& to, L more) { to += select(all, more, zero); };
-    add(c.given.n, by.x);
-    add(c.given.w1, by.y);
-    add(c.given.w2, by.z);
-    add(c.rel.n, dot(k_n, by));
-    add(c.rel.w1, dot(k_1, by));
-    add(c.rel.w2, dot(k_2, by));
-}
-
-// Friction at the middle of the points. Sticking is tried with the full 2x2 mass; what leaves the
-// cone slides, straight against the velocity whatever the shape of the bodies.
+// Friction at the middle of the points.
 template <class L, bool turns>
 void grip(Contacts<L, turns>& c, L reach)
 {
     using Real = typename L::Number;
     ContactBlock<Real>& block = c.block;
-    const L slip_1 = c.rel.v1, slip_2 = c.rel.v2;
-    const L old_1 = lane<L>(block.friction_impulse[0], c.at);
-    const L old_2 = lane<L>(block.friction_impulse[1], c.at);
-
-    const L m11 = lane<L>(block.friction_mass[0], c.at);
-    const L m22 = lane<L>(block.friction_mass[1], c.at);
-    const L m12 = lane<L>(block.friction_mass[2], c.at);
-    const L stick_1 = old_1 - (m11 * slip_1 + m12 * slip_2);
-    const L stick_2 = old_2 - (m12 * slip_1 + m22 * slip_2);
-    // Compared as speeds: squares of impulses leave float where bodies are huge or tiny.
-    const L answer = lane<L>(block.sliding_answer, c.at);
-    const L limit = reach * answer;
-    const L try_1 = stick_1 * answer, try_2 = stick_2 * answer;
-    const auto slides = try_1 * try_1 + try_2 * try_2 > limit * limit;
-
-    const L slide_1 = old_1 * answer - slip_1;
-    const L slide_2 = old_2 * answer - slip_2;
-    const L length = sqrt(slide_1 * slide_1 + slide_2 * slide_2);
-    const L shrink = lane<L>(block.sliding_mass, c.at)
-        * select(length > limit, limit / select(length > L(Real(0)), length, L(Real(1))),
-                 L(Real(1)));
-    const L new_1 = select(slides, slide_1 * shrink, stick_1);
-    const L new_2 = select(slides, slide_2 * shrink, stick_2);
-    new_1.store(block.friction_impulse[0].at + c.at);
-    new_2.store(block.friction_impulse[1].at + c.at);
-    c.given.v1 += new_1 - old_1;
-    c.given.v2 += new_2 - old_2;
-}
-
-// Friction about the normal, for contacts of several points. Returns the change.
-template <class L, bool turns>
-L hold_twist(Contacts<L, turns>& c, L most)
-{
-    const L old = lane<L>(c.block.twist_impulse, c.at);
-    const L wanted = old - lane<L>(c.block.twist_mass, c.at) * c.rel.wn;
-    const L total = max(min(wanted, most), -most);
-    total.store(c.block.twist_impulse.at + c.at);
-    return total - old;
-}
-
-// Friction against rolling and spinning. Returns the change, about tangent, other and normal.
-template <class L, bool turns>
-V3<L> resist_rolling(Contacts<L, turns>& c, RollingRows<typename L::Number>& rolling, L load)
-{
-    using Real = typename L::Number;
-    const V3<L> old = lane3<L>(rolling.impulse, c.at);
-    const L most = lane<L>(rolling.rolling, c.at) * load;
-    const L mass = lane<L>(rolling.mass, c.at);
-    const V3<L> wanted = old - V3<L>{c.rel.w1, c.rel.w2, c.rel.wn} * mass;
-    // In units of its greatest part: squares leave float where bodies are huge or tiny.
-    const L greatest =
-        max(max(max(wanted.x, -wanted.x), max(wanted.y, -wanted.y)), max(wanted.z, -wanted.z));
-    const V3<L> parts = wanted * (L(Real(1)) / select(greatest > L(Real(0)), greatest, L(Real(1))));
-    const L length = greatest * sqrt(dot(parts, parts));
-    const L shrink =
-        select(length > most, most / select(length > L(Real(0)), length, L(Real(1))), L(Real(1)));
-    const V3<L> total = wanted * shrink;
-    store3(total, rolling.impulse, c.at);
-    return total - old;
+    const FrictionMass<L> mass = friction_mass<L>(block, c.at);
+    const Grip<L> old{lane<L>(block.friction_impulse[0], c.at),
+                      lane<L>(block.friction_impulse[1], c.at)};
+    const Grip<L> held = grip_in_cone(mass, old, c.rel.v1, c.rel.v2, reach);
+    held.impulse_1.store(block.friction_impulse[0].at + c.at);
+    held.impulse_2.store(block.friction_impulse[1].at + c.at);
+    c.given.v1 += held.impulse_1 - old.impulse_1;
+    c.given.v2 += held.impulse_2 - old.impulse_2;
 }
 
 // Friction of contacts that stand on one point: the three velocities are all there is.
@@ -325,52 +37,13 @@ void hold_point(Contacts<L, turns>& c, L load)
 template <class L>
 void hold_points(Contacts<L, true>& c, RollingRows<typename L::Number>* rolling, L load, L lever)
 {
-    const auto spin_by = [&](int velocity) {
-        return c.spin_answer(0, velocity) * c.given.w1 + c.spin_answer(1, velocity) * c.given.w2;
-    };
-    c.rel.v1 += c.answer(response::n1) * c.given.n + spin_by(1);
-    c.rel.v2 += c.answer(response::n2) * c.given.n + spin_by(2);
-    const L wnn = c.answer(response::wnn), w1n = c.answer(response::w1n);
-    const L w2n = c.answer(response::w2n);
-    c.rel.wn += c.spin_answer(2, 0) * c.given.n + w1n * c.given.w1 + w2n * c.given.w2;
-    if (rolling != nullptr) {
-        const V3<L> by = resist_rolling(c, *rolling, load);
-        const L w12 = c.answer(response::w12);
-        c.given.w1 += by.x;
-        c.given.w2 += by.y;
-        c.given.wn += by.z;
-        // What it did about the normal, below, counts the whole of given.wn.
-        c.rel.w1 += c.answer(response::w11) * by.x + w12 * by.y;
-        c.rel.w2 += w12 * by.x + c.answer(response::w22) * by.y;
-        c.rel.wn += w1n * by.x + w2n * by.y + wnn * by.z;
-        c.rel.n += c.spin_answer(0, 0) * by.x + c.spin_answer(1, 0) * by.y;
-        c.rel.v1 += c.spin_answer(0, 1) * by.x + c.spin_answer(1, 1) * by.y;
-        c.rel.v2 += c.spin_answer(0, 2) * by.x + c.spin_answer(1, 2) * by.y;
-    }
+    settle_slip(c, rolling, load);
     const L friction = lane<L>(c.block.friction, c.at);
     if (c.block.points > 1) c.given.wn += hold_twist(c, friction * lever);
     c.rel.v1 += c.spin_answer(2, 1) * c.given.wn;
     c.rel.v2 += c.spin_answer(2, 2) * c.given.wn;
     grip(c, friction * load);
-    const L f1 = c.given.v1, f2 = c.given.v2, twist = c.given.wn;
-    c.rel.n +=
-        c.answer(response::n1) * f1 + c.answer(response::n2) * f2 + c.spin_answer(2, 0) * twist;
-    c.rel.w1 += c.spin_answer(0, 1) * f1 + c.spin_answer(0, 2) * f2 + w1n * twist;
-    c.rel.w2 += c.spin_answer(1, 1) * f1 + c.spin_answer(1, 2) * f2 + w2n * twist;
-}
-
-// The load that the points bear, and its lever about the normal.
-template <class L, bool turns, int most>
-void weigh(const Contacts<L, turns>& c, const Aim<L> (&aims)[most], L& load, L& lever)
-{
-    using Real = typename L::Number;
-    load = lever = Real(0);
-    const int count = most == 1 ? 1 : c.block.points;
-    for (int k = 0; k < count; ++k) {
-        load += aims[k].impulse;
-        if constexpr (turns && most > 1)
-            lever += aims[k].impulse * lane<L>(c.points[k].reach, c.at);
-    }
+    tell_points(c);
 }
 
 template <class L, bool turns, int most>
@@ -379,7 +52,6 @@ template <class L, bool turns, int most>
                                   int at,
                                   const Visit<typename L::Number>& visit)
 {
-    using Real = typename L::Number;
     Contacts<L, turns> c(rows, place, at);
     Aim<L> aims[most];
     take_aim(c, rows.bodies, visit, aims);
@@ -395,13 +67,7 @@ template <class L, bool turns, int most>
     }
     // Last, so that whatever friction did to the normal speeds is put right.
     push_points(c, aims);
-    const int count = most == 1 ? 1 : c.block.points;
-    for (int k = 0; k < count; ++k) {
-        aims[k].impulse.store(c.points[k].impulse.at + at);
-        if (rows.bounces == nullptr) continue;
-        Lane16<Real>& greatest = rows.bounces[c.block.first_point + std::uint32_t(k)].greatest;
-        max(aims[k].impulse, lane<L>(greatest, at)).store(greatest.at + at);
-    }
+    keep_impulses(c, rows, aims);
     c.write(rows.bodies);
 }
 
@@ -549,8 +215,10 @@ void restitute(const RowsView<Real>& rows,
 template <class Real>
 constexpr SolveKernels<Real> table()
 {
-    return {THRONG_LANES_NAME, Lanes<Real>::kWidth, prepare<Real>,       warm_start<Real>,
-            sweep<Real>,       restitute<Real>,     begin_substep<Real>, advance<Real>};
+    return {THRONG_LANES_NAME,   Lanes<Real>::kWidth, prepare<Real>,
+            warm_start<Real>,    sweep<Real>,         restitute<Real>,
+            begin_substep<Real>, advance<Real>,       warm_start_grips<Real>,
+            sweep_grips<Real>};
 }
 
 }  // namespace

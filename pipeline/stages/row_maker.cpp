@@ -42,7 +42,10 @@ RowMaker<Real>::RowMaker(const Conditions& conditions,
                          Rows<Real>& rows)
     : layout_(layout), active_(active), convex_(convex), meshes_(meshes), solids_(solids),
       rows_(rows), view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
-      turns_(conditions.has(Effect::rotation)), softness_(softness_of<Real>(conditions))
+      turns_(conditions.has(Effect::rotation) || conditions.grips_apart()),
+      uncut_(conditions.grips_apart()
+             && conditions.settings.friction_cone == FrictionCone::pyramid),
+      softness_(softness_of<Real>(conditions))
 { }
 
 template <class Real>
@@ -88,6 +91,12 @@ void RowMaker<Real>::fill(std::size_t at, LooseBlock<Real>& loose) const
                lane_at, loose);
     }
     kernels_.prepare(loose, at, view_, turns_);
+    if (!uncut_) return;
+    for (std::size_t lane = 0; lane < kBlock; ++lane) {
+        const std::uint32_t entry = layout_.lanes[at * kBlock + lane].entry;
+        if (entry == LaneSource{}.entry) continue;
+        hold_uncut(contact_of(active_.entries[entry]), static_cast<int>(lane), block);
+    }
 }
 
 template <class Real>

@@ -41,6 +41,7 @@ private:
     RowsView<Real> view_;
     const SolveKernels<Real>& kernels_;
     bool turns_;
+    bool uncut_;                              // friction is not cut to a round cone
     std::array<Softness<Real>, 4> softness_;  // by the number of points, less one
 };
 

@@ -46,13 +46,17 @@ public:
          Rows<Real>& rows)
         : conditions_(conditions), layout_(layout), batch_(batch), maker_(maker), rows_(rows),
           view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
+          warm_start_(conditions.grips_apart() ? kernels_.warm_start_grips : kernels_.warm_start),
+          sweep_(conditions.grips_apart() ? kernels_.sweep_grips : kernels_.sweep),
           time_(static_cast<Real>(conditions.substep()))
     {
         visit_.inverse_substep = static_cast<Real>(1 / conditions.substep());
         visit_.push_limit = static_cast<Real>(conditions.settings.push_limit);
-        visit_.turns = conditions.has(Effect::rotation);
+        visit_.turns = conditions.has(Effect::rotation) || conditions.grips_apart();
         visit_.rolls = conditions.has(Effect::rolling_friction);
         visit_.grips = conditions.has(Effect::friction) || visit_.rolls;
+        visit_.at_points = conditions.settings.friction_at == FrictionAt::points;
+        visit_.pyramid = conditions.settings.friction_cone == FrictionCone::pyramid;
         on_faces_ = 2 * batch.on_faces > batch.contacts;
     }
 
@@ -126,7 +130,7 @@ private:
             return advance(slice, shared);
         case Pass::Kind::warm_start:
             return for_colors(slice, shared, pass.backward, [&](std::size_t from, std::size_t end) {
-                kernels_.warm_start(view_, from, end, visit_);
+                warm_start_(view_, from, end, visit_);
             });
         case Pass::Kind::bounce:
             return bounce(slice, shared);
@@ -134,9 +138,8 @@ private:
             Visit<Real> visit = visit_;
             visit.push = pass.kind == Pass::Kind::push;
             visit.normal_sweeps = visit.push ? kPushSweeps : kRelaxSweeps;
-            for_colors(slice, shared, pass.backward, [&](std::size_t from, std::size_t end) {
-                kernels_.sweep(view_, from, end, visit);
-            });
+            for_colors(slice, shared, pass.backward,
+                       [&](std::size_t from, std::size_t end) { sweep_(view_, from, end, visit); });
         }
     }
 
@@ -255,7 +258,9 @@ private:
     Rows<Real>& rows_;
     RowsView<Real> view_;
     const SolveKernels<Real>& kernels_;
-    Real time_;  // s, of a substep
+    using Over = decltype(SolveKernels<Real>::sweep);
+    Over warm_start_, sweep_;  // with friction of the kind that is asked for
+    Real time_;                // s, of a substep
     Visit<Real> visit_;
     bool on_faces_ = false;
     std::vector<Pass> passes_;  // that wait to be run

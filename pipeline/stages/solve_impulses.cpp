@@ -5,6 +5,7 @@
 #include "pipeline/stages/solve_batch.hpp"
 #include "pipeline/stages/solve_direct.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace throng {
@@ -13,19 +14,27 @@ namespace {
 
 constexpr std::size_t kBodies = 512;  // a block
 
-constexpr InnerRow kSolveTable[] = {
-    {"make_rows", {Effect::contact}, "before the first substep"},
-    {"add_gravity", {Effect::gravity}, "each substep"},
-    {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
-    {"warm_start", {Effect::contact}, "in the first substep"},
-    {"push_contacts", {Effect::contact}, "each visit"},
-    {"hold_friction", {Effect::friction}, "each visit", true},
-    {"resist_rolling", {Effect::rolling_friction}, "each visit", true},
-    {"move_bodies", {Effect::motion}, "each substep"},
-    {"turn_bodies", {Effect::rotation}, "each substep"},
-    {"relax_contacts", {Effect::contact}, "each substep"},
-    {"bounce", {Effect::restitution}, "after the last substep"},
-};
+constexpr std::array<InnerRow, 11> solve_rows(std::string_view friction)
+{
+    return {{
+        {"make_rows", {Effect::contact}, "before the first substep"},
+        {"add_gravity", {Effect::gravity}, "each substep"},
+        {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
+        {"warm_start", {Effect::contact}, "in the first substep"},
+        {"push_contacts", {Effect::contact}, "each visit"},
+        {friction, {Effect::friction}, "each visit", true},
+        {"resist_rolling", {Effect::rolling_friction}, "each visit", true},
+        {"move_bodies", {Effect::motion}, "each substep"},
+        {"turn_bodies", {Effect::rotation}, "each substep"},
+        {"relax_contacts", {Effect::contact}, "each substep"},
+        {"bounce", {Effect::restitution}, "after the last substep"},
+    }};
+}
+
+// By where friction acts, then by its cone.
+constexpr std::array<InnerRow, 11> kSolveTables[2][2] = {
+    {solve_rows("hold_friction"), solve_rows("hold_in_pyramid")},
+    {solve_rows("hold_at_points"), solve_rows("hold_at_points_in_pyramid")}};
 
 constexpr InnerRow kDirectTable[] = {
     {"take_islands", {Effect::contact}, "before the first substep"},
@@ -93,7 +102,8 @@ std::span<const InnerRow> solve_table(const Settings& settings)
     if (settings.response == Response::penalty) return kPenaltyTable;
     if (settings.response == Response::kinematic) return kKinematicTable;
     if (settings.solver == Solver::direct) return kDirectTable;
-    return kSolveTable;
+    return kSolveTables[static_cast<std::size_t>(settings.friction_at)]
+                       [static_cast<std::size_t>(settings.friction_cone)];
 }
 
 template <class Real>

@@ -6,10 +6,10 @@
 #include "kernels/data/rows.hpp"
 #include "kernels/solve/contact_rows.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace throng::given {
@@ -58,7 +58,8 @@ struct PlainBody {
 struct PlainVisit {
     double substep = 0, push_limit = 0;
     bool push = false, grips = true, rolls = false;
-    bool together = true;  // the points are first pushed all at once
+    bool at_points = false, pyramid = false;  // friction of another kind
+    bool together = true;                     // the points are first pushed all at once
     int normal_sweeps = 1;
 };
 
@@ -92,6 +93,7 @@ public:
             total += point.impulse;
             points.push_back(point);
         }
+        held_uncut = friction_impulse;
         // What was carried over stays within the cone.
         if (friction_impulse.norm() > friction * total)
             friction_impulse *= friction * total / friction_impulse.norm();
@@ -106,6 +108,14 @@ public:
     {
         for (const Point& point : points) apply(point.impulse * normal, point.arm_a, point.arm_b);
         if (!visit.grips) return;
+        if (visit.pyramid) friction_impulse = held_uncut;
+        if (visit.at_points) {
+            share_friction(visit);
+        } else if (visit.pyramid) {
+            double total = 0;
+            for (const Point& point : points) total += point.impulse;
+            friction_impulse = within_pyramid(friction_impulse, friction * total);
+        }
         apply(friction_impulse, center_a, center_b);
         twist(twist_impulse * normal);
         if (visit.rolls) twist(rolling_impulse);
@@ -141,12 +151,13 @@ public:
     struct Point {
         Vec3 arm_a, arm_b, off = Vec3::Zero();
         double separation = 0, impulse = 0, approach = 0, greatest = 0, bias = 0, leak = 0;
+        Vec3 friction = Vec3::Zero();
     };
     PlainBody a, b;
     Vec3 normal;
     std::vector<Point> points;
     Vec3 center_a = Vec3::Zero(), center_b = Vec3::Zero();
-    Vec3 friction_impulse, rolling_impulse;
+    Vec3 friction_impulse, held_uncut, rolling_impulse;
     double twist_impulse;
     double held_by = 0, held_at = 0;  // load and its lever, by which friction went last
 
@@ -265,6 +276,7 @@ private:
             if (rolling_impulse.norm() > most) rolling_impulse *= most / rolling_impulse.norm();
             twist(rolling_impulse - before);
         }
+        if (visit.at_points) return grip_each(visit);
         if (points.size() > 1 && turning.trace() > 0) {
             const double before = twist_impulse;
             const double mass = 1 / normal.dot(turning * normal);
@@ -272,27 +284,86 @@ private:
             twist_impulse = std::clamp(twist_impulse, -friction * lever, friction * lever);
             twist((twist_impulse - before) * normal);
         }
-        grip(friction * total);
+        grip(visit, Vec3::Zero(), friction * total, friction_impulse);
     }
-    // Sticking with the full matrix of the tangent plane, else sliding within the cone.
-    void grip(double most)
+    void grip_each(const PlainVisit& visit)
     {
-        const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+        for (Point& point : points)
+            grip(visit, point.off, friction * point.impulse, point.friction);
+        add_up_friction();
+    }
+    void add_up_friction()
+    {
+        friction_impulse.setZero();
+        twist_impulse = 0;
+        for (const Point& point : points) {
+            friction_impulse += point.friction;
+            twist_impulse += normal.dot(point.off.cross(point.friction));
+        }
+    }
+    // The friction of least weighted squares that has the force and torque that are held.
+    void share_friction(const PlainVisit& visit)
+    {
+        double load = 0, spread = 0, extent = 0;
+        Vec3 middle = Vec3::Zero();
+        for (const Point& point : points) load += point.impulse;
+        for (const Point& point : points) {
+            if (load > 0) middle += point.off * point.impulse / load;
+            extent = std::max(extent, point.off.squaredNorm());
+        }
+        for (const Point& point : points)
+            spread += point.impulse * (point.off - middle).squaredNorm();
+        const double rest = twist_impulse - normal.dot(middle.cross(friction_impulse));
+        const double turn = spread > 1e-3 * load * extent ? rest / spread : 0;
+        for (Point& point : points) {
+            const double most = friction * point.impulse;
+            Vec3 share = Vec3::Zero();
+            if (load > 0)
+                share = point.impulse
+                    * (friction_impulse / load + turn * normal.cross(point.off - middle));
+            if (visit.pyramid)
+                share = within_pyramid(share, most);
+            else if (share.norm() > most)
+                share *= most / share.norm();
+            point.friction = share;
+        }
+        add_up_friction();
+    }
+    // The first side of the pyramid: across the normal and an axis of the world far from it.
+    Vec3 side() const
+    {
+        const bool flat = std::abs(normal.x()) < 0.6;
+        return normal.cross(flat ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitY())).normalized();
+    }
+    Vec3 within_pyramid(const Vec3& held, double most) const
+    {
+        const Vec3 u = side(), v = normal.cross(u);
+        return u * std::clamp(u.dot(held), -most, most) + v * std::clamp(v.dot(held), -most, most);
+    }
+    // Sticking with the full matrix of the tangent plane, else sliding within the cone or pyramid.
+    void grip(const PlainVisit& visit, const Vec3& off, double most, Vec3& held)
+    {
+        const Vec3 arm_a = center_a + off, arm_b = center_b + off;
+        const Vec3 u = side(), v = normal.cross(u);
         Eigen::Matrix<double, 3, 2> plane;
         plane << u, v;
-        const Eigen::Matrix2d k = plane.transpose() * response(center_a, center_b) * plane;
+        const Eigen::Matrix2d k = plane.transpose() * response(arm_a, arm_b) * plane;
         const Eigen::Vector2d slip =
-            plane.transpose() * (b.velocity_at(center_b) - a.velocity_at(center_a));
-        const Eigen::Vector2d before = plane.transpose() * friction_impulse;
+            plane.transpose() * (b.velocity_at(arm_b) - a.velocity_at(arm_a));
+        const Eigen::Vector2d before = plane.transpose() * held;
         Eigen::Vector2d after = before - k.inverse() * slip;
-        if (after.norm() > most) {
-            const double stiffest =
-                Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(k).eigenvalues()[1];
+        if (visit.pyramid && after.cwiseAbs().maxCoeff() > most) {
+            after[0] = std::clamp(before[0] - slip[0] / k(0, 0), -most, most);
+            const double then = slip[1] + k(0, 1) * (after[0] - before[0]);
+            after[1] = std::clamp(before[1] - then / k(1, 1), -most, most);
+        } else if (!visit.pyramid && after.norm() > most) {
+            // The greater eigenvalue.
+            const double stiffest = k.trace() / 2 + std::hypot((k(0, 0) - k(1, 1)) / 2, k(0, 1));
             after = before - slip / stiffest;
             if (after.norm() > most) after *= most / after.norm();
         }
-        friction_impulse = plane * after;
-        apply(plane * (after - before), center_a, center_b);
+        held = plane * after;
+        apply(plane * (after - before), arm_a, arm_b);
     }
 
     double round_a, round_b;

@@ -26,6 +26,10 @@ struct BlockWish {
     bool pivots = false;         // some bodies turn without being moved
     bool uneven = true;          // the points of a contact do not lie in a plane across the normal
     bool meeting = false;        // the two sides meet in one place: angular momentum is kept
+    bool at_points = false;      // friction at every point
+    bool pyramid = false;        // and within a pyramid
+
+    bool grips_apart() const { return at_points || pyramid; }
 };
 
 // Where the block stands among others, and its points, which no kernel may touch.
@@ -41,6 +45,7 @@ struct BlockCase {
     std::vector<Contact<Real>> contacts;    // [lanes]
     std::vector<ContactTerms<Real>> terms;  // [lanes]
     bool turns = true;
+    bool uncut = false;  // friction starts from all that is held
 
     RowsView<Real> view() { return RowsView<Real>::of(rows); }
     ContactBlock<Real>& block() { return rows.blocks[kPlace]; }
@@ -73,14 +78,18 @@ struct BlockCase {
                 loosen_nothing(lane, loose);
         }
         kernels.prepare(loose, kPlace, view(), turns);
+        for (std::size_t lane = 0; uncut && lane < contacts.size(); ++lane)
+            hold_uncut(contacts[lane], static_cast<int>(lane), block());
     }
     void warm_start(const SolveKernels<Real>& kernels, const Visit<Real>& visit)
     {
-        kernels.warm_start(view(), kPlace, kPlace + 1, visit);
+        const auto start = rows.grips.empty() ? kernels.warm_start : kernels.warm_start_grips;
+        start(view(), kPlace, kPlace + 1, visit);
     }
     void sweep(const SolveKernels<Real>& kernels, const Visit<Real>& visit)
     {
-        kernels.sweep(view(), kPlace, kPlace + 1, visit);
+        const auto visited = rows.grips.empty() ? kernels.sweep : kernels.sweep_grips;
+        visited(view(), kPlace, kPlace + 1, visit);
     }
     void restitute(const SolveKernels<Real>& kernels, Real threshold, const Visit<Real>& visit)
     {
@@ -91,7 +100,7 @@ struct BlockCase {
 /// Makes room for a block of contacts of up to some points. All of it is not a number, so that
 /// whoever reads what nobody wrote gives himself away.
 template <class Real>
-void make_room(int points, bool bounces, bool rolls, BlockCase<Real>& made)
+void make_room(int points, const BlockWish& wish, BlockCase<Real>& made)
 {
     const auto poison = [](auto& rows, std::size_t count) {
         rows.resize(count);
@@ -100,8 +109,9 @@ void make_room(int points, bool bounces, bool rolls, BlockCase<Real>& made)
     const std::size_t all = kFirstPoint + static_cast<std::size_t>(points) + 2;
     poison(made.rows.blocks, kPlace + 2);
     poison(made.rows.points, all);
-    poison(made.rows.bounces, bounces ? all : 0);
-    poison(made.rows.rollings, rolls ? kPlace + 2 : 0);
+    poison(made.rows.bounces, wish.bounces ? all : 0);
+    poison(made.rows.rollings, wish.rolls ? kPlace + 2 : 0);
+    poison(made.rows.grips, wish.grips_apart() ? all : 0);
     made.block().points = points;
     made.block().first_point = kFirstPoint;
     made.block().writes_a = made.block().writes_b = 0;
@@ -213,6 +223,7 @@ BlockCase<Real> loose_block(std::mt19937& random, const BlockWish& wish)
 {
     BlockCase<Real> made;
     made.turns = wish.turns;
+    made.uncut = wish.pyramid;
     SolverBody<Real> still = {};
     still.drift[7] = 1;
     auto& bodies = made.rows.bodies;
@@ -258,7 +269,7 @@ BlockCase<Real> loose_block(std::mt19937& random, const BlockWish& wish)
         made.terms.push_back(random_terms<Real>(random));
         points = std::max(points, contact.count);
     }
-    make_room(points, wish.bounces, wish.rolls, made);
+    make_room(points, wish, made);
     for (std::size_t lane = 0; lane < sides.size(); ++lane) {
         made.block().a[lane] = sides[lane].a;
         made.block().b[lane] = sides[lane].b;

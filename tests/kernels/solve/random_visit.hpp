@@ -13,7 +13,9 @@ Visit<Real> random_visit(std::mt19937& random, const BlockWish& wish)
     visit.push_limit = 3;
     visit.push = random() % 2 == 0;
     visit.turns = wish.turns;
-    visit.grips = random() % 4 != 0;
+    visit.grips = random() % 4 != 0 || wish.grips_apart();
+    visit.at_points = wish.at_points;
+    visit.pyramid = wish.pyramid;
     visit.rolls = wish.rolls;
     visit.normal_sweeps = 1 + static_cast<int>(random() % 3);
     return visit;

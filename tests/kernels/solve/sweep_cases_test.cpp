@@ -14,7 +14,7 @@ template <class Real>
 BlockCase<Real> on_one_point(const Vec3& velocity, double arm, const ContactTerms<Real>& terms)
 {
     BlockCase<Real> made;
-    given::make_room(1, true, false, made);
+    given::make_room(1, {.rolls = false}, made);
     made.block().b[0] = 1;
     made.block().writes_b = 1;
     SolverBody<Real> still = {};
@@ -136,7 +136,7 @@ TEST(SweepCases, APointWithoutALeverSpinsNobodyWhoCannotBeMoved)
 BlockCase<double> box_on_its_face(double speed, bool turned)
 {
     BlockCase<double> made = falling_ball(speed, 0);
-    given::make_room(4, true, false, made);
+    given::make_room(4, {.rolls = false}, made);
     made.block().b[0] = 1;
     made.block().writes_b = 1;
     Contact<double>& contact = made.contacts[0];

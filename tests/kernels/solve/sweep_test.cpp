@@ -35,7 +35,10 @@ PlainVisit plain_visit_of(const BlockCase<Real>& made, const Visit<Real>& visit)
 {
     PlainVisit plain{1 / 240.0, 3, visit.push, visit.grips};
     plain.rolls = visit.rolls && made.turns;
-    plain.together = made.turns && (made.block().points > 1 || visit.rolls);
+    plain.at_points = visit.at_points;
+    plain.pyramid = visit.pyramid;
+    const bool apart = visit.at_points || visit.pyramid;
+    plain.together = made.turns && (made.block().points > 1 || visit.rolls || apart);
     plain.normal_sweeps = visit.normal_sweeps;
     return plain;
 }
@@ -141,6 +144,15 @@ TEST(Sweep, AgreesWithTheTextbookWhereSomeBodiesTurnWithoutBeingMoved)
 {
     // Little resists such a body where it has next to no lever: less is left of the digits.
     check_against_textbook<double>(1e-9, {.pivots = true});
+}
+
+TEST(Sweep, AgreesWithTheTextbookOfFrictionAtPointsAndWithinAPyramid)
+{
+    check_against_textbook<double>(1e-12, {.at_points = true});
+    check_against_textbook<double>(1e-12, {.pyramid = true});
+    check_against_textbook<double>(1e-12, {.at_points = true, .pyramid = true});
+    check_against_textbook<float>(5e-4, {.at_points = true});
+    check_against_textbook<float>(5e-4, {.pyramid = true});
 }
 
 TEST(Sweep, AgreesWithTheTextbookFromRestWithoutImpulses)

@@ -23,7 +23,7 @@ bool same_bits(const Rows<Real>& x, const Rows<Real>& y)
 {
     return same_bits(x.blocks, y.blocks) && same_bits(x.points, y.points)
         && same_bits(x.bounces, y.bounces) && same_bits(x.rollings, y.rollings)
-        && same_bits(x.bodies, y.bodies);
+        && same_bits(x.bodies, y.bodies) && same_bits(x.grips, y.grips);
 }
 
 // Calls check(scalar kernels, wide kernels) for every width that this machine has.
@@ -45,18 +45,24 @@ void for_widths(Check check)
 }
 
 template <class Real>
-void check_contacts(const SolveKernels<Real>& scalar, const SolveKernels<Real>& wide)
+void check_contacts(const SolveKernels<Real>& scalar,
+                    const SolveKernels<Real>& wide,
+                    bool at_points,
+                    bool pyramid)
 {
-    for (unsigned seed = 0; seed < 100; ++seed)
+    const unsigned seeds = at_points || pyramid ? 25 : 100;
+    for (unsigned seed = 0; seed < seeds; ++seed)
         for (int lanes = 1; lanes <= kBlock; ++lanes)
             for (int points = 1; points <= 4; ++points) {
                 std::mt19937 random(seed * 100 + static_cast<unsigned>(4 * lanes + points));
                 const BlockWish wish{.lanes = lanes,
                                      .points = points,
-                                     .turns = random() % 4 != 0,
+                                     .turns = random() % 4 != 0 || at_points || pyramid,
                                      .bounces = random() % 4 != 0,
                                      .rolls = random() % 2 == 0,
-                                     .pivots = random() % 4 == 0};
+                                     .pivots = random() % 4 == 0,
+                                     .at_points = at_points,
+                                     .pyramid = pyramid};
                 BlockCase<Real> narrow = given::loose_block<Real>(random, wish);
                 BlockCase<Real> broad = narrow;
                 const Visit<Real> visit = given::random_visit<Real>(random, wish);
@@ -80,10 +86,23 @@ void check_contacts(const SolveKernels<Real>& scalar, const SolveKernels<Real>& 
             }
 }
 
-TEST(SweepWidths, GiveTheSameBitsForContacts)
+void check_contacts(bool at_points, bool pyramid)
 {
-    for_widths<float>(check_contacts<float>);
-    for_widths<double>(check_contacts<double>);
+    for_widths<float>([&](const auto& scalar, const auto& wide) {
+        check_contacts<float>(scalar, wide, at_points, pyramid);
+    });
+    for_widths<double>([&](const auto& scalar, const auto& wide) {
+        check_contacts<double>(scalar, wide, at_points, pyramid);
+    });
+}
+
+TEST(SweepWidths, GiveTheSameBitsForContacts) { check_contacts(false, false); }
+
+TEST(SweepWidths, GiveTheSameBitsForFrictionOfEveryKind)
+{
+    check_contacts(true, false);
+    check_contacts(false, true);
+    check_contacts(true, true);
 }
 
 // Bodies as a batch has them: some of them do not move, some turn fast, some have run away.
