@@ -1,5 +1,6 @@
 #include "pipeline/force_builder.hpp"
 
+#include "kernels/math/rotation.hpp"
 #include "kernels/parallel/disjoint_sets.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/names.hpp"
@@ -201,25 +202,47 @@ unstable_springs(const Forces& forces, const Masses& masses, const Settings& set
     return warnings;
 }
 
-double potential_of(const Forces& forces, const Masses& masses, const Poses& poses)
+double spring_energy(const SpringForce& spring, const Forces& forces, const Poses& poses)
 {
-    double energy = 0;
     const auto point = [&](std::uint32_t body, const Vec3& at) {
         if (body == kNobody) return at;
         return Vec3(poses.at(body) * Vec3(hang_of(forces, body) + at));
     };
-    for (const SpringForce& spring : forces.springs) {
-        const double distance =
-            (point(spring.b, spring.at_b) - point(spring.a, spring.at_a)).norm();
-        const double stretch = distance - spring.length;
-        energy += 0.5 * spring.stiffness * stretch * stretch;
+    const double distance = (point(spring.b, spring.at_b) - point(spring.a, spring.at_a)).norm();
+    const double stretch = distance - spring.length;
+    return 0.5 * spring.stiffness * stretch * stretch;
+}
+
+double
+attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, std::uint32_t body)
+{
+    double energy = 0;
+    for (const AttractorForce& attractor : forces.attractors) {
+        const Vec3 place = poses.at(body) * hang_of(forces, body);
+        const double distance = (place - attractor.position).norm();
+        if (masses.mass[body] > 0 && distance > 0)
+            energy -= masses.mass[body] * attractor.strength / distance;
     }
-    for (const AttractorForce& attractor : forces.attractors)
-        for (std::uint32_t body = 0; body < masses.mass.size(); ++body) {
-            const double distance = (point(body, Vec3(Vec3::Zero())) - attractor.position).norm();
-            if (masses.mass[body] > 0 && distance > 0)
-                energy -= masses.mass[body] * attractor.strength / distance;
-        }
+    return energy;
+}
+
+double kinetic_energy_of(std::uint32_t body,
+                         const Masses& masses,
+                         const Poses& poses,
+                         const Velocities& velocities)
+{
+    const Vec3& w = velocities.angular[body];
+    const Vec3 spin = in_world_axes(masses.inertia[body], poses.orientation[body]).matrix() * w;
+    // About a pivot all of the motion is in the spin.
+    return 0.5 * (masses.mass[body] * velocities.linear[body].squaredNorm() + w.dot(spin));
+}
+
+double potential_of(const Forces& forces, const Masses& masses, const Poses& poses)
+{
+    double energy = 0;
+    for (const SpringForce& spring : forces.springs) energy += spring_energy(spring, forces, poses);
+    for (std::uint32_t body = 0; body < masses.mass.size(); ++body)
+        energy += attraction_of(forces, masses, poses, body);
     return energy;
 }
 

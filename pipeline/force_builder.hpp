@@ -38,6 +38,17 @@ void drop_forces(std::span<const std::uint8_t> going, const BodyStates& states, 
 std::vector<std::string>
 unstable_springs(const Forces& forces, const Masses& masses, const Settings& settings);
 
+/// J that a spring holds; and that attractors have given up for a body, negative.
+double spring_energy(const SpringForce& spring, const Forces& forces, const Poses& poses);
+double
+attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, std::uint32_t body);
+
+/// J of a dynamic body.
+double kinetic_energy_of(std::uint32_t body,
+                         const Masses& masses,
+                         const Poses& poses,
+                         const Velocities& velocities);
+
 /// J that the springs hold, and that attractors have given up.
 double potential_of(const Forces& forces, const Masses& masses, const Poses& poses);
 

@@ -111,9 +111,7 @@ Measures World::measure() const
         const Vec3 v = state_->velocity(body);
         const Vec3& w = velocities.angular[body];
         const Vec3 spin = in_world_axes(masses.inertia[body], poses.orientation[body]).matrix() * w;
-        // About a pivot all of the motion is in the spin.
-        const double square = velocities.linear[body].squaredNorm();
-        measures.kinetic_energy += 0.5 * (masses.mass[body] * square + w.dot(spin));
+        measures.kinetic_energy += kinetic_energy_of(body, masses, poses, velocities);
         measures.potential_energy -=
             masses.mass[body] * gravity().dot(state_->center_of_mass(body));
         measures.momentum += masses.mass[body] * v;

@@ -7,6 +7,7 @@
 #include "apps/throng/scene_argument.hpp"
 #include "apps/throng/trace_option.hpp"
 #include "pipeline/final_csv.hpp"
+#include "pipeline/names.hpp"
 #include "pipeline/run_file.hpp"
 #include "pipeline/unused_dials.hpp"
 
@@ -97,8 +98,13 @@ private:
     std::optional<RunFile> writer_;
 };
 
-StepTimes
-run_steps(World& world, std::int64_t steps, Frames& frames, TraceOption& trace, bool quiet)
+// The ledger looks on before and after each step, where there is one; no time is taken of that.
+StepTimes run_steps(World& world,
+                    std::int64_t steps,
+                    Frames& frames,
+                    TraceOption& trace,
+                    std::optional<EnergyLedger>& ledger,
+                    bool quiet)
 {
     using Clock = std::chrono::steady_clock;
     StepTimes times;
@@ -106,11 +112,13 @@ run_steps(World& world, std::int64_t steps, Frames& frames, TraceOption& trace, 
     std::int64_t done = 0;
     frames.step_done(0, false);
     while (done < steps && !interrupted()) {
+        if (ledger) ledger->before_step(world);
         trace.begin_step(static_cast<std::uint64_t>(done) + 1);
         const auto begin = Clock::now();
         world.step();
         const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
         trace.end_step();
+        if (ledger) ledger->after_step(world);
         times.add(taken.count(), world.stages());
         frames.step_done(++done, false);
         progress.show(done, world.report().bodies_awake);
@@ -118,6 +126,19 @@ run_steps(World& world, std::int64_t steps, Frames& frames, TraceOption& trace, 
     frames.step_done(done, true);
     frames.close();
     return times;
+}
+
+// A hundredth of the greatest motion is more than soft contacts give back as they push bodies out
+// of what they sank into one another.
+void warn_of_energy(const EnergyLedger& ledger)
+{
+    const double greatest = ledger.greatest_kinetic();
+    if (!(ledger.gained() > 0.01 * greatest)) return;
+    std::cerr << "warning: energy grew by " << number_text(ledger.gained())
+              << " J without a source from step " << ledger.from_step() << " to "
+              << ledger.to_step() << ", beside a kinetic energy of " << number_text(greatest)
+              << " J at most; a shorter dt or more substeps help, and bodies that do not begin "
+                 "inside one another\n";
 }
 
 void name_quarantined(const World& world)
@@ -169,10 +190,12 @@ int run(const Options& options)
 
     const std::int64_t every =
         every_asked > 0 ? every_asked : standard_every(steps, world.body_count());
+    std::optional<EnergyLedger> ledger;
+    if (stats_file.asked_for()) ledger.emplace();
     StepTimes times = [&] {
         try {
             Frames frames(run_file, argument, world, every);
-            return run_steps(world, steps, frames, trace, quiet);
+            return run_steps(world, steps, frames, trace, ledger, quiet);
         } catch (const RunFileError& error) {
             throw BadInput("--out: " + run_file.path() + ": " + error.what());
         }
@@ -181,6 +204,10 @@ int run(const Options& options)
     RunStats stats = collect_stats(world, std::move(times));
     stats.scene = argument.label;
     stats.seed = argument.seed;
+    if (ledger) {
+        stats.energy = *ledger;
+        if (!quiet) warn_of_energy(*ledger);
+    }
     if (stats_file.asked_for()) write_stats_json(stats, stats_file.stream());
     if (final_file.asked_for()) write_final_csv(world, final_file.stream());
     for (OutputFile* file : {&stats_file, &final_file, &run_file}) file->keep();

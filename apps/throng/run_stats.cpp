@@ -115,6 +115,10 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("overlapping_pairs", std::uint64_t{stats.measures.overlapping_pairs});
     json.add("kinetic_energy_j", stats.measures.kinetic_energy);
     json.add("potential_energy_j", stats.measures.potential_energy);
+    json.add("energy_gained_j", stats.energy.gained());
+    json.add("energy_gained_steps",
+             '[' + std::to_string(stats.energy.from_step()) + ", "
+                 + std::to_string(stats.energy.to_step()) + ']');
     json.add("momentum", vector_json(stats.measures.momentum));
     json.add("angular_momentum", vector_json(stats.measures.angular_momentum));
     json.add("bodies_awake", std::uint64_t{stats.last.bodies_awake});

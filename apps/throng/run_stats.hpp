@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/throng/step_times.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/energy_ledger.hpp"
 
 #include <ostream>
 #include <string>
@@ -20,6 +20,7 @@ struct RunStats {
     StepTimes times;
     StepReport last;
     Measures measures;
+    EnergyLedger energy;
     std::string state_hash;
     double peak_rss_mb = 0;
 
