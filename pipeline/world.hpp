@@ -71,7 +71,8 @@ public:
     /// These wake the body and what it rests with.
     void set_pose(BodyId body, const Pose& pose);
     void set_velocity(BodyId body, const Vec3& linear, const Vec3& angular);
-    void add_impulse(BodyId body, const Vec3& impulse);  // N s, at the center of mass
+    /// N s, at the center of mass: what turns about a pivot gets its torque.
+    void add_impulse(BodyId body, const Vec3& impulse);
 
     /// What turns body axes into world axes as the `rotation` that is chosen holds it: with the
     /// textbook's forms no rotation after a while.

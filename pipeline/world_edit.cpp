@@ -2,6 +2,7 @@
 //
 // The step keeps much from one step to the next; what a change from outside makes stale is put
 // right here, so that no stage has to wonder.
+#include "kernels/math/rotation.hpp"
 #include "pipeline/force_builder.hpp"
 #include "pipeline/stages.hpp"
 #include "pipeline/world_state.hpp"
@@ -221,8 +222,14 @@ void World::add_impulse(BodyId body, const Vec3& impulse)
     const std::uint32_t at = state_->place_of(body, "add_impulse");
     if (!impulse.allFinite()) throw std::invalid_argument("add_impulse: give finite numbers, N s");
     const Velocities& velocities = state_->get<Velocities>();
-    state_->set_motion(at, velocities.linear[at] + impulse * state_->get<Masses>().inverse_mass[at],
-                       velocities.angular[at]);
+    const Masses& masses = state_->get<Masses>();
+    Vec3 angular = velocities.angular[at];
+    // What hangs on a pivot, about which its inertia is, turns by what reaches its center of mass.
+    if (const Vec3 arm = state_->arm(at); !arm.isZero(0))
+        angular +=
+            in_world_axes(masses.inverse_inertia[at], state_->get<Poses>().orientation[at]).matrix()
+            * arm.cross(impulse);
+    state_->set_motion(at, velocities.linear[at] + impulse * masses.inverse_mass[at], angular);
 }
 
 }  // namespace throng

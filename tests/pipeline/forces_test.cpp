@@ -324,6 +324,31 @@ TEST(Springs, ThatSwingWiderAreToldWithWhatWouldDo)
 
 class EveryMotion : public testing::TestWithParam<std::tuple<Integrator, Rotation>> { };
 
+TEST(Forces, AnImpulseTurnsWhatHangsOnAPivotAboutIt)
+{
+    Scene scene = empty_scene();
+    BodyDescription& body = add_body(scene);
+    body.pivot = Vec3(0, 0, 1);
+    // Stood on its head: the center of mass is above the pivot.
+    body.orientation = Quat(0, 1, 0, 0);
+    World world(scene);
+    const BodyId id = world.bodies()[0];
+    const double about_pivot = 0.2 + 2 * 1 * 1;  // kg m2, of y
+    const Vec3 impulse(3, 0, 0);
+    world.add_impulse(id, impulse);
+    EXPECT_LT((world.angular_velocity(id) - Vec3(0, 3 / about_pivot, 0)).norm(), 1e-12);
+    EXPECT_LT((world.velocity(id) - Vec3(3 / about_pivot, 0, 0)).norm(), 1e-12);
+    // It got the work that an impulse does at the speed it gives.
+    EXPECT_NEAR(energy(world), 0.5 * impulse.dot(world.velocity(id)), 1e-12);
+    // Along the arm the pivot bears it.
+    world.add_impulse(id, Vec3(0, 0, 5));
+    EXPECT_LT((world.angular_velocity(id) - Vec3(0, 3 / about_pivot, 0)).norm(), 1e-12);
+    const Vec3 pivot = world.pose(id) * Vec3(0, 0, 1);
+    world.step(50);
+    EXPECT_LT((world.pose(id) * Vec3(0, 0, 1) - pivot).norm(), 1e-9);
+    EXPECT_NEAR(world.angular_velocity(id).y(), 3 / about_pivot, 1e-9);
+}
+
 // Bodies on springs, on pivots, in the wind, alone; some of them on the floor.
 Scene busy_scene(Integrator integrator, Rotation rotation)
 {
