@@ -33,7 +33,7 @@ constexpr Choice kResponse[] = {{"impulse"}, {"penalty"}, {"kinematic"}};
 constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct"}};
 constexpr Choice kFrictionCone[] = {{"cone"}, {"pyramid"}};
 constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous"}};
-constexpr Choice kOverlap[] = {{"allow"}, {"back_up"}, {"subdivide", kNotYet}};
+constexpr Choice kOverlap[] = {{"allow"}, {"back_up"}, {"subdivide"}};
 constexpr Choice kToiMethod[] = {{"newton"}, {"bisection"}, {"conservative"}};
 constexpr Choice kSleep[] = {{"on"}, {"off"}};
 
@@ -359,6 +359,8 @@ std::vector<Dial> make_dials()
             "sequential passes an impact along one pair at a time; simultaneous shares it, for a joint solve"),
         choice_dial<&S::overlap, kOverlap>("overlap",
             "backing up or subdividing the step avoids overlap, and repeats work at every impact"),
+        whole_dial<&S::halvings, 1, 20>("halvings", "auto (12), or a whole number from 1 to 20", "of a substep at most",
+            "overlap subdivide: each halves the overlap that is left where bodies meet fast, for two more tries a meeting"),
         choice_dial<&S::toi_method, kToiMethod>("toi_method",
             "time alone: none is ever late; newton asks least, bisection a bit at a time, conservative often where two graze"),
         number_dial("toi_tolerance", "a number from 1.2e-7 to 0.02", "of the smallest half extent", set_toi_tolerance, get_toi_tolerance,

@@ -22,19 +22,33 @@ struct Known {
 
 // In the order of the enumeration.
 constexpr Known kKnown[] = {
-    {"motion", true},         {"gravity", true},
-    {"forces", true},         {"drive", true},
-    {"rotation", true},       {"gyroscopic", true},
-    {"contact", true},        {"no overlap", true},
-    {"friction", true},       {"rolling friction", true},
-    {"restitution", true},    {"fast motion", true},
-    {"mesh contact", true},   {"voxel contact", true},
-    {"sphere contact", true}, {"image contact", true},
-    {"springs", true},        {"attractors", true},
-    {"wind", true},           {"drag", true},
-    {"pivot", true},          {"joints", false},
-    {"motors", false},        {"sleeping", true},
-    {"sensors", false},       {"events", false},
+    {"motion", true},
+    {"gravity", true},
+    {"forces", true},
+    {"drive", true},
+    {"rotation", true},
+    {"gyroscopic", true},
+    {"contact", true},
+    {"no overlap", true},
+    {"little overlap", true},
+    {"friction", true},
+    {"rolling friction", true},
+    {"restitution", true},
+    {"fast motion", true},
+    {"mesh contact", true},
+    {"voxel contact", true},
+    {"sphere contact", true},
+    {"image contact", true},
+    {"springs", true},
+    {"attractors", true},
+    {"wind", true},
+    {"drag", true},
+    {"pivot", true},
+    {"joints", false},
+    {"motors", false},
+    {"sleeping", true},
+    {"sensors", false},
+    {"events", false},
     {"agents", false},
 };
 static_assert(std::size(kKnown) == kEffects);
@@ -86,24 +100,22 @@ private:
         return facts_.states.kind[body] == BodyKind::dynamic
             || facts_.states.kind[body] == BodyKind::kinematic;
     }
-    bool meets() const
-    {
-        return found_.on.has(Effect::contact) || found_.on.has(Effect::no_overlap);
-    }
+    bool meets() const { return found_.on.has(Effect::contact) || found_.on.meets(kCarried); }
     bool has_contact(std::size_t body) const { return meets() && facts_.colliders.count[body] > 0; }
-    // Whether bodies may be carried from touch to touch: see back_up.cpp.
-    bool backs_up() const
+    // How bodies meet: overlapping, or carried from touch to touch (see carry_groups.cpp).
+    Effect meeting() const
     {
         const Settings& settings = facts_.conditions.settings;
-        const auto& hangs = facts_.forces.hangs;
-        if (settings.overlap != Overlap::back_up || settings.response != Response::impulse)
-            return false;
-        if (std::find(hangs.begin(), hangs.end(), 1) != hangs.end()) return false;
-        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
-            const ShapeKind kind = facts_.colliders.shape[i].kind;
-            const bool whole = kind != ShapeKind::mesh && kind != ShapeKind::solid;
-            if (facts_.colliders.body[i] != kNobody && !whole) return false;
-        }
+        if (settings.overlap == Overlap::allow || !carries()) return Effect::contact;
+        return settings.overlap == Overlap::back_up ? Effect::no_overlap : Effect::little_overlap;
+    }
+    bool carries() const
+    {
+        if (facts_.conditions.settings.response != Response::impulse) return false;
+        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i)
+            if (facts_.colliders.body[i] != kNobody
+                && facts_.colliders.shape[i].kind == ShapeKind::solid)
+                return false;
         return true;
     }
 
@@ -174,12 +186,13 @@ private:
                 if (a.dynamic == kNobody) continue;
                 const std::uint32_t other = b.first != a.dynamic ? b.first : b.second;
                 if (other == kNobody) continue;
-                const bool backs = backs_up();
-                call(backs ? Effect::no_overlap : Effect::contact,
-                     name(a.dynamic) + " may touch " + name(other));
+                const Effect how = meeting();
+                call(how, name(a.dynamic) + " may touch " + name(other));
                 // Nobody is swept who is carried from touch to touch.
-                if (backs) found_.on.remove(Effect::fast_motion);
-                find_surfaces();
+                if (how != Effect::contact)
+                    found_.on.remove(Effect::fast_motion);
+                else
+                    find_surfaces();
                 return;
             }
     }

@@ -23,6 +23,7 @@ enum class Effect : std::uint8_t {
     gyroscopic,
     contact,
     no_overlap,
+    little_overlap,
     friction,
     rolling_friction,
     restitution,
@@ -46,6 +47,8 @@ enum class Effect : std::uint8_t {
 /// What calls for contacts of solids, each by its way.
 inline constexpr Set<Effect> kSolidContact = {Effect::voxel_contact, Effect::sphere_contact,
                                               Effect::image_contact};
+/// Bodies carried from touch to touch, in place of contact.
+inline constexpr Set<Effect> kCarried = {Effect::no_overlap, Effect::little_overlap};
 /// What acts on bodies besides gravity and contacts.
 inline constexpr Set<Effect> kForces = {Effect::forces, Effect::springs, Effect::attractors,
                                         Effect::wind,   Effect::drag,    Effect::pivot};

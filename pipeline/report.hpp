@@ -23,6 +23,9 @@ struct StepReport {
     // Of solver direct: by how much contacts missed their law at worst, as a share of the greatest
     // speed they had to stop (see DirectAnswer), likewise.
     double direct_residual = 0;
+    // Of overlap subdivide: m, by how much any two overlapped at the end of any piece of a step,
+    // likewise. Pieces that ended deeper than the tolerance, with no halving left, are fallbacks.
+    double deepest = 0;
     double time_ms = 0;
 };
 

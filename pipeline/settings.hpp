@@ -63,6 +63,7 @@ struct Settings {
     FrictionAt friction_at = FrictionAt::manifold;
     FrictionCone friction_cone = FrictionCone::cone;
     Overlap overlap = Overlap::allow;
+    int halvings = 0;  // of a substep at most, by overlap subdivide; 0: 12
     ToiMethod toi_method = ToiMethod::newton;
     double toi_tolerance = 1e-4;  // of the smallest half extent of the two shapes
     bool sleep = true;

@@ -143,7 +143,24 @@ void back_up(const Conditions&,
              Velocities&,
              Flights&,
              Islands&,
+             CarriedContacts&,
              Trouble&);
+
+/// The same by halves: what would end in overlap is done again as two pieces, down to the least.
+void subdivide(const Conditions&,
+               const Shapes&,
+               const Surfaces&,
+               const PairFilter&,
+               const Colliders&,
+               const BodyStates&,
+               const Masses&,
+               const Forces&,
+               Poses&,
+               Velocities&,
+               Flights&,
+               Islands&,
+               CarriedContacts&,
+               Trouble&);
 
 /// Bodies that touch nothing: velocities into poses.
 void integrate_poses(const Conditions&,
@@ -195,5 +212,7 @@ struct InnerRow {
 /// The inner table of solve_impulses as those settings have it, for explain. Of solver direct: for
 /// islands within direct_limit; those beyond it go by soft_step's.
 std::span<const InnerRow> solve_table(const Settings& settings);
+/// The inner tables of back_up and of subdivide; empty for every other stage.
+std::span<const InnerRow> carry_table(std::string_view stage);
 
 }  // namespace throng

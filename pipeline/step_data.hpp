@@ -30,6 +30,8 @@ struct Trouble {
     std::uint64_t direct_left = 0;       // islands in it that were too great for that
     std::vector<double> residual_of;     // scratch: [batches]
     std::uint64_t held_groups = 0;       // in it that could not be carried on without overlap
+    std::uint64_t deep_pieces = 0;       // of it that ended too deep, with no halving left
+    double deepest = 0;                  // m, overlap at the end of any piece of it
     int penalty_cuts = 1;                // most that penalty forces cut a substep into
     std::vector<int> cuts_of;            // scratch: [batches]
     BlockLists<std::uint32_t> of_block;  // scratch
@@ -46,6 +48,18 @@ struct Rest {
 struct FastBodies {
     std::vector<std::uint32_t> held;
     std::vector<std::uint8_t> flags;  // [bodies] scratch, all 0 between stages
+};
+
+/// What contacts of bodies that are carried from touch to touch came to in this step.
+///
+///   force     [bodies] N on each, friction included, the mean over the step
+///   pairs     that may have met in the last span or piece of it
+///   touching  of those, that touched
+///   points    of those
+///   groups    of bodies of which some touched
+struct CarriedContacts {
+    std::vector<Vec3> force;
+    std::size_t pairs = 0, touching = 0, points = 0, groups = 0;
 };
 
 // The finder of pairs, as one thing among the data: it remembers from step to step.
@@ -81,6 +95,7 @@ using StepData = std::tuple<Conditions,
                             Painter,
                             Layout,
                             Rows<Real>,
+                            CarriedContacts,
                             Trouble,
                             Rest,
                             FastBodies>;

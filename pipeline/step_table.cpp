@@ -25,6 +25,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, prepare_rows<Real>>   ("prepare_rows",      {contact}),
     stage<Real, solve_impulses<Real>> ("solve_impulses",    {contact}),
     stage<Real, back_up>              ("back_up",           {no_overlap}),
+    stage<Real, subdivide>            ("subdivide",         {little_overlap}),
     stage<Real, integrate_poses>      ("integrate_poses",   {motion}),
     stage<Real, quarantine_bodies>    ("quarantine_bodies", {motion}),
     stage<Real, sweep_fast>           ("sweep_fast",        {fast_motion}),

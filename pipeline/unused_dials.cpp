@@ -69,29 +69,38 @@ std::string why_meshes_leave(const Scene& scene, std::string_view name)
 
 /// Why bodies of the scene are not carried from touch to touch as the dial `overlap` asks; empty
 /// where they are, or it does not. As effects.cpp has it.
-std::string why_not_backed_up(const Scene& scene)
+std::string why_not_carried(const Scene& scene)
 {
-    if (scene.settings.overlap != Overlap::back_up) return {};
+    if (scene.settings.overlap == Overlap::allow) return {};
     if (scene.settings.response != Response::impulse)
         return "response " + dial_value(scene.settings, "response") + " needs overlap";
-    for (const BodyDescription& body : scene.bodies)
-        if (body.pivot) return "bodies on pivots are not held apart; contacts go by allow";
-    for (const auto& [name, shape] : scene.shapes)
-        if (std::holds_alternative<MeshShape>(shape) || std::holds_alternative<VoxelsShape>(shape))
-            return "what is not convex is not held apart; contacts go by allow";
-    return {};
+    const auto is_solid = [&](const MeshShape* mesh) {
+        const NonConvex way = settings_of(*mesh, scene.settings).nonconvex;
+        return way != NonConvex::parts && way != NonConvex::hull;
+    };
+    const std::vector<const MeshShape*> moving = moving_meshes(scene);
+    const ShapeUses uses = shape_uses(scene);
+    bool solid = std::any_of(moving.begin(), moving.end(), is_solid);
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        solid = solid
+            || (std::holds_alternative<VoxelsShape>(scene.shapes[i].shape)
+                && (uses.dynamic[i] || uses.other[i]));
+    return solid ? "what is not convex is not held apart; contacts go by allow" : "";
 }
 
 /// Why a dial of contacts does nothing where bodies are carried from touch to touch.
-std::string why_backing_up_leaves(const Scene& scene, std::string_view name)
+std::string why_carrying_leaves(const Scene& scene, std::string_view name)
 {
-    const std::string why = why_not_backed_up(scene);
+    const std::string why = why_not_carried(scene), overlap = dial_value(scene.settings, "overlap");
     if (name == "overlap") return why;
-    if (scene.settings.overlap != Overlap::back_up || !why.empty()) return {};
+    if (name == "halvings" && scene.settings.overlap != Overlap::subdivide)
+        return "overlap " + overlap + " divides no step";
+    if (name == "halvings") return why;
+    if (scene.settings.overlap == Overlap::allow || !why.empty()) return {};
     for (const std::string_view unused :
          {"solver", "contact_rate", "direct_limit", "narrowphase", "method_start", "bounds_filter",
           "broadphase", "friction_cone", "friction_at", "sleep"})
-        if (name == unused) return "overlap back_up solves contacts in its own way";
+        if (name == unused) return "overlap " + overlap + " solves contacts in its own way";
     return {};
 }
 
@@ -141,7 +150,7 @@ std::vector<std::string> unused_dials(const Scene& scene)
     for (const std::string& name : scene.dials_set) {
         std::string why = why_settings_leave(scene.settings, name);
         if (why.empty()) why = why_meshes_leave(scene, name);
-        if (why.empty()) why = why_backing_up_leaves(scene, name);
+        if (why.empty()) why = why_carrying_leaves(scene, name);
         if (!why.empty()) unused.push_back(name + ": unused, " + why);
     }
     return unused;

@@ -126,6 +126,12 @@ void World::State::report_state()
     for (const Slice& slice : get<Layout>().slices)
         report.colors = std::max<std::size_t>(report.colors, slice.colors);
     report.bodies_awake = get<BodyStates>().movers.dynamic.size();
+    if (!effects.on.meets(kCarried)) return;
+    const CarriedContacts& carried = get<CarriedContacts>();
+    report.pairs = carried.pairs;
+    report.manifolds = carried.touching;
+    report.contacts = carried.points;
+    report.islands = carried.groups;
 }
 
 void World::State::refresh()
@@ -253,7 +259,9 @@ void World::step(int steps)
                 state.step);
             state.report.fallbacks += state.get<MethodPairs>().fell_back;
             const Trouble& trouble = state.get<Trouble>();
-            state.report.fallbacks += trouble.direct_left + trouble.held_groups;
+            state.report.fallbacks +=
+                trouble.direct_left + trouble.held_groups + trouble.deep_pieces;
+            state.report.deepest = std::max(state.report.deepest, trouble.deepest);
             state.warn_of_cuts(trouble.penalty_cuts);
             state.report.direct_residual =
                 std::max(state.report.direct_residual, trouble.direct_residual);
@@ -372,6 +380,10 @@ Vec3 World::contact_force(BodyId body) const
     const std::uint32_t at = state_->place_of(body, "contact_force");
     const double substep = state_->get<Conditions>().last_substep;
     if (substep <= 0) return Vec3::Zero();
+    if (state_->effects.on.meets(kCarried)) {
+        const std::vector<Vec3>& force = state_->get<CarriedContacts>().force;
+        return at < force.size() ? force[at] : Vec3(Vec3::Zero());
+    }
     Vec3 impulse = Vec3::Zero();
     std::visit(
         [&](const auto& chosen) {

@@ -129,7 +129,12 @@ void World::State::empty_unused()
     const Set<Effect> on = effects.on;
     if (!on.has(Effect::sleeping))
         for (std::uint32_t body = 0; body < generation.size(); ++body) wake(body);
-    if (!on.has(Effect::no_overlap)) get<Trouble>().held_groups = 0;
+    if (!on.meets(kCarried)) {
+        Trouble& trouble = get<Trouble>();
+        trouble.held_groups = trouble.deep_pieces = 0;
+        trouble.deepest = 0;
+        get<CarriedContacts>() = {};
+    }
     std::visit(
         [&](auto& chosen) {
             using Real = typename std::decay_t<decltype(chosen)>::Number;

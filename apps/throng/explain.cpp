@@ -30,16 +30,19 @@ constexpr Option kOptions[] = {
 
 using Stages = std::vector<World::StageInfo>;
 
-// The one stage that has a table of its own.
-constexpr std::string_view kOuter = "solve_impulses";
+/// The inner tables of those stages that have one, by name.
+using InnerTables = std::map<std::string_view, std::vector<InnerRow>>;
 
-/// The rows of the inner table that this scene has.
-std::vector<InnerRow> inner_rows(const Effects& effects, const Settings& settings)
+/// The rows of them that this scene has.
+InnerTables inner_tables(const Stages& stages, const Effects& effects, const Settings& settings)
 {
-    std::vector<InnerRow> rows;
-    for (const InnerRow& row : solve_table(settings))
-        if (row.called_for_by.meets(effects.on)) rows.push_back(row);
-    return rows;
+    InnerTables tables;
+    for (const World::StageInfo& stage : stages) {
+        const bool solves = stage.name == "solve_impulses";
+        for (const InnerRow& row : solves ? solve_table(settings) : carry_table(stage.name))
+            if (row.called_for_by.meets(effects.on)) tables[stage.name].push_back(row);
+    }
+    return tables;
 }
 
 std::string padded(std::string_view text, std::size_t width)
@@ -76,7 +79,7 @@ std::string time_column(const StageMs& times, std::string_view stage)
     return text;
 }
 
-void print_stages(const Stages& stages, const std::vector<InnerRow>& inner, const StageMs& times)
+void print_stages(const Stages& stages, const InnerTables& inner, const StageMs& times)
 {
     std::size_t width = 24;
     for (const World::StageInfo& stage : stages) width = std::max(width, stage.name.size() + 2);
@@ -91,8 +94,9 @@ void print_stages(const Stages& stages, const std::vector<InnerRow>& inner, cons
         if (stage.waits_for.empty()) waits += "nothing";
         std::cout << "  " << padded(stage.name, width) << time_column(times, stage.name) << waits
                   << '\n';
-        if (stage.name != kOuter) continue;
-        for (const InnerRow& row : inner)
+        const auto table = inner.find(stage.name);
+        if (table == inner.end()) continue;
+        for (const InnerRow& row : table->second)
             std::cout << "  "
                       << padded((row.within ? "        " : "    ") + std::string(row.name), width)
                       << (times.empty() ? "" : padded("", 12)) << row.when
@@ -107,14 +111,14 @@ void print_solids(const std::vector<std::string>& solids)
     for (const std::string& solid : solids) std::cout << "  " << solid << '\n';
 }
 
-void write_dot(const Stages& stages, const std::vector<InnerRow>& inner, std::ostream& out)
+void write_dot(const Stages& stages, const InnerTables& inner, std::ostream& out)
 {
     out << "digraph step {\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n";
     for (const World::StageInfo& stage : stages) {
         out << "  " << stage.name;
-        if (stage.name == kOuter) {
+        if (const auto table = inner.find(stage.name); table != inner.end()) {
             out << " [label=\"" << stage.name << "\\n";
-            for (const InnerRow& row : inner)
+            for (const InnerRow& row : table->second)
                 out << (row.within ? "    " : "  ") << row.name << " (" << row.when << ")\\l";
             out << "\"]";
         }
@@ -155,7 +159,7 @@ int explain(const Options& options)
     // What is printed is the step as it begins; bodies that fail on the way may change it.
     const Effects effects = world.effects();
     const Stages stages = world.step_stages();
-    const std::vector<InnerRow> inner = inner_rows(effects, world.settings());
+    const InnerTables inner = inner_tables(stages, effects, world.settings());
     if (dot.asked_for()) write_dot(stages, inner, dot.stream());
     dot.keep();
 

@@ -127,6 +127,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("fallbacks", stats.last.fallbacks);
     if (stats.settings.solver == Solver::direct)
         json.add("direct_residual", stats.last.direct_residual);
+    if (stats.settings.overlap == Overlap::subdivide) json.add("deepest_m", stats.last.deepest);
     json.add("peak_rss_mb", stats.peak_rss_mb);
     json.add("memory_bytes_per_body", static_cast<double>(stats.memory_bytes) / bodies);
     json.add("state_hash", json_string(stats.state_hash));

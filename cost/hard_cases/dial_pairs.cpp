@@ -36,6 +36,7 @@ const std::vector<Factor>& number_factors()
         {"direct_limit", {"8", "4"}},  // greater islands that fall take it seconds each
         {"penalty_stiffness", {"auto", "1e4", "1e9"}},
         {"penalty_damping", {"auto", "0"}},
+        {"halvings", {"auto", "4"}},
         {"toi_tolerance", {"1e-4", "0.01"}},
     };
     return kNumbers;

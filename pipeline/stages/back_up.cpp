@@ -1,143 +1,10 @@
 // Back up: the step is cut where bodies first touch, as often as it takes, for those concerned.
 //
-// Every body begins as a group of its own, which is carried through the step with what nothing
-// moves (group_flight.hpp). Groups whose ways cross may have met: they are put back to where the
-// step began, joined, and carried as one; and again, until no ways of different groups cross. So
-// contacts that exist only because of an earlier one are found as any other, and bodies far off pay
-// nothing for them. The outcome is that of each group alone: the same on any number of threads.
-//
-// Source: Mirtich, Timewarp Rigid Body Simulation (2000), for going back alone with those
-// concerned.
-#include "broadphase/broadphase.hpp"
-#include "kernels/parallel/blocks.hpp"
-#include "kernels/parallel/disjoint_sets.hpp"
+// Groups of bodies that may meet (carry_groups.cpp) fly from touch to touch (group_flight.cpp).
 #include "pipeline/stages.hpp"
 #include "pipeline/stages/group_flight.hpp"
 
-#include <algorithm>
-#include <map>
-
 namespace throng {
-
-namespace {
-
-class BackUp {
-public:
-    explicit BackUp(GroupScene& scene)
-        : scene_(scene), poses_(scene.poses), velocities_(scene.velocities)
-    {
-        for (const std::uint32_t body : scene.states.movers.dynamic)
-            if (scene.states.movable(body)) bodies_.push_back(body);
-        const std::size_t count = scene.states.kind.size();
-        scene.flights.memory.resize(count);
-        scene.ways.resize(count);
-        sets_.reset(count);
-        for (const std::uint32_t body : bodies_) sets_.add(body);
-        for (std::uint32_t i = 0; i < scene.colliders.size(); ++i) {
-            const std::uint32_t body = scene.colliders.body[i];
-            if (body != kNobody && !scene.states.movable(body)) scene.obstacles.push_back(i);
-        }
-        for (const auto& group : scene.forces.groups)
-            for (const std::uint32_t body : group)
-                if (sets_.holds(body) && sets_.holds(group.front()))
-                    sets_.join(group.front(), body);
-    }
-
-    void run(Trouble& trouble)
-    {
-        // Each round but the last leaves fewer groups.
-        for (std::size_t round = 0; round <= bodies_.size(); ++round) {
-            list_groups();
-            carry_groups();
-            if (!join_crossing()) break;
-        }
-        for (const auto& [first, group] : groups_) {
-            trouble.held_groups += group.held ? 1 : 0;
-            trouble.direct_residual = std::max(trouble.direct_residual, group.residual);
-        }
-    }
-
-private:
-    struct Group {
-        std::vector<std::uint32_t> bodies;  // ascending
-        bool held = false;
-        double residual = 0;
-    };
-
-    // Those that are as they were keep what was found of them.
-    void list_groups()
-    {
-        std::map<std::uint32_t, std::vector<std::uint32_t>> members;
-        for (const std::uint32_t body : bodies_) members[sets_.find(body)].push_back(body);
-        std::erase_if(groups_, [&](const auto& entry) { return !members.contains(entry.first); });
-        changed_.clear();
-        for (auto& [first, bodies] : members) {
-            Group& group = groups_[first];
-            if (group.bodies.size() == bodies.size()) continue;
-            group = {std::move(bodies)};
-            changed_.push_back(&group);
-        }
-    }
-
-    void carry_groups()
-    {
-        for_each_block(changed_.size(), 1, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) carry(*changed_[i]);
-        });
-    }
-
-    void carry(Group& group)
-    {
-        for (const std::uint32_t body : group.bodies) {
-            scene_.poses.position[body] = poses_.position[body];
-            scene_.poses.orientation[body] = poses_.orientation[body];
-            scene_.velocities.linear[body] = velocities_.linear[body];
-            scene_.velocities.angular[body] = velocities_.angular[body];
-            scene_.ways[body] = {};
-        }
-        GroupFlight flight(scene_, group.bodies);
-        flight.run();
-        group.held = flight.held();
-        group.residual = flight.residual();
-    }
-
-    bool may_meet(std::uint32_t a, std::uint32_t b) const
-    {
-        const Colliders& colliders = scene_.colliders;
-        for (std::uint32_t i = 0; i < colliders.count[a]; ++i)
-            for (std::uint32_t k = 0; k < colliders.count[b]; ++k)
-                if (scene_.filter.allows(colliders.begin[a] + i, colliders.begin[b] + k))
-                    return true;
-        return false;
-    }
-
-    // False if no ways of different groups cross.
-    bool join_crossing()
-    {
-        const std::vector<std::uint8_t> moving(scene_.ways.size(), 1);
-        AnyPairFinder finder = make_finder(choose_finder(scene_.ways, moving));
-        std::vector<PairKey> pairs;
-        find_overlaps({scene_.ways, moving, bodies_, true, nullptr}, finder, pairs);
-        bool any = false;
-        for (const PairKey key : pairs) {
-            const std::uint32_t a = first_of(key), b = second_of(key);
-            if (sets_.find(a) == sets_.find(b) || !may_meet(a, b)) continue;
-            sets_.join(a, b);
-            any = true;
-        }
-        return any;
-    }
-
-    GroupScene& scene_;
-    Poses poses_;  // as the step began
-    Velocities velocities_;
-    std::vector<std::uint32_t> bodies_;  // ascending
-    DisjointSets sets_;
-    std::map<std::uint32_t, Group> groups_;  // by their first bodies
-    std::vector<Group*> changed_;
-};
-
-}  // namespace
 
 void back_up(const Conditions& conditions,
              const Shapes& shapes,
@@ -151,15 +18,12 @@ void back_up(const Conditions& conditions,
              Velocities& velocities,
              Flights& flights,
              Islands& islands,
+             CarriedContacts& contacts,
              Trouble& trouble)
 {
-    trouble.quarantined.clear();
-    trouble.direct_left = trouble.held_groups = 0;
-    trouble.direct_residual = 0;
-    islands.lone.clear();  // none is left to fly alone
     GroupScene scene{conditions, shapes, surfaces,   filter,  colliders, states, masses,
                      forces,     poses,  velocities, flights, {},        {}};
-    BackUp(scene).run(trouble);
+    carry_groups(scene, &GroupFlight::back_up, islands, contacts, trouble);
 }
 
 }  // namespace throng

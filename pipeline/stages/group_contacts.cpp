@@ -57,43 +57,48 @@ void GroupFlight::list_touches(double time)
 void GroupFlight::list_touches_of(PairKey key, double time)
 {
     const Colliders& colliders = scene_.colliders;
-    std::uint32_t a = first_of(key), b = second_of(key);
-    if (colliders.shape[a].kind == ShapeKind::plane) std::swap(a, b);
-    const std::uint32_t body_a = colliders.body[a], body_b = colliders.body[b];
-    const Pose at_a = pose_at(body_a, time), at_b = pose_at(body_b, time);
-    const Pose pose_a = at_a * colliders.local[a], pose_b = at_b * colliders.local[b];
-    const double tolerance = tolerance_of(key);
-    PairCache cache;
-    LocalManifold<double> found;
-    collide<double>(scene_.shapes, colliders.shape[a], colliders.shape[b],
-                    pose_seen_from_a(scene_.shapes, colliders.shape[b], pose_a, pose_b),
-                    tolerance * kAlike, cache, found);
-    if (found.count == 0) return;
+    const double tolerance = tolerance_of(key), reach = tolerance * kAlike;
+    const auto place = [&](std::uint32_t collider) {
+        return pose_at(colliders.body[collider], time);
+    };
+    const double least = gap_of(key, place(first_of(key)), place(second_of(key)), reach);
+    if (met_.manifolds.empty()) return;
+    gap_now_[key] = least;
+    const std::uint32_t a = met_.first, b = met_.second;
     const Surfaces::Meeting meeting =
         scene_.surfaces.between(colliders.material[a], colliders.material[b]);
     Touch touch;
     touch.key = key;
+    touch.body_a = colliders.body[a];
+    touch.body_b = colliders.body[b];
     touch.tolerance = tolerance;
     touch.rest_gap = tolerance / 2;
     touch.restitution = meeting.restitution;
     touch.least_speed = std::sqrt(2 * scene_.conditions.gravity.norm() * tolerance);
+    touch.point.a = seat_of(touch.body_a);
+    touch.point.b = seat_of(touch.body_b);
+    touch.point.friction = meeting.friction;
+    touch.point.rolling = meeting.rolling_friction;
+    for (const LocalManifold<double>& found : met_.manifolds)
+        add_touches(found, place(a).position, place(b).position, touch);
+}
+
+// The points of one manifold, of bodies at these positions; `touch` is what they have in common.
+void GroupFlight::add_touches(const LocalManifold<double>& found,
+                              const Vec3& a,
+                              const Vec3& b,
+                              Touch touch)
+{
     DirectPoint& point = touch.point;
-    point.a = seat_of(body_a);
-    point.b = seat_of(body_b);
-    point.normal = (pose_a.orientation * found.normal).normalized();
-    point.friction = meeting.friction;
-    point.rolling = meeting.rolling_friction;
-    double least = found.points[0].separation;
+    point.normal = (met_.at_first.orientation * found.normal).normalized();
     for (int k = 0; k < found.count; ++k) {
         const auto& at = found.points[static_cast<std::size_t>(k)];
-        const Vec3 middle = pose_a * at.position, half = point.normal * (at.separation / 2);
+        const Vec3 middle = met_.at_first * at.position, half = point.normal * (at.separation / 2);
         touch.gap = at.separation;
-        point.arm_a = middle - half - at_a.position;
-        point.arm_b = middle + half - at_b.position;
-        least = std::min(least, touch.gap);
+        point.arm_a = middle - half - a;
+        point.arm_b = middle + half - b;
         touches_.push_back(touch);
     }
-    gap_now_[key] = least;
 }
 
 // As they are, or as they will be at the end of the way ahead.
@@ -162,16 +167,29 @@ bool GroupFlight::reflect_in_order(Motions& bodies)
 void GroupFlight::grip(Motions& bodies)
 {
     std::vector<DirectPoint> points;
+    std::vector<std::size_t> struck;
     bool grips = false;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         if (!(struck_[i] > 0)) continue;
+        struck.push_back(i);
         points.push_back(touches_[i].point);
+        points.back().impulse = points.back().normal * struck_[i];
         points.back().least = std::max(0.0, speed_apart(points.back(), bodies));
         grips = grips || points.back().friction > 0 || points.back().rolling > 0;
     }
-    if (!grips) return;
-    bodies = motions(false);
-    solve(bodies, points);
+    if (grips) {
+        bodies = motions(false);
+        for (DirectPoint& point : points) point.impulse.setZero();
+        solve(bodies, points);
+    }
+    for (std::size_t k = 0; k < struck.size(); ++k)
+        note_push(touches_[struck[k]], points[k].impulse);
+}
+
+void GroupFlight::note_push(const Touch& touch, const Vec3& impulse)
+{
+    outcome_.pushes.try_emplace(touch.body_a, Vec3::Zero()).first->second -= impulse;
+    outcome_.pushes.try_emplace(touch.body_b, Vec3::Zero()).first->second += impulse;
 }
 
 // Impacts of this moment. False if there is none.
@@ -204,6 +222,12 @@ bool GroupFlight::strike()
     return true;
 }
 
+// All impacts of this moment.
+void GroupFlight::settle_impacts()
+{
+    for (int left = kMostStrikes; left > 0 && strike();) --left;
+}
+
 // Holds those that would be too near at the end of the way ahead. False if there are none.
 bool GroupFlight::rest(double span)
 {
@@ -224,6 +248,7 @@ bool GroupFlight::rest(double span)
     if (resting_.empty()) return false;
     Motions held = bodies;
     solve(held, points);
+    pressed_ = std::move(points);
     part(span, held);
     return true;
 }

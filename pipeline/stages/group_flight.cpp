@@ -2,6 +2,7 @@
 
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/math/rotation.hpp"
+#include "narrowphase/methods/ask_gjk.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages/rigid_law.hpp"
 
@@ -62,24 +63,69 @@ double GroupFlight::tolerance_of(PairKey key) const
         * impact_size(scene_.shapes, shape[first_of(key)], shape[second_of(key)]);
 }
 
-// m, of bodies at these poses; `reach` where it is more.
-double GroupFlight::gap_of(PairKey key, const Pose& a, const Pose& b, double reach) const
+// Where two touch with their bodies at these poses, out to `reach`: a mesh has many places.
+void GroupFlight::meet(PairKey key, const Pose& a, const Pose& b, double reach)
 {
     const Colliders& colliders = scene_.colliders;
+    const Shapes& shapes = scene_.shapes;
     std::uint32_t first = first_of(key), second = second_of(key);
     Pose pose_a = a * colliders.local[first], pose_b = b * colliders.local[second];
-    if (colliders.shape[first].kind == ShapeKind::plane) {
+    const ShapeKind kind = colliders.shape[first].kind;
+    if (kind == ShapeKind::plane || colliders.shape[second].kind == ShapeKind::mesh) {
         std::swap(first, second);
         std::swap(pose_a, pose_b);
     }
+    met_ = {first, second, pose_a, {}};
     const ShapeRef shape_a = colliders.shape[first], shape_b = colliders.shape[second];
+    const Pose seen = pose_seen_from_a(shapes, shape_b, pose_a, pose_b);
+    if (shape_a.kind == ShapeKind::mesh) {
+        triangles_.clear();
+        collide_mesh<double>(shapes, shape_a, shape_b, seen, reach, triangles_);
+        for (const auto& touched : triangles_) met_.manifolds.push_back(touched.manifold);
+        return;
+    }
     PairCache cache;
     LocalManifold<double> found;
-    collide<double>(scene_.shapes, shape_a, shape_b,
-                    pose_seen_from_a(scene_.shapes, shape_b, pose_a, pose_b), reach, cache, found);
+    collide<double>(shapes, shape_a, shape_b, seen, reach, cache, found);
+    const auto is_simple = [](ShapeRef shape) {
+        return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::plane;
+    };
+    if (found.count > 0 && !is_simple(shape_a) && !is_simple(shape_b))
+        look_closer(ConvexPair(shapes, shape_a, shape_b, seen), tolerance_of(key), reach, found);
+    if (found.count > 0) met_.manifolds.push_back(found);
+}
+
+// Manifolds favour faces over edges: by more than the tolerance in how far apart two are, and where
+// they meet at one point, by the normal, along which they then slide into one another. The nearest
+// points tell.
+void GroupFlight::look_closer(const ConvexPair& pair,
+                              double tolerance,
+                              double reach,
+                              LocalManifold<double>& found)
+{
+    double least = found.points[0].separation;
+    for (int k = 1; k < found.count; ++k)
+        least = std::min(least, found.points[static_cast<std::size_t>(k)].separation);
+    MethodMemory memory;
+    const MethodAnswer nearest = ask_gjk(pair, reach, MethodStart::cold, memory);
+    if (nearest.touch == throng::Touch::undecided || nearest.cut_short) return;
+    if (found.count > 1 && std::abs(nearest.separation - least) < tolerance / 4) return;
+    found = {};
+    if (nearest.separation > reach) return;
+    found.normal = nearest.normal;
+    found.count = 1;
+    found.points[0].position = (nearest.on_a + nearest.on_b) / 2;
+    found.points[0].separation = nearest.separation;
+}
+
+// m, of bodies at these poses; `reach` where it is more.
+double GroupFlight::gap_of(PairKey key, const Pose& a, const Pose& b, double reach)
+{
+    meet(key, a, b, reach);
     double gap = reach;
-    for (int k = 0; k < found.count; ++k)
-        gap = std::min(gap, found.points[static_cast<std::size_t>(k)].separation);
+    for (const LocalManifold<double>& found : met_.manifolds)
+        for (int k = 0; k < found.count; ++k)
+            gap = std::min(gap, found.points[static_cast<std::size_t>(k)].separation);
     return gap;
 }
 
@@ -152,8 +198,8 @@ void GroupFlight::find_pairs(double begin, double span)
     std::sort(pairs_.begin(), pairs_.end());
 }
 
-// The first touch of those that do not touch yet.
-FirstImpact GroupFlight::look_ahead(double begin, double span)
+// The first touch of those asked about that do not touch yet.
+FirstImpact GroupFlight::look_ahead(std::span<const PairKey> asked, double begin, double span)
 {
     const Colliders& colliders = scene_.colliders;
     std::vector<MovingShape> shapes;
@@ -168,7 +214,7 @@ FirstImpact GroupFlight::look_ahead(double begin, double span)
             {colliders.shape[at], sweep_between(from, to, spin * span), colliders.local[at]});
         return static_cast<std::uint32_t>(shapes.size() - 1);
     };
-    for (const PairKey key : pairs_) {
+    for (const PairKey key : asked) {
         const std::uint32_t a = add(first_of(key)), b = add(second_of(key));
         pairs.push_back({a, b});
     }
@@ -206,6 +252,17 @@ void GroupFlight::commit()
         scene_.velocities.angular[body] = end.spin;
         if (end.flew) scene_.flights.memory[body] = end.memory;
     }
+    for (std::size_t k = 0; k < resting_.size(); ++k)
+        note_push(touches_[resting_[k]], pressed_[k].impulse);
+}
+
+GroupOutcome GroupFlight::outcome() const
+{
+    GroupOutcome outcome = outcome_;
+    outcome.pairs = pairs_.size();
+    outcome.touching = gap_now_.size();
+    outcome.points = touches_.size();
+    return outcome;
 }
 
 // Where the bodies will be after a span: flown, or held by what they rest on.
@@ -215,7 +272,7 @@ void GroupFlight::carry(double begin, double span)
     rest(span);
 }
 
-void GroupFlight::run()
+void GroupFlight::back_up()
 {
     const double dt = scene_.conditions.settings.dt, whole = scene_.conditions.substep();
     double time = 0, span = whole;
@@ -229,7 +286,7 @@ void GroupFlight::run()
         list_touches(time);
         if (strike()) continue;
         if (rest(next)) find_pairs(time, next);
-        const FirstImpact first = look_ahead(time, next);
+        const FirstImpact first = look_ahead(pairs_, time, next);
         const bool meets = first.impact.meeting == Meeting::meet;
         if (meets) next *= first.impact.time;
         if (meets) carry(time, next);
@@ -250,7 +307,7 @@ void GroupFlight::run()
         if (gap_of(key, pose_at(a, time), pose_at(b, time), wider) > tolerance)
             span = std::max(next * kCloser, dt * kLeastSpan);
     }
-    held_ = time < dt * kWhole;
+    outcome_.held = time < dt * kWhole;
 }
 
 }  // namespace throng

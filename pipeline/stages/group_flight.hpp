@@ -1,13 +1,16 @@
 // Group flight: bodies that may meet in this step, carried from touch to touch.
 //
-// They fly as their integrator has it until two first touch. There impacts change velocities, those
-// that rest on one another are held by a joint solve, and what is left of the step goes on.
+// They fly as their integrator has it until two touch: to the first moment of that, or to the end
+// of a piece of the step that leaves none too deep. There impacts change velocities, those that
+// rest on one another are held by a joint solve, and what is left of the step goes on.
 // Contacts are rigid: those that rest do so at half the tolerance from one another.
 #pragma once
 
 #include "kernels/motion/rigid_motion.hpp"
 #include "kernels/solve/direct_points.hpp"
 #include "narrowphase/impact/first_impact.hpp"
+#include "narrowphase/methods/convex_methods.hpp"
+#include "narrowphase/narrowphase.hpp"
 #include "pipeline/step_data.hpp"
 
 #include <map>
@@ -35,18 +38,38 @@ struct GroupScene {
     std::vector<Box3> ways;
 };
 
+/// What came of a group's step.
+///
+///   held         the work came to its bound: the bodies wait where they last were apart
+///   residual     of the joint solves, the greatest: see DirectAnswer
+///   deep_pieces  those that no halving was left for: see GroupFlight::subdivide()
+///   deepest      m, by how much any two overlapped at the end of a piece
+///   pushes       N s of all contacts, by body, of the group and of what it met
+///   pairs, touching, points  see CarriedContacts
+struct GroupOutcome {
+    bool held = false;
+    double residual = 0;
+    std::uint64_t deep_pieces = 0;
+    double deepest = 0;
+    std::map<std::uint32_t, Vec3> pushes;
+    std::size_t pairs = 0, touching = 0, points = 0;
+};
+
 class GroupFlight {
 public:
     /// bodies: dynamic ones, ascending
     GroupFlight(GroupScene& scene, std::span<const std::uint32_t> bodies);
 
-    /// Takes the bodies through a step, and tells their ways.
-    void run();
+    /// Takes the bodies through a step, cut at each first touch, and tells their ways.
+    void back_up();
 
-    /// Whether the work came to its bound: the bodies wait where they last were apart.
-    bool held() const { return held_; }
-    /// Of the joint solves, the greatest: see DirectAnswer.
-    double residual() const { return residual_; }
+    /// The same by halves: a piece of the step at whose end two overlap by more than the tolerance
+    /// is done again as two pieces, down to a bound on how often; there it is left as it is, and
+    /// told. So none overlap by more than the tolerance and what they close in the shortest piece.
+    void subdivide();
+
+    /// Of the step that was taken.
+    GroupOutcome outcome() const;
 
 private:
     // Where a body is about to be.
@@ -59,10 +82,17 @@ private:
     // Where two bodies touch, or are about to.
     struct Touch {
         PairKey key = 0;
+        std::uint32_t body_a = 0, body_b = 0;
         DirectPoint point;
         double gap = 0, rest_gap = 0, tolerance = 0;  // m
         double restitution = 0;
         double least_speed = 0;  // m/s, slower ones do not bounce
+    };
+    // Where two shapes meet: normals from the first to the second, in the first's frame.
+    struct Met {
+        std::uint32_t first = 0, second = 0;  // colliders
+        Pose at_first;                        // of its shape
+        std::vector<LocalManifold<double>> manifolds;
     };
     using Motions = std::vector<DirectBody>;
 
@@ -71,31 +101,49 @@ private:
     bool fly(double begin, double span);
     void find_pairs(double begin, double span);
     void add_pair(std::uint32_t a, std::uint32_t b);
-    FirstImpact look_ahead(double begin, double span);
+    FirstImpact look_ahead(std::span<const PairKey> asked, double begin, double span);
     bool stay_apart(double time);
     Pose pose_at(std::uint32_t body, double time) const;
     Pose end_of(std::uint32_t body, double time) const;
-    double gap_of(PairKey key, const Pose& a, const Pose& b, double reach) const;
+    void meet(PairKey key, const Pose& a, const Pose& b, double reach);
+    static void look_closer(const ConvexPair& pair,
+                            double tolerance,
+                            double reach,
+                            LocalManifold<double>& found);
+    double gap_of(PairKey key, const Pose& a, const Pose& b, double reach);
     double tolerance_of(PairKey key) const;
     std::int32_t member_of(std::uint32_t body) const;
     Box3 box_of(std::uint32_t collider, const Pose& body) const;
 
+    // Pieces of a step: see group_halves.cpp.
+    bool carry_piece(double begin, double span, bool shortest);
+    double depth_of(PairKey key, double end);
+    bool may_pass(PairKey key, double begin, double span) const;
+    bool is_mesh(PairKey key) const;
+    bool ends_well(double begin, double span, bool shortest);
+
     // Contacts: see group_contacts.cpp.
     void list_touches(double time);
     void list_touches_of(PairKey key, double time);
+    void add_touches(const LocalManifold<double>& found, const Vec3& a, const Vec3& b, Touch touch);
     std::int32_t seat_of(std::uint32_t body);
     Motions motions(bool ends) const;
     bool strike();
+    void settle_impacts();
     bool reflect(std::size_t begin, std::size_t end, Motions& bodies);
     bool reflect_in_order(Motions& bodies);
     void grip(Motions& bodies);
     double restitution_of(const Touch& touch) const;
+    void note_push(const Touch& touch, const Vec3& impulse);
     bool rest(double span);
     void part(double span, const Motions& solved);
     void end_with(const Motions& speeds, const Motions& ways, double span);
 
     // What contacts are solved by: see group_solve.cpp.
     static void push(DirectPoint& point, Motions& bodies);
+    static double worst_miss(const Motions& bodies, const std::vector<DirectPoint>& points);
+    static double fastest_at(const Motions& bodies, const std::vector<DirectPoint>& points);
+    static void sweep_points(Motions& bodies, std::vector<DirectPoint>& points);
     void solve(Motions& bodies, std::vector<DirectPoint>& points);
 
     GroupScene& scene_;
@@ -109,13 +157,26 @@ private:
         seats_;  // bodies: those carried, then others that move by themselves
     std::vector<std::pair<std::uint32_t, Box3>> boxes_;  // of colliders, of the way just ahead
     std::vector<PairKey> pairs_;                         // that may meet on it
+    Met met_;                                            // by the last call of meet()
+    std::vector<TriangleManifold<double>> triangles_;    // scratch
     std::vector<Touch> touches_;
     std::vector<std::size_t> resting_;   // touches that may press, of this span
+    std::vector<DirectPoint> pressed_;   // [resting_] with the impulses of this span
     std::vector<double> struck_;         // [touches] N s, of all impacts of this moment
     std::map<PairKey, double> gap_now_;  // m, of pairs that touch
     std::map<PairKey, int> strikes_;     // in this step
-    double residual_ = 0;
-    bool held_ = false;
+    std::map<PairKey, int> too_deep_;    // shortest pieces that they ended so, in this substep
+    GroupOutcome outcome_;
 };
+
+/// One of GroupFlight's two ways through a step.
+using CarryGroup = void (GroupFlight::*)();
+
+/// Takes all dynamic bodies through a step, those together that may meet: see carry_groups.cpp.
+void carry_groups(GroupScene& scene,
+                  CarryGroup way,
+                  Islands& islands,
+                  CarriedContacts& contacts,
+                  Trouble& trouble);
 
 }  // namespace throng

@@ -10,6 +10,10 @@ namespace {
 constexpr int kNewtonSteps = 50;
 // Visits to every point, where the joint solve comes to no sound answer.
 constexpr int kPlainSweeps = 200;
+// A residual that is no answer.
+constexpr double kLost = 0.1;
+// Contacts that do not bounce leave nobody this much faster than the fastest of them was.
+constexpr double kFaster = 100;
 
 }  // namespace
 
@@ -21,15 +25,53 @@ void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
     const bool sound = std::all_of(bodies.begin(), bodies.end(), [](const DirectBody& body) {
         return holdable(body.velocity) && holdable(body.spin);
     });
-    if (sound) {
-        residual_ = std::max(residual_, answer.residual);
+    const double most = kFaster * fastest_at(before, points);
+    if (sound && answer.residual < kLost && fastest_at(bodies, points) <= most) {
+        outcome_.residual = std::max(outcome_.residual, answer.residual);
         return;
     }
-    residual_ = std::max(residual_, 1.0);
+    outcome_.residual = std::max(outcome_.residual, 1.0);
     bodies = before;
     for (DirectPoint& point : points) point.impulse = point.torque = Vec3::Zero();
-    for (int sweep = 0; sweep < kPlainSweeps; ++sweep)
+    sweep_points(bodies, points);
+}
+
+// m/s, by how much the points close faster than they may, at worst.
+double GroupFlight::worst_miss(const Motions& bodies, const std::vector<DirectPoint>& points)
+{
+    double worst = 0;
+    for (const DirectPoint& point : points)
+        worst = std::max(worst, point.least - speed_apart(point, bodies));
+    return worst;
+}
+
+// m/s, at the points.
+double GroupFlight::fastest_at(const Motions& bodies, const std::vector<DirectPoint>& points)
+{
+    double fastest = 0;
+    for (const DirectPoint& point : points)
+        fastest = std::max(fastest, velocity_between(point, bodies).norm() + std::abs(point.least));
+    return fastest;
+}
+
+// Point by point, and what came nearest is kept: where what moves by itself wants more than there
+// is room for, no answer will do, and pushing on only throws bodies about.
+void GroupFlight::sweep_points(Motions& bodies, std::vector<DirectPoint>& points)
+{
+    Motions nearest = bodies;
+    std::vector<DirectPoint> nearest_points = points;
+    double least = worst_miss(bodies, points);
+    const double most = kFaster * fastest_at(bodies, points);
+    for (int sweep = 0; sweep < kPlainSweeps && least > 0; ++sweep) {
         for (DirectPoint& point : points) push(point, bodies);
+        const double missed = worst_miss(bodies, points);
+        if (!(missed < least) || !(fastest_at(bodies, points) <= most)) continue;
+        least = missed;
+        nearest = bodies;
+        nearest_points = points;
+    }
+    bodies = std::move(nearest);
+    points = std::move(nearest_points);
 }
 
 // One visit to a point: to its least speed along the normal, then against sliding, within what the

@@ -213,7 +213,7 @@ void integrate_poses(const Conditions& conditions,
                      Trouble& trouble)
 {
     // Without contact there are no islands: every awake body flies.
-    const bool alone = !conditions.has(Effect::contact) && !conditions.has(Effect::no_overlap);
+    const bool alone = !conditions.has(Effect::contact) && !conditions.effects.meets(kCarried);
     if (alone) trouble.quarantined.clear();
 
     const FlightRule rule = rule_of(conditions);

@@ -1,76 +1,24 @@
 // What overlap=back_up keeps to, through the public door.
 #include "pipeline/unused_dials.hpp"
-#include "tests/pipeline/small_scenes.hpp"
+#include "tests/pipeline/carried_scenes.hpp"
 
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 namespace throng {
 namespace {
 
-using given::SceneOf;
+using namespace given;
 
 constexpr double kGravity = 9.81;
 
 SceneOf backed_up(double friction, double restitution)
 {
-    SceneOf made;
-    made.scene.settings.overlap = Overlap::back_up;
-    made.scene.settings.precision = Precision::double_;
-    made.scene.settings.substeps = 1;
-    made.scene.materials[0].friction = friction;
-    made.scene.materials[0].restitution = restitution;
-    return made;
-}
-
-Vec3 place_of(const World& world, std::size_t i) { return world.pose(world.bodies()[i]).position; }
-Vec3 velocity_of(const World& world, std::size_t i) { return world.velocity(world.bodies()[i]); }
-
-double energy_of(const World& world)
-{
-    const Measures measures = world.measure();
-    return measures.kinetic_energy + measures.potential_energy;
-}
-
-// The least distance between any two of balls of one radius, and of them from the floor.
-double least_gap(const World& world, std::size_t first, double radius)
-{
-    double least = 1e30;
-    for (std::size_t i = first; i < world.bodies().size(); ++i) {
-        least = std::min(least, place_of(world, i).z() - radius);
-        for (std::size_t k = first; k < i; ++k)
-            least = std::min(least, (place_of(world, i) - place_of(world, k)).norm() - 2 * radius);
-    }
-    return least;
-}
-
-Scene row_of_balls()
-{
-    SceneOf made = backed_up(0, 1);
-    made.scene.gravity = Vec3::Zero();
-    made.scene.settings.dt = 0.1;
-    for (int i = 0; i < 3; ++i) made.ball(0.5, Vec3(2 * i, 0, 0));
-    made.scene.bodies[0].velocity = Vec3(100, 0, 0);
-    return made.scene;
-}
-
-// Balls over a floor, of which some strike others in the air.
-Scene heap_of_balls(double restitution)
-{
-    SceneOf made = backed_up(0.3, restitution);
-    made.scene.settings.dt = 0.01;
-    made.floor();
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k)
-            for (int j = 0; j < 3; ++j)
-                made.ball(0.1, Vec3(0.21 * i + 0.003 * j, 0.21 * k - 0.002 * j, 0.2 + 0.21 * j));
-    return made.scene;
+    return carried(Overlap::back_up, friction, restitution);
 }
 
 TEST(BackUp, FindsContactsThatExistBecauseOfAnEarlierOneInTheStep)
 {
-    World world(row_of_balls());
+    World world(row_of_balls(Overlap::back_up));
     world.step();
     // Each impact is told up to a tolerance early.
     const double early = 2 * 1e-4 * 0.5;
@@ -147,7 +95,7 @@ TEST(BackUp, StackStandsApartAndStill)
 TEST(BackUp, BallsNeverOverlapAndGainNoEnergy)
 {
     for (const double restitution : {0.0, 0.5}) {
-        World world(heap_of_balls(restitution));
+        World world(heap_of_balls(Overlap::back_up, restitution));
         double energy = energy_of(world);
         for (int step = 0; step < 60; ++step) {
             world.step();
@@ -180,7 +128,7 @@ TEST(BackUp, SameBitsForAnyNumberOfThreads)
 {
     std::string hashes[3];
     for (int threads = 1; threads <= 3; ++threads) {
-        World world(heap_of_balls(0.5), threads);
+        World world(heap_of_balls(Overlap::back_up, 0.5), threads);
         world.step(30);
         hashes[threads - 1] = world.state_hash();
     }
@@ -204,14 +152,94 @@ TEST(BackUp, PlatformCarriesWhatRestsOnIt)
     EXPECT_LT((velocity_of(world, 1) - Vec3(0.2, 0, 1)).norm(), 1e-6);
 }
 
-TEST(BackUp, MeshesGoByOverlapAndItIsSaid)
+// A floor of two triangles, and a wall of two more at x = 1.
+MeshShape corner()
+{
+    MeshShape mesh;
+    mesh.vertices = {{-3, -3, 0}, {1, -3, 0}, {1, 3, 0}, {-3, 3, 0}, {1, -3, 2}, {1, 3, 2}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
+    return mesh;
+}
+
+TEST(BackUp, HoldsBodiesApartFromStaticMeshes)
+{
+    for (const Overlap overlap : {Overlap::back_up, Overlap::subdivide}) {
+        SceneOf made = carried(overlap, 0, 0);
+        made.scene.settings.dt = 0.01;
+        made.body(made.shape(corner()), Vec3::Zero()).motion = Motion::static_;
+        made.ball(0.1, Vec3(0, 0.3, 0.4)).velocity = Vec3(3, 0, 0);
+        made.box(Vec3(0.2, 0.2, 0.1), Vec3(-1, -1, 0.3)).velocity = Vec3(1, 0, 0);
+        World world(made.scene);
+        const double bound = overlap == Overlap::back_up ? 0 : 2e-5;
+        for (int step = 0; step < 100; ++step) {
+            world.step();
+            ASSERT_GE(place_of(world, 1).z() - 0.1, -bound);
+            ASSERT_LE(place_of(world, 1).x() + 0.1, 1 + bound);
+            ASSERT_GE(place_of(world, 2).z() - 0.1, -bound);
+        }
+        EXPECT_NEAR(place_of(world, 1).x(), 0.9, 1e-4);  // at the wall
+        EXPECT_NEAR(place_of(world, 1).z(), 0.1, 1e-4);  // and on the floor
+        EXPECT_NEAR(place_of(world, 2).z(), 0.1, 1e-4);
+        EXPECT_EQ(world.report().fallbacks, 0u);
+    }
+}
+
+TEST(BackUp, PendulumStrikesAPostAndKeepsItsPivot)
+{
+    for (const Overlap overlap : {Overlap::back_up, Overlap::subdivide}) {
+        SceneOf made = carried(overlap, 0, 1);
+        made.scene.settings.integrator = Integrator::midpoint;
+        made.scene.settings.dt = 0.01;
+        BodyDescription& rod = made.box(Vec3(0.05, 0.05, 0.5), Vec3(0, 0, 0));
+        rod.pivot = Vec3(0, 0, 0.5);
+        rod.angular_velocity = Vec3(0, -2, 0);
+        made.ball(0.1, Vec3(0.3, 0, -0.45)).motion = Motion::static_;
+        World world(made.scene);
+        const double before = energy_of(world);
+        double furthest = 0;
+        for (int step = 0; step < 200; ++step) {
+            world.step();
+            const Pose pose = world.pose(world.bodies()[0]);
+            ASSERT_LT((pose * Vec3(0, 0, 0.5) - Vec3(0, 0, 0.5)).norm(), 1e-9) << step;
+            ASSERT_LE(world.measure().greatest_overlap,
+                      overlap == Overlap::back_up ? 0 : 2 * 1e-4 * 0.05);
+            furthest = std::max(furthest, (pose * Vec3(0.05, 0, -0.45)).x());
+        }
+        EXPECT_NEAR(furthest, 0.2, 0.01);  // it comes up to the post
+        EXPECT_NEAR(energy_of(world), before, 1e-3 * std::abs(before));
+    }
+}
+
+TEST(BackUp, TellsTheForceOfContacts)
+{
+    for (const Overlap overlap : {Overlap::back_up, Overlap::subdivide}) {
+        SceneOf made = carried(overlap, 0.5, 0);
+        made.scene.settings.dt = 1.0 / 60;
+        made.floor();
+        for (int i = 0; i < 3; ++i) made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.501 + 1.001 * i));
+        World world(made.scene);
+        world.step(60);
+        const double weight = 1000 * kGravity;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Vec3 force = world.contact_force(world.bodies()[i]);
+            EXPECT_NEAR(force.z(), i == 0 ? -3 * weight : weight, 1e-6 * weight) << i;
+        }
+        EXPECT_EQ(world.report().manifolds, 3u);
+        EXPECT_EQ(world.report().contacts, 12u);
+        EXPECT_EQ(world.report().islands, 1u);
+    }
+}
+
+TEST(BackUp, SolidsGoByOverlapAndItIsSaid)
 {
     SceneOf made = backed_up(0.5, 0);
-    MeshShape mesh;
-    mesh.vertices = {{-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    made.body(made.shape(mesh), Vec3::Zero()).motion = Motion::static_;
-    made.ball(0.1, Vec3(0, 0, 0.2));
+    MeshShape cube;
+    for (int i = 0; i < 8; ++i)
+        cube.vertices.emplace_back(0.1 * (i & 1), 0.1 * (i >> 1 & 1), 0.1 * (i >> 2));
+    cube.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    made.floor();
+    made.body(made.shape(cube), Vec3(0, 0, 1));
     World world(made.scene);
     EXPECT_TRUE(world.effects().on.has(Effect::contact));
     EXPECT_FALSE(world.effects().on.has(Effect::no_overlap));
@@ -219,6 +247,9 @@ TEST(BackUp, MeshesGoByOverlapAndItIsSaid)
     ASSERT_EQ(unused_dials(made.scene).size(), 1u);
     EXPECT_EQ(unused_dials(made.scene)[0],
               "overlap: unused, what is not convex is not held apart; contacts go by allow");
+    made.scene.settings.nonconvex = NonConvex::hull;
+    EXPECT_TRUE(World(made.scene).effects().on.has(Effect::no_overlap));
+    EXPECT_TRUE(unused_dials(made.scene).empty());
 }
 
 }  // namespace

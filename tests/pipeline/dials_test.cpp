@@ -19,7 +19,8 @@ TEST(Dials, AreAllThere)
         "broadphase",  "narrowphase",      "method_start",      "bounds_filter",   "nonconvex",
         "voxel_size",  "image_resolution", "sphere_levels",     "max_parts",       "response",
         "solver",      "direct_limit",     "penalty_stiffness", "penalty_damping", "friction_cone",
-        "impact_law",  "overlap",          "toi_method",        "toi_tolerance",   "sleep"};
+        "impact_law",  "overlap",          "halvings",          "toi_method",      "toi_tolerance",
+        "sleep"};
     for (const char* name : names) EXPECT_NE(find_dial(name), nullptr) << name;
     EXPECT_EQ(find_dial("speed"), nullptr);
 

@@ -11,7 +11,7 @@
 namespace throng {
 namespace {
 
-using testing::SceneOf;
+using given::SceneOf;
 
 EnergyLedger keep(World& world, int steps)
 {

@@ -315,5 +315,14 @@ TEST(SolveTable, ListsWhatASubstepDoes)
     EXPECT_NE(solve_table(kinematic).data(), solve_table(penalty).data());
 }
 
+TEST(CarryTable, ListsWhatASpanOrAPieceDoes)
+{
+    for (const char* stage : {"back_up", "subdivide"}) {
+        EXPECT_FALSE(carry_table(stage).empty()) << stage;
+        for (const InnerRow& row : carry_table(stage)) EXPECT_FALSE(row.when.empty()) << row.name;
+    }
+    EXPECT_TRUE(carry_table("solve_impulses").empty());
+}
+
 }  // namespace
 }  // namespace throng
