@@ -26,6 +26,8 @@ constexpr double kRounding = 1e-11;
 constexpr double kPartShare = 0.5;
 // As far as this, in tolerances, at the end of a span, bodies are not held.
 constexpr double kClear = 2;
+// Deeper than this, in tolerances, two are moved apart.
+constexpr double kSunk = 0.75;
 // Two methods may see a distance differently by this share.
 constexpr double kAlike = 1.01;
 
@@ -236,10 +238,12 @@ bool GroupFlight::rest(double span)
     resting_.clear();
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         const Touch& touch = touches_[i];
-        // Who has just bounced flies, and falls back in a span of its own.
-        if (restitution_of(touch) > 0 && speed_apart(touch.point, now) > touch.least_speed)
-            continue;
+        // Who has just bounced flies, and falls back in a span of its own; but for those that would
+        // not come out of one another by that.
         const double gap = touch.gap + speed_apart(touch.point, bodies) * span;
+        if (gap > -kSunk * touch.tolerance && restitution_of(touch) > 0
+            && speed_apart(touch.point, now) > touch.least_speed)
+            continue;
         if (gap > kClear * touch.tolerance) continue;
         resting_.push_back(i);
         points.push_back(touch.point);
