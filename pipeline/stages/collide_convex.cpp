@@ -9,6 +9,7 @@
 #include "kernels/solve/contact_rows.hpp"
 #include "narrowphase/box_pairs.hpp"
 #include "narrowphase/narrowphase.hpp"
+#include "pipeline/fast_bodies.hpp"
 #include "pipeline/stages/chosen_method.hpp"
 #include "pipeline/stages/collide.hpp"
 #include "pipeline/stages/contact_places.hpp"
@@ -60,7 +61,8 @@ public:
         for (std::size_t k = 0; k < count; ++k) {
             if (k + kFar < count) ask_for(pairs_.keys[near[k + kFar]]);
             const std::uint32_t i = near[k];
-            const PairPlace pair = place_of(pairs_.keys[i], colliders_, bounds_);
+            PairPlace pair = place_of(pairs_.keys[i], colliders_, bounds_);
+            if (!bounds_.fast.empty()) keep_touching(i, pair);
             if (wants_contact(pair, states_))
                 collide_one(i, pair, boxes, block);
             else if (const std::uint32_t place = contacts_.of_pair[i].contact;
@@ -89,6 +91,18 @@ private:
         __builtin_prefetch(&bounds_.reach[b]);
         __builtin_prefetch(&colliders_.shape[b]);
         __builtin_prefetch(&colliders_.body[b]);
+    }
+
+    // A fast body looks for no contacts ahead, but what it slides on it goes on touching: it would
+    // lose that to a breath, and fall into it, at every other step.
+    void keep_touching(std::size_t i, PairPlace& pair) const
+    {
+        if (contacts_.of_pair[i].contact == PairState::kApart) return;
+        double rest = 0;
+        for (const std::uint32_t at : {pair.a, pair.b})
+            if (colliders_.shape[at].kind != ShapeKind::plane)
+                rest += kRestingReach * colliders_.inner_extent[at];
+        pair.reach = std::max(pair.reach, rest);
     }
 
     void part(std::size_t i, std::size_t block)

@@ -245,8 +245,9 @@ private:
         // far ahead would turn aside what flies past a corner. Its box holds all of its way.
         const double reach = kHeldReach * tolerance_ * inner;
         bounds_.reach[collider] = reach;
-        bounds_.near[collider] = near_box(
-            shape_bounds(shapes_, colliders_.shape[collider], bounds_.placed[collider]), reach);
+        bounds_.near[collider] =
+            near_box(shape_bounds(shapes_, colliders_.shape[collider], bounds_.placed[collider]),
+                     std::max(reach, kRestingReach * inner));
         std::vector<std::uint32_t>& fast = bounds_.fast_of_block[block];
         if (fast.empty() || fast.back() != body) fast.push_back(body);
     }

@@ -139,6 +139,7 @@ TEST(Subdivide, BoxesThatTumbleKeepTheirBound)
         ASSERT_LE(world.measure().greatest_overlap, bound) << "step " << step;
     }
     EXPECT_LE(world.report().deepest, bound);
+    EXPECT_EQ(world.report().fallbacks, 0u);
     EXPECT_LT(place_of(world, 1).z(), 0.5);  // it has come down
 }
 
@@ -174,6 +175,7 @@ TEST(Subdivide, MomentumIsKept)
     world.step(90);
     const Measures after = world.measure();
     EXPECT_GT(world.report().deepest, 0);  // they did meet
+    EXPECT_EQ(world.report().fallbacks, 0u);
     EXPECT_LT((after.momentum - before.momentum).norm(), 1e-9 * 6 * 24);
     // Friction acts half a gap, or half an overlap, off each surface.
     const double arm = bound_of(made.scene.settings, 0.1, 5);
