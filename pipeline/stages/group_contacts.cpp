@@ -240,10 +240,11 @@ bool GroupFlight::rest(double span)
         const Touch& touch = touches_[i];
         // Who has just bounced flies, and falls back in a span of its own; but for those that would
         // not come out of one another by that.
-        const double gap = touch.gap + speed_apart(touch.point, bodies) * span;
-        if (gap > -kSunk * touch.tolerance && restitution_of(touch) > 0
-            && speed_apart(touch.point, now) > touch.least_speed)
+        const double parting = speed_apart(touch.point, now);
+        if (restitution_of(touch) > 0 && parting > touch.least_speed
+            && touch.gap + parting * span > -kSunk * touch.tolerance)
             continue;
+        const double gap = touch.gap + speed_apart(touch.point, bodies) * span;
         if (gap > kClear * touch.tolerance) continue;
         resting_.push_back(i);
         points.push_back(touch.point);
