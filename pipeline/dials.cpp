@@ -305,7 +305,7 @@ std::vector<Dial> make_dials()
             "a shorter step is more exact in everything and costs a whole step each"),
         number_dial("substeps", "a whole number from 1 to 1000", "", set_substeps, get_substeps,
             "more substeps make contacts stiffer and motion finer, and cost a solve each"),
-        number_dial("iterations", "auto, or a whole number: visits a substep (soft_step 1, pgs 20, Newton steps of direct 50)",
+        number_dial("iterations", "auto, or a whole number: visits a substep (soft_step 1, pgs 20, factorisations of direct at most 200)",
             "", set_iterations, get_iterations,
             "more visits leave less error in the velocities, and cost a sweep of all rows each"),
         number_dial("contact_rate", "auto (0.25 a substep for manifolds, 0.5 for one point), a number, fixed:HERTZ",

@@ -173,7 +173,7 @@ double ConeHold::run(int& most)
             for (std::size_t k = 0; k < states_.size(); ++k)
                 states_[k].best = island_.cones[k].impulse;
         }
-        if (!(now > kEnough) || now > kWorse * best) break;
+        if (!(now > kEnough) || now > kWorse * best || !std::isfinite(now)) break;
         stale = !(now < kSlow * last);
         last = now;
     }

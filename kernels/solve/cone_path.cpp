@@ -44,7 +44,7 @@ void ConePath::measure()
         place.scaling = ConeScaling(place.speed, place.impulse);
         place.middle = place.scaling.map(place.impulse);
         place.aim = place.middle;
-        const double sliding = follows_ && place.lift > 0 ? 1 / place.lift : 0;
+        const double sliding = place.lift > 0 ? 1 / place.lift : 0;
         for (std::size_t k = 1; k < kConeRows; ++k) place.way[k] = place.speed[k] * sliding;
     }
     for (std::size_t i = 0; i < change_.size(); ++i) missing_[i] -= change_[i];
@@ -97,10 +97,14 @@ void ConePath::look_ahead()
     }
 }
 
+// 0 where a speed or impulse came so near the boundary that rounding left nothing to divide by.
 double ConePath::reach() const
 {
     double longest = 1;
     for (const Place& place : places_) {
+        const double squares =
+            dot(place.step_speed, place.step_speed) + dot(place.step_impulse, place.step_impulse);
+        if (!std::isfinite(squares)) return 0;
         longest = std::min(longest, longest_step(place.speed, place.step_speed));
         longest = std::min(longest, longest_step(place.impulse, place.step_impulse));
     }

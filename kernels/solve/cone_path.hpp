@@ -3,7 +3,7 @@
 // Every cone's speed and impulse stay inside it and their product shrinks evenly, along a path
 // through the middle of all answers. To the normal speed the length of the sliding speed is added,
 // without which a cone program would lift what slides: a step follows how that changes, which
-// nearly always leads there in few; or takes it as it was, which is slower and surer.
+// nearly always leads there in few.
 #pragma once
 
 #include "kernels/solve/contact_cones.hpp"
@@ -17,8 +17,6 @@ public:
     /// One step: Mehrotra's, of which the first half looks how far it could go. False where
     /// rounding lets it go no further.
     bool step();
-    /// Whether steps follow how sliding changes; at first they do.
-    void follow_sliding(bool follow) { follows_ = follow; }
     /// Puts the speeds and impulses reached into the cones.
     void show() const;
 
@@ -26,7 +24,7 @@ private:
     struct Place {
         ConeVector speed{}, impulse{};
         double lift = 0;       // the sliding speed, by which the height is above the normal speed
-        ConeVector way{};      // of sliding, of length 1; 0 where the lift is not followed
+        ConeVector way{};      // of sliding, of length 1
         ConeVector missing{};  // speed less what the bodies' velocities make of it
         ConeScaling scaling;
         ConeVector middle{};  // speed and impulse, scaled to one and the same
@@ -42,7 +40,6 @@ private:
     double product_after(double length) const;
     bool go(double length);
 
-    bool follows_ = true;
     ContactCones& island_;
     BodyMatrix& matrix_;
     std::vector<Place> places_;                     // [cones]

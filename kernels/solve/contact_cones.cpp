@@ -1,5 +1,7 @@
 #include "kernels/solve/contact_cones.hpp"
 
+#include <limits>
+
 namespace throng {
 
 namespace {
@@ -90,6 +92,7 @@ void ContactCones::take_guess(const DirectPoint& point, ContactCone& cone) const
         cone.impulse[k] = cone.axis[k].dot(cone.turns[k] ? point.torque : point.impulse)
             / (cone.share[k] * cone.unit * unit_);
     cone.impulse = projected(cone.impulse);
+    if (!std::isfinite(dot(cone.impulse, cone.impulse))) cone.impulse = {};
 }
 
 bool ContactCones::take(std::span<const DirectBody> bodies, std::span<const DirectPoint> points)
@@ -195,7 +198,9 @@ double ContactCones::residual(std::vector<BodySix>& scratch) const
         speed[0] += width(speed);
         const ConeVector kept = projected(sum(cone.impulse, speed, -1));
         const ConeVector missed = sum(cone.impulse, kept, -1);
-        greatest = std::max(greatest, std::sqrt(dot(missed, missed)));
+        const double length = std::sqrt(dot(missed, missed));
+        if (!std::isfinite(length)) return std::numeric_limits<double>::infinity();
+        greatest = std::max(greatest, length);
     }
     return greatest;
 }

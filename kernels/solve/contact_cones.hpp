@@ -51,7 +51,8 @@ public:
     void push(const ContactCone& cone, const ConeVector& impulse, std::span<BodySix> change) const;
     /// The change that all impulses together make.
     void push_all(std::vector<BodySix>& change) const;
-    /// By how much impulses and the velocities they make miss the law: see DirectAnswer.
+    /// By how much impulses and the velocities they make miss the law: see DirectAnswer. Infinite
+    /// where any of them is not finite.
     double residual(std::vector<BodySix>& scratch) const;
 
 private:

@@ -1,8 +1,10 @@
 #include "kernels/solve/direct.hpp"
 
 #include "kernels/solve/cone_hold.hpp"
+#include "kernels/solve/cone_multipliers.hpp"
 #include "kernels/solve/cone_path.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace throng {
@@ -10,13 +12,32 @@ namespace throng {
 namespace {
 
 // Residual at which nothing is to be gained, and one that will do once holding has failed.
-constexpr double kDone = 1e-11, kGood = 1e-10;
+constexpr double kDone = 1e-11, kGood = 1e-9;
 // Holding is tried from here on, and again each time that the path has come a hundred times nearer.
 constexpr double kNear = 1e-3, kNearer = 0.01;
 constexpr int kHoldSteps = 8;  // factorisations of one try
-// Steps of the path without getting nearer by a tenth, after which it is followed the other way;
-// and how often that may be.
-constexpr int kPatience = 5, kTurns = 6;
+// Steps of the path without getting nearer by a tenth, after which it is left.
+constexpr int kPatience = 5;
+// Sweeps before holding is tried again, each time twice as many.
+constexpr int kFirstSweeps = 100, kLastSweeps = 400;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// Whether all numbers of a problem are finite.
+bool is_finite(std::span<const DirectBody> bodies, std::span<const DirectPoint> points)
+{
+    const auto of_body = [](const DirectBody& body) {
+        return std::isfinite(body.inverse_mass) && body.inverse_inertia.matrix().allFinite()
+            && body.velocity.allFinite() && body.spin.allFinite();
+    };
+    const auto of_point = [](const DirectPoint& point) {
+        return point.normal.allFinite() && point.arm_a.allFinite() && point.arm_b.allFinite()
+            && std::isfinite(point.friction) && std::isfinite(point.rolling)
+            && std::isfinite(point.least);
+    };
+    return std::all_of(bodies.begin(), bodies.end(), of_body)
+        && std::all_of(points.begin(), points.end(), of_point);
+}
 
 }  // namespace
 
@@ -30,8 +51,12 @@ struct DirectSolver::Work {
 
     bool keep_if_better(double residual);
     bool hold();
+    void go_back_to_best();
     bool start_from_guess();
-    void follow_path();
+    bool follow_path();
+    bool sweep_and_hold();
+    void take_springs();
+    void find();
 };
 
 // True once it is good.
@@ -69,30 +94,63 @@ bool DirectSolver::Work::start_from_guess()
     return hold();
 }
 
-void DirectSolver::Work::follow_path()
+void DirectSolver::Work::go_back_to_best()
+{
+    for (std::size_t i = 0; i < best.size(); ++i) island.cones[i].impulse = best[i];
+}
+
+bool DirectSolver::Work::follow_path()
 {
     ConePath path(island, matrix);
-    double try_below = kNear, nearest = std::numeric_limits<double>::infinity();
-    bool follows = true;
-    for (int waited = 0, turns = 0; left > 0; ++waited) {
-        if (waited > kPatience) {
-            if (++turns > kTurns) return;
-            path.follow_sliding(follows = !follows);
-            waited = 0;
-            nearest = std::numeric_limits<double>::infinity();
-        }
+    double try_below = kNear, nearest = kInfinite;
+    for (int waited = 0; left > 0 && waited <= kPatience; ++waited) {
         --left;
         const bool went = path.step();
         path.show();
         const double now = island.residual(scratch);
-        if (keep_if_better(now)) return;
+        if (keep_if_better(now)) return true;
         if (now < 0.9 * nearest) nearest = now, waited = 0;
         if (now < try_below) {
-            if (hold() || answer.residual < kGood) return;
+            if (hold() || answer.residual < kGood) return true;
             try_below = now * kNearer;
         }
-        if (!went) return;
+        if (!went) return false;
     }
+    return false;
+}
+
+// Sweeps tell the kinds where the path has lost its way.
+bool DirectSolver::Work::sweep_and_hold()
+{
+    ConeSweeps sweeps(island);
+    std::vector<ConeVector> swept(best.size());
+    go_back_to_best();
+    for (int many = kFirstSweeps; many <= kLastSweeps && left > 0; many *= 2) {
+        sweeps.run(many);
+        if (keep_if_better(island.residual(scratch))) return true;
+        for (std::size_t i = 0; i < swept.size(); ++i) swept[i] = island.cones[i].impulse;
+        const double before = answer.residual;
+        if (hold() || answer.residual < kGood) return true;
+        if (answer.residual < before) continue;
+        for (std::size_t i = 0; i < swept.size(); ++i) island.cones[i].impulse = swept[i];
+    }
+    return false;
+}
+
+// From the best impulses met, then once more from none.
+void DirectSolver::Work::take_springs()
+{
+    ConeMultipliers springs(island, matrix);
+    go_back_to_best();
+    if (keep_if_better(springs.run(kDone, kGood, left)) || answer.residual < kGood) return;
+    for (ContactCone& cone : island.cones) cone.impulse = {};
+    keep_if_better(springs.run(kDone, kGood, left));
+}
+
+// Each way is surer than the one before, and slower.
+void DirectSolver::Work::find()
+{
+    if (!start_from_guess() && !follow_path() && !sweep_and_hold()) take_springs();
 }
 
 DirectSolver::DirectSolver() : work_(std::make_unique<Work>()) { }
@@ -105,16 +163,19 @@ DirectSolver::solve(std::span<DirectBody> bodies, std::span<DirectPoint> points,
 {
     Work& work = *work_;
     work.answer = {};
-    if (!work.island.take(bodies, points)) {
+    const bool finite = is_finite(bodies, points);
+    if (!finite || !work.island.take(bodies, points)) {
         for (DirectPoint& point : points) point.impulse = point.torque = Vec3::Zero();
+        if (!finite) work.answer.residual = kInfinite;
         return work.answer;
     }
     work.best.assign(work.island.cones.size(), ConeVector{});
-    work.answer.residual = std::numeric_limits<double>::infinity();
+    work.answer.residual = kInfinite;
     work.left = most_steps;
-    if (!work.start_from_guess()) work.follow_path();
-    for (std::size_t i = 0; i < work.best.size(); ++i) work.island.cones[i].impulse = work.best[i];
+    work.find();
+    work.go_back_to_best();
     work.island.give(bodies, points);
+    if (!is_finite(bodies, points)) work.answer.residual = kInfinite;
     work.answer.steps = most_steps - work.left;
     return work.answer;
 }

@@ -39,8 +39,9 @@ struct DirectPoint {
 ///
 ///   residual  by how much the law of contact is missed, as a share of the greatest speed that the
 ///             contacts have to stop: the greatest over the points of the natural map
-///             |r - P(r - u)|, r the impulse as a speed, u the speed after it, P onto the cone
-///   steps     Newton steps taken
+///             |r - P(r - u)|, r the impulse as a speed, u the speed after it, P onto the cone.
+///             Infinite where a number of the problem, or of its answer, is not finite
+///   steps     factorisations taken
 struct DirectAnswer {
     double residual = 0;
     int steps = 0;
@@ -48,6 +49,10 @@ struct DirectAnswer {
 
 /// What the direct solver promises of its residual; greater is to be told.
 inline constexpr double kDirectResidual = 1e-8;
+
+/// Steps after which it is left as it is. Most problems take ten; those in which friction wedges
+/// many bodies, or many points that contradict one another, may take a hundred.
+inline constexpr int kDirectSteps = 200;
 
 /// Finds the impulses after which, for every point, the speed u of b against a obeys
 /// u_n >= least, impulse in the cone, and both or neither: (u_n - least + friction |u_t|, u_t) lies
@@ -59,7 +64,9 @@ inline constexpr double kDirectResidual = 1e-8;
 ///
 /// Method:  primal-dual interior point steps on the cone program of the velocities, each of which
 ///          factorises masses + rows' W rows over the bodies; the correction that makes its answer
-///          a contact's follows along from step to step.
+///          a contact's follows along from step to step. Then who parts, sticks and slides is taken
+///          as known (cone_hold.hpp). Where that fails sweeps tell it (cone_sweeps.hpp), and where
+///          these do not either an augmented Lagrangian leads there (cone_multipliers.hpp).
 /// Source:  De Saxce and Feng (1998); Acary, Cadoux, Lemarechal and Malick, A formulation of the
 ///          linear discrete Coulomb friction problem via convex optimization (2011); Acary, Armand,
 ///          Nguyen and Shpakovych, Second-order cone programming for frictional contact mechanics
@@ -71,7 +78,8 @@ public:
     DirectSolver(DirectSolver&&) noexcept;
     DirectSolver& operator=(DirectSolver&&) noexcept;
 
-    /// Gives the points their impulses and the bodies their velocities.
+    /// Gives the points their impulses and the bodies their velocities. Takes no more steps than
+    /// allowed.
     DirectAnswer solve(std::span<DirectBody> bodies, std::span<DirectPoint> points, int most_steps);
 
 private:

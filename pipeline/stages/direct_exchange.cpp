@@ -5,7 +5,6 @@ namespace throng {
 
 namespace {
 
-constexpr int kNewtonSteps = 50;
 // Overlap that is let be, as a share of the lesser shape: what the numbers of contacts resolve.
 template <class Real>
 constexpr double kTolerance = sizeof(Real) == 4 ? 2e-7 : 1e-9;
@@ -50,7 +49,7 @@ DirectIsland::DirectIsland(const DirectScene<Real>& scene, const Batch& batch)
 {
     const Slice& slice = scene.layout.slices[batch.first_slice];
     const int steps = scene.conditions.settings.iterations;
-    steps_ = steps > 0 ? steps : kNewtonSteps;
+    steps_ = steps > 0 ? steps : kDirectSteps;
     take_bodies(scene, slice);
     for (std::uint32_t i = 0; i < slice.contacts; ++i)
         take_contact(scene, slice, slice.first_contact + i);

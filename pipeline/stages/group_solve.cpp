@@ -7,7 +7,6 @@ namespace throng {
 
 namespace {
 
-constexpr int kNewtonSteps = 50;
 // Visits to every point, where the joint solve comes to no sound answer.
 constexpr int kPlainSweeps = 200;
 // A residual that is no answer.
@@ -21,7 +20,7 @@ void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
 {
     const int asked = scene_.conditions.settings.iterations;
     const Motions before = bodies;
-    const DirectAnswer answer = solver_.solve(bodies, points, asked > 0 ? asked : kNewtonSteps);
+    const DirectAnswer answer = solver_.solve(bodies, points, asked > 0 ? asked : kDirectSteps);
     const bool sound = std::all_of(bodies.begin(), bodies.end(), [](const DirectBody& body) {
         return holdable(body.velocity) && holdable(body.spin);
     });

@@ -1,23 +1,27 @@
 #include "kernels/solve/direct.hpp"
 
+#include "kernels/solve/contact_cones.hpp"
 #include "tests/kernels/solve/plain_sweeps.hpp"
 #include "tests/support/dice.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace throng::test {
 namespace {
 
 constexpr double kFall = 9.81 / 60;  // m/s, of one step
-constexpr int kSteps = 50;
 
 struct Problem {
     std::vector<DirectBody> bodies;
     std::vector<DirectPoint> points;
 
-    DirectAnswer solve(int steps = kSteps) { return DirectSolver().solve(bodies, points, steps); }
+    DirectAnswer solve(int steps = kDirectSteps)
+    {
+        return DirectSolver().solve(bodies, points, steps);
+    }
 };
 
 DirectBody box(double mass, const Vec3& size)
@@ -161,6 +165,173 @@ TEST(Direct, KeepsTheLawOfContactInHeaps)
         EXPECT_LE(problem.solve().residual, kDirectResidual) << round;
         expect_law(problem, 1e-7);
     }
+}
+
+TEST(Direct, HeapsInMotionAreSolvedHoweverRough)
+{
+    for (const double friction : {0.7, 0.9})
+        for (const auto& [bodies, rounds] : {std::pair(10, 30), std::pair(60, 6)}) {
+            Dice dice(77);
+            for (int round = 0; round < rounds; ++round) {
+                Problem problem = heap(dice, bodies, friction);
+                EXPECT_LE(problem.solve().residual, kDirectResidual) << friction << ' ' << round;
+                expect_law(problem, 1e-7);
+            }
+        }
+}
+
+// Each point a second time, in the very same place.
+TEST(Direct, PointsToldTwiceChangeNothing)
+{
+    Dice dice(16);
+    for (int round = 0; round < 10; ++round) {
+        Problem once = heap(dice, 10, 0.6), twice = once;
+        for (const DirectPoint& point : once.points) twice.points.push_back(point);
+        EXPECT_LE(once.solve().residual, kDirectResidual);
+        EXPECT_LE(twice.solve().residual, kDirectResidual);
+        for (std::size_t i = 0; i < once.bodies.size(); ++i) {
+            EXPECT_LT((once.bodies[i].velocity - twice.bodies[i].velocity).norm(), 1e-7);
+            EXPECT_LT((once.bodies[i].spin - twice.bodies[i].spin).norm(), 1e-7);
+        }
+    }
+}
+
+// Logs along y, of radius 0.5: two on the ground and one on them. Each meets another in the two
+// ends of a line, which are nearly as far apart as they should be.
+Problem three_logs(Dice& dice, double error, double friction_on_ground)
+{
+    Problem problem;
+    DirectBody log;
+    log.inverse_mass = 1;
+    log.inverse_inertia = {2.53, 8, 2.53};
+    log.velocity = Vec3(0, 0, -kFall);
+    problem.bodies.assign(3, log);
+    const auto add_line = [&](int a, int b, const Vec3& normal, double friction) {
+        for (const double end : {-1, 1}) {
+            DirectPoint point;
+            point.a = a;
+            point.b = b;
+            point.normal = (normal + dice.point(error)).normalized();
+            point.arm_a = 0.5 * normal + Vec3(0, end, 0) + dice.point(error);
+            point.arm_b = -0.5 * normal + Vec3(0, end, 0) + dice.point(error);
+            point.friction = friction;
+            point.least = kFall * dice.between(-10, 10) * error;
+            problem.points.push_back(point);
+        }
+    };
+    for (const int log_below : {0, 1}) add_line(-1, log_below, Vec3::UnitZ(), friction_on_ground);
+    for (const int log_below : {0, 1}) {
+        const double side = log_below == 0 ? 0.5 : -0.5;
+        add_line(log_below, 2, Vec3(side, 0, std::sqrt(0.75)), 0.5);
+    }
+    return problem;
+}
+
+TEST(Direct, EndsOfALineThatContradictOneAnotherAreSolved)
+{
+    Dice dice(17);
+    const double limit = std::tan(std::atan(1.0) / 3) / 3;  // of logs that stay where they are
+    // A little above it logs that roll on keep the law as well as those that stand.
+    for (const double friction : {0.97 * limit, 1.5 * limit})
+        for (const double error : {0.0, 1e-12, 1e-10, 1e-8, 1e-6})
+            for (int round = 0; round < 10; ++round) {
+                Problem problem = three_logs(dice, error, friction);
+                EXPECT_LE(problem.solve().residual, kDirectResidual) << friction << ' ' << error;
+                expect_law(problem, 1e-7);
+                const double fall = -problem.bodies[2].velocity.z();
+                EXPECT_EQ(fall > 1e-4, friction < limit) << error;
+            }
+}
+
+TEST(Direct, LegsOfUnequalLengthAreSolved)
+{
+    Dice dice(18);
+    for (const double error : {1e-12, 1e-10, 1e-8, 1e-6, 1e-4})
+        for (int round = 0; round < 10; ++round) {
+            Problem problem = stack(5);
+            for (DirectPoint& point : problem.points) {
+                point.arm_b += dice.point(error);
+                point.least = kFall * error * dice.between(-1, 1);
+            }
+            EXPECT_LE(problem.solve().residual, kDirectResidual) << error;
+            expect_law(problem, 1e-7);
+        }
+}
+
+// Of all masses and gaps. Where masses differ by more than 16 digits can tell it may miss.
+TEST(Direct, HeapsOfAllMassesAndGapsAreSolved)
+{
+    Dice dice(19);
+    for (const double digits : {2, 6})
+        for (int round = 0; round < 150; ++round) {
+            Problem problem = heap(dice, 1 + round % 6, dice.between(0, 1));
+            for (DirectBody& body : problem.bodies) {
+                const double light = std::pow(10, dice.between(-digits, digits));
+                const Sym3& of = body.inverse_inertia;
+                body.inverse_mass *= light;
+                body.inverse_inertia = {of.xx * light, of.yy * light, of.zz * light};
+            }
+            for (DirectPoint& point : problem.points)
+                point.least = -std::pow(10, dice.between(-12, 6));
+            const DirectAnswer answer = problem.solve();
+            EXPECT_TRUE(std::isfinite(greatest_speed(problem))) << round;
+            if (digits > 2) continue;
+            EXPECT_LE(answer.residual, kDirectResidual) << round;
+        }
+}
+
+TEST(ContactCones, ResidualOfImpulsesThatAreNoNumbersIsInfinite)
+{
+    const Problem problem = stack(2);
+    ContactCones cones;
+    ASSERT_TRUE(cones.take(problem.bodies, problem.points));
+    std::vector<BodySix> scratch;
+    EXPECT_TRUE(std::isfinite(cones.residual(scratch)));
+    cones.cones[3].impulse[1] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(cones.residual(scratch), std::numeric_limits<double>::infinity());
+}
+
+TEST(Direct, ProblemsOfNumbersThatAreNotFiniteAreRefused)
+{
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const double infinite = std::numeric_limits<double>::infinity();
+    const auto refuses = [](const auto& spoil) {
+        Problem problem = stack(3);
+        spoil(problem);
+        const DirectAnswer answer = problem.solve();
+        EXPECT_EQ(answer.residual, std::numeric_limits<double>::infinity());
+        for (const DirectPoint& point : problem.points)
+            EXPECT_EQ(point.impulse, Vec3(Vec3::Zero()));
+        EXPECT_TRUE(problem.bodies[0].velocity.allFinite());
+    };
+    refuses([&](Problem& problem) { problem.bodies[1].velocity.x() = none; });
+    refuses([&](Problem& problem) { problem.bodies[2].spin.y() = infinite; });
+    refuses([&](Problem& problem) { problem.points[5].normal.z() = none; });
+    refuses([&](Problem& problem) { problem.points[5].least = none; });
+    refuses([&](Problem& problem) { problem.points[6].friction = infinite; });
+    Problem guessed = stack(3);
+    guessed.points[2].impulse.z() = none;  // a bad guess is none
+    EXPECT_LE(guessed.solve().residual, 1e-11);
+}
+
+// Closed in on from both sides by what does not move, and told to part from both.
+TEST(Direct, WhatCannotBeSolvedIsToldInBoundedWork)
+{
+    Problem problem;
+    problem.bodies.push_back(box(1, Vec3::Ones()));
+    for (const double side : {-1, 1}) {
+        DirectPoint point;
+        point.b = 0;
+        point.normal = Vec3(side, 0, 0);
+        point.arm_b = -0.5 * point.normal;
+        point.friction = 0.5;
+        point.least = 0.1;
+        problem.points.push_back(point);
+    }
+    const DirectAnswer answer = problem.solve();
+    EXPECT_GT(answer.residual, kDirectResidual);
+    EXPECT_LE(answer.steps, kDirectSteps);
+    EXPECT_LT(greatest_speed(problem), 10);
 }
 
 TEST(Direct, BoxOnASlopeSticksAtExactlyTheTangentAndSlidesBelow)
