@@ -3,7 +3,6 @@
 namespace throng {
 namespace {
 
-using given::all_finite;
 using given::deepest_of;
 using given::meet;
 using given::Placement;

@@ -5,6 +5,7 @@
 #include "narrowphase/methods/direction_sweep.hpp"
 #include "narrowphase/pair_functions.hpp"
 #include "narrowphase/polytope.hpp"
+#include "tests/narrowphase/finite_manifold.hpp"
 
 #include <algorithm>
 #include <random>
@@ -108,17 +109,6 @@ double deepest(const LocalManifold<Real>& manifold)
         least = std::min(least, static_cast<double>(point.separation));
     }
     return least;
-}
-
-template <class Real>
-bool all_finite(const LocalManifold<Real>& manifold)
-{
-    bool finite = manifold.normal.allFinite();
-    for (int i = 0; i < manifold.count; ++i) {
-        const auto& point = manifold.points[static_cast<std::size_t>(i)];
-        finite = finite && point.position.allFinite() && std::isfinite(point.separation);
-    }
-    return finite;
 }
 
 template <class Real>

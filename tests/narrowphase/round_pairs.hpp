@@ -5,6 +5,7 @@
 #include "narrowphase/contact_axis.hpp"
 #include "narrowphase/pair_functions.hpp"
 #include "tests/narrowphase/direction_search.hpp"
+#include "tests/narrowphase/finite_manifold.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,17 +54,6 @@ double deepest_of(const LocalManifold<Real>& manifold)
         deepest = std::min(deepest, static_cast<double>(point.separation));
     }
     return deepest;
-}
-
-template <class Real>
-bool all_finite(const LocalManifold<Real>& manifold)
-{
-    bool finite = manifold.count == 0 || manifold.normal.allFinite();
-    for (int i = 0; i < manifold.count; ++i) {
-        const auto& point = manifold.points[static_cast<std::size_t>(i)];
-        finite = finite && point.position.allFinite() && std::isfinite(point.separation);
-    }
-    return finite;
 }
 
 /// The answer against the search of the general path, in double and in float. `exact` and `coarse`
