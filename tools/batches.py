@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Batches: which files of a folder can be compiled as one.
+
+usage: batches.py SIZE FILE...
+
+Prints a line `BATCH FILE` for each. Most of what a compiler does for a file of ours, it does for
+what the file includes, so a batch takes hardly longer than one of its files. Files cannot stand in
+one where their unnamed namespaces share a name, or where one names something as a header of the
+other does: each file goes to the first batch that has room for it and that it leaves alone.
+"""
+
+import functools
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+TYPE = re.compile(r"(?:struct|class|union|enum class|enum)\s+(\w+)")
+OTHER = re.compile(r"(\w+)\s*(?:\[[^]]*\]\s*)*[(={;]")
+NONE_OF_OURS = r"template|namespace|static_assert|using \w+::|[A-Z_]+\("
+
+
+def defined_in(lines):
+    """The names that lines define, by the shape that clang-format gives them."""
+    for line in lines:
+        if re.match(rf"(?!{NONE_OF_OURS})\w", line):
+            found = TYPE.match(line) or OTHER.search(line)
+            if found:
+                yield found.group(1)
+
+
+def unnamed(text):
+    """The lines in the unnamed namespaces of a file."""
+    inside = False
+    for line in text.splitlines():
+        inside = inside and not line.startswith("}  // namespace")
+        if inside:
+            yield line
+        inside = inside or line.startswith("namespace {")
+
+
+@functools.cache
+def header_names(name):
+    """What a header of ours defines, and those that it includes."""
+    path = ROOT / name
+    if not path.is_file():
+        return frozenset()
+    text = path.read_text()
+    return included_names(text).union(defined_in(text.splitlines()))
+
+
+def included_names(text):
+    included = re.findall(r'^#include "(.*)"', text, re.MULTILINE)
+    return frozenset().union(*map(header_names, included))
+
+
+def in_batches(files, size):
+    batches = []
+    for file in sorted(files):
+        text = Path(file).read_text()
+        own, seen = set(defined_in(unnamed(text))), included_names(text)
+        for at, (count, others, all_seen) in enumerate(batches):
+            if count < size and not own & (others | all_seen) and not seen & others:
+                break
+        else:
+            at, count, others, all_seen = len(batches), 0, set(), set()
+            batches.append(None)
+        batches[at] = (count + 1, others | own, all_seen | seen)
+        yield at, file
+
+
+def main():
+    size, files = int(sys.argv[1]), sys.argv[2:]
+    for batch, file in in_batches(files, size):
+        print(batch, file)
+
+
+if __name__ == "__main__":
+    main()
