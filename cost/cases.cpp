@@ -11,6 +11,7 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace throng {
 
@@ -161,9 +162,34 @@ std::string name_of(ToiMethod method)
 
 }  // namespace
 
-CaseBench::CaseBench(Settings settings, Fault fault, int threads, Extent extent)
-    : settings_(settings), fault_(fault), threads_(threads), extent_(extent)
+CaseBench::CaseBench(
+    Settings settings, Fault fault, int threads, Extent extent, CaseListener listener)
+    : settings_(settings), fault_(fault), threads_(threads), extent_(extent),
+      listener_(std::move(listener))
 { }
+
+void CaseBench::stop_where_enough() const
+{
+    if (listener_.enough()) throw Stopped();
+}
+
+void CaseBench::keep(CaseResult result)
+{
+    result.name = name_;
+    listener_.line(result);
+    results_.push_back(std::move(result));
+}
+
+std::vector<CaseResult> CaseBench::run(const HardCase& which)
+{
+    name_ = which.name;
+    try {
+        which.run(*this);
+    } catch (const Stopped&) {
+        // What came before it stands.
+    }
+    return std::move(results_);
+}
 
 Scene CaseBench::scene() const
 {
@@ -186,6 +212,7 @@ void CaseBench::run(const Scene& scene,
     for (int step = 1; step <= steps; ++step) {
         world.step();
         if (fault_ == Fault::float_poses) round_poses(world);
+        stop_where_enough();
         if (!watch(world, step * dt)) break;
     }
     lost_ += world.report().bodies_quarantined;
@@ -203,7 +230,7 @@ void CaseBench::look_at(const Scene& scene, const std::function<void(const World
     spent_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-void CaseBench::report(
+CaseResult CaseBench::judged(
     std::string setting, std::string quantity, double figure, double bound, std::string unit)
 {
     CaseResult result;
@@ -222,7 +249,13 @@ void CaseBench::report(
     missed_ = 0;
     result.time_ms = spent_ms_;
     spent_ms_ = 0;
-    results_.push_back(std::move(result));
+    return result;
+}
+
+void CaseBench::report(
+    std::string setting, std::string quantity, double figure, double bound, std::string unit)
+{
+    keep(judged(std::move(setting), std::move(quantity), figure, bound, std::move(unit)));
 }
 
 ConvexAnswer CaseBench::ask(ConvexQuery& query,
@@ -250,6 +283,7 @@ VolumeAnswer CaseBench::ask_volume(std::string_view way,
                                    int resolution)
 {
     using Clock = std::chrono::steady_clock;
+    stop_where_enough();
     const bool small = fault_ == Fault::shrink;
     VolumeQuery query(small ? shrunk(a) : a, small ? shrunk(b) : b);
     const auto begin = Clock::now();
@@ -260,6 +294,7 @@ VolumeAnswer CaseBench::ask_volume(std::string_view way,
 
 ImpactAnswer CaseBench::timed_impact(ToiMethod method, const std::function<ImpactAnswer()>& asked)
 {
+    stop_where_enough();
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     ImpactAnswer answer = asked();
@@ -294,6 +329,7 @@ ConvexAnswer CaseBench::timed(std::string_view method,
                               double size,
                               const std::function<ConvexAnswer(const Pose&)>& asked)
 {
+    stop_where_enough();
     using Clock = std::chrono::steady_clock;
     Pose at_a = a, at_b = b;
     if (fault_ == Fault::nudge) at_b = nudged(at_b, size);
@@ -320,12 +356,11 @@ void CaseBench::report_method(std::string_view method,
                               std::string unit)
 {
     const std::string where(setting);
-    report(std::string(method) + (where.empty() ? "" : ", " + where), std::move(quantity), figure,
-           bound, std::move(unit));
-    results_.back().method = method;
-    double& spent = method_ms_[std::string(method)];
-    results_.back().time_ms = spent;
-    spent = 0;
+    CaseResult result = judged(std::string(method) + (where.empty() ? "" : ", " + where),
+                               std::move(quantity), figure, bound, std::move(unit));
+    result.method = method;
+    result.time_ms = std::exchange(method_ms_[std::string(method)], 0);
+    keep(std::move(result));
 }
 
 double CaseBench::spent_on(std::string_view method) const
@@ -341,13 +376,7 @@ void CaseBench::skip(std::string setting, std::string quantity, std::string why)
     result.quantity = std::move(quantity);
     result.verdict = Verdict::skipped;
     result.why = std::move(why);
-    results_.push_back(std::move(result));
-}
-
-std::vector<CaseResult> CaseBench::take_results(std::string_view name)
-{
-    for (CaseResult& result : results_) result.name = name;
-    return std::move(results_);
+    keep(std::move(result));
 }
 
 std::span<const HardCase> hard_cases() { return kCases; }
@@ -364,12 +393,14 @@ const HardCase* find_case(std::string_view name)
     return nullptr;
 }
 
-std::vector<CaseResult>
-run_case(const HardCase& which, Settings settings, Fault fault, int threads, Extent extent)
+std::vector<CaseResult> run_case(const HardCase& which,
+                                 Settings settings,
+                                 Fault fault,
+                                 int threads,
+                                 Extent extent,
+                                 CaseListener listener)
 {
-    CaseBench bench(settings, fault, threads, extent);
-    which.run(bench);
-    return bench.take_results(which.name);
+    return CaseBench(settings, fault, threads, extent, std::move(listener)).run(which);
 }
 
 }  // namespace throng

@@ -55,13 +55,23 @@ enum class Fault : std::uint8_t {
 /// How much of a case is run: all of it, or what a test has time for.
 enum class Extent : std::uint8_t { brief, whole };
 
+/// Who waits for a case: sees each line as soon as it is there, and may want no more of them.
+struct CaseListener {
+    std::function<void(const CaseResult&)> line = [](const CaseResult&) {};
+    std::function<bool()> enough = [] { return false; };  // asked after every step and question
+};
+
 /// What a case runs on: it makes the worlds, so that settings and faults reach all of them.
 class CaseBench {
 public:
+    /// Thrown out of a case by whatever it asks next, once its listener has had enough.
+    struct Stopped { };
+
     explicit CaseBench(Settings settings = {},
                        Fault fault = Fault::none,
                        int threads = 1,
-                       Extent extent = Extent::whole);
+                       Extent extent = Extent::whole,
+                       CaseListener listener = {});
 
     const Settings& settings() const { return settings_; }
     bool brief() const { return extent_ == Extent::brief; }
@@ -125,7 +135,8 @@ public:
     /// Adds a line that says why there is none.
     void skip(std::string setting, std::string quantity, std::string why);
 
-    std::vector<CaseResult> take_results(std::string_view name);
+    /// Runs a case. Its lines, as many as there were until the listener had enough.
+    std::vector<CaseResult> run(const struct HardCase& which);
 
 private:
     // Places the two, with the fault if there is one, and counts the method's time.
@@ -137,10 +148,18 @@ private:
 
     ImpactAnswer timed_impact(ToiMethod method, const std::function<ImpactAnswer()>& asked);
 
+    CaseResult judged(
+        std::string setting, std::string quantity, double figure, double bound, std::string unit);
+    void keep(CaseResult result);
+    // Throws Stopped.
+    void stop_where_enough() const;
+
     Settings settings_;
     Fault fault_;
     int threads_;
     Extent extent_;
+    CaseListener listener_;
+    std::string name_;
     double spent_ms_ = 0;
     std::size_t lost_ = 0;  // bodies quarantined since the last line
     double missed_ = 0;     // greatest residual of the direct solver, likewise
@@ -161,10 +180,12 @@ std::span<const HardCase> hard_cases();
 /// The case of that name (any case of letters), or null.
 const HardCase* find_case(std::string_view name);
 
+/// Of one that the listener ended, the lines that were there.
 std::vector<CaseResult> run_case(const HardCase& which,
                                  Settings settings = {},
                                  Fault fault = Fault::none,
                                  int threads = 1,
-                                 Extent extent = Extent::whole);
+                                 Extent extent = Extent::whole,
+                                 CaseListener listener = {});
 
 }  // namespace throng

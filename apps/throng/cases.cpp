@@ -148,16 +148,17 @@ int run_cases(const Options& options)
     std::size_t passed = 0, failed = 0, skipped = 0;
     std::string lines;
     MethodTable methods;
+    const auto take_line = [&](const CaseResult& result) {
+        print_line(result);
+        methods.add(result);
+        lines += (lines.empty() ? "  " : ",\n  ") + json_line(result);
+        passed += result.verdict == Verdict::pass ? 1 : 0;
+        failed += result.verdict == Verdict::fail ? 1 : 0;
+        skipped += result.verdict == Verdict::skipped ? 1 : 0;
+    };
     for (const HardCase* one : cases) {
-        for (const CaseResult& result :
-             run_case(*one, settings, Fault::none, threads_asked(options))) {
-            print_line(result);
-            methods.add(result);
-            lines += (lines.empty() ? "  " : ",\n  ") + json_line(result);
-            passed += result.verdict == Verdict::pass ? 1 : 0;
-            failed += result.verdict == Verdict::fail ? 1 : 0;
-            skipped += result.verdict == Verdict::skipped ? 1 : 0;
-        }
+        run_case(*one, settings, Fault::none, threads_asked(options), Extent::whole,
+                 {take_line, interrupted});
         if (interrupted()) break;
     }
     if (json.asked_for()) {

@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <set>
+#include <thread>
 
 namespace throng {
 namespace {
@@ -43,6 +46,24 @@ TEST(Cases, WithoutMethodsThereIsNoTable)
     const Outcome done = run_throng({"cases", "H12"});
     EXPECT_EQ(done.code, 0) << done.out << done.err;
     EXPECT_EQ(done.out.find("\nmethod "), std::string::npos) << done.out;
+}
+
+TEST(Cases, AnInterruptEndsACaseAndKeepsItsLines)
+{
+    const TestFolder folder;
+    // Of many runs, of which the first is over soon.
+    const Outcome ended =
+        run_throng({"cases", "H1", "--json", folder / "c.json"}, [&](pid_t process) {
+            std::this_thread::sleep_for(std::chrono::seconds(1));
+            ::kill(process, SIGINT);
+        });
+    EXPECT_EQ(ended.code, 130) << ended.err;
+    const JsonDocument json(folder.read("c.json"), "c.json");
+    std::size_t printed = 0;
+    for (std::size_t at = 0; (at = ended.out.find("\nH1 ", at)) != std::string::npos; ++at)
+        ++printed;
+    printed += ended.out.starts_with("H1 ") ? 1 : 0;
+    EXPECT_EQ(json.size(JsonDocument::kRoot), printed) << ended.out;
 }
 
 }  // namespace
