@@ -8,7 +8,6 @@
 //
 // Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
 #include "kernels/math/rotation.hpp"
-#include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages/group_flight.hpp"
 
 #include <algorithm>

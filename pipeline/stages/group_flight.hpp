@@ -105,15 +105,17 @@ private:
     bool stay_apart(double time);
     Pose pose_at(std::uint32_t body, double time) const;
     Pose end_of(std::uint32_t body, double time) const;
+    double tolerance_of(PairKey key) const;
+    std::int32_t member_of(std::uint32_t body) const;
+    Box3 box_of(std::uint32_t collider, const Pose& body) const;
+
+    // Where two are: see group_meetings.cpp.
     void meet(PairKey key, const Pose& a, const Pose& b, double reach);
     static void look_closer(const ConvexPair& pair,
                             double tolerance,
                             double reach,
                             LocalManifold<double>& found);
     double gap_of(PairKey key, const Pose& a, const Pose& b, double reach);
-    double tolerance_of(PairKey key) const;
-    std::int32_t member_of(std::uint32_t body) const;
-    Box3 box_of(std::uint32_t collider, const Pose& body) const;
 
     // Pieces of a step: see group_halves.cpp.
     bool carry_piece(double begin, double span, bool shortest);

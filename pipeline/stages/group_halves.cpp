@@ -5,7 +5,6 @@
 // send the group back to where the piece began. So the search for a touch is that of halving, and
 // every touch is late, by the shortest piece at most. What touches then bounces, or is held from
 // there on at half the tolerance from one another, as it is in back_up().
-#include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages/group_flight.hpp"
 
 #include <algorithm>

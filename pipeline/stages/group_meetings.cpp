@@ -1,0 +1,77 @@
+// Group meetings: where and how near two shapes of a group are, whatever their kinds.
+#include "narrowphase/methods/ask_gjk.hpp"
+#include "narrowphase/narrowphase.hpp"
+#include "pipeline/stages/group_flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+// Where two touch with their bodies at these poses, out to `reach`: a mesh has many places.
+void GroupFlight::meet(PairKey key, const Pose& a, const Pose& b, double reach)
+{
+    const Colliders& colliders = scene_.colliders;
+    const Shapes& shapes = scene_.shapes;
+    std::uint32_t first = first_of(key), second = second_of(key);
+    Pose pose_a = a * colliders.local[first], pose_b = b * colliders.local[second];
+    const ShapeKind kind = colliders.shape[first].kind;
+    if (kind == ShapeKind::plane || colliders.shape[second].kind == ShapeKind::mesh) {
+        std::swap(first, second);
+        std::swap(pose_a, pose_b);
+    }
+    met_ = {first, second, pose_a, {}};
+    const ShapeRef shape_a = colliders.shape[first], shape_b = colliders.shape[second];
+    const Pose seen = pose_seen_from_a(shapes, shape_b, pose_a, pose_b);
+    if (shape_a.kind == ShapeKind::mesh) {
+        triangles_.clear();
+        collide_mesh<double>(shapes, shape_a, shape_b, seen, reach, triangles_);
+        for (const auto& touched : triangles_) met_.manifolds.push_back(touched.manifold);
+        return;
+    }
+    PairCache cache;
+    LocalManifold<double> found;
+    collide<double>(shapes, shape_a, shape_b, seen, reach, cache, found);
+    const auto is_simple = [](ShapeRef shape) {
+        return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::plane;
+    };
+    if (found.count > 0 && !is_simple(shape_a) && !is_simple(shape_b))
+        look_closer(ConvexPair(shapes, shape_a, shape_b, seen), tolerance_of(key), reach, found);
+    if (found.count > 0) met_.manifolds.push_back(found);
+}
+
+// Manifolds favour faces over edges: by more than the tolerance in how far apart two are, and where
+// they meet at one point, by the normal, along which they then slide into one another. The nearest
+// points tell.
+void GroupFlight::look_closer(const ConvexPair& pair,
+                              double tolerance,
+                              double reach,
+                              LocalManifold<double>& found)
+{
+    double least = found.points[0].separation;
+    for (int k = 1; k < found.count; ++k)
+        least = std::min(least, found.points[static_cast<std::size_t>(k)].separation);
+    MethodMemory memory;
+    const MethodAnswer nearest = ask_gjk(pair, reach, MethodStart::cold, memory);
+    if (nearest.touch == throng::Touch::undecided || nearest.cut_short) return;
+    if (found.count > 1 && std::abs(nearest.separation - least) < tolerance / 4) return;
+    found = {};
+    if (nearest.separation > reach) return;
+    found.normal = nearest.normal;
+    found.count = 1;
+    found.points[0].position = (nearest.on_a + nearest.on_b) / 2;
+    found.points[0].separation = nearest.separation;
+}
+
+// m, of bodies at these poses; `reach` where it is more.
+double GroupFlight::gap_of(PairKey key, const Pose& a, const Pose& b, double reach)
+{
+    meet(key, a, b, reach);
+    double gap = reach;
+    for (const LocalManifold<double>& found : met_.manifolds)
+        for (int k = 0; k < found.count; ++k)
+            gap = std::min(gap, found.points[static_cast<std::size_t>(k)].separation);
+    return gap;
+}
+
+}  // namespace throng
