@@ -169,6 +169,17 @@ void EnergyLedger::enter(double change, std::uint64_t step)
     to_step_ = step;
 }
 
+// What is left of a rise after what contacts have taken lately.
+double EnergyLedger::pay_back(double rise)
+{
+    double lent = 0;
+    for (const double taken : taken_) lent += taken;
+    const double paid = std::min(rise, lent);
+    if (!(paid > 0)) return rise;
+    for (double& taken : taken_) taken *= 1 - paid / lent;
+    return rise - paid;
+}
+
 void EnergyLedger::before_step(const World& world) { look(world, before_); }
 
 void EnergyLedger::after_step(const World& world)
@@ -178,13 +189,17 @@ void EnergyLedger::after_step(const World& world)
     groups_.assign(after_.bodies.size(), {});
     mark_groups(world);
     add_up(world);
-    double change = 0;
+    double change = 0, by_contacts = 0, taken = 0;
     for (const OfGroup& group : groups_) {
         double rise = group.after - group.before - group.work;
         if (group.driven || !std::isfinite(rise)) continue;
         if (group.touches && rise > 0) rise = std::min(rise, std::max(0.0, group.faster));
-        change += rise > 0 ? std::max(0.0, rise - group.rounding) : rise;
+        if (rise > 0) rise = std::max(0.0, rise - group.rounding);
+        if (group.touches) (rise > 0 ? by_contacts : taken) += std::abs(rise);
+        if (!group.touches || rise < 0) change += rise;
     }
+    change += pay_back(by_contacts);
+    taken_[world.report().step % taken_.size()] = taken;
     double kinetic = 0;
     for (const OfBody& body : after_.bodies) kinetic += body.kinetic;
     greatest_kinetic_ = std::max(greatest_kinetic_, kinetic);

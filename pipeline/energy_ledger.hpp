@@ -7,6 +7,7 @@
 #include "kernels/parallel/disjoint_sets.hpp"
 #include "pipeline/world.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace throng {
 /// something that moves by itself (a kinematic body, a driven one, a conveyor) is in a group, what
 /// that group gains is its doing and stays out of the account. What a step may have made by
 /// rounding is not counted; nor is what contacts lift as they give way less, but for the motion
-/// that becomes of it.
+/// that becomes of it, and of that none that they took out of others in the few steps before: a
+/// soft contact gives back some of what it stopped.
 ///
 /// Where work is not known exactly, in the middle of a step, the most it can have been is taken:
 /// what the account shows has no source, but it may miss some. So may it while others lose energy.
@@ -57,6 +59,7 @@ private:
     void join_groups(const World& world);
     void mark_groups(const World& world);
     void add_up(const World& world);
+    double pay_back(double rise);
     void enter(double change, std::uint64_t step);
     double work_on(const World& world, std::uint32_t body) const;
 
@@ -64,6 +67,9 @@ private:
     DisjointSets sets_;            // of bodies
     std::vector<OfGroup> groups_;  // [bodies] at the first of each
     double account_ = 0, lowest_ = 0, gained_ = 0, greatest_kinetic_ = 0;
+    // J, that contacts took in each of the last steps: of more of them than the four for which a
+    // soft contact swings where a step has one substep.
+    std::array<double, 6> taken_ = {};
     std::uint64_t lowest_step_ = 0, from_step_ = 0, to_step_ = 0;
 };
 

@@ -130,6 +130,16 @@ TEST(EnergyLedger, TellsNothingOfAHeapThatFallsAndRests)
     }
 }
 
+TEST(EnergyLedger, TellsNothingOfBuildingsThatSinkIntoTheirContactsAndComeBack)
+{
+    for (const char* name : {"stacks", "wall", "pyramid"}) {
+        Scene scene = make_scene(name, 100);
+        scene.settings.sleep = false;
+        const EnergyLedger ledger = keep(scene, 200);
+        EXPECT_LT(ledger.gained(), 0.01 * ledger.greatest_kinetic()) << name;
+    }
+}
+
 TEST(EnergyLedger, LeavesOutWhatIsDoneBetweenSteps)
 {
     SceneOf made;
