@@ -39,8 +39,8 @@ TEST(RunStats, HoldTheFieldsOfTheContract)
     };
     for (const char* key :
          {"realtime_factor", "pairs", "contacts", "islands", "colors", "max_overlap_m",
-          "mean_overlap_m", "kinetic_energy_j", "potential_energy_j", "bodies_awake",
-          "bodies_quarantined", "contacts_dropped", "fallbacks", "peak_rss_mb"})
+          "mean_overlap_m", "kinetic_energy_j", "potential_energy_j", "energy_gained_j",
+          "bodies_awake", "bodies_quarantined", "contacts_dropped", "fallbacks", "peak_rss_mb"})
         EXPECT_EQ(stats.kind(at(key)), JsonKind::number) << key;
     EXPECT_EQ(stats.text(at("scene")), "pile:50");
     EXPECT_EQ(stats.number(at("bodies")), 55);
@@ -48,6 +48,7 @@ TEST(RunStats, HoldTheFieldsOfTheContract)
     EXPECT_EQ(stats.number(at("dt")), 1.0 / 60);
     EXPECT_EQ(stats.number(at("threads")), 2);
     EXPECT_EQ(stats.number(at("threads_used")), 2);
+    EXPECT_EQ(stats.size(at("energy_gained_steps")), 2u);
     EXPECT_EQ(stats.size(at("momentum")), 3u);
     EXPECT_EQ(stats.size(at("angular_momentum")), 3u);
     EXPECT_EQ(stats.size(at("ms_per_step")), 3u);
