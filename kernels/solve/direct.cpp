@@ -20,6 +20,8 @@ constexpr int kHoldSteps = 8;  // factorisations of one try
 constexpr int kPatience = 5;
 // Sweeps before holding is tried again, each time twice as many.
 constexpr int kFirstSweeps = 100, kLastSweeps = 400;
+// Factorisations spent on springs that start from a guess, before the path is tried.
+constexpr int kSpringSteps = 40;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -47,7 +49,8 @@ struct DirectSolver::Work {
     std::vector<ConeVector> best;  // impulses
     std::vector<BodySix> scratch;
     DirectAnswer answer;
-    int left = 0;  // steps
+    int left = 0;          // steps
+    bool guessed = false;  // whether any point came with an impulse
 
     bool keep_if_better(double residual);
     bool hold();
@@ -55,7 +58,7 @@ struct DirectSolver::Work {
     bool start_from_guess();
     bool follow_path();
     bool sweep_and_hold();
-    void take_springs();
+    bool take_springs(int most);
     void find();
 };
 
@@ -83,9 +86,9 @@ bool DirectSolver::Work::start_from_guess()
 {
     if (keep_if_better(island.residual(scratch))) return true;
     matrix.lay_out(island.columns(), island.ties());
-    bool any = false;
-    for (const ContactCone& cone : island.cones) any = any || cone.impulse[0] > 0;
-    if (!any) return false;
+    guessed = std::any_of(island.cones.begin(), island.cones.end(),
+                          [](const ContactCone& cone) { return cone.impulse[0] > 0; });
+    if (!guessed) return false;
     island.push_all(scratch);
     for (ContactCone& cone : island.cones) {
         cone.speed = sum(cone.free, island.seen(cone, scratch));
@@ -137,20 +140,28 @@ bool DirectSolver::Work::sweep_and_hold()
     return false;
 }
 
-// From the best impulses met, then once more from none.
-void DirectSolver::Work::take_springs()
+// From the impulses in the cones.
+bool DirectSolver::Work::take_springs(int most)
 {
-    ConeMultipliers springs(island, matrix);
-    go_back_to_best();
-    if (keep_if_better(springs.run(kDone, kGood, left)) || answer.residual < kGood) return;
-    for (ContactCone& cone : island.cones) cone.impulse = {};
-    keep_if_better(springs.run(kDone, kGood, left));
+    most = std::min(most, left);
+    left -= most;
+    const double residual = ConeMultipliers(island, matrix).run(kDone, kGood, most);
+    left += most;
+    return keep_if_better(residual) || answer.residual < kGood;
 }
 
-// Each way is surer than the one before, and slower.
+// Springs go on from a guess at little cost; the path, which needs none, leads to the middle of all
+// answers. Where it stalls each way is surer than the one before, and slower.
 void DirectSolver::Work::find()
 {
-    if (!start_from_guess() && !follow_path() && !sweep_and_hold()) take_springs();
+    if (start_from_guess()) return;
+    go_back_to_best();
+    if (guessed && take_springs(kSpringSteps)) return;
+    if (follow_path() || sweep_and_hold()) return;
+    go_back_to_best();
+    if (take_springs(left)) return;
+    for (ContactCone& cone : island.cones) cone.impulse = {};
+    take_springs(left);
 }
 
 DirectSolver::DirectSolver() : work_(std::make_unique<Work>()) { }
