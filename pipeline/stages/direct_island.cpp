@@ -8,6 +8,7 @@ namespace {
 
 // The share of the overlap that a substep takes away.
 constexpr double kPartShare = 0.5;
+constexpr int kPartTries = 3;
 
 }  // namespace
 
@@ -92,9 +93,24 @@ bool DirectIsland::part(const Conditions& conditions)
         others_[i].least = std::min(most, -gaps_[i] * kPartShare / time);
     }
     if (!any || !(most > 0)) return false;
-    going_ = free_;
-    solve(going_, others_);
+    push_as_far_as_goes();
     return true;
+}
+
+// Who is wedged between what does not move cannot part from all of it: each point is then asked
+// for what a try at the whole came to, which can be had.
+void DirectIsland::push_as_far_as_goes()
+{
+    for (int tries = 0; tries < kPartTries; ++tries) {
+        going_ = free_;
+        const DirectAnswer answer = solver_.solve(going_, others_, steps_);
+        if (answer.residual <= kDirectResidual || tries + 1 == kPartTries) {
+            residual_ = std::max(residual_, answer.residual);
+            return;
+        }
+        for (std::size_t i = 0; i < others_.size(); ++i)
+            others_[i].least = std::min(others_[i].least, std::max(0.0, approach(i, going_)));
+    }
 }
 
 void DirectIsland::advance(double time)

@@ -85,6 +85,7 @@ private:
     std::pair<double, double> shares_of(const DirectPoint& point) const;
 
     bool part(const Conditions& conditions);
+    void push_as_far_as_goes();
     void advance(double time);
 
     std::vector<DirectSeat> seats_;  // those that can be moved, then those that move by themselves
