@@ -339,7 +339,7 @@ std::vector<Dial> make_dials()
             "finer depth images fit the shape better, and cost time with the square"),
         whole_dial<&S::sphere_levels, 1, 6>("sphere_levels", "auto (5), or a whole number from 1 to 6; no level has more than 2000 spheres", "",
             "deeper sphere trees fit the shape better, and cost more tests"),
-        whole_dial<&S::max_parts, 1, 256>("max_parts", "auto (16), or a whole number from 1 to 256", "",
+        whole_dial<&S::max_parts, 1, 256>("max_parts", "auto (16; up to 64 where the shape is so many convex ones), or a whole number from 1 to 256", "",
             "more convex parts fit the shape better, and cost a pair each"),
         choice_dial<&S::response, kResponse>("response",
             "impulses hold overlap small; penalty forces are smooth and soft; kinematic is cheap and loses momentum"),

@@ -3,7 +3,8 @@
 #include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mass.hpp"
 #include "kernels/geometry/mesh.hpp"
-#include "narrowphase/solids/part_search.hpp"
+#include "narrowphase/solids/bare_surface.hpp"
+#include "narrowphase/solids/convex_cover.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,11 @@ constexpr double kError = 0.025;
 // What a joint hull fills, over the square of the longest side, against how far it reaches outside.
 // With a tenth of it parts that reach far anyway are joined whatever else that fills.
 constexpr double kFilled = 10;
+// Where no number is wanted: pieces of a cut shape, and hulls that overlap where these are nearly
+// exact. With twice as many of either a shape takes twice as long in every step.
+constexpr std::size_t kCutParts = 16, kCoverParts = 64;
+// Hulls that overlap are looked for with that much less of an error where none is wanted.
+constexpr double kFiner = 16;
 // The most points of a hull to look at for the answer.
 constexpr std::size_t kLastLooks = 30000;
 
@@ -165,11 +171,13 @@ double left_out(const LooseHull& piece, const std::vector<LooseHull>& hulls)
     return least;
 }
 
-// Hulls as contact takes them, how far they reach outside and what of the pieces they leave out.
-void finish(const PartSearch& search,
-            const std::vector<LooseHull>& pieces,
-            std::size_t most_vertices,
-            ConvexParts& made)
+// Hulls as contact takes them, and how far they reach outside. Answers them again.
+std::vector<LooseHull> take_hulls(const PartSearch& search,
+                                  const std::vector<LooseHull>& pieces,
+                                  std::size_t most_vertices,
+                                  double slack,
+                                  FacetCut cut,
+                                  ConvexParts& made)
 {
     std::vector<LooseHull> hulls;
     double volume = 0;
@@ -181,25 +189,88 @@ void finish(const PartSearch& search,
         volume += mass_of(built.hull).volume;
         made.hulls.push_back(std::move(built.hull));
         made.points.push_back(std::move(points));
-        const double fine = search.error / 8;
-        const Overhang over = find_overhang(search.mesh, hulls.back(), fine, fine, kLastLooks);
+        const Overhang over =
+            find_overhang(search.mesh, hulls.back(), slack, slack, kLastLooks, cut);
         made.outside = std::max(made.outside, over.least);
         made.error = std::max(made.error, over.bound);
     }
-    if (made.hulls.empty()) {
-        made.trouble = "encloses no volume; give a mesh that does";
-        return;
-    }
+    made.volume_error = volume / mass_of(search.mesh).volume - 1;
+    if (hulls.empty()) made.trouble = "encloses no volume; give a mesh that does";
+    return hulls;
+}
+
+// Pieces as hulls, and what of the pieces these leave out.
+ConvexParts
+finished(const PartSearch& search, const std::vector<LooseHull>& pieces, std::size_t most_vertices)
+{
+    ConvexParts made;
+    const std::vector<LooseHull> hulls =
+        take_hulls(search, pieces, most_vertices, search.error / 8, FacetCut::in_four, made);
+    if (hulls.empty()) return made;
     for (const LooseHull& piece : pieces)
         made.uncovered = std::max(made.uncovered, left_out(piece, hulls));
     made.error = std::max(made.error, made.uncovered);
-    made.volume_error = volume / mass_of(search.mesh).volume - 1;
+    return made;
 }
 
 PartSearch search_of(const Mesh& mesh, double error)
 {
     const double extent = longest_side(mesh);
     return {mesh, extent, error > 0 ? error : kError * extent, inward_edges(mesh)};
+}
+
+// Pieces between planes, and what of these fills little when put together.
+ConvexParts by_cuts(const PartSearch& search, std::size_t most)
+{
+    std::vector<MeshPart> parts(1);
+    parts[0].piece = whole_piece(search.mesh);
+    parts[0].hull = loose_hull(search.mesh.vertices);
+    parts[0].samples = sample_surface(search.mesh);
+    parts[0].over = search.overhang(parts[0].hull);
+    // Half as many again than wanted: what the last cuts show lets the first be mended.
+    cut_worst(search, most == 1 ? 1 : most + most / 2, parts);
+    merge(search, most, parts);
+    std::vector<LooseHull> pieces;
+    for (MeshPart& part : parts) pieces.push_back(std::move(part.hull));
+    return finished(search, pieces, kMostPartVertices);
+}
+
+// Hulls that overlap. Trouble where there are none.
+ConvexParts by_cover(const PartSearch& search, std::size_t grown, std::size_t most)
+{
+    ConvexParts made;
+    std::vector<MeshPart> parts;
+    for (LooseHull& hull : cover_by_hulls(search, grown))
+        parts.emplace_back().hull = std::move(hull);
+    made.trouble = "is not a few convex shapes put together";
+    if (parts.empty()) return made;
+    merge(search, most, parts);
+    std::vector<LooseHull> hulls;
+    for (MeshPart& part : parts) hulls.push_back(std::move(part.hull));
+    made.trouble.clear();
+    hulls = take_hulls(search, hulls, kMostPartVertices, search.error, FacetCut::in_two, made);
+    if (hulls.empty()) return made;
+    // Nothing but a look at the surface tells what overlapping hulls leave out.
+    made.uncovered = find_bare_surface(search.mesh, hulls, search.error).bound;
+    made.error = std::max(made.error, made.uncovered);
+    return made;
+}
+
+// Puts hulls that overlap in the place of pieces that are off by more than is wanted, where they
+// are nearer to the mesh.
+void mend_by_cover(const PartSearch& search, const PartsWanted& wanted, ConvexParts& made)
+{
+    if (made.error <= search.error || wanted.max_parts == 1) return;
+    PartSearch fine = search;
+    if (!(wanted.error > 0)) fine.error /= kFiner;
+    const std::size_t most =
+        wanted.max_parts > 0 ? static_cast<std::size_t>(wanted.max_parts) : kCoverParts;
+    ConvexParts cover = by_cover(fine, std::max(most, kCoverParts), most);
+    if (!cover.trouble.empty()) return;
+    // Round shapes cut into twice as many pieces are off by a quarter: more is to be gained.
+    const double times = std::max(
+        1.0, static_cast<double>(cover.hulls.size()) / static_cast<double>(made.hulls.size()));
+    if (times * times * cover.error < made.error) made = std::move(cover);
 }
 
 }  // namespace
@@ -210,19 +281,9 @@ ConvexParts split_into_parts(const Mesh& mesh, const PartsWanted& wanted)
     made.trouble = trouble_with(mesh);
     if (!made.trouble.empty()) return made;
     const PartSearch search = search_of(mesh, wanted.error);
-    std::vector<MeshPart> parts(1);
-    parts[0].piece = whole_piece(mesh);
-    parts[0].hull = loose_hull(mesh.vertices);
-    parts[0].samples = sample_surface(mesh);
-    parts[0].over = search.overhang(parts[0].hull);
-
-    const auto most = static_cast<std::size_t>(std::max(1, wanted.max_parts));
-    // Half as many again than wanted: what the last cuts show lets the first be mended.
-    cut_worst(search, most == 1 ? 1 : most + most / 2, parts);
-    merge(search, most, parts);
-    std::vector<LooseHull> pieces;
-    for (MeshPart& part : parts) pieces.push_back(std::move(part.hull));
-    finish(search, pieces, kMostPartVertices, made);
+    made = by_cuts(search,
+                   wanted.max_parts > 0 ? static_cast<std::size_t>(wanted.max_parts) : kCutParts);
+    if (made.trouble.empty()) mend_by_cover(search, wanted, made);
     const std::string error = percent(made.error / search.extent);
     const std::string asked = percent(search.error / search.extent);
     if (made.error > search.error && error != asked)
@@ -238,7 +299,8 @@ ConvexParts put_into_hull(const Mesh& mesh)
     if (!made.trouble.empty()) return made;
     const PartSearch search = search_of(mesh, 0);
     const LooseHull hull = loose_hull(mesh.vertices);
-    finish(search, {hull}, hull.vertices.size(), made);
+    made = finished(search, {hull}, hull.vertices.size());
+    if (!made.trouble.empty()) return made;
     made.remarks.push_back("holes and hollows are filled, " + percent(made.volume_error)
                            + " more than the mesh");
     return made;

@@ -2,7 +2,8 @@
 //
 // A piece is cut where that leaves least of what its hulls fill beyond it, the worst piece first;
 // pieces whose joint hull fills little are then put together again. Hulls of pieces that were not
-// put together lie in cells with planes between them, so they share faces and no volume.
+// put together lie in cells with planes between them, so they share faces and no volume. What is a
+// few dozen of convex shapes put together is taken as these, which do (solids/convex_cover.hpp).
 //
 // Source: the search for cuts after Wei, Liu, Ling, Su, Approximate Convex Decomposition for 3D
 //         Meshes with Collision-Aware Concavity and Tree Search (2022), without its tree; cutting
@@ -18,10 +19,11 @@ namespace throng {
 
 /// What is wanted of a split. Of two parts or more, fewer where the error is reached with them.
 ///
-///   max_parts  at least 1
+///   max_parts  0: as many as the shape calls for, 16 or, where it is a few dozen of convex shapes
+///              put together, up to 64
 ///   error      m, that a hull may fill beyond the mesh; 0 for 2.5 % of the mesh's longest side
 struct PartsWanted {
-    int max_parts = 16;
+    int max_parts = 0;
     double error = 0;
 };
 

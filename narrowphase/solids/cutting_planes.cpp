@@ -89,7 +89,7 @@ std::vector<InwardEdge> inward_edges(const Mesh& mesh)
             if ((normal - other).squaredNorm() < 1e-6) continue;
             const Vec3& a = mesh.vertices[mesh.triangles[t][k]];
             const Vec3& b = mesh.vertices[mesh.triangles[t][(k + 1) % 3]];
-            edges.push_back({(a + b) / 2, normal, other});
+            edges.push_back({a, b, (a + b) / 2, normal, other});
         }
     return edges;
 }

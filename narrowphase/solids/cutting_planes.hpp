@@ -8,6 +8,7 @@ namespace throng {
 
 /// An edge of a mesh at which its surface turns inward.
 struct InwardEdge {
+    Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // the face of `normal` is to the left
     Vec3 middle = Vec3::Zero();
     Vec3 normal = Vec3::Zero(), other = Vec3::Zero();  // of the faces beside it
 };

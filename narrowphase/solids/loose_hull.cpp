@@ -12,6 +12,8 @@ namespace throng {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// How deep below a facet the balls are that tell how far the facet is from the mesh, in its radii.
+constexpr double kBallDepths[] = {16, 4};
 
 // Keeps the corners in use, in the order of the points.
 LooseHull from_triangles(std::span<const Vec3> points, const TriangleHull& made)
@@ -136,6 +138,27 @@ double bound_of(const Mesh& mesh, const Facet& facet, Overhang& found)
     return std::min(distance + radius, off);
 }
 
+// Of balls in the mesh, deep below the facet, that which bounds it best: little where the facet
+// lies along a surface, however wide it is.
+double bound_by_balls(const Mesh& mesh, const Facet& facet, double enough)
+{
+    const auto& [a, b, c] = facet.corners;
+    const Vec3 middle = (a + b + c) / 3, inward = (c - a).cross(b - a).normalized();
+    double wide = 0, least = kInfinity;
+    for (const Vec3& corner : facet.corners) wide = std::max(wide, (corner - middle).norm());
+    for (const double depth : kBallDepths) {
+        const Vec3 center = middle + depth * wide * inward;
+        const double radius = -signed_distance(mesh, center);
+        if (!(radius > 0)) continue;
+        double furthest = 0;
+        for (const Vec3& corner : facet.corners)
+            furthest = std::max(furthest, (corner - center).norm());
+        least = std::min(least, furthest - radius);
+        if (least <= enough) break;
+    }
+    return least;
+}
+
 }  // namespace
 
 LooseHull loose_hull(std::span<const Vec3> points)
@@ -169,7 +192,12 @@ double distance_outside(const LooseHull& hull, const Vec3& point)
 
 LooseHull simplified(const LooseHull& hull, std::size_t most, double enough)
 {
-    if (hull.vertices.size() <= most) return hull;
+    return hull.vertices.size() <= most ? hull : thinned(hull, most, enough);
+}
+
+LooseHull thinned(const LooseHull& hull, std::size_t most, double enough)
+{
+    if (hull.empty()) return hull;
     std::vector<std::uint32_t> chosen = extremes(hull);
     LooseHull part = hull_of(hull, chosen);
     // Each round adds a vertex at least.
@@ -185,8 +213,20 @@ LooseHull simplified(const LooseHull& hull, std::size_t most, double enough)
     return part.empty() ? hull : part;
 }
 
-Overhang find_overhang(
-    const Mesh& mesh, const LooseHull& hull, double slack, double enough, std::size_t looks)
+std::array<Vec3, 3> longest_edge_first(const std::array<Vec3, 3>& corners)
+{
+    const auto& [a, b, c] = corners;
+    const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+    if (ab >= bc && ab >= ca) return corners;
+    return bc >= ca ? std::array<Vec3, 3>{b, c, a} : std::array<Vec3, 3>{c, a, b};
+}
+
+Overhang find_overhang(const Mesh& mesh,
+                       const LooseHull& hull,
+                       double slack,
+                       double enough,
+                       std::size_t looks,
+                       FacetCut cut)
 {
     Overhang answer;
     std::priority_queue<Facet> waiting;
@@ -194,16 +234,25 @@ Overhang find_overhang(
     const auto look = [&](const std::array<Vec3, 3>& corners) {
         Facet facet{0, count++, corners};
         facet.bound = bound_of(mesh, facet, answer);
+        if (cut == FacetCut::in_two && facet.bound > std::max(answer.least, enough))
+            facet.bound = std::min(facet.bound, bound_by_balls(mesh, facet, enough));
         waiting.push(facet);
     };
     for (const auto& [a, b, c] : hull.triangles)
         look({hull.vertices[a], hull.vertices[b], hull.vertices[c]});
-    for (std::size_t i = 0; i + 4 <= looks && !waiting.empty(); i += 4) {
+    const std::size_t each = cut == FacetCut::in_two ? 2 : 4;
+    for (std::size_t i = 0; i + each <= looks && !waiting.empty(); i += each) {
         const Facet facet = waiting.top();
         if (facet.bound <= std::max(answer.least + slack, enough)) break;
         waiting.pop();
-        const auto& [a, b, c] = facet.corners;
+        const auto& [a, b, c] =
+            cut == FacetCut::in_two ? longest_edge_first(facet.corners) : facet.corners;
         const Vec3 ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+        if (cut == FacetCut::in_two) {
+            look({a, ab, c});
+            look({ab, b, c});
+            continue;
+        }
         look({a, ab, ca});
         look({ab, b, bc});
         look({ca, bc, c});

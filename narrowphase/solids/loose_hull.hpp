@@ -33,6 +33,12 @@ double distance_outside(const LooseHull& hull, const Vec3& point);
 /// at least 26; what has no more than that is left as it is.
 LooseHull simplified(const LooseHull& hull, std::size_t most, double enough);
 
+/// The same, of a hull with few vertices too: what lies along its edges and faces is left out.
+LooseHull thinned(const LooseHull& hull, std::size_t most, double enough);
+
+/// Corners of a triangle in turn, the two that are furthest apart first.
+std::array<Vec3, 3> longest_edge_first(const std::array<Vec3, 3>& corners);
+
 /// How far the surface of a hull is outside of a mesh at the most.
 ///
 ///   least   m, that far outside a point was found
@@ -43,13 +49,22 @@ struct Overhang {
     Vec3 where = Vec3::Zero();
 };
 
-/// Looks for the overhang by cutting triangles in four where they may still reach further outside
-/// than what was found, the most promising first.
+/// How triangles are cut to look into them: in four, which finds what is furthest out with few
+/// looks, or in two across their longest edge and with balls in the mesh to measure from, which
+/// proves with fewer that nothing is, where they are long or lie along the surface.
+enum class FacetCut { in_four, in_two };
+
+/// Looks for the overhang by cutting triangles where they may still reach further outside than what
+/// was found, the most promising first.
 ///
 ///   slack   m, wanted difference of the two answers
 ///   enough  m, triangles that reach no further outside need not be looked into
 ///   looks   the most points to look at, apart from one for each triangle
-Overhang find_overhang(
-    const Mesh& mesh, const LooseHull& hull, double slack, double enough, std::size_t looks);
+Overhang find_overhang(const Mesh& mesh,
+                       const LooseHull& hull,
+                       double slack,
+                       double enough,
+                       std::size_t looks,
+                       FacetCut cut = FacetCut::in_four);
 
 }  // namespace throng

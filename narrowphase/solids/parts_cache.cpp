@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A change of what is computed or written is another version.
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 3;
 
 WordWriter words_of(const ConvexParts& parts, const std::string& key)
 {
