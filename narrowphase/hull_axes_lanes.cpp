@@ -334,15 +334,16 @@ void Search::touch(HullTouch& out)
     const float unlike = at_depth - edge_.separation;
     const bool agrees = unlike <= 2 * bias && unlike >= -2 * bias;
     if (edge_.a >= 0 && !(agrees && alike())) cross_edges(out);
-    // A face that leads by its bias alone may have nothing over it: then the best one has. Its
-    // points are told less deep by the bias unless they are deep: at rest others bear the body, and
-    // what pushes at times would rock it.
+    // A face that leads by its bias alone may have nothing over it: then the best one has. Unless
+    // the two are deep its points are told far enough apart not to push: at rest others bear the
+    // body, and what pushes at times would rock it.
     if (out.count > 0 || face.separation >= 0) return;
-    const bool shallow = face.separation >= -4 * bias;
+    const float deep = 4 * bias;
+    const bool shallow = face.separation >= -deep;
     const bool by_best = best_b_.separation >= best_a_.separation;
     if (by_best != by_b) clip_face(by_best, out);
     if (shallow)
-        for (int i = 0; i < out.count; ++i) out.points[i].separation += bias;
+        for (int i = 0; i < out.count; ++i) out.points[i].separation += deep;
     if (out.count == 0 && !shallow) touch_vertex(by_best, out);
 }
 

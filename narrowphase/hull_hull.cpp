@@ -221,17 +221,18 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
     const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
     const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
     if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
-    // A face that leads by its bias alone may have nothing over it: then the best one has. Its
-    // points are told less deep by the bias unless they are deep: at rest others bear the body, and
-    // what pushes at times would rock it.
+    // A face that leads by its bias alone may have nothing over it: then the best one has. Unless
+    // the two are deep its points are told far enough apart not to push: at rest others bear the
+    // body, and what pushes at times would rock it.
     if (out.count > 0 || face.separation >= 0) return;
-    const bool shallow = face.separation >= -4 * bias;
+    const double deep = 4 * bias;
+    const bool shallow = face.separation >= -deep;
     const bool by_b = axes.face_b.separation >= axes.face_a.separation;
     const FaceAxis& best = by_b ? axes.face_b : axes.face_a;
     if (by_b != b_leads) face_manifold(by_b ? turned : pair, best, reach, bias, out, least);
     if (shallow)
         for (int i = 0; i < out.count; ++i)
-            out.points[static_cast<std::size_t>(i)].separation += bias;
+            out.points[static_cast<std::size_t>(i)].separation += deep;
     if (out.count == 0 && !shallow) touch_vertex(by_b ? turned : pair, best, out);
     if (by_b) turn_round(pair, out);
 }
