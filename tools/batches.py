@@ -17,26 +17,26 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TYPE = re.compile(r"(?:struct|class|union|enum class|enum)\s+(\w+)")
 OTHER = re.compile(r"(\w+)\s*(?:\[[^]]*\]\s*)*[(={;]")
+CONSTANTS = re.compile(r"^(?:inline )?constexpr [^;]*;", re.MULTILINE)  # of which one may have many
+CONSTANT = re.compile(r"\b(k[A-Z]\w*)\s*[=\[{]")
 NONE_OF_OURS = r"template|namespace|static_assert|using \w+::|[A-Z_]+\("
 
 
-def defined_in(lines):
-    """The names that lines define, by the shape that clang-format gives them."""
-    for line in lines:
+def defined_in(text):
+    """The names that a text defines, by the shape that clang-format gives them."""
+    for line in text.splitlines():
         if re.match(rf"(?!{NONE_OF_OURS})\w", line):
             found = TYPE.match(line) or OTHER.search(line)
             if found:
                 yield found.group(1)
+    for statement in CONSTANTS.findall(text):
+        yield from CONSTANT.findall(statement)
 
 
 def unnamed(text):
-    """The lines in the unnamed namespaces of a file."""
-    inside = False
-    for line in text.splitlines():
-        inside = inside and not line.startswith("}  // namespace")
-        if inside:
-            yield line
-        inside = inside or line.startswith("namespace {")
+    """What stands in the unnamed namespaces of a file."""
+    return "\n".join(re.findall(r"^namespace \{$(.*?)^\}  // namespace$", text,
+                                re.MULTILINE | re.DOTALL))
 
 
 @functools.cache
@@ -46,7 +46,7 @@ def header_names(name):
     if not path.is_file():
         return frozenset()
     text = path.read_text()
-    return included_names(text).union(defined_in(text.splitlines()))
+    return included_names(text).union(defined_in(text))
 
 
 def included_names(text):
