@@ -78,7 +78,7 @@ bool may_meet(const Ray& ray, const Box3& box)
     return first <= last;
 }
 
-void BoxList::meet_rays(std::span<const Ray> rays, Candidates& candidates) const
+void ListedBoxes::meet_rays(std::span<const Ray> rays, Candidates& candidates) const
 {
     candidates.begin.assign(1, 0);
     candidates.ids.clear();
@@ -89,7 +89,7 @@ void BoxList::meet_rays(std::span<const Ray> rays, Candidates& candidates) const
     }
 }
 
-void BoxList::meet_boxes(std::span<const Box3> regions, Candidates& candidates) const
+void ListedBoxes::meet_boxes(std::span<const Box3> regions, Candidates& candidates) const
 {
     candidates.begin.assign(1, 0);
     candidates.ids.clear();

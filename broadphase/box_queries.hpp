@@ -1,7 +1,8 @@
 // Box queries: which colliders a ray, or a region, might meet.
 //
 // Candidates by their boxes alone: whoever asks tests the shapes. A candidate may be too many,
-// never one too few. BoxList is the plain answer sheet for EmbreeRays; the two give the same lists.
+// never one too few. ListedBoxes is the plain answer sheet for EmbreeRays; the two give the same
+// lists.
 #pragma once
 
 #include "broadphase/embree_tree.hpp"
@@ -33,7 +34,7 @@ struct Candidates {
 };
 
 /// Every box against every question.
-class BoxList {
+class ListedBoxes {
 public:
     /// Copies the boxes; a collider's id is its place.
     void build(std::span<const Box3> boxes) { boxes_.assign(boxes.begin(), boxes.end()); }

@@ -46,7 +46,7 @@ TEST(BoxQueries, TreeAndListGiveTheSameCandidatesOfRays)
             for (int turn = 0; turn < 2; ++turn) {  // built again over what was there
                 const BoxScene scene = random_scene(dice, kind, count, 0.1);
                 const std::vector<Ray> rays = random_rays(dice, kind, scene.boxes);
-                BoxList list;
+                ListedBoxes list;
                 list.build(scene.boxes);
                 tree.build(scene.boxes);
                 Candidates wanted, found;
@@ -67,7 +67,7 @@ TEST(BoxQueries, TreeAndListGiveTheSameCandidatesOfRegions)
             BoxKind odd = kind;
             odd.infinite_share = odd.not_a_number_share = odd.empty_share = 0.05;
             const BoxScene regions = random_scene(dice, odd, 50, 0);
-            BoxList list;
+            ListedBoxes list;
             EmbreeRays tree;
             list.build(scene.boxes);
             tree.build(scene.boxes);
