@@ -139,8 +139,9 @@ test_sanitized() {
     else
         local compares="SameBits|SolidBits|SweepWidths|PlantedFault|OnThreeThreads|ChangesNoBit"
         compares+="|OnAnyNumberOfThreads|IslandsThatAreCut|Catalog.(SameSeed|OtherSeed)"
-        local repeats="KeepsItsBounds/H(37|43)|Catalog.(EverySize|PosesAndVel)|Run.ProgressIs"
-        repeats+="|Bench.(ProgressIs|ValuesOfADial)|ATerrainOfTheCatalogueMovesOn"
+        local repeats="KeepsItsBounds/H(37|43)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
+        repeats+="|ProgressIs|Bench.ValuesOfADial|ConvexCover.T|ConvexParts.(ErrorIs|SizeChanges)"
+        repeats+="|PartsCache.Damaged|Friction.OfEveryKind|Subdivide.WhatIsJammed"
         which+=(-E "$compares|$repeats")
     fi
     (cd "$root/build/$1" && "${steady[@]}" ctest --output-on-failure --no-tests=error \
