@@ -133,7 +133,7 @@ test_sanitized() {
     export TSAN_OPTIONS=halt_on_error=1
     if [[ $1 == tsan ]]; then
         which+=(-R "$(sed -n 's/^THRONG_TESTS_NAMED:STRING=//p' "$root/build/tsan/CMakeCache.txt")"
-            -E "Lanes|Catalogue/HardCases")
+            -E "Lanes|SweepWidths|Catalogue/HardCases")
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi
     else
