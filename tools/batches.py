@@ -59,6 +59,9 @@ def in_batches(files, size):
     for file in sorted(files):
         text = Path(file).read_text()
         own, seen = set(defined_in(unnamed(text))), included_names(text)
+        # A template is instantiated whole in one file, and some of its members in another.
+        templates = re.findall(r"^template \w+ (\w+)<", text, re.MULTILINE)
+        own.update("template " + name for name in templates)
         for at, (count, others, all_seen) in enumerate(batches):
             if count < size and not own & (others | all_seen) and not seen & others:
                 break
