@@ -129,38 +129,23 @@ void solve_impulses(const Conditions&,
                     Velocities&,
                     Trouble&);
 
-/// Dynamic bodies in place of all stages of contact: carried from touch to touch, with those that
-/// they may meet in this step, so that none ever overlap.
-void back_up(const Conditions&,
-             const Shapes&,
-             const Surfaces&,
-             const PairFilter&,
-             const Colliders&,
-             const BodyStates&,
-             const Masses&,
-             const Forces&,
-             Poses&,
-             Velocities&,
-             Flights&,
-             Islands&,
-             CarriedContacts&,
-             Trouble&);
-
-/// The same by halves: what would end in overlap is done again as two pieces, down to the least.
-void subdivide(const Conditions&,
-               const Shapes&,
-               const Surfaces&,
-               const PairFilter&,
-               const Colliders&,
-               const BodyStates&,
-               const Masses&,
-               const Forces&,
-               Poses&,
-               Velocities&,
-               Flights&,
-               Islands&,
-               CarriedContacts&,
-               Trouble&);
+/// Dynamic bodies in place of all stages of contact, each with those that it may meet in this step:
+/// carried from touch to touch, so that none ever overlap (back_up), or by halves, where what would
+/// end in overlap is done again as two pieces, down to the least (subdivide).
+void carry_groups(const Conditions&,
+                  const Shapes&,
+                  const Surfaces&,
+                  const PairFilter&,
+                  const Colliders&,
+                  const BodyStates&,
+                  const Masses&,
+                  const Forces&,
+                  Poses&,
+                  Velocities&,
+                  Flights&,
+                  Islands&,
+                  CarriedContacts&,
+                  Trouble&);
 
 /// Bodies that touch nothing: velocities into poses.
 void integrate_poses(const Conditions&,

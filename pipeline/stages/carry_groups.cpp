@@ -21,6 +21,9 @@ namespace throng {
 
 namespace {
 
+// One of GroupFlight's two ways through a step.
+using CarryGroup = void (GroupFlight::*)();
+
 class Carriage {
 public:
     Carriage(GroupScene& scene, CarryGroup way)
@@ -176,8 +179,17 @@ std::span<const InnerRow> carry_table(std::string_view stage)
     return {};
 }
 
-void carry_groups(GroupScene& scene,
-                  CarryGroup way,
+void carry_groups(const Conditions& conditions,
+                  const Shapes& shapes,
+                  const Surfaces& surfaces,
+                  const PairFilter& filter,
+                  const Colliders& colliders,
+                  const BodyStates& states,
+                  const Masses& masses,
+                  const Forces& forces,
+                  Poses& poses,
+                  Velocities& velocities,
+                  Flights& flights,
                   Islands& islands,
                   CarriedContacts& contacts,
                   Trouble& trouble)
@@ -187,8 +199,12 @@ void carry_groups(GroupScene& scene,
     trouble.direct_residual = trouble.deepest = 0;
     islands.lone.clear();  // none is left to fly alone
     contacts = {};
-    contacts.force.assign(scene.states.kind.size(), Vec3::Zero());
-    Carriage(scene, way).run(contacts, trouble);
+    contacts.force.assign(states.kind.size(), Vec3::Zero());
+    GroupScene scene{conditions, shapes, surfaces,   filter,  colliders, states, masses,
+                     forces,     poses,  velocities, flights, {},        {}};
+    const bool backs_up = conditions.has(Effect::no_overlap);
+    Carriage(scene, backs_up ? &GroupFlight::back_up : &GroupFlight::subdivide)
+        .run(contacts, trouble);
 }
 
 }  // namespace throng

@@ -96,13 +96,11 @@ private:
     };
     using Motions = std::vector<DirectBody>;
 
-    void carry(double begin, double span);
     void commit();
     bool fly(double begin, double span);
     void find_pairs(double begin, double span);
     void add_pair(std::uint32_t a, std::uint32_t b);
     FirstImpact look_ahead(std::span<const PairKey> asked, double begin, double span);
-    bool stay_apart(double time);
     Pose pose_at(std::uint32_t body, double time) const;
     Pose end_of(std::uint32_t body, double time) const;
     double tolerance_of(PairKey key) const;
@@ -117,7 +115,10 @@ private:
                             LocalManifold<double>& found);
     double gap_of(PairKey key, const Pose& a, const Pose& b, double reach);
 
-    // Pieces of a step: see group_halves.cpp.
+    // Spans up to a touch: see back_up.cpp.
+    bool stay_apart(double time);
+
+    // Pieces of a step: see subdivide.cpp.
     bool carry_piece(double begin, double span, bool shortest);
     double depth_of(PairKey key, double end);
     bool may_pass(PairKey key, double begin, double span) const;
@@ -170,15 +171,5 @@ private:
     std::map<PairKey, int> too_deep_;    // shortest pieces that they ended so, in this substep
     GroupOutcome outcome_;
 };
-
-/// One of GroupFlight's two ways through a step.
-using CarryGroup = void (GroupFlight::*)();
-
-/// Takes all dynamic bodies through a step, those together that may meet: see carry_groups.cpp.
-void carry_groups(GroupScene& scene,
-                  CarryGroup way,
-                  Islands& islands,
-                  CarriedContacts& contacts,
-                  Trouble& trouble);
 
 }  // namespace throng

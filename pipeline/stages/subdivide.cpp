@@ -1,30 +1,144 @@
-// Subdivide: a step that would end in overlap is done again as two halves, for those concerned.
+// Subdivide: a step in pieces, each done again as two halves while it ends in overlap, for those
+// concerned (carry_groups.cpp).
 //
-// Groups of bodies that may meet (carry_groups.cpp) fly piece by piece (group_halves.cpp): late to
-// every touch by a piece of the step, where back_up.cpp seeks the moment itself.
-#include "pipeline/stages.hpp"
+// A piece is flown, those that touched as it began are held, and then it is looked at: two that
+// overlap by more than the tolerance, or that have met on the way and come out on the other side,
+// send the group back to where the piece began. So the search for a touch is that of halving, and
+// every touch is late, by the shortest piece at most. What touches then bounces, or is held from
+// there on at half the tolerance from one another, as it is in back_up.cpp.
 #include "pipeline/stages/group_flight.hpp"
+
+#include <algorithm>
 
 namespace throng {
 
-void subdivide(const Conditions& conditions,
-               const Shapes& shapes,
-               const Surfaces& surfaces,
-               const PairFilter& filter,
-               const Colliders& colliders,
-               const BodyStates& states,
-               const Masses& masses,
-               const Forces& forces,
-               Poses& poses,
-               Velocities& velocities,
-               Flights& flights,
-               Islands& islands,
-               CarriedContacts& contacts,
-               Trouble& trouble)
+namespace {
+
+// Of a substep. A fall of a meter then ends within 2e-5 m of the touch, in four substeps of 1/60 s.
+constexpr int kHalvings = 12;
+// Who is deeper than the tolerance already, for whatever reason, comes no deeper but for this
+// share.
+constexpr double kRounding = 1e-9;
+// Shortest pieces of a substep that two may end too deep. They are jammed: after these no more
+// halving is done for them alone, and what is left of the substep takes its contacts as they are.
+constexpr int kMostDeep = 64;
+
+}  // namespace
+
+// m, by how much two overlap at the end of the way ahead; not above 0 where they do not.
+double GroupFlight::depth_of(PairKey key, double end)
 {
-    GroupScene scene{conditions, shapes, surfaces,   filter,  colliders, states, masses,
-                     forces,     poses,  velocities, flights, {},        {}};
-    carry_groups(scene, &GroupFlight::subdivide, islands, contacts, trouble);
+    const std::uint32_t a = scene_.colliders.body[first_of(key)];
+    const std::uint32_t b = scene_.colliders.body[second_of(key)];
+    return -gap_of(key, end_of(a, end), end_of(b, end), 0);
+}
+
+// Whether two go so far past one another that they might meet and part again unseen.
+bool GroupFlight::may_pass(PairKey key, double begin, double span) const
+{
+    const Colliders& colliders = scene_.colliders;
+    const std::uint32_t first = first_of(key), second = second_of(key);
+    Vec3 passed = Vec3::Zero();
+    double turned = 0;
+    for (const auto& [at, sign] : {std::pair{first, -1.0}, std::pair{second, 1.0}}) {
+        const std::uint32_t body = colliders.body[at];
+        const Pose from = pose_at(body, begin), to = end_of(body, begin + span);
+        const std::int32_t member = member_of(body);
+        const Vec3 spin = member >= 0 ? ends_[static_cast<std::size_t>(member)].spin
+                                      : scene_.velocities.angular[body];
+        passed += sign * (to.position - from.position);
+        // Of a plane only its own place counts: it has no far end.
+        if (colliders.shape[at].kind != ShapeKind::plane)
+            turned += spin.norm() * span * colliders.outer_radius[at];
+    }
+    return passed.norm() + turned
+        > impact_size(scene_.shapes, colliders.shape[first], colliders.shape[second]);
+}
+
+bool GroupFlight::is_mesh(PairKey key) const
+{
+    const auto& shape = scene_.colliders.shape;
+    return shape[first_of(key)].kind == ShapeKind::mesh
+        || shape[second_of(key)].kind == ShapeKind::mesh;
+}
+
+// Whether the piece just flown may stay as it is, and what it is told to have come to.
+bool GroupFlight::ends_well(double begin, double span, bool shortest)
+{
+    std::vector<PairKey> fast;
+    double deepest = 0;
+    bool deep = false;
+    for (const PairKey key : pairs_) {
+        const double depth = depth_of(key, begin + span);
+        deepest = std::max(deepest, depth);
+        double most = tolerance_of(key);
+        const auto now = gap_now_.find(key);
+        const bool touched = now != gap_now_.end();
+        if (touched) most = std::max(most, kRounding * most - now->second);
+        if (!(depth <= most)) {
+            const auto before = too_deep_.find(key);
+            if (!shortest && (before == too_deep_.end() || before->second < kMostDeep))
+                return false;
+            ++too_deep_[key];
+            deep = true;
+        } else if (may_pass(key, begin, span)) {
+            // One place of a mesh that touches does not tell of its others.
+            if (touched && is_mesh(key) && !shortest) return false;
+            fast.push_back(key);
+        }
+    }
+    if (!fast.empty() && look_ahead(fast, begin, span).impact.meeting == Meeting::meet) {
+        if (!shortest) return false;
+        deep = true;
+    }
+    outcome_.deepest = std::max(outcome_.deepest, deepest);
+    outcome_.deep_pieces += deep ? 1 : 0;
+    return true;
+}
+
+// False where it has to be done again, in halves; nothing has moved then.
+bool GroupFlight::carry_piece(double begin, double span, bool shortest)
+{
+    if (!fly(begin, span)) {
+        outcome_.held = true;
+        return true;
+    }
+    rest(span);
+    find_pairs(begin, span);
+    if (!ends_well(begin, span, shortest)) return false;
+    commit();
+    list_touches(begin + span);
+    settle_impacts();
+    return true;
+}
+
+void GroupFlight::subdivide()
+{
+    const Settings& settings = scene_.conditions.settings;
+    const double substep = scene_.conditions.substep();
+    const std::uint64_t whole = std::uint64_t{1}
+        << (settings.halvings > 0 ? settings.halvings : kHalvings);
+    outcome_.held = !fly(0, substep);
+    find_pairs(0, substep);
+    list_touches(0);
+    settle_impacts();
+    for (int k = 0; k < settings.substeps && !outcome_.held; ++k) {
+        too_deep_.clear();
+        // After a piece comes the greatest that begins where it ends, as two halves follow one
+        // another: of as many shortest pieces as the last bit that is set.
+        std::uint64_t done = 0, size = whole;
+        while (done < whole && !outcome_.held) {
+            const auto share = [&](std::uint64_t pieces) {
+                return static_cast<double>(pieces) / static_cast<double>(whole);
+            };
+            if (!carry_piece((k + share(done)) * substep, share(size) * substep, size == 1)) {
+                size /= 2;
+                continue;
+            }
+            done += size;
+            size = done & ~(done - 1);
+        }
+    }
 }
 
 }  // namespace throng
