@@ -139,6 +139,20 @@ void keep(const Grip<L>& held, Lane16<typename L::Number> (&impulse)[2], int at)
     held.impulse_2.store(impulse[1].at + at);
 }
 
+// What the friction of a contact's points adds up to.
+template <class L>
+struct Whole {
+    Grip<L> force = {L(typename L::Number(0)), L(typename L::Number(0))};
+    L twist = L(typename L::Number(0));
+
+    void add(const Grip<L>& held, L u, L w)
+    {
+        force.impulse_1 += held.impulse_1;
+        force.impulse_2 += held.impulse_2;
+        twist += -(u * held.impulse_1 + w * held.impulse_2);
+    }
+};
+
 // Friction at the middle of the points, and about the normal.
 template <class L>
 void hold_middle(Contacts<L, true>& c, const Sides<L>* pyramid, L load, L lever)
@@ -160,9 +174,8 @@ void hold_each(Contacts<L, true>& c,
                const Sides<L>* pyramid,
                const Aim<L> (&aims)[4])
 {
-    using Real = typename L::Number;
     const L friction = lane<L>(c.block.friction, c.at);
-    L sum_1 = Real(0), sum_2 = Real(0), twist = Real(0);
+    Whole<L> whole;
     for (int k = 0; k < c.block.points; ++k) {
         const L u = lane<L>(c.points[k].lever[0], c.at), w = lane<L>(c.points[k].lever[1], c.at);
         const Grip<L> old = kept<L>(grips[k].impulse, c.at);
@@ -171,12 +184,10 @@ void hold_each(Contacts<L, true>& c,
         keep(held, grips[k].impulse, c.at);
         const L by_1 = held.impulse_1 - old.impulse_1, by_2 = held.impulse_2 - old.impulse_2;
         give(c, by_1, by_2, -(u * by_1 + w * by_2));
-        sum_1 += held.impulse_1;
-        sum_2 += held.impulse_2;
-        twist += -(u * held.impulse_1 + w * held.impulse_2);
+        whole.add(held, u, w);
     }
-    keep(Grip<L>{sum_1, sum_2}, c.block.friction_impulse, c.at);
-    twist.store(c.block.twist_impulse.at + c.at);
+    keep(whole.force, c.block.friction_impulse, c.at);
+    whole.twist.store(c.block.twist_impulse.at + c.at);
 }
 
 template <class L>
@@ -256,12 +267,11 @@ template <class L>
 L start_each(Contacts<L, true>& c,
              GripRows<typename L::Number>* grips,
              const Sides<L>* pyramid,
-             const Grip<L>& whole)
+             const Grip<L>& before)
 {
-    using Real = typename L::Number;
     const L friction = lane<L>(c.block.friction, c.at);
-    const Shares<L> shares(c, whole, lane<L>(c.block.twist_impulse, c.at));
-    L sum_1 = Real(0), sum_2 = Real(0), twist = Real(0);
+    const Shares<L> shares(c, before, lane<L>(c.block.twist_impulse, c.at));
+    Whole<L> whole;
     for (int k = 0; k < c.block.points; ++k) {
         const L load = lane<L>(c.points[k].impulse, c.at);
         const L u = lane<L>(c.points[k].lever[0], c.at), w = lane<L>(c.points[k].lever[1], c.at);
@@ -269,12 +279,10 @@ L start_each(Contacts<L, true>& c,
         const Grip<L> held = pyramid != nullptr ? cut_to_pyramid(*pyramid, share, friction * load)
                                                 : cut_to_cone(share, friction * load);
         keep(held, grips[k].impulse, c.at);
-        sum_1 += held.impulse_1;
-        sum_2 += held.impulse_2;
-        twist += -(u * held.impulse_1 + w * held.impulse_2);
+        whole.add(held, u, w);
     }
-    keep(Grip<L>{sum_1, sum_2}, c.block.friction_impulse, c.at);
-    return twist;
+    keep(whole.force, c.block.friction_impulse, c.at);
+    return whole.twist;
 }
 
 template <class L>
@@ -284,13 +292,7 @@ template <class L>
                                              const Visit<typename L::Number>& visit)
 {
     Contacts<L, true> c(rows, place, at);
-    for (int k = 0; k < c.block.points; ++k) {
-        const auto& point = c.points[k];
-        const L impulse = lane<L>(point.impulse, at);
-        c.given.n += impulse;
-        c.given.w1 += lane<L>(point.lever[0], at) * impulse;
-        c.given.w2 += lane<L>(point.lever[1], at) * impulse;
-    }
+    give_points(c);
     const Sides<L> sides = sides_of(c);
     const Sides<L>* const pyramid = visit.pyramid ? &sides : nullptr;
     const Grip<L> whole = kept<L>(c.block.friction_impulse, at);
@@ -306,12 +308,7 @@ template <class L>
     c.given.v1 = held.impulse_1;
     c.given.v2 = held.impulse_2;
     c.given.wn = twist;
-    if (visit.rolls) {
-        const V3<L> rolling = lane3<L>(rows.rollings[place].impulse, at);
-        c.given.w1 += rolling.x;
-        c.given.w2 += rolling.y;
-        c.given.wn += rolling.z;
-    }
+    if (visit.rolls) give_rolling(c, rows.rollings[place]);
     c.write(rows.bodies);
 }
 

@@ -78,26 +78,13 @@ template <class L, bool turns>
                                        const Visit<typename L::Number>& visit)
 {
     Contacts<L, turns> c(rows, place, at);
-    for (int k = 0; k < c.block.points; ++k) {
-        const auto& point = c.points[k];
-        const L impulse = lane<L>(point.impulse, at);
-        c.given.n += impulse;
-        if constexpr (turns) {
-            c.given.w1 += lane<L>(point.lever[0], at) * impulse;
-            c.given.w2 += lane<L>(point.lever[1], at) * impulse;
-        }
-    }
+    give_points(c);
     if (visit.grips) {
         c.given.v1 = lane<L>(c.block.friction_impulse[0], at);
         c.given.v2 = lane<L>(c.block.friction_impulse[1], at);
         if constexpr (turns) {
             c.given.wn = lane<L>(c.block.twist_impulse, at);
-            if (visit.rolls) {
-                const V3<L> rolling = lane3<L>(rows.rollings[place].impulse, at);
-                c.given.w1 += rolling.x;
-                c.given.w2 += rolling.y;
-                c.given.wn += rolling.z;
-            }
+            if (visit.rolls) give_rolling(c, rows.rollings[place]);
         }
     }
     c.write(rows.bodies);

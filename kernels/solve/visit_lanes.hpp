@@ -364,6 +364,31 @@ void weigh(const Contacts<L, turns>& c, const Aim<L> (&aims)[most], L& load, L& 
     }
 }
 
+// Gives what the points hold, as a visit left it.
+template <class L, bool turns>
+void give_points(Contacts<L, turns>& c)
+{
+    for (int k = 0; k < c.block.points; ++k) {
+        const auto& point = c.points[k];
+        const L impulse = lane<L>(point.impulse, c.at);
+        c.given.n += impulse;
+        if constexpr (turns) {
+            c.given.w1 += lane<L>(point.lever[0], c.at) * impulse;
+            c.given.w2 += lane<L>(point.lever[1], c.at) * impulse;
+        }
+    }
+}
+
+// The same of what resists rolling.
+template <class L>
+void give_rolling(Contacts<L, true>& c, const RollingRows<typename L::Number>& rolling)
+{
+    const V3<L> held = lane3<L>(rolling.impulse, c.at);
+    c.given.w1 += held.x;
+    c.given.w2 += held.y;
+    c.given.wn += held.z;
+}
+
 // The impulses of the points as a visit leaves them.
 template <class L, bool turns, int most>
 void keep_impulses(Contacts<L, turns>& c,
