@@ -77,11 +77,7 @@ TEST(BackUp, BouncingBallComesToRestInTheTimeItShould)
 
 TEST(BackUp, StackStandsApartAndStill)
 {
-    SceneOf made = backed_up(0.5, 0);
-    made.scene.settings.dt = 1.0 / 60;
-    made.floor();
-    for (int i = 0; i < 4; ++i) made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.501 + 1.001 * i));
-    World world(made.scene);
+    World world(stack_of_boxes(Overlap::back_up, 4));
     for (int step = 0; step < 120; ++step) {
         world.step();
         ASSERT_EQ(world.measure().overlapping_pairs, 0u) << "step " << step;
@@ -109,14 +105,7 @@ TEST(BackUp, BallsNeverOverlapAndGainNoEnergy)
 
 TEST(BackUp, BoxesThatTumbleNeverOverlap)
 {
-    SceneOf made = backed_up(0.4, 0.3);
-    made.scene.settings.dt = 0.01;
-    made.floor();
-    for (int i = 0; i < 4; ++i) {
-        BodyDescription& box = made.box(Vec3(0.3, 0.2, 0.1), Vec3(0.1 * i, 0, 0.5 + 0.7 * i));
-        box.angular_velocity = Vec3(3, 2.0 * i, 1);
-    }
-    World world(made.scene);
+    World world(tumbling_boxes(Overlap::back_up));
     for (int step = 0; step < 150; ++step) {
         world.step();
         ASSERT_EQ(world.measure().overlapping_pairs, 0u) << "step " << step;
@@ -126,25 +115,15 @@ TEST(BackUp, BoxesThatTumbleNeverOverlap)
 
 TEST(BackUp, SameBitsForAnyNumberOfThreads)
 {
-    std::string hashes[3];
-    for (int threads = 1; threads <= 3; ++threads) {
-        World world(heap_of_balls(Overlap::back_up, 0.5), threads);
-        world.step(30);
-        hashes[threads - 1] = world.state_hash();
-    }
-    EXPECT_EQ(hashes[0], hashes[1]);
-    EXPECT_EQ(hashes[0], hashes[2]);
+    const Scene scene = heap_of_balls(Overlap::back_up, 0.5);
+    const std::string wanted = hash_after(scene, 1, 30);
+    EXPECT_EQ(hash_after(scene, 2, 30), wanted);
+    EXPECT_EQ(hash_after(scene, 3, 30), wanted);
 }
 
 TEST(BackUp, PlatformCarriesWhatRestsOnIt)
 {
-    SceneOf made = backed_up(0.8, 0);
-    made.scene.settings.dt = 0.01;
-    BodyDescription& lift = made.box(Vec3(1, 1, 0.1), Vec3(0, 0, -0.1));
-    lift.motion = Motion::kinematic;
-    lift.velocity = Vec3(0.2, 0, 1);
-    made.box(Vec3(0.2, 0.2, 0.2), Vec3(0, 0, 0.2001));
-    World world(made.scene);
+    World world(box_on_a_lift(Overlap::back_up));
     for (int step = 0; step < 100; ++step) {
         world.step();
         ASSERT_EQ(world.measure().overlapping_pairs, 0u) << "step " << step;
@@ -213,11 +192,7 @@ TEST(BackUp, PendulumStrikesAPostAndKeepsItsPivot)
 TEST(BackUp, TellsTheForceOfContacts)
 {
     for (const Overlap overlap : {Overlap::back_up, Overlap::subdivide}) {
-        SceneOf made = carried(overlap, 0.5, 0);
-        made.scene.settings.dt = 1.0 / 60;
-        made.floor();
-        for (int i = 0; i < 3; ++i) made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.501 + 1.001 * i));
-        World world(made.scene);
+        World world(stack_of_boxes(overlap, 3));
         world.step(60);
         const double weight = 1000 * kGravity;
         for (std::size_t i = 0; i < 4; ++i) {

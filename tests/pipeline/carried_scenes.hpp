@@ -68,4 +68,38 @@ inline Scene heap_of_balls(Overlap overlap, double restitution)
     return made.scene;
 }
 
+// Boxes of a meter, a millimeter over one another.
+inline Scene stack_of_boxes(Overlap overlap, int boxes)
+{
+    SceneOf made = carried(overlap, 0.5, 0);
+    made.scene.settings.dt = 1.0 / 60;
+    made.floor();
+    for (int i = 0; i < boxes; ++i) made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.501 + 1.001 * i));
+    return made.scene;
+}
+
+inline Scene tumbling_boxes(Overlap overlap)
+{
+    SceneOf made = carried(overlap, 0.4, 0.3);
+    made.scene.settings.dt = 0.01;
+    made.floor();
+    for (int i = 0; i < 4; ++i) {
+        BodyDescription& box = made.box(Vec3(0.3, 0.2, 0.1), Vec3(0.1 * i, 0, 0.5 + 0.7 * i));
+        box.angular_velocity = Vec3(3, 2.0 * i, 1);
+    }
+    return made.scene;
+}
+
+// A platform that rises and moves along, with a box on it.
+inline Scene box_on_a_lift(Overlap overlap)
+{
+    SceneOf made = carried(overlap, 0.8, 0);
+    made.scene.settings.dt = 0.01;
+    BodyDescription& lift = made.box(Vec3(1, 1, 0.1), Vec3(0, 0, -0.1));
+    lift.motion = Motion::kinematic;
+    lift.velocity = Vec3(0.2, 0, 1);
+    made.box(Vec3(0.2, 0.2, 0.2), Vec3(0, 0, 0.2001));
+    return made.scene;
+}
+
 }  // namespace throng::given

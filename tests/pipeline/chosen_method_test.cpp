@@ -2,6 +2,7 @@
 // filters change nothing but the time.
 #include "pipeline/world_state.hpp"
 #include "scenes/catalog.hpp"
+#include "tests/pipeline/small_scenes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,8 @@
 
 namespace throng {
 namespace {
+
+using given::hash_after;
 
 constexpr NarrowPhase kMethods[] = {NarrowPhase::gjk, NarrowPhase::sat, NarrowPhase::chung_wang,
                                     NarrowPhase::clip_volume, NarrowPhase::containment};
@@ -20,14 +23,6 @@ Scene heap(const char* name, int size, NarrowPhase method, MethodStart start = M
     scene.settings.narrowphase = method;
     scene.settings.method_start = start;
     return scene;
-}
-
-std::string hash_after(const Scene& scene, int threads, int steps, bool in_order = false)
-{
-    World world(scene, threads);
-    world.run_in_order(in_order);
-    world.step(steps);
-    return world.state_hash();
 }
 
 class ChosenMethod : public ::testing::TestWithParam<NarrowPhase> { };

@@ -2,6 +2,7 @@
 #include "pipeline/unused_dials.hpp"
 #include "pipeline/world.hpp"
 #include "scenes/catalog.hpp"
+#include "tests/pipeline/small_scenes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -213,14 +214,9 @@ TEST(Friction, OfEveryKindHasTheSameBitsOnAnyNumberOfThreads)
         SCOPED_TRACE(text_of(kind));
         Scene scene = make_scene("pile", 60);
         choose(kind, scene.settings);
-        std::vector<std::string> hashes;
-        for (const int threads : {1, 2, 3}) {
-            World world(scene, threads);
-            world.step(40);
-            hashes.push_back(world.state_hash());
-        }
-        EXPECT_EQ(hashes[0], hashes[1]);
-        EXPECT_EQ(hashes[0], hashes[2]);
+        const std::string wanted = given::hash_after(scene, 1, 40);
+        EXPECT_EQ(given::hash_after(scene, 2, 40), wanted);
+        EXPECT_EQ(given::hash_after(scene, 3, 40), wanted);
     }
 }
 
@@ -229,18 +225,11 @@ TEST(Friction, DialsThatTheDirectSolverDoesNotReadChangeNothingAndAreNamed)
     Scene scene = make_scene("pile", 12);
     scene.settings.solver = Solver::direct;
     scene.settings.direct_limit = 4;  // so that some islands go by soft_step
-    std::string hash;
-    {
-        World world(scene);
-        world.step(40);
-        hash = world.state_hash();
-    }
+    const std::string hash = given::hash_after(scene, 1, 40);
     scene.settings.friction_at = FrictionAt::points;
     scene.settings.friction_cone = FrictionCone::pyramid;
     scene.dials_set = {"friction_at", "friction_cone"};
-    World world(scene);
-    world.step(40);
-    EXPECT_EQ(world.state_hash(), hash);
+    EXPECT_EQ(given::hash_after(scene, 1, 40), hash);
     const std::vector<std::string> named = {
         "friction_at: unused, solver direct has friction at every point",
         "friction_cone: unused, solver direct holds a round cone"};

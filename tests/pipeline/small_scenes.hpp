@@ -4,6 +4,7 @@
 #include "pipeline/world.hpp"
 
 #include <cmath>
+#include <string>
 
 namespace throng::given {
 
@@ -82,6 +83,14 @@ inline double greatest_speed(const World& world)
         greatest =
             std::max({greatest, world.velocity(body).norm(), world.angular_velocity(body).norm()});
     return greatest;
+}
+
+inline std::string hash_after(const Scene& scene, int threads, int steps, bool in_order = false)
+{
+    World world(scene, threads);
+    world.run_in_order(in_order);
+    world.step(steps);
+    return world.state_hash();
 }
 
 }  // namespace throng::given

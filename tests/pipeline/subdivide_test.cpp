@@ -124,16 +124,10 @@ TEST(Subdivide, BallsKeepTheirBoundAndGainNoEnergy)
 
 TEST(Subdivide, BoxesThatTumbleKeepTheirBound)
 {
-    SceneOf made = divided(0.4, 0.3);
-    made.scene.settings.dt = 0.01;
-    made.floor();
-    for (int i = 0; i < 4; ++i) {
-        BodyDescription& box = made.box(Vec3(0.3, 0.2, 0.1), Vec3(0.1 * i, 0, 0.5 + 0.7 * i));
-        box.angular_velocity = Vec3(3, 2.0 * i, 1);
-    }
-    World world(made.scene);
+    const Scene scene = tumbling_boxes(Overlap::subdivide);
+    World world(scene);
     // Falls of 3 m, and corners half a meter out at twice the greatest spin that those leave.
-    const double bound = bound_of(made.scene.settings, 0.1, 2 * fall_speed(3) + 0.5 * 30);
+    const double bound = bound_of(scene.settings, 0.1, 2 * fall_speed(3) + 0.5 * 30);
     for (int step = 0; step < 150; ++step) {
         world.step();
         ASSERT_LE(world.measure().greatest_overlap, bound) << "step " << step;
@@ -145,11 +139,7 @@ TEST(Subdivide, BoxesThatTumbleKeepTheirBound)
 
 TEST(Subdivide, StackStandsStillAndApart)
 {
-    SceneOf made = divided(0.5, 0);
-    made.scene.settings.dt = 1.0 / 60;
-    made.floor();
-    for (int i = 0; i < 4; ++i) made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.501 + 1.001 * i));
-    World world(made.scene);
+    World world(stack_of_boxes(Overlap::subdivide, 4));
     world.step(120);
     EXPECT_EQ(world.measure().overlapping_pairs, 0u);
     EXPECT_LT(greatest_speed(world), 1e-6);
@@ -239,25 +229,15 @@ TEST(Subdivide, WhatIsJammedIsToldAndTakesBoundedWork)
 
 TEST(Subdivide, SameBitsForAnyNumberOfThreads)
 {
-    std::string hashes[3];
-    for (int threads = 1; threads <= 3; ++threads) {
-        World world(heap_of_balls(Overlap::subdivide, 0.5), threads);
-        world.step(30);
-        hashes[threads - 1] = world.state_hash();
-    }
-    EXPECT_EQ(hashes[0], hashes[1]);
-    EXPECT_EQ(hashes[0], hashes[2]);
+    const Scene scene = heap_of_balls(Overlap::subdivide, 0.5);
+    const std::string wanted = hash_after(scene, 1, 30);
+    EXPECT_EQ(hash_after(scene, 2, 30), wanted);
+    EXPECT_EQ(hash_after(scene, 3, 30), wanted);
 }
 
 TEST(Subdivide, PlatformCarriesWhatRestsOnIt)
 {
-    SceneOf made = divided(0.8, 0);
-    made.scene.settings.dt = 0.01;
-    BodyDescription& lift = made.box(Vec3(1, 1, 0.1), Vec3(0, 0, -0.1));
-    lift.motion = Motion::kinematic;
-    lift.velocity = Vec3(0.2, 0, 1);
-    made.box(Vec3(0.2, 0.2, 0.2), Vec3(0, 0, 0.2001));
-    World world(made.scene);
+    World world(box_on_a_lift(Overlap::subdivide));
     world.step(100);
     EXPECT_EQ(world.measure().overlapping_pairs, 0u);
     EXPECT_LT((velocity_of(world, 1) - Vec3(0.2, 0, 1)).norm(), 1e-6);
