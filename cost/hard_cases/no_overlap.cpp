@@ -151,23 +151,40 @@ void case_backed_up(CaseBench& bench)
 
 namespace {
 
-struct Tower {
-    double gap = 1, overlap = 0, deepest = 0, speed = 0, ms = 0;
+// What any way of holding bodies apart is asked for: its price, and what it holds.
+struct Price {
+    double overlap = 0, ms = 0;  // the greatest at any step, and the mean time of one
+    int steps = 0;
+
+    void add(const World& world)
+    {
+        overlap = std::max(overlap, world.measure().greatest_overlap);
+        ms += (world.report().time_ms - ms) / ++steps;
+    }
+};
+
+// The dials of a scene that nobody sleeps in, with so much exactness as keeping apart needs.
+void hold_apart(Settings& settings, Overlap overlap)
+{
+    settings.overlap = overlap;
+    settings.sleep = false;
+    if (overlap != Overlap::allow) settings.precision = Precision::double_;
+}
+
+struct Tower : Price {
+    double gap = 1, deepest = 0, speed = 0;
 };
 
 // H8: ten cubes of 1 m, as they fall asleep nowhere. The least gap between the middles of faces.
 Tower tower(CaseBench& bench, Overlap overlap)
 {
     SceneParts parts(bench.scene());
-    parts.scene().settings.overlap = overlap;
-    parts.scene().settings.sleep = false;
-    if (overlap != Overlap::allow) parts.scene().settings.precision = Precision::double_;
+    hold_apart(parts.scene().settings, overlap);
     const std::uint32_t material = parts.material(0.5);
     parts.plane(material, Vec3::UnitZ(), 0);
     for (int k = 0; k < 10; ++k)
         parts.box(material, 1, Vec3::Constant(0.5), {Vec3(0, 0, 0.501 + k * 1.001), {1, 0, 0, 0}});
     Tower seen;
-    int steps = 0;
     bench.run(parts.scene(), bench.brief() ? 1 : 10, [&](World& world, double) {
         double below = 0;
         seen.speed = 0;
@@ -177,18 +194,15 @@ Tower tower(CaseBench& bench, Overlap overlap)
             below = z + 0.5;
             seen.speed = std::max(seen.speed, world.velocity(world.bodies()[i]).norm());
         }
-        seen.overlap = std::max(seen.overlap, world.measure().greatest_overlap);
         seen.deepest = world.report().deepest;
-        seen.ms += world.report().time_ms;
-        ++steps;
+        seen.add(world);
         return true;
     });
-    seen.ms /= steps;
     return seen;
 }
 
-struct House {
-    double overlap = 0, drift = 0, ms = 0;
+struct House : Price {
+    double drift = 0;
     std::uint64_t fallbacks = 0;
 };
 
@@ -197,12 +211,9 @@ House house(CaseBench& bench, Overlap overlap)
 {
     Scene scene = make_scene("card_house", bench.brief() ? 1 : 2);
     scene.settings = bench.settings();
-    scene.settings.overlap = overlap;
-    scene.settings.sleep = false;
-    if (overlap != Overlap::allow) scene.settings.precision = Precision::double_;
+    hold_apart(scene.settings, overlap);
     const World built(scene);
     House seen;
-    int steps = 0;
     bench.run(scene, bench.brief() ? 1 : 10, [&](World& world, double) {
         seen.drift = 0;
         for (std::size_t i = 0; i < world.bodies().size(); ++i) {
@@ -210,13 +221,10 @@ House house(CaseBench& bench, Overlap overlap)
             const Vec3 drift = world.pose(body).position - built.pose(built.bodies()[i]).position;
             seen.drift = std::max(seen.drift, drift.norm());
         }
-        seen.overlap = std::max(seen.overlap, world.measure().greatest_overlap);
         seen.fallbacks = world.report().fallbacks;
-        seen.ms += world.report().time_ms;
-        ++steps;
+        seen.add(world);
         return true;
     });
-    seen.ms /= steps;
     return seen;
 }
 

@@ -28,36 +28,48 @@ Scene sliding_box(const CaseBench& bench, double friction, const Vec3& velocity)
 
 BodyId box_of(const World& world) { return world.bodies().back(); }
 
-void slide(CaseBench& bench, const char* name, double friction, const Vec3& velocity)
+// How a box has slid by the end: along the way it was pushed, and furthest off that at any time.
+struct Slid {
+    Vec3 place = Vec3::Zero();  // on the floor
+    double way = 0, sideways = 0;
+};
+
+Slid slid(CaseBench& bench, const Scene& scene, double seconds)
 {
-    const double wanted = velocity.squaredNorm() / (2 * friction * kGravity);
-    const Vec3 along = velocity.normalized();
-    Vec3 end = Vec3::Zero();
-    double sideways = 0;
-    bench.run(sliding_box(bench, friction, velocity), 4, [&](World& world, double) {
-        end = world.pose(box_of(world)).position;
-        const Vec3 flat(end.x(), end.y(), 0);
-        sideways = std::max(sideways, (flat - along * along.dot(flat)).norm());
+    const Vec3 along = scene.bodies.back().velocity.normalized();
+    Slid seen;
+    bench.run(scene, seconds, [&](World& world, double) {
+        seen.place = world.pose(box_of(world)).position;
+        seen.place.z() = 0;
+        seen.way = along.dot(seen.place);
+        seen.sideways = std::max(seen.sideways, (seen.place - along * seen.way).norm());
         return true;
     });
-    const double way = along.dot(end);
-    bench.report(name, "error of the way to rest", std::abs(way - wanted) / wanted, 3e-3, "1");
-    bench.report(name, "way off the line over the way", sideways / wanted, 1e-5, "1");
+    return seen;
+}
+
+double way_to_rest(double friction, const Vec3& velocity)
+{
+    return velocity.squaredNorm() / (2 * friction * kGravity);
+}
+
+void slide(CaseBench& bench, const char* name, double friction, const Vec3& velocity)
+{
+    const double wanted = way_to_rest(friction, velocity);
+    const Slid seen = slid(bench, sliding_box(bench, friction, velocity), 4);
+    bench.report(name, "error of the way to rest", std::abs(seen.way - wanted) / wanted, 3e-3, "1");
+    bench.report(name, "way off the line over the way", seen.sideways / wanted, 1e-5, "1");
 }
 
 // Friction at each corner by itself: the same way, with the corners' different loads.
 void slide_on_points(CaseBench& bench)
 {
     const double friction = 0.3;
-    const Vec3 velocity(3, 4, 0), wanted = velocity * (5 / (2 * friction * kGravity));
+    const Vec3 velocity(3, 4, 0);
+    const Vec3 wanted = velocity.normalized() * way_to_rest(friction, velocity);
     Scene scene = sliding_box(bench, friction, velocity);
     scene.settings.friction_at = FrictionAt::points;
-    Vec3 end = Vec3::Zero();
-    bench.run(scene, 4, [&](World& world, double) {
-        end = world.pose(box_of(world)).position;
-        return true;
-    });
-    const double error = (Vec3(end.x(), end.y(), 0) - wanted).norm() / wanted.norm();
+    const double error = (slid(bench, scene, 4).place - wanted).norm() / wanted.norm();
     bench.report("v=(3, 4), mu=0.3, friction at points", "error of the place of rest", error, 3e-3,
                  "1");
 }
@@ -69,45 +81,31 @@ void slide_in_a_pyramid(CaseBench& bench)
     const Vec3 velocity(6, 8, 0), wanted(36 / twice, 64 / twice, 0);
     Scene scene = sliding_box(bench, friction, velocity);
     scene.settings.friction_cone = FrictionCone::pyramid;
-    Vec3 end = Vec3::Zero();
-    bench.run(scene, 4, [&](World& world, double) {
-        end = world.pose(box_of(world)).position;
-        return true;
-    });
-    const Vec3 flat(end.x(), end.y(), 0), along = velocity.normalized();
+    const Slid seen = slid(bench, scene, 4);
     const char* const name = "v=(6, 8), mu=0.3, friction within a pyramid";
     bench.report(name, "error of the place of rest that such a path has",
-                 (flat - wanted).norm() / wanted.norm(), 3e-3, "1");
+                 (seen.place - wanted).norm() / wanted.norm(), 3e-3, "1");
     bench.skip(name, "way off the line over the way of a cone",
                "for comparison, what a pyramid bends the path by: "
-                   + std::to_string((flat - along * along.dot(flat)).norm() * twice / 100));
+                   + std::to_string(seen.sideways / way_to_rest(friction, velocity)));
 }
 
 // Exactly, at a step of a thousandth of a second.
 void slide_exactly(CaseBench& bench, const char* name, double friction, const Vec3& velocity)
 {
-    const double wanted = velocity.squaredNorm() / (2 * friction * kGravity);
-    const Vec3 along = velocity.normalized();
+    const double wanted = way_to_rest(friction, velocity);
     Scene scene = sliding_box(bench, friction, velocity);
     ask_exactly(scene.settings);
     scene.settings.dt = 1e-3;
-    Vec3 end = Vec3::Zero();
-    double sideways = 0;
-    bench.run(scene, 2.5, [&](World& world, double) {
-        end = world.pose(box_of(world)).position;
-        const Vec3 flat(end.x(), end.y(), 0);
-        sideways = std::max(sideways, (flat - along * along.dot(flat)).norm());
-        return true;
-    });
-    const double way = along.dot(end);
-    bench.report(name, "error of the way to rest", std::abs(way - wanted) / wanted, 1e-3, "1");
-    bench.report(name, "way off the line over the way", sideways / wanted, 1e-6, "1");
+    const Slid seen = slid(bench, scene, 2.5);
+    bench.report(name, "error of the way to rest", std::abs(seen.way - wanted) / wanted, 1e-3, "1");
+    bench.report(name, "way off the line over the way", seen.sideways / wanted, 1e-6, "1");
 }
 
 // Up a slope of 20 degrees and back down.
 void slide_up(CaseBench& bench)
 {
-    const double angle = 20 * 3.14159265358979323846 / 180, friction = 0.3, speed = 4;
+    const double angle = 20 * kPi / 180, friction = 0.3, speed = 4;
     const Quat turn = exponential(Vec3(0, -angle, 0));  // uphill is +x
     SceneParts parts(bench.scene());
     const std::uint32_t material = parts.material(friction);
