@@ -16,7 +16,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
+#include <queue>
 
 namespace throng {
 
@@ -24,6 +27,8 @@ namespace {
 
 constexpr std::size_t kPairs = 8;        // a block: some 20 microseconds of work
 constexpr std::size_t kMovers = 4096;    // a block
+constexpr std::size_t kKeys = 1 << 13;   // a block
+constexpr std::size_t kWays = 512;       // a block
 constexpr std::size_t kBoxes = 1 << 14;  // a block
 constexpr double kNever = 2;             // later than the step
 
@@ -195,8 +200,15 @@ private:
     void find_candidates()
     {
         candidates_.clear();
-        for (const PairKey key : pairs_.keys)
-            if (worth_asking(key) && ways_cross(key)) candidates_.push_back({key});
+        BlockLists<Candidate> lists;
+        lists.start(block_count(pairs_.keys.size(), kKeys));
+        for_each_block(pairs_.keys.size(), kKeys, [&](auto begin, auto end, auto block) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const PairKey key = pairs_.keys[i];
+                if (worth_asking(key) && ways_cross(key)) lists[block].push_back({key});
+            }
+        });
+        lists.append_to(candidates_);
         for (const std::uint32_t body : found_)
             for (std::uint32_t k = 0; k < colliders_.count[body]; ++k)
                 look_beyond_box(colliders_.begin[body] + k);
@@ -235,26 +247,32 @@ private:
         std::sort(bodies.begin(), bodies.end());
         bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
         ways_.resize(bodies.size());
-        for (std::size_t i = 0; i < bodies.size(); ++i) {
-            const std::uint32_t body = bodies[i];
-            Way& way = ways_[i];
-            way.body = body;
-            way.fast =
-                std::binary_search(found_.begin(), found_.end(), body) && states_.dynamic(body);
-            way.ahead = std::binary_search(bounds_.fast.begin(), bounds_.fast.end(), body);
-            if (states_.kind[body] == BodyKind::still)
-                way.sweep.begin = poses_.at(body);
-            else
-                way.sweep = sweep_between(began(body), poses_.at(body),
-                                          velocities_.angular[body] * settings_.dt);
-        }
+        for_each_block(bodies.size(), kWays, [&](auto begin, auto end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) ways_[i] = way_from_start(bodies[i]);
+        });
     }
 
-    Way& way_of(std::uint32_t body)
+    Way way_from_start(std::uint32_t body) const
+    {
+        Way way;
+        way.body = body;
+        way.fast = std::binary_search(found_.begin(), found_.end(), body) && states_.dynamic(body);
+        way.ahead = std::binary_search(bounds_.fast.begin(), bounds_.fast.end(), body);
+        if (states_.kind[body] == BodyKind::still)
+            way.sweep.begin = poses_.at(body);
+        else
+            way.sweep = sweep_between(began(body), poses_.at(body),
+                                      velocities_.angular[body] * settings_.dt);
+        return way;
+    }
+
+    std::uint32_t way_at(std::uint32_t body) const
     {
         const auto less = [](const Way& way, std::uint32_t wanted) { return way.body < wanted; };
-        return *std::lower_bound(ways_.begin(), ways_.end(), body, less);
+        const auto found = std::lower_bound(ways_.begin(), ways_.end(), body, less);
+        return static_cast<std::uint32_t>(found - ways_.begin());
     }
+    Way& way_of(std::uint32_t body) { return ways_[way_at(body)]; }
 
     MovingShape moving(std::uint32_t at)
     {
@@ -318,6 +336,7 @@ private:
         way.rides = on;
         way.held = true;
         way.since = time;
+        riders_.push_back(way_at(way.body));
     }
 
     void hold(Way& way, double time)
@@ -375,33 +394,61 @@ private:
     void stop_riders(double time, std::vector<std::uint32_t>& changed)
     {
         for (std::size_t i = 0; i < changed.size(); ++i)
-            for (Way& way : ways_)
-                if (way.rides == changed[i]) {
-                    hold(way, time);
-                    changed.push_back(way.body);
-                }
+            for (const std::uint32_t rider : riders_) {
+                Way& way = ways_[rider];
+                if (way.rides != changed[i]) continue;
+                hold(way, time);
+                changed.push_back(way.body);
+            }
     }
 
-    // The earliest impact, what it changes, and again.
+    // Which candidates each way is in.
+    void index_candidates()
+    {
+        in_way_.begin.assign(ways_.size() + 1, 0);
+        in_way_.candidates.resize(2 * candidates_.size());
+        const auto for_each_end = [&](auto&& visit) {
+            for (std::uint32_t i = 0; i < candidates_.size(); ++i)
+                for (const std::uint32_t at :
+                     {first_of(candidates_[i].key), second_of(candidates_[i].key)})
+                    visit(way_at(colliders_.body[at]), i);
+        };
+        for_each_end([&](std::uint32_t way, std::uint32_t) { ++in_way_.begin[way + 1]; });
+        std::partial_sum(in_way_.begin.begin(), in_way_.begin.end(), in_way_.begin.begin());
+        std::vector<std::uint32_t> next(in_way_.begin.begin(), in_way_.begin.end() - 1);
+        for_each_end(
+            [&](std::uint32_t way, std::uint32_t i) { in_way_.candidates[next[way]++] = i; });
+    }
+
+    // The earliest impact, what it changes, and again. Of those at one time the first goes first.
     void hold_all()
     {
+        index_candidates();
+        using Due = std::pair<double, std::uint32_t>;  // when, and which candidate
+        std::priority_queue<Due, std::vector<Due>, std::greater<>> due;
+        const auto await = [&](std::uint32_t i) {
+            if (candidates_[i].time < kNever) due.emplace(candidates_[i].time, i);
+        };
+        for (std::uint32_t i = 0; i < candidates_.size(); ++i) await(i);
         // Each impact changes a body, and no body more than twice.
-        for (std::size_t left = 2 * ways_.size(); left > 0; --left) {
-            const auto first = std::min_element(
-                candidates_.begin(), candidates_.end(),
-                [](const Candidate& a, const Candidate& b) { return a.time < b.time; });
-            if (!(first->time < kNever)) break;
-            const double time = first->time;
+        std::size_t left = 2 * ways_.size();
+        while (left > 0 && !due.empty()) {
+            const auto [time, which] = due.top();
+            due.pop();
+            if (candidates_[which].time != time) continue;  // it has been asked again since
+            --left;
             std::vector<std::uint32_t> changed;
-            meet(*first, changed);
-            first->time = kNever;
+            meet(candidates_[which], changed);
+            candidates_[which].time = kNever;
             stop_riders(time, changed);
-            for (Candidate& other : candidates_) {
-                if (&other == &*first) continue;
-                const std::uint32_t a = colliders_.body[first_of(other.key)];
-                const std::uint32_t b = colliders_.body[second_of(other.key)];
-                const auto is = [&](std::uint32_t body) { return body == a || body == b; };
-                if (std::any_of(changed.begin(), changed.end(), is)) ask(other, time);
+            for (const std::uint32_t body : changed) {
+                const std::uint32_t way = way_at(body);
+                for (std::uint32_t k = in_way_.begin[way]; k < in_way_.begin[way + 1]; ++k) {
+                    const std::uint32_t other = in_way_.candidates[k];
+                    if (other == which) continue;
+                    ask(candidates_[other], time);
+                    await(other);
+                }
             }
         }
         for (const Way& way : ways_) {
@@ -425,7 +472,12 @@ private:
     FastBodies& fast_;
     std::vector<std::uint32_t> found_;  // fast bodies, ascending
     std::vector<Candidate> candidates_;
-    std::vector<Way> ways_;  // by body
+    std::vector<Way> ways_;              // by body
+    std::vector<std::uint32_t> riders_;  // ways that ride, or did
+    struct {
+        std::vector<std::uint32_t> begin;  // [ways + 1]
+        std::vector<std::uint32_t> candidates;
+    } in_way_;
 };
 
 }  // namespace
