@@ -48,7 +48,8 @@ bool meets_at_all(const PolytopeSide& side)
 {
     bool touching = false;
     for (std::size_t vertex = 0; vertex < side.pair.b.vertices.size(); ++vertex) {
-        touching |= nearest_face(side, side.place(vertex)).height <= side.noise;
+        const Vec3 point = side.place(vertex);
+        touching |= has_inside(side, point, nearest_face(side, point));
     }
     for (const Hull::Edge& edge : side.pair.b.edges) {
         const Vec3 from = side.place(edge.from), to = side.place(edge.to);
@@ -57,7 +58,7 @@ bool meets_at_all(const PolytopeSide& side)
         for (std::size_t face = 0; face < side.pair.a.normals.size(); ++face) {
             left &= cut(side, face, from, to, part);
         }
-        touching |= left;
+        touching |= left && is_inside(side, from, to, part);
     }
     return touching;
 }
@@ -69,12 +70,12 @@ bool fits(const PolytopeView& shape, const std::uint32_t* slots)
         && slots[kFrom] < vertices && slots[kTo] < vertices;
 }
 
-bool has_inside(const PolytopeSide& side, const Vec3& point)
+bool still_has_inside(const PolytopeSide& side, const Vec3& point)
 {
     ++side.rounds;
     const double within = side.pair.a.inner_radius;
     return (point - side.pair.a.center).squaredNorm() < within * within
-        || nearest_face(side, point).height <= side.noise;
+        || has_inside(side, point, nearest_face(side, point));
 }
 
 // Whether what was found the last time still is so.
@@ -88,7 +89,7 @@ WalkEnd recall(Side& side, Remembered kind)
     }
     side.best = {0, face, vertex};
     if (kind == Remembered::vertex)
-        return has_inside(side, side.place(vertex)) ? WalkEnd::inside : WalkEnd::open;
+        return still_has_inside(side, side.place(vertex)) ? WalkEnd::inside : WalkEnd::open;
     EdgePart part{0, 1, face, face};
     const Vec3 from = side.place(side.of_edges[kFrom]), to = side.place(side.of_edges[kTo]);
     return meets(side, from, to, part) ? WalkEnd::inside : WalkEnd::open;
@@ -203,7 +204,7 @@ bool add_points(Side& side, ContainmentPoints& out)
     const auto add_vertex = [&](std::uint16_t vertex) {
         const Vec3 point = side.place(vertex);
         const NearestFace nearest = nearest_face(side, point);
-        if (nearest.height <= side.noise) {
+        if (has_inside(side, point, nearest)) {
             add(out,
                 {point, Kind::vertex, !side.mirrored, vertex, vertex, nearest.face,
                  -nearest.height});

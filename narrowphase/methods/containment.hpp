@@ -3,7 +3,8 @@
 //
 // No more is needed: what two convex polyhedra share is one too, and each of its corners is a
 // vertex of one inside the other or a crossing of an edge with a face, also where one lies wholly
-// inside the other or only edges cross.
+// inside the other or only edges cross. What is inside by no more than rounding is measured against
+// the faces themselves: their planes alone say little near an edge between two sides of a plate.
 #pragma once
 
 #include "narrowphase/methods/convex_methods.hpp"

@@ -1,6 +1,8 @@
 #include "narrowphase/methods/polytope_side.hpp"
 
+#include "kernels/geometry/closest_points.hpp"
 #include "narrowphase/methods/climbing_support.hpp"
+#include "narrowphase/methods/flat_faces.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,6 +12,50 @@ namespace {
 
 // Steps from face to vertex to face; most walks end within three.
 constexpr int kSteps = 8;
+// How near a face, against the noise, is on it: some for the noise itself, some for measuring.
+constexpr double kOnFace = 4;
+
+using Line = Segment<double>;
+using Corners = std::array<Vec3, 3>;
+
+bool comes_near(const Line& line, const Corners& corners, double near)
+{
+    const auto is_near = [&](const Vec3& point) {
+        const Vec3 on =
+            closest_on_triangle<double>(point, corners[0], corners[1], corners[2]).point;
+        return (point - on).squaredNorm() <= near * near;
+    };
+    if (is_near(line.from) || is_near(line.to)) return true;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto between = closest_points<double>(line, {corners[i], corners[(i + 1) % 3]});
+        if ((between.on_a - between.on_b).squaredNorm() <= near * near) return true;
+    }
+    const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    const double here = across.dot(line.from - corners[0]);
+    const double there = across.dot(line.to - corners[0]);
+    return here * there < 0 && is_near(line.from + (line.to - line.from) * (here / (here - there)));
+}
+
+// Whether a line that is beneath all planes, to the noise, and not well beneath them, comes near a
+// face. Only those whose planes it comes near can be.
+bool comes_near_surface(const PolytopeSide& side, const Line& line)
+{
+    thread_local std::vector<FaceTriangle> triangles;
+    const PolytopeView& shape = side.pair.a;
+    for (std::size_t face = 0; face < shape.normals.size(); ++face) {
+        const double highest = std::max(side.height(face, line.from), side.over(face, line.to));
+        if (highest < -side.noise) continue;
+        const auto corners = shape.face(face);
+        const auto corner = [&](std::size_t i) { return shape.vertices[corners[i]]; };
+        collect_triangles(shape, face, triangles);
+        for (const FaceTriangle& t : triangles) {
+            if (comes_near(line, {corner(t.first), corner(t.middle), corner(t.last)},
+                           kOnFace * side.noise))
+                return true;
+        }
+    }
+    return false;
+}
 
 }  // namespace
 
@@ -33,6 +79,13 @@ bool cut(
     return part.from <= part.to;
 }
 
+bool is_inside(const PolytopeSide& side, const Vec3& from, const Vec3& to, const EdgePart& part)
+{
+    const auto at = [&](double along) -> Vec3 { return from + (to - from) * along; };
+    return nearest_face(side, at((part.from + part.to) / 2)).height < -side.noise
+        || comes_near_surface(side, {at(part.from), at(part.to)});
+}
+
 bool meets(const PolytopeSide& side, const Vec3& from, const Vec3& to, EdgePart& part)
 {
     const EdgePart last = part;
@@ -43,7 +96,7 @@ bool meets(const PolytopeSide& side, const Vec3& from, const Vec3& to, EdgePart&
         if (face == last.enters || face == last.leaves) continue;
         if (!cut(side, face, from, to, part)) return false;
     }
-    return true;
+    return is_inside(side, from, to, part);
 }
 
 NearestFace nearest_face(const PolytopeSide& side, const Vec3& point)
@@ -54,6 +107,12 @@ NearestFace nearest_face(const PolytopeSide& side, const Vec3& point)
         if (height > nearest.height) nearest = {static_cast<std::uint16_t>(face), height};
     }
     return nearest;
+}
+
+bool has_inside(const PolytopeSide& side, const Vec3& point, const NearestFace& nearest)
+{
+    return nearest.height < -side.noise
+        || (nearest.height <= side.noise && comes_near_surface(side, {point, point}));
 }
 
 FaceAxis lowest_vertex(const PolytopeSide& side, std::uint16_t face, std::uint16_t start)
@@ -79,7 +138,7 @@ WalkEnd walk(PolytopeSide& side, std::uint16_t face, std::uint16_t start)
         if (axis.separation > side.noise) return WalkEnd::parted;
         vertex = axis.vertex;
         const NearestFace nearest = nearest_face(side, side.place(vertex));
-        if (nearest.height <= side.noise) {
+        if (has_inside(side, side.place(vertex), nearest)) {
             side.best = axis;
             return WalkEnd::inside;
         }

@@ -47,6 +47,11 @@ struct EdgePart {
 bool cut(
     const PolytopeSide& side, std::size_t face, const Vec3& from, const Vec3& to, EdgePart& part);
 
+/// Whether what all faces have left of an edge is inside: well beneath all planes somewhere, or
+/// near the surface. Planes that meet at a sharp angle, put out by the noise, meet far beyond the
+/// edge between their faces; what lies there is not inside.
+bool is_inside(const PolytopeSide& side, const Vec3& from, const Vec3& to, const EdgePart& part);
+
 /// Whether something of an edge is inside, and what.
 ///
 ///   part   in: faces likely to leave nothing, as those that ended the last edge; out: what is
@@ -59,6 +64,11 @@ struct NearestFace {
     double height = -std::numeric_limits<double>::max();
 };
 NearestFace nearest_face(const PolytopeSide& side, const Vec3& point);
+
+/// Whether a point is inside, or near the surface.
+///
+///   nearest   its nearest_face()
+bool has_inside(const PolytopeSide& side, const Vec3& point, const NearestFace& nearest);
 
 /// The vertex least high over a face; by climbing from `start`.
 FaceAxis lowest_vertex(const PolytopeSide& side, std::uint16_t face, std::uint16_t start);
