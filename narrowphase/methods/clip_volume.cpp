@@ -1,8 +1,10 @@
 #include "narrowphase/methods/clip_volume.hpp"
 
 #include "narrowphase/methods/cut_polyhedron.hpp"
+#include "narrowphase/methods/polytope_side.hpp"
 
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -138,6 +140,30 @@ bool cut_all(const PolytopePair& pair, bool plain, double slack, Scratch& scratc
     return true;
 }
 
+// Whether what is left of a, and has no volume, is where b is, and not only beneath its planes.
+bool is_left_at(const PolytopePair& pair, const CutPolyhedron& rest)
+{
+    const PolytopePair mirrored = pair.mirrored();
+    int looks = 0;
+    const PolytopeSide side{mirrored, pair.noise(), looks};
+    const auto in_b = [&](const Vec3& x) -> Vec3 {
+        return mirrored.turn * (x + pair.a.center) + mirrored.shift;
+    };
+    return rest.any_edge([&](const Vec3& from, const Vec3& to) {
+        return is_inside(side, in_b(from), in_b(to), {});
+    });
+}
+
+// What is left of a; none where that is nothing.
+std::optional<Enclosed>
+left_of(const PolytopePair& pair, bool plain, double slack, Scratch& scratch, int& rounds)
+{
+    if (!cut_all(pair, plain, slack, scratch, rounds)) return {};
+    const Enclosed left = scratch.rest.enclosed();
+    if (left.volume > 0 || is_left_at(pair, scratch.rest)) return left;
+    return {};
+}
+
 }  // namespace
 
 MethodAnswer
@@ -165,20 +191,20 @@ ask_clip_volume(const ConvexPair& pair, double, MethodStart start, MethodMemory&
 
     const bool cut_b = !plain && is_cut_better(shapes.ab.b, shapes.ab.a);
     const PolytopePair& seen = cut_b ? shapes.ba : shapes.ab;
-    if (!cut_all(seen, plain, slack, scratch, answer.rounds)) {
+    const auto shared = left_of(seen, plain, slack, scratch, answer.rounds);
+    if (!shared) {
         if (start == MethodStart::cached) seek_parting_face(shapes, slack, answer, memory);
         return answer;
     }
-    const Enclosed shared = scratch.rest.enclosed();
     answer.cut_short = scratch.rest.cut_short();
     answer.touch = Touch::touching;
-    answer.volume = shared.volume;
-    answer.surface = shared.surface;
-    const Vec3 center = shared.center + seen.a.center;
+    answer.volume = shared->volume;
+    answer.surface = shared->surface;
+    const Vec3 center = shared->center + seen.a.center;
     answer.center = cut_b ? Vec3(shapes.ab.turn * center + shapes.ab.shift) : center;
-    const double length = shared.own.norm();
-    if (length > kNoArea * shared.surface) {
-        answer.normal = (cut_b ? Vec3(shapes.ab.turn * -shared.own) : shared.own) / length;
+    const double length = shared->own.norm();
+    if (length > kNoArea * shared->surface) {
+        answer.normal = (cut_b ? Vec3(shapes.ab.turn * -shared->own) : shared->own) / length;
     } else if (plain) {
         likely_axis(shapes, answer.normal, likely);
     }

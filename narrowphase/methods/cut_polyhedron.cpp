@@ -7,11 +7,7 @@
 #include <limits>
 
 namespace throng {
-namespace {
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-}  // namespace
+namespace { }  // namespace
 
 void CutPolyhedron::start(const PolytopeView& shape, double slack, std::size_t planes)
 {

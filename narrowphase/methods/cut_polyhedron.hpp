@@ -54,10 +54,22 @@ public:
     /// No volume is less than `slack` thick.
     Enclosed enclosed();
 
+    /// Whether visit(from, to) is true of some edge, in the frame of start().
+    template <class Visit>
+    bool any_edge(Visit visit) const
+    {
+        for (std::uint32_t half = 0; half < half_edges_.size(); half += 2) {
+            if (origin(half) == kNone) continue;
+            if (visit(vertex(origin(half)), vertex(target(half)))) return true;
+        }
+        return false;
+    }
+
     /// More edges than those planes can make: rounding has torn it, and a cut was left out.
     bool cut_short() const { return cut_short_; }
 
 private:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
     enum class Surface : std::uint8_t { own, cut, both };
 
     // Two halves make an edge, 2 i and 2 i + 1; each belongs to the face on its left.

@@ -239,7 +239,10 @@ bool spread_start(Furthest& furthest,
         most = now;
         start[2] = one;
     }
-    flat_normal = unit_or<double>(line.cross(start[2].point - start[0].point), side);
+    // Taken from what lies across the line, and square to the line however little that is.
+    const Vec3 off = start[2].point - start[0].point;
+    const Vec3 across = unit_or<double>(off - line * line.dot(off), other);
+    flat_normal = unit_or<double>(line.cross(across), side);
     if (!(most > tolerance)) flat_normal = side;
 
     start[3] = furthest(flat_normal);
@@ -305,12 +308,16 @@ Depth search(const CorePair& pair, Furthest& furthest, const Simplex& beginning)
     };
 
     std::array<Difference, 4> start = beginning.corners;
-    Vec3 flat_normal = Vec3::UnitZ();
+    Vec3 flat_normal = Vec3::Zero();
+    const auto keep_flat = [&] {
+        for (const Vec3& normal : {flat_normal, Vec3(-flat_normal)})
+            if (keep(normal, furthest(normal))) result.has_face = false;
+    };
     if (!encloses_volume(beginning) && !spread_start(furthest, tolerance, start, flat_normal)) {
-        keep(flat_normal, furthest(flat_normal));
-        keep(-flat_normal, furthest(-flat_normal));
+        keep_flat();
         return result;
     }
+    bool least = false;
     Polytope<kMaxCorners> polytope(tolerance);
     polytope.start(start);
     while (true) {
@@ -325,12 +332,15 @@ Depth search(const CorePair& pair, Furthest& furthest, const Simplex& beginning)
             for (std::size_t i = 0; i < 3; ++i) result.face[i] = polytope.corner(face.corners[i]);
         }
         // No direction parts the cores by less than the nearest face's offset.
-        if (result.depth - face.offset <= tolerance) break;
-        if (face.normal.dot(further.point) - face.offset <= tolerance) break;
+        least = result.depth - face.offset <= tolerance
+            || face.normal.dot(further.point) - face.offset <= tolerance;
+        if (least) break;
         if (is_corner_of(polytope, face, further.point)) break;
         result.cut_short = polytope.full();
         if (result.cut_short || !polytope.grow(nearest, further)) break;
     }
+    // All but flat, and the normals of slivers are wide of the mark.
+    if (!least && !flat_normal.isZero(0)) keep_flat();
     return result;
 }
 

@@ -237,5 +237,56 @@ TEST_P(AgreementOnHullsFromGames, AllMethodsSayTheSame)
 
 INSTANTIATE_TEST_SUITE_P(Parts, AgreementOnHullsFromGames, testing::Range(0, kGameParts));
 
+// The planes of a plate's two sides, put out by rounding, meet far beyond the rim between them.
+Hull random_plate(Random& random, double thickness)
+{
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 4; ++i)
+        corners.emplace_back(random.uniform(-1, 1), thickness * random.uniform(-1, 1),
+                             random.uniform(-1, 1));
+    return build_hull(corners).hull;
+}
+
+// Where the box's corner is so far from the plate's rim; below 0, within it.
+Pose beside_the_rim(const Hull& plate, Random& random, const Vec3& half, double gap)
+{
+    const auto corner = [&](int k) {
+        return plate.vertices[(random.below(2) + static_cast<std::size_t>(k)) % 4];
+    };
+    const Vec3 from = corner(0), to = corner(1);
+    const Vec3 on_rim = from + (to - from) * random.uniform(0.1, 0.9);
+    const Vec3 out = Vec3(on_rim - plate.center).normalized();
+    // The corner that lies furthest back along the way out.
+    const Quat turn = random_turn(random);
+    Vec3 nearest = half;
+    for (int k = 0; k < 3; ++k) nearest[k] = (turn.inverse() * out)[k] > 0 ? -half[k] : half[k];
+    return {on_rim + gap * out - turn * nearest, turn};
+}
+
+TEST(Agreement, BesideTheSharpRimOfAPlateAllSayApart)
+{
+    Random random(3000);
+    Panel panel;
+    int apart = 0, touching = 0;
+    for (int i = 0; i < 4000; ++i) {
+        Shapes shapes;
+        const double thickness = std::pow(10, random.uniform(-7, -3));
+        shapes.hulls = {random_plate(random, thickness)};
+        if (shapes.hulls[0].vertices.size() != 4) continue;
+        const Vec3 half(0.3, 0.4, 0.5);
+        shapes.boxes = {{half}};
+        const double gap = std::pow(10, random.uniform(-8, -5)) * (i % 4 == 0 ? -1 : 1);
+        const Pose pose = beside_the_rim(shapes.hulls[0], random, half, gap);
+        const ConvexPair pair(shapes, {ShapeKind::hull, 0}, {ShapeKind::box, 0}, pose);
+        std::vector<MethodMemory> memories;
+        panel.ask(pair, memories, i);
+        const std::string where = "seed 3000, pair " + std::to_string(i);
+        if (!panel.agree(1e-9, where)) continue;
+        (panel.touching() ? touching : apart) += 1;
+    }
+    EXPECT_GT(apart, 1000);
+    EXPECT_GT(touching, 100);
+}
+
 }  // namespace
 }  // namespace throng

@@ -1,5 +1,6 @@
 #include "narrowphase/methods/ask_gjk.hpp"
 
+#include "narrowphase/methods/epa.hpp"
 #include "narrowphase/methods/separating_axes.hpp"
 #include "tests/narrowphase/methods/polytope_pairs.hpp"
 
@@ -387,6 +388,23 @@ TEST(AskGjk, CoresThatCrossAreAsDeepAsTheirRadii)
             EXPECT_NEAR(answer.separation, -depth, 1e-12);
             EXPECT_NEAR(answer.normal.norm(), 1, 1e-12);
         }
+    }
+}
+
+// However much longer one is than the other, so that their differences are all but a line.
+TEST(AskGjk, RodsOfAnyLengthsThatCrossAreAsDeepAsTheirRadii)
+{
+    RandomShapes random(87);
+    for (int i = 0; i < 5000; ++i) {
+        SCOPED_TRACE("seed 87, pair " + std::to_string(i));
+        Shapes shapes;
+        for (const double radius : {0.1, 0.05})
+            shapes.capsules.push_back({radius, std::pow(10, random.number(-6, 0))});
+        const Pose pose{Vec3::Zero(), random.turn()};
+        const ConvexPair pair(shapes, {ShapeKind::capsule, 0}, {ShapeKind::capsule, 1}, pose);
+        ASSERT_LE(std::abs(epa(pair.cores()).depth), 1e-13 * pair.size());
+        for (const MethodStart start : {MethodStart::plain, MethodStart::cold})
+            ASSERT_NEAR(ask(pair, start).separation, -0.15, 1e-13 * pair.size());
     }
 }
 

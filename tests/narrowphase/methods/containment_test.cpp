@@ -318,31 +318,6 @@ TEST(Containment, PointsBeyondTheRoomAreCounted)
               corners_of_one_side(pair) + corners_of_one_side(pair.mirrored()));
 }
 
-// The planes of its two sides, put out by rounding, meet a millionth of the size beyond the rim.
-TEST(Containment, WhatIsBesideTheSharpRimOfAPlateIsApart)
-{
-    Shapes shapes;
-    const Vec3 half(0.5, 0.5, 0.5);
-    shapes.boxes.push_back({half});
-    const Quat turn(Eigen::AngleAxisd(0.4, Vec3(1, 2, -2).normalized()));
-    for (const Vec3& raised : {Vec3(-0.2, 1e-6, 0), Vec3(0.1, -7e-7, 0.3)}) {
-        const std::vector<Vec3> corners{{1, 0, 1}, {1, 0, -1}, {-1, 0, 0}, raised};
-        shapes.hulls.assign(1, build_hull(corners).hull);
-        // A side of the box along the rim at x = 1, or a corner against it.
-        for (const Quat& turned : {Quat(Quat::Identity()), turn}) {
-            const Vec3 nearest = turned * -half;
-            const auto expect_at = [&](double gap, Touch truth) {
-                SCOPED_TRACE(gap);
-                const Pose pose{Vec3(1 + gap, 0, 0.1) - nearest, turned};
-                ASSERT_NO_FATAL_FAILURE(
-                    expect_touch(shapes, {ShapeKind::hull, 0}, {ShapeKind::box, 0}, pose, truth));
-            };
-            for (const double gap : {1e-9, 1e-8, 2e-7, 1e-6}) expect_at(gap, Touch::apart);
-            for (const double gap : {1e-9, 1e-8, 1e-6}) expect_at(-gap, Touch::touching);
-        }
-    }
-}
-
 TEST(Containment, EndsForShapesOfNoThicknessAndPosesThatAreNotNumbers)
 {
     const double none = std::numeric_limits<double>::quiet_NaN();
