@@ -122,6 +122,7 @@ public:
         remember(found.simplex, memory);
         const bool settled = found.apart && (found.beyond || prove(found, answer));
         if (!settled) dig(found, answer, memory);
+        if (!has_names(cores_.a) || !has_names(cores_.b)) face(answer);
         memory.axis = answer.normal;
         return answer;
     }
@@ -197,6 +198,16 @@ private:
         std::copy(found.face.begin(), found.face.end(), likely.corners.begin());
         likely.corners[3] = furthest(-found.normal);
         remember(likely, memory);
+    }
+
+    // Round cores have no corners that the normal was told from: their points go sideways until
+    // they lie along it.
+    static void face(CoreAnswer& answer)
+    {
+        const Vec3 off = answer.on_b - answer.on_a;
+        const Vec3 sideways = off - answer.normal * answer.normal.dot(off);
+        answer.on_a += sideways / 2;
+        answer.on_b -= sideways / 2;
     }
 
     const CorePair& cores_;

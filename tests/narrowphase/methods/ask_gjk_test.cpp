@@ -275,6 +275,28 @@ TEST(AskGjk, PointsFaceOneAnotherWhereTheGapIsRounding)
 }
 
 // The gain from the last corner to the edge behind it is below rounding, the turn is not.
+TEST(AskGjk, PointsOfDrumsAHairApartFaceOneAnother)
+{
+    RandomShapes random(88);
+    Shapes shapes;
+    shapes.cylinders = {{0.01, 0.01}, {0.3, 0.2}};
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 88, pair " + std::to_string(i));
+        const std::uint32_t other = i % 2 == 0 ? 0 : 1;
+        const double both = 0.01 + (other == 0 ? 0.01 : 0.2),
+                     off = std::pow(10, random.number(-7, -3));
+        const Quat turn(Eigen::AngleAxisd(random.number(-3, 3), Vec3::UnitZ()));
+        const double gap = random.number(-1, 1) * 1e-14;
+        const Pose pose{Vec3(off, random.number(-1, 1) * off, both + gap), turn};
+        const ConvexPair pair(shapes, {ShapeKind::cylinder, 0}, {ShapeKind::cylinder, other}, pose);
+        for (const MethodStart start : {MethodStart::plain, MethodStart::cold}) {
+            const MethodAnswer answer = ask(pair, start);
+            const Vec3 along = answer.normal * answer.separation;
+            ASSERT_LE((answer.on_b - answer.on_a - along).norm(), 1e-12 * both);
+        }
+    }
+}
+
 TEST(AskGjk, TheNormalIsSquareToAnEdgeThatHardlyHelps)
 {
     Shapes shapes;
