@@ -2,7 +2,7 @@
 //
 // Who closes faster than a fall through the tolerance makes him bounces: all pairs together, or
 // pair by pair in order of pair ids, as impact_law has it, by the generalised reflections that
-// direct_impacts.cpp tells of. Friction comes last, and sees the impulses of all. Who closes slower
+// island_impacts.cpp tells of. Friction comes last, and sees the impulses of all. Who closes slower
 // rests: a joint solve keeps it half the tolerance away. A pair that has bounced too often in a
 // step rests too, so that a step's work is bounded.
 //

@@ -4,7 +4,7 @@
 // Of each velocity the part along the normal that closes is taken away, half of it from each of two
 // that can move, whatever their masses; the part across is slowed by friction. Nothing is
 // conserved.
-#include "pipeline/stages/direct_island.hpp"
+#include "pipeline/stages/whole_island.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr int kSweeps = 8;
 }  // namespace
 
 // How much of a push falls to each: half, or all of it where the other cannot move.
-std::pair<double, double> DirectIsland::shares_of(const DirectPoint& point) const
+std::pair<double, double> WholeIsland::shares_of(const DirectPoint& point) const
 {
     const auto moves = [&](std::int32_t seat) {
         return seat >= 0 && after_[static_cast<std::size_t>(seat)].inverse_mass > 0;
@@ -27,7 +27,7 @@ std::pair<double, double> DirectIsland::shares_of(const DirectPoint& point) cons
     return {a ? b ? 0.5 : 1.0 : 0.0, b ? a ? 0.5 : 1.0 : 0.0};
 }
 
-void DirectIsland::stop_approach(std::size_t at)
+void WholeIsland::stop_approach(std::size_t at)
 {
     const DirectPoint& point = points_[at];
     const double closing = -approach(at, after_);
@@ -46,7 +46,7 @@ void DirectIsland::stop_approach(std::size_t at)
 }
 
 // By so much at most from where place_points() found the two.
-void DirectIsland::push_apart(std::size_t at, double most)
+void WholeIsland::push_apart(std::size_t at, double most)
 {
     if (!(gaps_[at] < -touches_[at].tolerance)) return;
     const double way = std::min(0.0, gaps_[at] + most) - gap_now(at);
@@ -57,7 +57,7 @@ void DirectIsland::push_apart(std::size_t at, double most)
     if (b > 0) seats_[static_cast<std::size_t>(point.b)].moved += b * way * point.normal;
 }
 
-void DirectIsland::separate(const Conditions& conditions)
+void WholeIsland::separate(const Conditions& conditions)
 {
     const double time = conditions.substep(), most = conditions.settings.push_limit * time;
     const int sweeps =

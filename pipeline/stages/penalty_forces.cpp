@@ -3,7 +3,7 @@
 // Overlap under a load is the load over the stiffness. Friction is a damper across the normal that
 // gives way at Coulomb's limit, so that what should stick creeps: a box on four corners at eight
 // times the speed that it is given in a substep. Rolling friction has no force.
-#include "pipeline/stages/direct_island.hpp"
+#include "pipeline/stages/whole_island.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,21 +21,21 @@ constexpr double kWithin = 0.9;
 }  // namespace
 
 // What a point is to the step.
-struct DirectIsland::Give {
+struct WholeIsland::Give {
     double stiffness = 0, damping = 0, across = 0;  // N/m, N s/m, N s/m
     double longest = 0;                             // s, of a step that keeps it from growing
 };
 
 // Whether the two overlap, or come to within that time: a spring that they fall into for a whole
 // substep holds more than they bring with them.
-bool DirectIsland::presses(std::size_t at, const Conditions& conditions, double ahead) const
+bool WholeIsland::presses(std::size_t at, const Conditions& conditions, double ahead) const
 {
     const double closing = conditions.gravity.norm() * ahead - approach(at, after_);
     return gaps_[at] < std::max(0.0, closing) * ahead;
 }
 
 // Who bears how many points that overlap, or come to within that time.
-void DirectIsland::count_touching(const Conditions& conditions, double ahead)
+void WholeIsland::count_touching(const Conditions& conditions, double ahead)
 {
     pressed_.assign(seats_.size(), 0);
     for (std::size_t i = 0; i < touches_.size(); ++i) {
@@ -46,10 +46,9 @@ void DirectIsland::count_touching(const Conditions& conditions, double ahead)
 }
 
 // Points that share a body add up: each takes its part of what the step bears.
-DirectIsland::Give
-DirectIsland::give_of(std::size_t at, const Settings& settings, double time) const
+WholeIsland::Give WholeIsland::give_of(std::size_t at, const Settings& settings, double time) const
 {
-    const DirectTouch& touch = touches_[at];
+    const IslandTouch& touch = touches_[at];
     std::uint32_t share = 1;
     for (const std::int32_t seat : {touch.a, touch.b})
         if (seat >= 0) share = std::max(share, pressed_[static_cast<std::size_t>(seat)]);
@@ -69,7 +68,7 @@ DirectIsland::give_of(std::size_t at, const Settings& settings, double time) con
 }
 
 // All forces are of the velocities before, so that no order of touches has a say.
-void DirectIsland::push_by_forces(const Conditions& conditions, double time, bool finest)
+void WholeIsland::push_by_forces(const Conditions& conditions, double time, bool finest)
 {
     place_points();
     move_freely(conditions, time);
@@ -97,7 +96,7 @@ void DirectIsland::push_by_forces(const Conditions& conditions, double time, boo
     advance(time);
 }
 
-void DirectIsland::penalise(const Conditions& conditions)
+void WholeIsland::penalise(const Conditions& conditions)
 {
     const double time = conditions.substep();
     place_points();

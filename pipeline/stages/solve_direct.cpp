@@ -1,6 +1,6 @@
 #include "pipeline/stages/solve_direct.hpp"
 
-#include "pipeline/stages/direct_island.hpp"
+#include "pipeline/stages/whole_island.hpp"
 
 #include <algorithm>
 
@@ -23,7 +23,7 @@ void solve_direct(const DirectScene<Real>& scene,
                   Rows<Real>& rows,
                   Trouble& trouble)
 {
-    DirectIsland island(scene, batch);
+    WholeIsland island(scene, batch);
     for (int step = 0; step < scene.conditions.settings.substeps; ++step)
         island.substep(scene.conditions);
     island.finish(scene, batch, rows);

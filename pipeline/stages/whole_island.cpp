@@ -1,4 +1,4 @@
-#include "pipeline/stages/direct_island.hpp"
+#include "pipeline/stages/whole_island.hpp"
 
 #include "kernels/math/rotation.hpp"
 
@@ -12,19 +12,19 @@ constexpr int kPartTries = 3;
 
 }  // namespace
 
-Vec3 DirectIsland::arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round) const
+Vec3 WholeIsland::arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round) const
 {
     if (seat < 0) return arm + round;
     return seats_[static_cast<std::size_t>(seat)].turned * arm + round;
 }
 
 // By the arms that place_points() last found.
-double DirectIsland::gap_now(std::size_t at) const
+double WholeIsland::gap_now(std::size_t at) const
 {
     const auto moved = [&](std::int32_t seat) -> Vec3 {
         return seat < 0 ? Vec3(Vec3::Zero()) : seats_[static_cast<std::size_t>(seat)].moved;
     };
-    const DirectTouch& touch = touches_[at];
+    const IslandTouch& touch = touches_[at];
     const DirectPoint& point = points_[at];
     const Vec3 by_a =
         moved(touch.a) + point.arm_a - touch.arm_a - Vec3(touch.normal * touch.round_a);
@@ -34,10 +34,10 @@ double DirectIsland::gap_now(std::size_t at) const
 }
 
 // Arms and gaps by where the bodies are now.
-void DirectIsland::place_points()
+void WholeIsland::place_points()
 {
     for (std::size_t i = 0; i < touches_.size(); ++i) {
-        const DirectTouch& touch = touches_[i];
+        const IslandTouch& touch = touches_[i];
         DirectPoint& point = points_[i];
         const Vec3 round_a = touch.normal * touch.round_a, round_b = -touch.normal * touch.round_b;
         point.arm_a = arm_now(touch.arm_a, touch.a, round_a);
@@ -47,11 +47,11 @@ void DirectIsland::place_points()
 }
 
 // What a substep does to the bodies besides contacts.
-void DirectIsland::move_freely(const Conditions& conditions, double time)
+void WholeIsland::move_freely(const Conditions& conditions, double time)
 {
     before_ = after_;
     for (std::size_t i = 0; i < seats_.size(); ++i) {
-        const DirectSeat& seat = seats_[i];
+        const IslandSeat& seat = seats_[i];
         DirectBody& body = after_[i];
         if (!seat.dynamic) continue;
         const Quat orientation = seat.turned * seat.orientation;
@@ -69,20 +69,20 @@ void DirectIsland::move_freely(const Conditions& conditions, double time)
     free_ = after_;
 }
 
-void DirectIsland::solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
+void WholeIsland::solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
 {
     const DirectAnswer answer = solver_.solve(bodies, points, steps_);
     residual_ = std::max(residual_, answer.residual);
 }
 
 // Speed along the normal, of b against a.
-double DirectIsland::approach(std::size_t at, std::span<const DirectBody> bodies) const
+double WholeIsland::approach(std::size_t at, std::span<const DirectBody> bodies) const
 {
     return speed_apart(points_[at], bodies);
 }
 
 // Who overlaps is moved apart in this substep, on top of what else it does.
-bool DirectIsland::part(const Conditions& conditions)
+bool WholeIsland::part(const Conditions& conditions)
 {
     const double time = conditions.substep(), most = conditions.settings.push_limit;
     bool any = false;
@@ -99,7 +99,7 @@ bool DirectIsland::part(const Conditions& conditions)
 
 // Who is wedged between what does not move cannot part from all of it: each point is then asked
 // for what a try at the whole came to, which can be had.
-void DirectIsland::push_as_far_as_goes()
+void WholeIsland::push_as_far_as_goes()
 {
     for (int tries = 0; tries < kPartTries; ++tries) {
         going_ = free_;
@@ -113,7 +113,7 @@ void DirectIsland::push_as_far_as_goes()
     }
 }
 
-void DirectIsland::advance(double time)
+void WholeIsland::advance(double time)
 {
     for (std::size_t i = 0; i < seats_.size(); ++i) {
         if (!seats_[i].advances) continue;
@@ -122,7 +122,7 @@ void DirectIsland::advance(double time)
     }
 }
 
-void DirectIsland::substep(const Conditions& conditions)
+void WholeIsland::substep(const Conditions& conditions)
 {
     if (conditions.settings.response == Response::penalty) return penalise(conditions);
     if (conditions.settings.response == Response::kinematic) return separate(conditions);

@@ -1,5 +1,5 @@
-// Direct exchange: an island taken from the step's data, and its answer given back.
-#include "pipeline/stages/direct_island.hpp"
+// Island exchange: an island taken from the step's data, and its answer given back.
+#include "pipeline/stages/whole_island.hpp"
 
 namespace throng {
 
@@ -45,7 +45,7 @@ void guess(const Contact<Real>& contact, std::span<DirectPoint> points)
 }  // namespace
 
 template <class Real>
-DirectIsland::DirectIsland(const DirectScene<Real>& scene, const Batch& batch)
+WholeIsland::WholeIsland(const DirectScene<Real>& scene, const Batch& batch)
 {
     const Slice& slice = scene.layout.slices[batch.first_slice];
     const int steps = scene.conditions.settings.iterations;
@@ -57,11 +57,11 @@ DirectIsland::DirectIsland(const DirectScene<Real>& scene, const Batch& batch)
 }
 
 template <class Real>
-void DirectIsland::take_bodies(const DirectScene<Real>& scene, const Slice& slice)
+void WholeIsland::take_bodies(const DirectScene<Real>& scene, const Slice& slice)
 {
     const Layout& layout = scene.layout;
     const auto add = [&](std::uint32_t slot, bool dynamic, bool advances) {
-        DirectSeat seat;
+        IslandSeat seat;
         seat.body = layout.body_of_slot[slot];
         seat.dynamic = dynamic;
         seat.advances = advances;
@@ -96,8 +96,7 @@ void DirectIsland::take_bodies(const DirectScene<Real>& scene, const Slice& slic
         add(slice.first_visitor + i, false, i < slice.kinematic);
 }
 
-std::int32_t
-DirectIsland::seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const
+std::int32_t WholeIsland::seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const
 {
     if (slot == 0) return -1;
     if (layout.movable(slot)) return slot - static_cast<std::int32_t>(slice.first_body);
@@ -106,14 +105,14 @@ DirectIsland::seat_of(const Layout& layout, const Slice& slice, std::int32_t slo
 }
 
 template <class Real>
-void DirectIsland::take_contact(const DirectScene<Real>& scene,
-                                const Slice& slice,
-                                std::uint32_t place)
+void WholeIsland::take_contact(const DirectScene<Real>& scene,
+                               const Slice& slice,
+                               std::uint32_t place)
 {
     const auto& entry = scene.active.entries[scene.layout.contacts[place]];
     const Contact<Real>& contact = scene.maker.contact_of(entry);
     const std::uint32_t lane = scene.layout.lane[place];
-    DirectTouch touch;
+    IslandTouch touch;
     touch.contact = place;
     touch.a = seat_of(scene.layout, slice, scene.layout.slot_a[lane]);
     touch.b = seat_of(scene.layout, slice, scene.layout.slot_b[lane]);
@@ -149,13 +148,13 @@ void DirectIsland::take_contact(const DirectScene<Real>& scene,
 }
 
 template <class Real>
-void DirectIsland::give_states(const DirectScene<Real>& scene,
-                               const Slice& slice,
-                               Rows<Real>& rows) const
+void WholeIsland::give_states(const DirectScene<Real>& scene,
+                              const Slice& slice,
+                              Rows<Real>& rows) const
 {
     using Settled = typename Rows<Real>::Settled;
     for (std::uint32_t i = 0; i < slice.dynamic; ++i) {
-        const DirectSeat& seat = seats_[i];
+        const IslandSeat& seat = seats_[i];
         const Vec3 position = scene.poses.position[seat.body] + seat.moved;
         Quat orientation = seat.turned * seat.orientation;
         orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
@@ -171,7 +170,7 @@ void DirectIsland::give_states(const DirectScene<Real>& scene,
 
 // Of the points from `first` on, which are those of the contact.
 template <class Real>
-void DirectIsland::give_impulses(std::size_t first, Contact<Real>& contact) const
+void WholeIsland::give_impulses(std::size_t first, Contact<Real>& contact) const
 {
     const auto points = std::span(points_).subspan(first, static_cast<std::size_t>(contact.count));
     Vec3 middle = Vec3::Zero(), friction = Vec3::Zero(), rolling = Vec3::Zero();
@@ -193,9 +192,7 @@ void DirectIsland::give_impulses(std::size_t first, Contact<Real>& contact) cons
 }
 
 template <class Real>
-void DirectIsland::finish(const DirectScene<Real>& scene,
-                          const Batch& batch,
-                          Rows<Real>& rows) const
+void WholeIsland::finish(const DirectScene<Real>& scene, const Batch& batch, Rows<Real>& rows) const
 {
     give_states(scene, scene.layout.slices[batch.first_slice], rows);
     for (std::size_t first = 0; first < touches_.size();) {
@@ -207,8 +204,8 @@ void DirectIsland::finish(const DirectScene<Real>& scene,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template DirectIsland::DirectIsland(const DirectScene<Real>&, const Batch&);                   \
-    template void DirectIsland::finish(const DirectScene<Real>&, const Batch&, Rows<Real>&) const;
+    template WholeIsland::WholeIsland(const DirectScene<Real>&, const Batch&);                     \
+    template void WholeIsland::finish(const DirectScene<Real>&, const Batch&, Rows<Real>&) const;
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -1,4 +1,4 @@
-// Direct impacts: how those who meet faster than gravity makes them leave one another.
+// Island impacts: how those who meet faster than gravity makes them leave one another.
 //
 // impact_law=simultaneous: all pairs that close are stopped together, by one solve, and given back
 // their share e of what stopped them; then those that close now, and so on until none does: the
@@ -12,7 +12,7 @@
 // speed that it leaves with.
 //
 // Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
-#include "pipeline/stages/direct_island.hpp"
+#include "pipeline/stages/whole_island.hpp"
 
 #include <algorithm>
 
@@ -29,7 +29,7 @@ constexpr double kRounding = 1e-11;
 }  // namespace
 
 // Those that were touching as the substep began, or came to touch within it.
-void DirectIsland::list_touching(double threshold)
+void WholeIsland::list_touching(double threshold)
 {
     touching_.clear();
     bool any = false;
@@ -44,7 +44,7 @@ void DirectIsland::list_touching(double threshold)
 }
 
 // Reflects those that close among the touching from `begin` to before `end`. False if none does.
-bool DirectIsland::reflect(std::size_t begin, std::size_t end, double least_speed)
+bool WholeIsland::reflect(std::size_t begin, std::size_t end, double least_speed)
 {
     hits_.clear();
     struck_points_.clear();
@@ -74,7 +74,7 @@ bool DirectIsland::reflect(std::size_t begin, std::size_t end, double least_spee
 }
 
 // Contact by contact: the points of one meet together.
-bool DirectIsland::reflect_in_order(double least_speed)
+bool WholeIsland::reflect_in_order(double least_speed)
 {
     bool any = false;
     for (std::size_t begin = 0, end = 0; begin < touching_.size(); begin = end) {
@@ -86,7 +86,7 @@ bool DirectIsland::reflect_in_order(double least_speed)
 }
 
 // What gravity did in the substep, resting contacts and friction.
-void DirectIsland::settle_after_impacts()
+void WholeIsland::settle_after_impacts()
 {
     bool grips = false;
     others_ = points_;
@@ -111,7 +111,7 @@ void DirectIsland::settle_after_impacts()
         others_[i].impulse += others_[i].normal * struck_impulse_[i];
 }
 
-bool DirectIsland::bounce(const Conditions& conditions)
+bool WholeIsland::bounce(const Conditions& conditions)
 {
     if (!conditions.has(Effect::restitution)) return false;
     // Slower than what gravity gives in two steps is resting, not bouncing.

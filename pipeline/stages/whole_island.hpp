@@ -1,4 +1,5 @@
-// Direct island: the bodies and touching points of one island as they go through a step.
+// Whole island: the bodies and touching points of one island as they go through a step together, by
+// the direct solver, by penalty forces or by kinematic pushes.
 #pragma once
 
 #include "kernels/solve/direct_points.hpp"
@@ -9,7 +10,7 @@ namespace throng {
 /// A body of the island, through the step.
 ///
 ///   moved, turned  since the step began
-struct DirectSeat {
+struct IslandSeat {
     std::uint32_t body = kNobody;
     bool dynamic = false, advances = false, precesses = false;
     Quat orientation = Quat::Identity();             // as the step began
@@ -23,7 +24,7 @@ struct DirectSeat {
 ///   arms    m, as the step began, of what turns with the body
 ///   rounds  m, from there along the normal to the surface: round sides do not turn
 ///   gap     m, as the step began; below 0 where they overlap
-struct DirectTouch {
+struct IslandTouch {
     std::uint32_t contact = 0, point = 0;  // place in Layout::contacts; of the contact
     std::int32_t a = -1, b = -1;           // seats
     Vec3 normal = Vec3::UnitZ();
@@ -34,10 +35,10 @@ struct DirectTouch {
     double tolerance = 0;  // m, overlap that is let be
 };
 
-class DirectIsland {
+class WholeIsland {
 public:
     template <class Real>
-    DirectIsland(const DirectScene<Real>& scene, const Batch& batch);
+    WholeIsland(const DirectScene<Real>& scene, const Batch& batch);
 
     /// Takes the island through one substep.
     void substep(const Conditions& conditions);
@@ -65,7 +66,7 @@ private:
     void move_freely(const Conditions& conditions, double time);
     double approach(std::size_t point, std::span<const DirectBody> bodies) const;
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
-    // Impacts: see direct_impacts.cpp.
+    // Impacts: see island_impacts.cpp.
     bool bounce(const Conditions& conditions);
     void list_touching(double threshold);
     bool reflect(std::size_t begin, std::size_t end, double least_speed);
@@ -88,8 +89,8 @@ private:
     void push_as_far_as_goes();
     void advance(double time);
 
-    std::vector<DirectSeat> seats_;  // those that can be moved, then those that move by themselves
-    std::vector<DirectTouch> touches_;
+    std::vector<IslandSeat> seats_;  // those that can be moved, then those that move by themselves
+    std::vector<IslandTouch> touches_;
     std::vector<DirectBody> before_, free_, after_, going_;  // [seats]; going_: how places change
     std::vector<DirectPoint> points_, others_;               // [touches]
     std::vector<double> gaps_;                               // [touches] m, now
