@@ -109,7 +109,10 @@ void EnergyLedger::mark_groups(const World& world)
     bool any = !state.get<Drives>().body.empty();
     for (std::uint32_t body = 0; body < states.kind.size(); ++body)
         any = any || moves_by_itself(state, body);
-    for (OfGroup& group : groups_) group.driven = group.driven || any;
+    for (OfGroup& group : groups_) {
+        group.driven = group.driven || any;
+        group.touches = true;
+    }
 }
 
 double EnergyLedger::work_on(const World& world, std::uint32_t body) const
