@@ -39,10 +39,10 @@ void case_planks(CaseBench& bench);     // H25, turntable.cpp
 void case_recovery(CaseBench& bench);  // H47, recovery.cpp
 
 // Bodies that are never to overlap: no_overlap.cpp.
-void bounces(CaseBench& bench);            // H15 (a), (b)
-void case_elastic_pile(CaseBench& bench);  // H16, elastic
-void case_backed_up(CaseBench& bench);     // H41
-void case_no_overlap(CaseBench& bench);    // H48
+void bounces(CaseBench& bench);             // H15 (a), (b)
+void case_pile_of_balls(CaseBench& bench);  // H16
+void case_backed_up(CaseBench& bench);      // H41
+void case_no_overlap(CaseBench& bench);     // H48
 
 // Bodies that go far in a step: fast_bodies.cpp, and the sets of exact_paths.cpp.
 void case_bullet_plate(CaseBench& bench);  // H38
