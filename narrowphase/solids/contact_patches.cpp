@@ -12,6 +12,7 @@
 #include "narrowphase/solids/contact_patches.hpp"
 
 #include "kernels/math/hash.hpp"
+#include "narrowphase/solids/places_between.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +39,10 @@ constexpr int kRounds = 4;
 // keeps what lies within R / 20 of the deepest place. Less where the reach is more than this part
 // of size, as then bodies are fast, and what is far apart yet may be the first to touch.
 constexpr double kShallow = 20, kShortReach = 0.1;
+// Cosine of the angle from which on two groups hold a body from opposite sides, 134 degrees: those
+// of the two flanks of a thread stand at 120 to 180 to one another round it. Part of size that
+// places between those that span a patch stand apart at least.
+constexpr double kOpposite = -0.7, kBetween = 0.03;
 // Far more groups than directions 31 degrees apart need. What is then left over joins or is left.
 constexpr std::size_t kMostGroups = 48;
 constexpr std::uint8_t kNone = 255;
@@ -101,6 +106,16 @@ public:
     {
         for (std::size_t g = 0; g < count_; ++g)
             if (groups_[g].kept) visit(groups_[g].normal, static_cast<std::uint8_t>(g));
+    }
+    /// Whether two of the groups that are kept look at one another.
+    bool oppose() const
+    {
+        const auto kept = std::span(groups_).first(count_);
+        return std::any_of(kept.begin(), kept.end(), [&](const Group& a) {
+            return std::any_of(kept.begin(), kept.end(), [&](const Group& b) {
+                return a.kept && b.kept && a.normal.dot(b.normal) < kOpposite;
+            });
+        });
     }
     bool holds(std::uint8_t group, std::size_t touch) const { return group_of_[touch] == group; }
 
@@ -304,6 +319,8 @@ public:
         for (std::size_t k = 0; k < count_; ++k) visit(points_[chosen_[order[k]]], order[k]);
     }
 
+    std::span<const std::size_t> chosen() const { return std::span(chosen_).first(count_); }
+
 private:
     template <class Place>
     std::size_t best(const Place& place) const
@@ -369,8 +386,8 @@ public:
                double reach,
                double size,
                std::vector<PatchManifold>& out)
-        : touches_(touches), groups_(touches, reach, size), reach_(reach), size_(size), out_(out),
-          first_(out.size())
+        : touches_(touches), groups_(touches, reach, size), reach_(reach), size_(size),
+          fills_(reach > kShortReach * size && groups_.oppose()), out_(out), first_(out.size())
     { }
 
     /// Touches that overlap and are in no manifold.
@@ -386,46 +403,81 @@ private:
     // What agrees with the group's normal together, and the rest each by itself.
     void add(const Vec3& normal, std::uint8_t group)
     {
+        const std::vector<LocalManifold<double>::Point>& places = places_of(normal, group);
+        const Spread spread(places, normal, weight_of_depth(reach_, size_));
         const std::uint32_t name = free_name(normal, out_, first_);
         PatchManifold together{name, {}};
         together.manifold.normal = normal;
-        choose(normal, group, [&](const SurfaceTouch& touch, std::uint32_t end) {
+        spread.visit([&](const auto& chosen, std::uint32_t end) {
+            const SurfaceTouch& touch = touches_[chosen.feature];
             const double along = normal.dot(touch.normal);
-            const bool agrees = along >= kGroupNormal;
-            PatchManifold alone{kNames * (end + 1) + name, {}};
-            LocalManifold<double>& manifold = agrees ? together.manifold : alone.manifold;
-            if (!agrees) manifold.normal = normal_between(normal, touch.normal, along);
-            manifold.add(touch.position, touch.separation * manifold.normal.dot(touch.normal),
-                         touch.feature);
-            if (!agrees) out_.push_back(alone);
+            if (along >= kGroupNormal)
+                put(touch, together.manifold);
+            else
+                add_alone(touch, normal_between(normal, touch.normal, along), name, end);
         });
         if (together.manifold.count > 0) out_.push_back(together);
+        if (fills_ && bends(normal, places)) fill(places, spread.chosen(), name);
     }
 
-    // By places told apart and depths in steps. `visit` sees each touch that is chosen as it is,
-    // and which end of the group it is.
-    template <class Visit>
-    void choose(const Vec3& normal, std::uint8_t group, const Visit& visit) const
+    static void put(const SurfaceTouch& touch, LocalManifold<double>& manifold)
     {
-        thread_local std::vector<LocalManifold<double>::Point> candidates;
-        candidates.clear();
+        manifold.add(touch.position, touch.separation * manifold.normal.dot(touch.normal),
+                     touch.feature);
+    }
+
+    // `end` tells apart what stands alone of one group.
+    void
+    add_alone(const SurfaceTouch& touch, const Vec3& normal, std::uint32_t name, std::uint32_t end)
+    {
+        PatchManifold& alone = out_.emplace_back(PatchManifold{kNames * (end + 1) + name, {}});
+        alone.manifold.normal = normal;
+        put(touch, alone.manifold);
+    }
+
+    bool bends(const Vec3& normal, const std::vector<LocalManifold<double>::Point>& places) const
+    {
+        return std::any_of(places.begin(), places.end(), [&](const auto& place) {
+            return normal.dot(touches_[place.feature].normal) < kGroupNormal;
+        });
+    }
+
+    void fill(const std::vector<LocalManifold<double>::Point>& places,
+              std::span<const std::size_t> chosen,
+              std::uint32_t name)
+    {
+        thread_local std::vector<std::size_t> taken;
+        taken.assign(chosen.begin(), chosen.end());
+        take_between(places, kBetween * size_, weight_of_depth(reach_, size_), kMostBetween, taken);
+        for (std::size_t k = chosen.size(); k < taken.size(); ++k) {
+            const SurfaceTouch& touch = touches_[places[taken[k]].feature];
+            const auto end = static_cast<std::uint32_t>(4 + k - chosen.size());
+            add_alone(touch, touch.normal, name, end);
+        }
+    }
+
+    // The touches of a group, places told apart and depths in steps; features are those of
+    // `touches_`.
+    const std::vector<LocalManifold<double>::Point>& places_of(const Vec3& normal,
+                                                               std::uint8_t group) const
+    {
+        thread_local std::vector<LocalManifold<double>::Point> places;
+        places.clear();
         const double step = kDepthStep * size_;
         for (std::size_t i = 0; i < touches_.size(); ++i) {
             if (!groups_.holds(group, i)) continue;
             const double along = touches_[i].separation * normal.dot(touches_[i].normal);
-            candidates.push_back({told_apart(touches_[i], kApart * size_),
-                                  step > 0 ? std::round(along / step) * step : along,
-                                  static_cast<std::uint32_t>(i)});
+            places.push_back({told_apart(touches_[i], kApart * size_),
+                              step > 0 ? std::round(along / step) * step : along,
+                              static_cast<std::uint32_t>(i)});
         }
-        Spread(candidates, normal, weight_of_depth(reach_, size_))
-            .visit([&](const auto& chosen, std::uint32_t end) {
-                visit(touches_[chosen.feature], end);
-            });
+        return places;
     }
 
     const std::vector<SurfaceTouch>& touches_;
     const Grouping groups_;
     double reach_, size_;
+    bool fills_;  // patches that bend
     std::vector<PatchManifold>& out_;
     std::size_t first_;  // of this set in `out`
 };

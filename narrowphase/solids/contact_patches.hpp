@@ -21,8 +21,10 @@ struct SurfaceTouch {
     std::uint32_t feature = 0;
 };
 
-/// The greatest number of groups that one pair's touches are put in, and of manifolds made of them.
-inline constexpr std::size_t kMostPatches = 24, kMostManifolds = 4 * kMostPatches;
+/// The greatest number of groups that one pair's touches are put in, of places that are kept of one
+/// group besides the four that span it, and of manifolds made of all.
+inline constexpr std::size_t kMostPatches = 24, kMostBetween = 64;
+inline constexpr std::size_t kMostManifolds = (4 + kMostBetween) * kMostPatches;
 
 /// Groups touches that push much the same way, and chooses of each group up to four that span it.
 /// Those whose normals are within 8 degrees of the group's are one manifold with that normal; each
@@ -38,6 +40,11 @@ inline constexpr std::size_t kMostPatches = 24, kMostManifolds = 4 * kMostPatche
 /// far within reach each is. Separations are what of them lies along their manifold's. The places
 /// of touches do not part them: bodies are rigid, so what pushes one way holds by the four that
 /// span the most wherever they are, as a table stands on four legs.
+///
+/// That holds for patches that are flat. Where a body is held from opposite sides, and fast, as a
+/// bolt that runs down its nut, of patches that bend places between the four are kept too, three
+/// hundredths of size apart or more, each by itself with its own normal: what is not kept would be
+/// within the other by the end of a step.
 ///
 /// What is chosen hangs on directions and places rather than on small differences in depth, so that
 /// bodies at rest keep the same points. The deepest of each group is among them, or one that is as

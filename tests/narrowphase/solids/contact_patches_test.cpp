@@ -370,5 +370,45 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
     }
 }
 
+// How far the touch furthest from any point that is kept is from the nearest of them.
+double least_covered(const std::vector<SurfaceTouch>& touches,
+                     const std::vector<PatchManifold>& found)
+{
+    double furthest = 0;
+    for (const SurfaceTouch& touch : touches) {
+        double nearest = 10;
+        for (const PatchManifold& patch : found)
+            for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k)
+                nearest =
+                    std::min(nearest, (patch.manifold.points[k].position - touch.position).norm());
+        furthest = std::max(furthest, nearest);
+    }
+    return furthest;
+}
+
+// A shaft in its hole touches all round.
+TEST(ContactPatches, OfAFastBodyHeldAllRoundPlacesBetweenTheEndsAreKeptToo)
+{
+    const std::vector<SurfaceTouch> shaft = ring(400, std::numbers::pi / 2);
+    // Three hundredths of size, and what places are told apart by.
+    EXPECT_LE(least_covered(shaft, patches(shaft, 0.2)), 0.035);
+    const std::vector<PatchManifold> fast = patches(shaft, 0.2);
+    for (std::size_t k = 1; k < fast.size(); ++k) EXPECT_LT(fast[k - 1].patch, fast[k].patch);
+    EXPECT_LE(fast.size(), kMostManifolds);
+    // Slow, four of each group are enough.
+    EXPECT_GT(least_covered(shaft, patches(shaft)), 0.05);
+}
+
+TEST(ContactPatches, OfAFastBodyThatIsNotHeldFromOppositeSidesFourOfAGroupAreKept)
+{
+    // Their normals are 107 degrees apart at most.
+    const std::vector<SurfaceTouch> bowl = ring(400, 0.93);
+    EXPECT_GT(least_covered(bowl, patches(bowl, 0.2)), 0.05);
+    // Two faces that look at one another do not bend.
+    std::vector<SurfaceTouch> faces = grid(20, Vec3::UnitZ(), 0);
+    for (const SurfaceTouch& touch : grid(20, -Vec3::UnitZ(), 400)) faces.push_back(touch);
+    EXPECT_EQ(patches(faces, 0.2).size(), 2U);
+}
+
 }  // namespace
 }  // namespace throng::test
