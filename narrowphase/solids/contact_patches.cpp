@@ -39,8 +39,8 @@ constexpr int kRounds = 4;
 // keeps what lies within R / 20 of the deepest place. Less where the reach is more than this part
 // of size, as then bodies are fast, and what is far apart yet may be the first to touch.
 constexpr double kShallow = 20, kShortReach = 0.1;
-// Cosine of the angle from which on two groups hold a body from opposite sides, 134 degrees. Part of
-// size that places between those that span a patch stand apart at least.
+// Cosine of the angle from which on two groups hold a body from opposite sides, 134 degrees. Part
+// of size that places between those that span a patch stand apart at least.
 constexpr double kOpposite = -0.7, kBetween = 0.03;
 // Far more groups than directions 31 degrees apart need. What is then left over joins or is left.
 constexpr std::size_t kMostGroups = 48;

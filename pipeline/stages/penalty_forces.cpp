@@ -18,6 +18,10 @@ constexpr double kSwing = 0.5, kDamped = 0.7;
 // A substep is cut to this share of the limit.
 constexpr double kWithin = 0.9;
 
+// What presses a spring in is seen by the load that it bore and by how fast the two go on closing;
+// this many times as deep as both say it may be, for the load is that of a whole substep.
+constexpr double kPressed = 3;
+
 }  // namespace
 
 // What a point is to the step.
@@ -67,22 +71,45 @@ WholeIsland::Give WholeIsland::give_of(std::size_t at, const Settings& settings,
     return give;
 }
 
+// Overlap that nothing pressed in was found as it is: made so, or come to beside what contacts had
+// looked for. Its spring would give back what nobody put in; it is let go at the push limit.
+void WholeIsland::find_unearned(const Conditions& conditions)
+{
+    const double time = conditions.substep();
+    unearned_.assign(touches_.size(), 0);
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        if (!(gaps_[i] < 0)) continue;
+        const double stiffness = give_of(i, conditions.settings, time).stiffness;
+        if (!(stiffness > 0)) continue;
+        const Vec3& normal = points_[i].normal;
+        const double borne = normal.dot(points_[i].impulse) / (time * stiffness);
+        const double speed = approach(i, after_);
+        const double ease = ease_along(points_[i], touches_[i].normal, after_);
+        const double pressed =
+            kPressed * std::sqrt(borne * borne + speed * speed / (stiffness * ease));
+        unearned_[i] = std::max(0.0, -gaps_[i] - pressed);
+    }
+}
+
 // All forces are of the velocities before, so that no order of touches has a say.
-void WholeIsland::push_by_forces(const Conditions& conditions, double time, bool finest)
+void WholeIsland::push_by_forces(const Conditions& conditions, double time)
 {
     place_points();
     move_freely(conditions, time);
     count_touching(conditions, 0);
-    // What is too stiff for the finest cut gives way as far as that bears.
+    // What is too stiff for the cut, with those who came to press in the middle of a substep, gives
+    // way as far as that bears.
     Settings softened = conditions.settings;
     softened.penalty_stiffness = softened.penalty_damping = -1;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
-        if (!(gaps_[i] < 0)) continue;
+        const double pressed = -gaps_[i] - unearned_[i];
+        unearned_[i] = std::max(0.0, unearned_[i] - conditions.settings.push_limit * time);
+        if (!(pressed > 0)) continue;
         DirectPoint& point = points_[i];
         Give give = give_of(i, conditions.settings, time);
-        if (finest && give.longest < time) give = give_of(i, softened, time);
+        if (give.longest < time) give = give_of(i, softened, time);
         const double force =
-            std::max(0.0, -give.stiffness * gaps_[i] - give.damping * approach(i, before_));
+            std::max(0.0, give.stiffness * pressed - give.damping * approach(i, before_));
         const Vec3 between = velocity_between(point, before_);
         const Vec3 sliding = between - point.normal * point.normal.dot(between);
         const double fast = std::sqrt(sliding.squaredNorm());
@@ -100,7 +127,9 @@ void WholeIsland::penalise(const Conditions& conditions)
 {
     const double time = conditions.substep();
     place_points();
+    turn_inertias();
     count_touching(conditions, time);
+    find_unearned(conditions);
     double longest = time;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         points_[i].impulse = points_[i].torque = Vec3::Zero();
@@ -111,8 +140,7 @@ void WholeIsland::penalise(const Conditions& conditions)
     const int cuts = static_cast<int>(
         std::min(std::ceil(time / longest), static_cast<double>(kMostPenaltyCuts)));
     cuts_ = std::max(cuts_, cuts);
-    for (int cut = 0; cut < cuts; ++cut)
-        push_by_forces(conditions, time / cuts, cuts == kMostPenaltyCuts);
+    for (int cut = 0; cut < cuts; ++cut) push_by_forces(conditions, time / cuts);
 }
 
 }  // namespace throng

@@ -46,16 +46,25 @@ void WholeIsland::place_points()
     }
 }
 
+// Into world axes, as the bodies are turned now.
+void WholeIsland::turn_inertias()
+{
+    for (std::size_t i = 0; i < seats_.size(); ++i) {
+        if (!seats_[i].dynamic) continue;
+        after_[i].inverse_inertia =
+            in_world_axes(inverse_inertia_[i], seats_[i].turned * seats_[i].orientation);
+    }
+}
+
 // What a substep does to the bodies besides contacts.
 void WholeIsland::move_freely(const Conditions& conditions, double time)
 {
     before_ = after_;
+    turn_inertias();
     for (std::size_t i = 0; i < seats_.size(); ++i) {
         const IslandSeat& seat = seats_[i];
         DirectBody& body = after_[i];
         if (!seat.dynamic) continue;
-        const Quat orientation = seat.turned * seat.orientation;
-        body.inverse_inertia = in_world_axes(inverse_inertia_[i], orientation);
         if (conditions.has(Effect::gravity) && body.inverse_mass > 0)
             body.velocity += conditions.gravity * time;
         body.velocity += seat.pull * time;
@@ -64,7 +73,7 @@ void WholeIsland::move_freely(const Conditions& conditions, double time)
         const auto torque = conditions.settings.gyroscopic == Gyroscopic::implicit
             ? after_gyroscopic_torque
             : after_explicit_gyroscopic_torque;
-        body.spin = torque(body.spin, inertia_[i], orientation, time);
+        body.spin = torque(body.spin, inertia_[i], seat.turned * seat.orientation, time);
     }
     free_ = after_;
 }

@@ -62,6 +62,7 @@ private:
     std::int32_t seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const;
     Vec3 arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round) const;
     void place_points();
+    void turn_inertias();
     double gap_now(std::size_t at) const;
     void move_freely(const Conditions& conditions, double time);
     double approach(std::size_t point, std::span<const DirectBody> bodies) const;
@@ -79,7 +80,8 @@ private:
     bool presses(std::size_t at, const Conditions& conditions, double ahead) const;
     void count_touching(const Conditions& conditions, double ahead);
     Give give_of(std::size_t at, const Settings& settings, double time) const;
-    void push_by_forces(const Conditions& conditions, double time, bool finest);
+    void find_unearned(const Conditions& conditions);
+    void push_by_forces(const Conditions& conditions, double time);
     void separate(const Conditions& conditions);
     void stop_approach(std::size_t at);
     void push_apart(std::size_t at, double most);
@@ -101,6 +103,7 @@ private:
     std::vector<double> struck_impulse_;                     // [touches] N s, of all impacts
     std::vector<Sym3> inertia_, inverse_inertia_;            // [seats] body axes
     std::vector<std::uint32_t> pressed_;                     // [seats] touches that overlap
+    std::vector<double> unearned_;                           // [touches] m, overlap without a push
     DirectSolver solver_;
     int steps_ = 0, cuts_ = 1;
     double residual_ = 0;
