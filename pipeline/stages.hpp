@@ -127,6 +127,7 @@ void solve_impulses(const Conditions&,
                     SolidContacts<Real>&,
                     Poses&,
                     Velocities&,
+                    Parting&,
                     Trouble&);
 
 /// Dynamic bodies in place of all stages of contact, each with those that it may meet in this step:
@@ -181,6 +182,7 @@ void rest_islands(const Conditions&,
                   const Drives&,
                   const Forces&,
                   const Islands&,
+                  const Parting&,
                   BodyStates&,
                   Beds&,
                   Velocities&,

@@ -37,6 +37,17 @@ struct Trouble {
     BlockLists<std::uint32_t> of_block;  // scratch
 };
 
+/// Who is moved apart from what it lay deep in (see stages/parting.hpp), from step to step.
+struct Parting {
+    std::vector<std::uint16_t>
+        steps;  // [bodies] what it has left of them; 1: spent; 0: not parting
+    std::vector<std::uint8_t>
+        batches;       // scratch: [batches] 1: of somebody who is, or has spent all
+    bool some = true;  // there were such; true before the first step, when nobody knows
+
+    bool parts(std::size_t body) const { return body < steps.size() && steps[body] > 1; }
+};
+
 /// Who awoke and who fell asleep in this step.
 struct Rest {
     std::vector<std::uint32_t> awoken, rested;
@@ -95,6 +106,7 @@ using StepData = std::tuple<Conditions,
                             Painter,
                             Layout,
                             Rows<Real>,
+                            Parting,
                             CarriedContacts,
                             Trouble,
                             Rest,

@@ -101,7 +101,7 @@ bool ChosenMethod::collide(std::size_t i,
                            std::size_t block)
 {
     const ShapeRef a = colliders_.shape[pair.a], b = colliders_.shape[pair.b];
-    const Pose seen = pose_seen_from_a(shapes_, b, bounds_.placed[pair.a], bounds_.placed[pair.b]);
+    const Pose seen = seen_from_first(pair.a, pair.b, shapes_, colliders_, bounds_);
     MethodMemory fresh;
     MethodMemory& memory = start_ == MethodStart::cached ? memories_.of_pair[i] : fresh;
     if (collide_by(*method_, start_, shapes_, a, b, seen, pair.reach, memory, out)) return true;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "kernels/data/contacts.hpp"
+#include "kernels/math/hash.hpp"
+#include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages.hpp"
 
 #include <cmath>
@@ -19,6 +21,48 @@ inline PairPlace place_of(PairKey key, const Colliders& colliders, const Bounds&
 {
     const std::uint32_t a = first_of(key), b = second_of(key);
     return {a, b, colliders.body[a], colliders.body[b], bounds.reach[a] + bounds.reach[b]};
+}
+
+/// Somewhere in the cube from -1 to 1, each collider at a spot of its own.
+inline Vec3 spot_of(std::uint32_t collider)
+{
+    Hash hash;
+    hash.add(std::uint64_t{collider});
+    const std::uint64_t bits = hash.value();
+    const auto part = [&](int k) {
+        return static_cast<double>(bits >> 21 * k & 0x1fffff) / 0x100000 - 1;
+    };
+    return {part(0), part(1), part(2)};
+}
+
+/// From the center of a pair's first shape to that of its second, m. Where both are at one place no
+/// way apart is better than another, and each is taken to stand a hair from it towards its own
+/// spot: of a crowd made at one point all would part along the same line.
+inline Vec3 between_centers(std::uint32_t first,
+                            std::uint32_t second,
+                            const Colliders& colliders,
+                            const Bounds& bounds)
+{
+    constexpr double kHair = 1e-4;  // of the smaller half extent
+    const Vec3& from = bounds.placed[first].position;
+    const Vec3& to = bounds.placed[second].position;
+    if (from != to) return to - from;
+    const double least = std::min(colliders.inner_extent[first], colliders.inner_extent[second]);
+    return kHair * least * (spot_of(second) - spot_of(first));
+}
+
+/// The pose of a pair's second shape as its first sees it; the two are told apart like that.
+inline Pose seen_from_first(std::uint32_t first,
+                            std::uint32_t second,
+                            const Shapes& shapes,
+                            const Colliders& colliders,
+                            const Bounds& bounds)
+{
+    const Pose &from = bounds.placed[first], &to = bounds.placed[second];
+    const ShapeRef shape = colliders.shape[second];
+    if (from.position != to.position) return pose_seen_from_a(shapes, shape, from, to);
+    const Vec3 beside = from.position + between_centers(first, second, colliders, bounds);
+    return pose_seen_from_a(shapes, shape, from, {beside, to.orientation});
 }
 
 /// True when somebody in the pair can be pushed and somebody is awake.

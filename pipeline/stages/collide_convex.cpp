@@ -138,7 +138,7 @@ private:
     void collide_spheres(std::size_t i, const PairPlace& pair, std::size_t block)
     {
         const Vec3& center_a = bounds_.placed[pair.a].position;
-        const Vec3 between = bounds_.placed[pair.b].position - center_a;
+        const Vec3 between = between_centers(pair.a, pair.b, colliders_, bounds_);
         const double radius_a = shapes_.spheres[colliders_.shape[pair.a].index].radius;
         const double radius_b = shapes_.spheres[colliders_.shape[pair.b].index].radius;
         const double radii = radius_a + radius_b, distance = between.norm();
@@ -164,7 +164,8 @@ private:
     {
         const Pose &a = bounds_.placed[pair.a], &b = bounds_.placed[pair.b];
         const QuatT<float> back = a.orientation.cast<float>().conjugate();
-        const Vec3T<float> offset = (b.position - a.position).cast<float>();
+        const Vec3T<float> offset =
+            between_centers(pair.a, pair.b, colliders_, bounds_).cast<float>();
         const auto half = [&](std::uint32_t collider) -> Vec3T<float> {
             return shapes_.boxes[colliders_.shape[collider].index].half_extents.cast<float>();
         };
@@ -204,8 +205,7 @@ private:
         // A plane goes second: it is seen from the other shape, so that numbers stay small.
         const bool turned = colliders_.shape[pair.a].kind == ShapeKind::plane;
         const std::uint32_t first = turned ? pair.b : pair.a, second = turned ? pair.a : pair.b;
-        const Pose seen = pose_seen_from_a(shapes_, colliders_.shape[second], bounds_.placed[first],
-                                           bounds_.placed[second]);
+        const Pose seen = seen_from_first(first, second, shapes_, colliders_, bounds_);
         LocalManifold<Real> manifold;
         PairCache cache = contacts_.of_pair[i].cache;
         collide(shapes_, colliders_.shape[first], colliders_.shape[second], rounded<Real>(seen),

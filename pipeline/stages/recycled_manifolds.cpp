@@ -26,8 +26,7 @@ bool find_or_recycle(const Shapes& shapes,
                      FoundManifold<Real>& out)
 {
     const ShapeRef a = colliders.shape[pair.a], b = colliders.shape[pair.b];
-    out.b_in_a =
-        rounded<Real>(pose_seen_from_a(shapes, b, bounds.placed[pair.a], bounds.placed[pair.b]));
+    out.b_in_a = rounded<Real>(seen_from_first(pair.a, pair.b, shapes, colliders, bounds));
     out.reach = static_cast<Real>(pair.reach);
     const double least = std::min(colliders.inner_extent[pair.a], colliders.inner_extent[pair.b]);
     if (kept != nullptr

@@ -43,6 +43,7 @@ void rest_islands(const Conditions& conditions,
                   const Drives& drives,
                   const Forces& forces,
                   const Islands& islands,
+                  const Parting& parting,
                   BodyStates& states,
                   Beds& beds,
                   Velocities& velocities,
@@ -52,11 +53,11 @@ void rest_islands(const Conditions& conditions,
     const Settings& settings = conditions.settings;
     const auto quiet_for = [&](std::uint32_t body) {
         // Who is driven wants to move, even where something holds it up; what a spring or a field
-        // will do to it nobody here knows.
+        // will do to it nobody here knows; and who is moved apart has no speed for it.
         const bool quiet = states.moves(body)  // not put to rest in this very step
             && speed_of(velocities, states, body) < settings.sleep_speed
             && !std::binary_search(drives.body.begin(), drives.body.end(), body)
-            && !forces.stirs(body);
+            && !forces.stirs(body) && !parting.parts(body);
         states.quiet_time[body] = quiet ? states.quiet_time[body] + settings.dt : 0.0;
         return states.quiet_time[body];
     };

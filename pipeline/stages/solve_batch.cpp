@@ -3,6 +3,10 @@
 #include "kernels/motion/solver_bodies.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solve/sweep.hpp"
+#include "pipeline/stages/parting.hpp"
+
+#include <algorithm>
+#include <atomic>
 
 namespace throng {
 
@@ -20,6 +24,12 @@ constexpr int kPushSweeps = 2, kRelaxSweeps = 1;
 // energy.
 constexpr int kInHeaps = 1, kInStructures = 2;
 
+// Pushing visits a substep while bodies part. Each substep starts from nothing, and what is wedged
+// in the middle of a crowd waits for those around it: by one visit a thousand boxes made at one
+// point take a minute to come apart, by eight some seconds. While each still lies in hundreds of
+// others one visit is many pushes: so many a body will do.
+constexpr std::size_t kPartingVisits = 8, kPartingPushes = 64;
+
 // One pass over the contacts or the bodies of a slice.
 struct Pass {
     enum class Kind : std::uint8_t {
@@ -30,7 +40,10 @@ struct Pass {
         advance,
         relax,
         bounce,
-        store
+        store,
+        keep,
+        part,
+        put_back
     } kind;
     bool first = false;     // of the step
     bool backward = false;  // from the last slice and color to the first
@@ -43,9 +56,10 @@ public:
          const Layout& layout,
          const Batch& batch,
          const RowMaker<Real>& maker,
-         Rows<Real>& rows)
+         Rows<Real>& rows,
+         Parting& parting)
         : conditions_(conditions), layout_(layout), batch_(batch), maker_(maker), rows_(rows),
-          view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
+          parting_(parting), view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
           warm_start_(conditions.grips_apart() ? kernels_.warm_start_grips : kernels_.warm_start),
           sweep_(conditions.grips_apart() ? kernels_.sweep_grips : kernels_.sweep),
           time_(static_cast<Real>(conditions.substep()))
@@ -69,8 +83,17 @@ public:
         const bool left = conditions_.settings.solver == Solver::direct;
         const int wanted = left ? 0 : conditions_.settings.iterations;
         const int pushes = wanted > 0 ? wanted : pgs ? 20 : 1;
-        const int relaxes = pgs ? 0 : on_faces_ ? kInStructures : kInHeaps;
         add_pass({prepare});
+        // Slices are prepared as late as can be, to be solved while they are in cache: only where
+        // somebody parted a step ago are all of them looked at before anything else is done.
+        if (parting_.some) run_passes();
+        const bool all_seen = passes_.empty();
+        const bool parts =
+            !pgs && all_seen && may_part_ && note_parting(layout_, batch_, rows_, parting_);
+        if (parts) {
+            put_aside_ = PutAside<Real>(layout_, batch_, rows_);
+            stiffen(layout_, batch_, rows_);
+        }
         for (int step = 0; step < conditions_.settings.substeps; ++step) {
             // In towers and structures there in one substep and back in the next: who comes first
             // takes a little more of a load than its share, which would lean a whole wall to one
@@ -79,17 +102,33 @@ public:
             const auto add = [&](Pass::Kind kind) { add_pass({kind, step == 0, backward}); };
             add(begin);
             if (step == 0) add(warm_start);
-            for (int i = 0; i < pushes; ++i) add(push);
-            add(advance);
-            for (int i = 0; i < relaxes; ++i) add(relax);
+            const int relaxes = parts || on_faces_ ? kInStructures : kInHeaps;
+            if (parts) {
+                for (int i = 0; i < relaxes; ++i) add(relax);
+                add(keep);
+                for (std::size_t i = 0; i < parting_visits(); ++i) add(part);
+                add(advance);
+                add(put_back);
+            } else {
+                for (int i = 0; i < pushes; ++i) add(push);
+                add(advance);
+                for (int i = 0; i < relaxes && !pgs; ++i) add(relax);
+            }
             if (on_faces_ || !window_fits()) run_passes();
         }
         if (conditions_.has(Effect::restitution)) add_pass({bounce});
         add_pass({store});
         run_passes();
+        if (!pgs && !all_seen && may_part_) note_for_next_step(layout_, batch_, parting_);
     }
 
 private:
+    std::size_t parting_visits() const
+    {
+        const std::size_t visits = kPartingPushes * put_aside_.bodies() / batch_.contacts;
+        return std::clamp<std::size_t>(visits, 1, kPartingVisits);
+    }
+
     // A single slice needs no waiting, so it has its passes at once.
     void add_pass(const Pass& pass)
     {
@@ -120,8 +159,19 @@ private:
     {
         switch (pass.kind) {
         case Pass::Kind::prepare:
-            return for_blocks(slice, shared,
-                              [&](std::size_t from, std::size_t end) { maker_.make(from, end); });
+            return for_blocks(slice, shared, [&](std::size_t from, std::size_t end) {
+                maker_.make(from, end);
+                if (may_part(rows_, from, end, parting_.some))
+                    may_part_.store(true, std::memory_order_relaxed);
+            });
+        case Pass::Kind::keep:
+            return for_blocks(slice, false, [&](std::size_t from, std::size_t end) {
+                put_aside_.keep(slice, from, end, rows_);
+            });
+        case Pass::Kind::put_back:
+            return for_blocks(slice, false, [&](std::size_t from, std::size_t end) {
+                put_aside_.put_back(slice, from, end, rows_);
+            });
         case Pass::Kind::store:
             return store(slice, shared);
         case Pass::Kind::begin:
@@ -135,12 +185,21 @@ private:
         case Pass::Kind::bounce:
             return bounce(slice, shared);
         default:
-            Visit<Real> visit = visit_;
-            visit.push = pass.kind == Pass::Kind::push;
-            visit.normal_sweeps = visit.push ? kPushSweeps : kRelaxSweeps;
-            for_colors(slice, shared, pass.backward,
-                       [&](std::size_t from, std::size_t end) { sweep_(view_, from, end, visit); });
+            return sweep(pass, slice, shared);
         }
+    }
+
+    void sweep(const Pass& pass, const Slice& slice, bool shared)
+    {
+        Visit<Real> visit = visit_;
+        const bool parts = pass.kind == Pass::Kind::part;
+        visit.push = parts || pass.kind == Pass::Kind::push;
+        visit.normal_sweeps = visit.push ? kPushSweeps : kRelaxSweeps;
+        // Nothing slides while bodies part: their velocities are solved already.
+        if (parts) visit.grips = visit.rolls = false;
+        const auto sweep = parts ? kernels_.sweep : sweep_;
+        for_colors(slice, shared, pass.backward,
+                   [&](std::size_t from, std::size_t end) { sweep(view_, from, end, visit); });
     }
 
     // Calls body(first, count) for what moves: dynamic and kinematic bodies.
@@ -256,6 +315,7 @@ private:
     const Batch& batch_;
     const RowMaker<Real>& maker_;
     Rows<Real>& rows_;
+    Parting& parting_;
     RowsView<Real> view_;
     const SolveKernels<Real>& kernels_;
     using Over = decltype(SolveKernels<Real>::sweep);
@@ -263,7 +323,9 @@ private:
     Real time_;                // s, of a substep
     Visit<Real> visit_;
     bool on_faces_ = false;
-    std::vector<Pass> passes_;  // that wait to be run
+    std::atomic<bool> may_part_ = false;  // some contact is deep
+    PutAside<Real> put_aside_;            // while bodies of the batch part
+    std::vector<Pass> passes_;            // that wait to be run
 };
 
 }  // namespace
@@ -273,14 +335,15 @@ void solve_batch(const Conditions& conditions,
                  const Layout& layout,
                  const Batch& batch,
                  const RowMaker<Real>& maker,
-                 Rows<Real>& rows)
+                 Rows<Real>& rows,
+                 Parting& parting)
 {
-    Task<Real>(conditions, layout, batch, maker, rows).run();
+    Task<Real>(conditions, layout, batch, maker, rows, parting).run();
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_batch<Real>(const Conditions&, const Layout&, const Batch&,                \
-                                    const RowMaker<Real>&, Rows<Real>&);
+                                    const RowMaker<Real>&, Rows<Real>&, Parting&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

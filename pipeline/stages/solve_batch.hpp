@@ -8,6 +8,7 @@
 #pragma once
 
 #include "pipeline/stages/row_maker.hpp"
+#include "pipeline/step_data.hpp"
 
 namespace throng {
 
@@ -18,6 +19,7 @@ void solve_batch(const Conditions& conditions,
                  const Layout& layout,
                  const Batch& batch,
                  const RowMaker<Real>& maker,
-                 Rows<Real>& rows);
+                 Rows<Real>& rows,
+                 Parting& parting);
 
 }  // namespace throng

@@ -2,6 +2,7 @@
 #include "kernels/motion/solver_bodies.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
+#include "pipeline/stages/parting.hpp"
 #include "pipeline/stages/solve_batch.hpp"
 #include "pipeline/stages/solve_direct.hpp"
 
@@ -118,6 +119,7 @@ void solve_impulses(const Conditions& conditions,
                     SolidContacts<Real>& solids,
                     Poses& poses,
                     Velocities& velocities,
+                    Parting& parting,
                     Trouble& trouble)
 {
     trouble.quarantined.clear();
@@ -125,11 +127,12 @@ void solve_impulses(const Conditions& conditions,
     const DirectScene<Real> direct{conditions, layout, active, masses,
                                    pulls,      maker,  poses,  velocities};
     start_direct(layout, rows, trouble);
+    start_parting(layout, parting);
     const auto solve = [&](const Batch& batch) {
         if (batch.direct)
             solve_direct(direct, batch, rows, trouble);
         else
-            solve_batch(conditions, layout, batch, maker, rows);
+            solve_batch(conditions, layout, batch, maker, rows, parting);
     };
     // Big islands use all threads themselves, so they go one after another.
     for (const Batch& batch : layout.batches)
@@ -140,6 +143,7 @@ void solve_impulses(const Conditions& conditions,
     });
 
     finish_direct(conditions, layout, trouble);
+    follow_parting(parting);
 
     // In order of bodies, of which many arrays are written.
     const std::size_t bodies = layout.slot.size();
@@ -159,10 +163,10 @@ void solve_impulses(const Conditions& conditions,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void solve_impulses<Real>(const Conditions&, const Layout&, const ActiveContacts&,    \
-                                       const Masses&, const Pulls&, Rows<Real>&,                   \
-                                       ConvexContacts<Real>&, MeshContacts<Real>&,                 \
-                                       SolidContacts<Real>&, Poses&, Velocities&, Trouble&);
+    template void solve_impulses<Real>(                                                            \
+        const Conditions&, const Layout&, const ActiveContacts&, const Masses&, const Pulls&,      \
+        Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&, SolidContacts<Real>&, Poses&,     \
+        Velocities&, Parting&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -222,7 +222,7 @@ TEST(RestIslands, PutsAnIslandToBedOnceAllOfItIsQuiet)
     b.velocities.linear[0] = Vec3(0.01, 0, 0);
     int steps = 0;
     while (b.states.awake[0] != 0 && ++steps < 100)
-        rest_islands(b.conditions, {}, {}, islands, b.states, beds, b.velocities, rest);
+        rest_islands(b.conditions, {}, {}, islands, {}, b.states, beds, b.velocities, rest);
     EXPECT_NEAR(steps, 30, 1);
     EXPECT_EQ(rest.rested, (std::vector<std::uint32_t>{0, 1}));
     EXPECT_EQ(b.states.bed[0], b.states.bed[1]);

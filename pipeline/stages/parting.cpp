@@ -1,0 +1,202 @@
+#include "pipeline/stages/parting.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace throng {
+
+namespace {
+
+// Overlap in units of that from which a contact is rigid (half a hundredth of the smaller body's
+// half extent): four tenths of the half extent is more than heaps come to as they fall; a contact
+// that was so deep is done with at a fifty-thousandth, from where the usual push gives no speed.
+constexpr double kDeep = 80, kFlat = 0.01;
+
+// Steps that a body has to part in: a tenth comes down to flat in some 60, whatever their length,
+// and a heap of ten by ten by ten takes a few times as many. While a step runs kGoesOn marks who
+// does go on.
+constexpr std::uint16_t kSteps = 1000, kSpent = 1, kGoesOn = 0x8000;
+
+// From the first block of a slice to behind its last.
+std::pair<std::size_t, std::size_t> blocks_of(const Layout& layout, const Slice& slice)
+{
+    const Color& last = layout.colors[slice.first_color + slice.colors - 1];
+    return {layout.colors[slice.first_color].first, std::size_t{last.first} + last.count};
+}
+
+// Of all slices of a batch.
+template <class AnyRows>
+auto blocks_of(const Layout& layout, const Batch& batch, AnyRows& rows)
+{
+    const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
+    const std::size_t begin = blocks_of(layout, slices.front()).first;
+    return std::span(rows.blocks).subspan(begin, blocks_of(layout, slices.back()).second - begin);
+}
+
+// Behind the last point of the blocks before `end`.
+template <class Real>
+std::size_t end_of_points(const Rows<Real>& rows, std::size_t end)
+{
+    return rows.first_point[end - 1] + static_cast<std::size_t>(rows.blocks[end - 1].points);
+}
+
+// Of each lane, in the units above; 0 for one that is idle or apart.
+template <class Real>
+void deepen(const Rows<Real>& rows, const ContactBlock<Real>& block, Real (&depth)[kBlock])
+{
+    std::fill(std::begin(depth), std::end(depth), Real(0));
+    for (int k = 0; k < block.points; ++k) {
+        const PointRows<Real>& point = rows.points[block.first_point + static_cast<unsigned>(k)];
+        for (int lane = 0; lane < kBlock; ++lane)
+            depth[lane] = std::max(depth[lane], -point.gap.at[lane]);
+    }
+    for (int lane = 0; lane < kBlock; ++lane) depth[lane] *= block.inverse_deep.at[lane];
+}
+
+std::uint16_t left_of(std::uint16_t steps) { return steps & static_cast<std::uint16_t>(~kGoesOn); }
+
+// Lets the bodies of a contact that is not flat go on. Returns the most steps that one of them has
+// left.
+std::uint16_t go_on(bool deep, std::span<std::uint16_t* const> sides)
+{
+    std::uint16_t most = deep ? kSteps : 0, found = 0;
+    for (const std::uint16_t* steps : sides) most = std::max(most, left_of(*steps));
+    for (std::uint16_t* steps : sides) {
+        if (*steps == 0 && most > kSpent) *steps = most;
+        if (left_of(*steps) <= kSpent && !deep) continue;
+        found = std::max(found, left_of(*steps));
+        *steps |= kGoesOn;
+    }
+    return found;
+}
+
+// The same for all contacts of a block.
+template <class Real>
+std::uint16_t go_on(const Layout& layout,
+                    const Rows<Real>& rows,
+                    const ContactBlock<Real>& block,
+                    std::vector<std::uint16_t>& steps)
+{
+    Real depth[kBlock];
+    deepen(rows, block, depth);
+    std::uint16_t found = 0;
+    for (int lane = 0; lane < kBlock; ++lane) {
+        if (!(depth[lane] > Real(kFlat))) continue;
+        std::uint16_t* sides[2];
+        std::size_t count = 0;
+        for (const std::int32_t seat : {block.a[lane], block.b[lane]})
+            if (layout.movable(seat))
+                sides[count++] = &steps[layout.body_of_slot[static_cast<std::size_t>(seat)]];
+        found = std::max(found, go_on(depth[lane] > Real(kDeep), std::span(sides, count)));
+    }
+    return found;
+}
+
+std::uint8_t& mark_of(const Layout& layout, const Batch& batch, Parting& parting)
+{
+    return parting.batches[static_cast<std::size_t>(&batch - layout.batches.data())];
+}
+
+}  // namespace
+
+void start_parting(const Layout& layout, Parting& parting)
+{
+    parting.steps.resize(layout.slot.size(), 0);
+    parting.batches.assign(layout.batches.size(), 0);
+}
+
+template <class Real>
+bool may_part(const Rows<Real>& rows, std::size_t begin, std::size_t end, bool some_part)
+{
+    Real deepest[kBlock] = {}, depth[kBlock];
+    for (std::size_t i = begin; i < end; ++i) {
+        deepen(rows, rows.blocks[i], depth);
+        for (int lane = 0; lane < kBlock; ++lane)
+            deepest[lane] = std::max(deepest[lane], depth[lane]);
+    }
+    const Real most = *std::max_element(std::begin(deepest), std::end(deepest));
+    return most > Real(some_part ? kFlat : kDeep);
+}
+
+template <class Real>
+bool note_parting(const Layout& layout,
+                  const Batch& batch,
+                  const Rows<Real>& rows,
+                  Parting& parting)
+{
+    std::uint16_t most = 0;
+    for (const ContactBlock<Real>& block : blocks_of(layout, batch, rows))
+        most = std::max(most, go_on(layout, rows, block, parting.steps));
+    mark_of(layout, batch, parting) = most > 0;
+    return most > kSpent;
+}
+
+template <class Real>
+void stiffen(const Layout& layout, const Batch& batch, Rows<Real>& rows)
+{
+    for (ContactBlock<Real>& block : blocks_of(layout, batch, rows)) block.impulse_scale = {};
+}
+
+void note_for_next_step(const Layout& layout, const Batch& batch, Parting& parting)
+{
+    mark_of(layout, batch, parting) = 1;
+}
+
+void follow_parting(Parting& parting)
+{
+    const auto& batches = parting.batches;
+    const bool some = std::find(batches.begin(), batches.end(), 1) != batches.end();
+    if (some || parting.some)
+        for (std::uint16_t& steps : parting.steps) {
+            const std::uint16_t left = left_of(steps);
+            steps = left == steps ? 0 : std::max<std::uint16_t>(kSpent, left - 1);
+        }
+    parting.some = some;
+}
+
+template <class Real>
+PutAside<Real>::PutAside(const Layout& layout, const Batch& batch, const Rows<Real>& rows)
+{
+    const Slice& first = layout.slices[batch.first_slice];
+    const Slice& last = layout.slices[batch.first_slice + batch.slices - 1];
+    first_body_ = first.first_body;
+    motions_.resize(last.first_body + last.dynamic - first_body_);
+    first_point_ = rows.first_point[blocks_of(layout, first).first];
+    impulses_.resize(end_of_points(rows, blocks_of(layout, last).second) - first_point_);
+}
+
+template <class Real>
+void PutAside<Real>::keep(const Slice& slice,
+                          std::size_t begin,
+                          std::size_t end,
+                          const Rows<Real>& rows)
+{
+    for (std::size_t i = slice.first_body; i < slice.first_body + slice.dynamic; ++i)
+        motions_[i - first_body_] = std::to_array(rows.bodies[i].motion);
+    for (std::size_t i = rows.first_point[begin]; i < end_of_points(rows, end); ++i)
+        impulses_[i - first_point_] = rows.points[i].impulse;
+}
+
+template <class Real>
+void PutAside<Real>::put_back(const Slice& slice,
+                              std::size_t begin,
+                              std::size_t end,
+                              Rows<Real>& rows) const
+{
+    for (std::size_t i = slice.first_body; i < slice.first_body + slice.dynamic; ++i)
+        std::ranges::copy(motions_[i - first_body_], rows.bodies[i].motion);
+    for (std::size_t i = rows.first_point[begin]; i < end_of_points(rows, end); ++i)
+        rows.points[i].impulse = impulses_[i - first_point_];
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template bool may_part<Real>(const Rows<Real>&, std::size_t, std::size_t, bool);               \
+    template bool note_parting<Real>(const Layout&, const Batch&, const Rows<Real>&, Parting&);    \
+    template void stiffen<Real>(const Layout&, const Batch&, Rows<Real>&);                         \
+    template class PutAside<Real>;
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng
