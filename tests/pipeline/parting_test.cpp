@@ -85,6 +85,82 @@ TEST(Parting, BodiesThatMoveTogetherKeepTheirVelocity)
     EXPECT_LT(world.measure().greatest_overlap, 1e-3);
 }
 
+// As many at one point as there are, without gravity.
+SceneOf crowd(int count, bool boxes, bool sleep)
+{
+    SceneOf made;
+    made.scene.gravity = Vec3::Zero();
+    made.scene.settings.sleep = sleep;
+    for (int i = 0; i < count; ++i)
+        (boxes ? made.box(Vec3::Constant(0.5), Vec3::Zero()) : made.ball(0.5, Vec3::Zero())).mass =
+            1;
+    return made;
+}
+
+Vec3 extent_of(const World& world)
+{
+    Vec3 low = Vec3::Constant(1e9), high = -low;
+    for (const BodyId body : world.bodies()) {
+        low = low.cwiseMin(world.pose(body).position);
+        high = high.cwiseMax(world.pose(body).position);
+    }
+    return high - low;
+}
+
+TEST(Parting, ACrowdAtOnePointPartsInAllDirections)
+{
+    for (const bool boxes : {true, false}) {
+        World world(crowd(50, boxes, false).scene);
+        double fastest = 0;
+        for (int step = 0; step < 400; ++step) {
+            world.step();
+            fastest = std::max(fastest, greatest_speed(world));
+        }
+        EXPECT_LT(fastest, 1e-3);
+        EXPECT_LT(world.measure().greatest_overlap, 1e-3);
+        // Four by four by four are 3 m from center to center; a line would be 49.
+        EXPECT_GT(extent_of(world).minCoeff(), 2);
+        EXPECT_LT(extent_of(world).maxCoeff(), 8);
+    }
+}
+
+TEST(Parting, NobodyFallsAsleepBeforeTheyAreApart)
+{
+    World world(crowd(8, true, true).scene);
+    world.step(600);
+    EXPECT_LT(world.measure().greatest_overlap, 1e-3);
+    for (const BodyId body : world.bodies()) EXPECT_FALSE(world.awake(body));
+}
+
+TEST(Parting, WhatHasNoRoomStopsAndFallsAsleep)
+{
+    SceneOf made;
+    made.scene.gravity = Vec3::Zero();
+    made.box(Vec3::Constant(0.5), Vec3::Zero());
+    for (const double side : {-1.0, 1.0})
+        made.box(Vec3(0.5, 2, 2), Vec3(0.7 * side, 0, 0)).motion = Motion::static_;
+    World world(made.scene);
+    const BodyId wedged = world.bodies()[0];
+    world.step(900);
+    EXPECT_TRUE(world.awake(wedged));
+    world.step(300);
+    EXPECT_FALSE(world.awake(wedged));
+    // Both sides push alike, but for who is last in a substep.
+    const Settings& settings = world.settings();
+    EXPECT_LT(world.pose(wedged).position.norm(),
+              settings.push_limit * settings.dt / settings.substeps);
+}
+
+TEST(Parting, UnderALoadAHeapComesFlatAndGoesOnAsUsual)
+{
+    SceneOf made = heap(4);
+    made.floor();
+    made.scene.settings.sleep = true;
+    World world(made.scene);
+    world.step(480);
+    for (const BodyId body : world.bodies()) EXPECT_FALSE(world.awake(body));
+}
+
 TEST(Parting, HasTheSameBitsOnAnyNumberOfThreadsAndRunInOrder)
 {
     for (const FrictionAt at : {FrictionAt::manifold, FrictionAt::points}) {
