@@ -37,15 +37,25 @@ struct Trouble {
     BlockLists<std::uint32_t> of_block;  // scratch
 };
 
-/// Who is moved apart from what it lay deep in (see stages/parting.hpp), from step to step.
+/// Who is moved apart from what it was made deep in (see stages/parting.hpp), from step to step.
 struct Parting {
-    std::vector<std::uint16_t>
-        steps;  // [bodies] what it has left of them; 1: spent; 0: not parting
-    std::vector<std::uint8_t>
-        batches;       // scratch: [batches] 1: of somebody who is, or has spent all
-    bool some = true;  // there were such; true before the first step, when nobody knows
+    static constexpr std::uint16_t kPlaced = 0x4000;
 
-    bool parts(std::size_t body) const { return body < steps.size() && steps[body] > 1; }
+    std::vector<std::uint16_t> steps;   // [bodies] for which it may go on; kPlaced: see place()
+    std::vector<std::uint8_t> batches;  // scratch: [batches] 1: somebody in it is moved apart
+    bool some = false;                  // somebody is, or was placed
+
+    /// Notes that a body was put where it is by the program, since the last step.
+    void place(std::size_t body)
+    {
+        if (steps.size() <= body) steps.resize(body + 1, 0);
+        steps[body] = kPlaced;
+        some = true;
+    }
+    bool parts(std::size_t body) const
+    {
+        return body < steps.size() && steps[body] != 0 && steps[body] != kPlaced;
+    }
 };
 
 /// Who awoke and who fell asleep in this step.

@@ -36,6 +36,7 @@ void World::State::touch(std::uint32_t body)
     Bounds& bounds = get<Bounds>();
     for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
         bounds.touched.push_back(colliders.begin[body] + i);
+    get<Parting>().place(body);
 }
 
 void World::State::wake_neighbors(const std::vector<std::uint8_t>& of)

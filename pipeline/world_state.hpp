@@ -74,7 +74,7 @@ struct World::State {
 
     /// Wakes a body with all that sleeps with it.
     void wake(std::uint32_t body);
-    /// The broad phase has to look at a body's colliders again.
+    /// The broad phase has to look at a body's colliders again, and it may lie deep in others.
     void touch(std::uint32_t body);
     /// Wakes whoever is in a pair with one of some bodies (by body: 1 for those).
     void wake_neighbors(const std::vector<std::uint8_t>& of);

@@ -9,14 +9,13 @@ namespace throng {
 namespace {
 
 // Overlap in units of that from which a contact is rigid (half a hundredth of the smaller body's
-// half extent): four tenths of the half extent is more than heaps come to as they fall; a contact
-// that was so deep is done with at a fifty-thousandth, from where the usual push gives no speed.
+// half extent): who is put deeper than four tenths of the half extent has to part, and is done at a
+// twenty-thousandth, from where the usual push gives no speed to speak of.
 constexpr double kDeep = 80, kFlat = 0.01;
 
 // Steps that a body has to part in: a tenth comes down to flat in some 60, whatever their length,
-// and a heap of ten by ten by ten takes a few times as many. While a step runs kGoesOn marks who
-// does go on.
-constexpr std::uint16_t kSteps = 1000, kSpent = 1, kGoesOn = 0x8000;
+// and a crowd of a thousand takes ten times as many. While a step runs kGoesOn marks who does.
+constexpr std::uint16_t kSteps = 1000, kGoesOn = 0x8000;
 
 // From the first block of a slice to behind its last.
 std::pair<std::size_t, std::size_t> blocks_of(const Layout& layout, const Slice& slice)
@@ -54,21 +53,26 @@ void deepen(const Rows<Real>& rows, const ContactBlock<Real>& block, Real (&dept
     for (int lane = 0; lane < kBlock; ++lane) depth[lane] *= block.inverse_deep.at[lane];
 }
 
-std::uint16_t left_of(std::uint16_t steps) { return steps & static_cast<std::uint16_t>(~kGoesOn); }
+std::uint16_t left_of(std::uint16_t steps)
+{
+    return steps & static_cast<std::uint16_t>(~(kGoesOn | Parting::kPlaced));
+}
 
-// Lets the bodies of a contact that is not flat go on. Returns the most steps that one of them has
-// left.
+// Lets the bodies of a contact that is not flat go on, and those that lean on them. Returns the
+// most steps that one of them has left.
 std::uint16_t go_on(bool deep, std::span<std::uint16_t* const> sides)
 {
-    std::uint16_t most = deep ? kSteps : 0, found = 0;
-    for (const std::uint16_t* steps : sides) most = std::max(most, left_of(*steps));
+    std::uint16_t most = 0;
+    for (const std::uint16_t* steps : sides) {
+        const bool begins = deep && (*steps & Parting::kPlaced) != 0;
+        most = std::max(most, begins ? kSteps : left_of(*steps));
+    }
+    if (most == 0) return 0;
     for (std::uint16_t* steps : sides) {
-        if (*steps == 0 && most > kSpent) *steps = most;
-        if (left_of(*steps) <= kSpent && !deep) continue;
-        found = std::max(found, left_of(*steps));
+        if (left_of(*steps) == 0) *steps |= most;
         *steps |= kGoesOn;
     }
-    return found;
+    return most;
 }
 
 // The same for all contacts of a block.
@@ -93,30 +97,12 @@ std::uint16_t go_on(const Layout& layout,
     return found;
 }
 
-std::uint8_t& mark_of(const Layout& layout, const Batch& batch, Parting& parting)
-{
-    return parting.batches[static_cast<std::size_t>(&batch - layout.batches.data())];
-}
-
 }  // namespace
 
 void start_parting(const Layout& layout, Parting& parting)
 {
     parting.steps.resize(layout.slot.size(), 0);
     parting.batches.assign(layout.batches.size(), 0);
-}
-
-template <class Real>
-bool may_part(const Rows<Real>& rows, std::size_t begin, std::size_t end, bool some_part)
-{
-    Real deepest[kBlock] = {}, depth[kBlock];
-    for (std::size_t i = begin; i < end; ++i) {
-        deepen(rows, rows.blocks[i], depth);
-        for (int lane = 0; lane < kBlock; ++lane)
-            deepest[lane] = std::max(deepest[lane], depth[lane]);
-    }
-    const Real most = *std::max_element(std::begin(deepest), std::end(deepest));
-    return most > Real(some_part ? kFlat : kDeep);
 }
 
 template <class Real>
@@ -128,8 +114,8 @@ bool note_parting(const Layout& layout,
     std::uint16_t most = 0;
     for (const ContactBlock<Real>& block : blocks_of(layout, batch, rows))
         most = std::max(most, go_on(layout, rows, block, parting.steps));
-    mark_of(layout, batch, parting) = most > 0;
-    return most > kSpent;
+    parting.batches[static_cast<std::size_t>(&batch - layout.batches.data())] = most > 0;
+    return most > 0;
 }
 
 template <class Real>
@@ -138,21 +124,13 @@ void stiffen(const Layout& layout, const Batch& batch, Rows<Real>& rows)
     for (ContactBlock<Real>& block : blocks_of(layout, batch, rows)) block.impulse_scale = {};
 }
 
-void note_for_next_step(const Layout& layout, const Batch& batch, Parting& parting)
-{
-    mark_of(layout, batch, parting) = 1;
-}
-
 void follow_parting(Parting& parting)
 {
+    if (!parting.some) return;
+    for (std::uint16_t& steps : parting.steps)
+        steps = (steps & kGoesOn) != 0 ? static_cast<std::uint16_t>(left_of(steps) - 1) : 0;
     const auto& batches = parting.batches;
-    const bool some = std::find(batches.begin(), batches.end(), 1) != batches.end();
-    if (some || parting.some)
-        for (std::uint16_t& steps : parting.steps) {
-            const std::uint16_t left = left_of(steps);
-            steps = left == steps ? 0 : std::max<std::uint16_t>(kSpent, left - 1);
-        }
-    parting.some = some;
+    parting.some = std::find(batches.begin(), batches.end(), 1) != batches.end();
 }
 
 template <class Real>
@@ -191,7 +169,6 @@ void PutAside<Real>::put_back(const Slice& slice,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template bool may_part<Real>(const Rows<Real>&, std::size_t, std::size_t, bool);               \
     template bool note_parting<Real>(const Layout&, const Batch&, const Rows<Real>&, Parting&);    \
     template void stiffen<Real>(const Layout&, const Batch&, Rows<Real>&);                         \
     template class PutAside<Real>;

@@ -1,14 +1,15 @@
-// Parting: batches in which bodies lie deep in one another, and how their contacts are solved.
+// Parting: batches of bodies that were made deep inside one another, and how they are solved.
 //
 // What pushes overlap apart gives bodies speed, which the visits that relax take away again. Where
 // many contacts hang together they do not get it all, and a heap made in one place flies apart. So
 // while bodies part, velocities are solved first, without any push; impulses and velocities are put
 // aside; the push is solved on top of them, moves the bodies, and is forgotten.
 //
-// A body parts from when a contact of it is deep until all its contacts are flat, and so do those
-// that it leans on and that lean on it: pushed the usual way they would get the speed. What a load
-// keeps from coming flat stops after a number of steps, and begins anew only once nothing of it is
-// deep.
+// A body that the program puts somewhere parts from when it lies deep in another until all its
+// contacts are flat, and so do those that it leans on and that lean on it: pushed the usual way
+// they would get the speed. What has no room, or a load keeps from coming flat, stops after a
+// number of steps. What a fall or a load drives deep into another does not part: bodies in motion
+// have the usual push.
 //
 // Source: split impulses, as Bullet has them (btContactSolverInfo::m_splitImpulse).
 #pragma once
@@ -22,13 +23,7 @@ namespace throng {
 /// Before the batches of a step: room for their bodies.
 void start_parting(const Layout& layout, Parting& parting);
 
-/// Whether bodies may have to part at the contacts of some blocks, whose rows are prepared: one is
-/// deep, or somebody parted in the last step and one is not flat. All that a step without deep
-/// contacts spends on it.
-template <class Real>
-bool may_part(const Rows<Real>& rows, std::size_t begin, std::size_t end, bool some_part);
-
-/// Whether bodies of a batch do part. Notes who, for the next step.
+/// Whether bodies of a batch part, whose rows are prepared. Notes who, for the next step.
 template <class Real>
 bool note_parting(const Layout& layout,
                   const Batch& batch,
@@ -38,10 +33,6 @@ bool note_parting(const Layout& layout,
 /// Contacts of a batch whose bodies part give way no more: under a load they never came flat.
 template <class Real>
 void stiffen(const Layout& layout, const Batch& batch, Rows<Real>& rows);
-
-/// Where some body of a batch may have to part and there was no time to see which: in the next step
-/// there will be.
-void note_for_next_step(const Layout& layout, const Batch& batch, Parting& parting);
 
 /// After all batches of a step: who parts from now on.
 void follow_parting(Parting& parting);

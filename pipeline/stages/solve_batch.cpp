@@ -6,7 +6,6 @@
 #include "pipeline/stages/parting.hpp"
 
 #include <algorithm>
-#include <atomic>
 
 namespace throng {
 
@@ -28,7 +27,7 @@ constexpr int kInHeaps = 1, kInStructures = 2;
 // in the middle of a crowd waits for those around it: by one visit a thousand boxes made at one
 // point take a minute to come apart, by eight some seconds. While each still lies in hundreds of
 // others one visit is many pushes: so many a body will do.
-constexpr std::size_t kPartingVisits = 8, kPartingPushes = 64;
+constexpr std::size_t kPartingVisits = 8, kPartingPushes = 128;
 
 // One pass over the contacts or the bodies of a slice.
 struct Pass {
@@ -84,16 +83,7 @@ public:
         const int wanted = left ? 0 : conditions_.settings.iterations;
         const int pushes = wanted > 0 ? wanted : pgs ? 20 : 1;
         add_pass({prepare});
-        // Slices are prepared as late as can be, to be solved while they are in cache: only where
-        // somebody parted a step ago are all of them looked at before anything else is done.
-        if (parting_.some) run_passes();
-        const bool all_seen = passes_.empty();
-        const bool parts =
-            !pgs && all_seen && may_part_ && note_parting(layout_, batch_, rows_, parting_);
-        if (parts) {
-            put_aside_ = PutAside<Real>(layout_, batch_, rows_);
-            stiffen(layout_, batch_, rows_);
-        }
+        const bool parts = !pgs && parting_.some && find_parting();
         for (int step = 0; step < conditions_.settings.substeps; ++step) {
             // In towers and structures there in one substep and back in the next: who comes first
             // takes a little more of a load than its share, which would lean a whole wall to one
@@ -119,10 +109,20 @@ public:
         if (conditions_.has(Effect::restitution)) add_pass({bounce});
         add_pass({store});
         run_passes();
-        if (!pgs && !all_seen && may_part_) note_for_next_step(layout_, batch_, parting_);
     }
 
 private:
+    // Slices are prepared as late as can be, to be solved while they are in cache: but here all
+    // are looked at before anything else is done.
+    bool find_parting()
+    {
+        run_passes();
+        if (!note_parting(layout_, batch_, rows_, parting_)) return false;
+        put_aside_ = PutAside<Real>(layout_, batch_, rows_);
+        stiffen(layout_, batch_, rows_);
+        return true;
+    }
+
     std::size_t parting_visits() const
     {
         const std::size_t visits = kPartingPushes * put_aside_.bodies() / batch_.contacts;
@@ -159,11 +159,8 @@ private:
     {
         switch (pass.kind) {
         case Pass::Kind::prepare:
-            return for_blocks(slice, shared, [&](std::size_t from, std::size_t end) {
-                maker_.make(from, end);
-                if (may_part(rows_, from, end, parting_.some))
-                    may_part_.store(true, std::memory_order_relaxed);
-            });
+            return for_blocks(slice, shared,
+                              [&](std::size_t from, std::size_t end) { maker_.make(from, end); });
         case Pass::Kind::keep:
             return for_blocks(slice, false, [&](std::size_t from, std::size_t end) {
                 put_aside_.keep(slice, from, end, rows_);
@@ -323,9 +320,8 @@ private:
     Real time_;                // s, of a substep
     Visit<Real> visit_;
     bool on_faces_ = false;
-    std::atomic<bool> may_part_ = false;  // some contact is deep
-    PutAside<Real> put_aside_;            // while bodies of the batch part
-    std::vector<Pass> passes_;            // that wait to be run
+    PutAside<Real> put_aside_;  // while bodies of the batch part
+    std::vector<Pass> passes_;  // that wait to be run
 };
 
 }  // namespace

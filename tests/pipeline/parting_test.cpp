@@ -124,6 +124,22 @@ TEST(Parting, ACrowdAtOnePointPartsInAllDirections)
     }
 }
 
+TEST(Parting, WhoIsPutIntoAnotherLaterPartsFromIt)
+{
+    SceneOf made = heap(2);
+    made.scene.gravity = Vec3::Zero();
+    made.box(Vec3::Constant(0.5), Vec3(5, 0, 0)).mass = 1;
+    World world(made.scene);
+    world.step(300);
+    const BodyId body = world.bodies().back();
+    world.set_pose(body, world.pose(world.bodies().front()));
+    for (int step = 0; step < 300; ++step) {
+        world.step();
+        ASSERT_LT(greatest_speed(world), 1e-3);
+    }
+    EXPECT_LT(world.measure().greatest_overlap, 1e-3);
+}
+
 TEST(Parting, NobodyFallsAsleepBeforeTheyAreApart)
 {
     World world(crowd(8, true, true).scene);
