@@ -25,8 +25,8 @@ constexpr int kInHeaps = 1, kInStructures = 2;
 
 // Pushing visits a substep while bodies part. Each substep starts from nothing, and what is wedged
 // in the middle of a crowd waits for those around it: by one visit a thousand boxes made at one
-// point take a minute to come apart, by eight some seconds. While each still lies in hundreds of
-// others one visit is many pushes: so many a body will do.
+// point overlap by a seventh after 10 s. While each still lies in hundreds of others one visit is
+// many pushes: so many a body will do.
 constexpr std::size_t kPartingVisits = 8, kPartingPushes = 128;
 
 // One pass over the contacts or the bodies of a slice.

@@ -23,21 +23,10 @@ std::string told(const CaseResult& result)
 
 // A top's wobble that is damped
 // away with the energy that it holds; the one pair in 1e5 that a step does not see to touch while
-// it is barely deep; what slides apart on rows that all but contradict one another, with the right
-// outcome, but not solved to the last digit; and heaps made inside one another, which soft steps
-// leave with the speed of being pushed, and pushes for contact after contact do not part in time.
+// it is barely deep; and what slides apart on rows that all but contradict one another, with the
+// right outcome, but not solved to the last digit.
 bool is_known_to_fail(const CaseResult& result)
 {
-    if (result.name == "H47") {
-        const bool pushed = result.setting.ends_with("kinematic");
-        if (result.setting.starts_with("50 boxes"))
-            return result.quantity.starts_with(pushed ? "overlap" : "greatest energy")
-                || (!pushed && result.quantity.starts_with("speed"));
-        return result.setting.starts_with("pyramid")
-            && (result.setting.ends_with("direct")
-                    ? result.why.starts_with("residual of solver direct")
-                    : !pushed && result.quantity.starts_with("speed"));
-    }
     if (result.quantity == "falls: wrong outcomes" && result.figure == 0
         && result.why.starts_with("residual of solver direct"))
         return true;
