@@ -41,7 +41,7 @@ struct Trouble {
 struct Parting {
     static constexpr std::uint16_t kPlaced = 0x4000;
 
-    std::vector<std::uint16_t> steps;   // [bodies] for which it may go on; kPlaced: see place()
+    std::vector<std::uint16_t> steps;   // [bodies] for which it may go on, and kPlaced: see place()
     std::vector<std::uint8_t> batches;  // scratch: [batches] 1: somebody in it is moved apart
     bool some = false;                  // somebody is, or was placed
 
@@ -49,12 +49,12 @@ struct Parting {
     void place(std::size_t body)
     {
         if (steps.size() <= body) steps.resize(body + 1, 0);
-        steps[body] = kPlaced;
+        steps[body] |= kPlaced;
         some = true;
     }
     bool parts(std::size_t body) const
     {
-        return body < steps.size() && steps[body] != 0 && steps[body] != kPlaced;
+        return body < steps.size() && (steps[body] & ~kPlaced) != 0;
     }
 };
 

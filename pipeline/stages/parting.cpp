@@ -64,7 +64,7 @@ std::uint16_t go_on(bool deep, std::span<std::uint16_t* const> sides)
 {
     std::uint16_t most = 0;
     for (const std::uint16_t* steps : sides) {
-        const bool begins = deep && (*steps & Parting::kPlaced) != 0;
+        const bool begins = deep && *steps == Parting::kPlaced;
         most = std::max(most, begins ? kSteps : left_of(*steps));
     }
     if (most == 0) return 0;

@@ -27,7 +27,7 @@ constexpr int kInHeaps = 1, kInStructures = 2;
 // in the middle of a crowd waits for those around it: by one visit a thousand boxes made at one
 // point overlap by a seventh after 10 s. While each still lies in hundreds of others one visit is
 // many pushes: so many a body will do.
-constexpr std::size_t kPartingVisits = 8, kPartingPushes = 128;
+constexpr std::size_t kPartingVisits = 12, kPartingPushes = 128;
 
 // One pass over the contacts or the bodies of a slice.
 struct Pass {
