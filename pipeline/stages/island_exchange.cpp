@@ -125,7 +125,8 @@ void WholeIsland::take_contact(const DirectScene<Real>& scene,
         : Surfaces::Meeting{double{entry.friction}, double{entry.restitution},
                             double{entry.rolling_friction}};
     touch.restitution = meeting.restitution;
-    touch.tolerance = kTolerance<Real> * double{entry.extent};
+    touch.extent = double{entry.extent};
+    touch.tolerance = kTolerance<Real> * touch.extent;
     DirectPoint point;
     point.a = touch.a;
     point.b = touch.b;

@@ -21,6 +21,9 @@ constexpr double kWithin = 0.9;
 // What presses a spring in is seen by the load that it bore and by how fast the two go on closing;
 // this many times as deep as both say it may be, for the load is that of a whole substep.
 constexpr double kPressed = 3;
+// So much of a shape's extent is looked at no further: swings near the limit of the step go by
+// neither.
+constexpr double kShallow = 1e-3;
 
 }  // namespace
 
@@ -78,7 +81,7 @@ void WholeIsland::find_unearned(const Conditions& conditions)
     const double time = conditions.substep();
     unearned_.assign(touches_.size(), 0);
     for (std::size_t i = 0; i < touches_.size(); ++i) {
-        if (!(gaps_[i] < 0)) continue;
+        if (!(gaps_[i] < -kShallow * touches_[i].extent)) continue;
         const double stiffness = give_of(i, conditions.settings, time).stiffness;
         if (!(stiffness > 0)) continue;
         const Vec3& normal = points_[i].normal;

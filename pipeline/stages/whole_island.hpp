@@ -32,6 +32,7 @@ struct IslandTouch {
     double round_a = 0, round_b = 0;
     double gap = 0;
     double restitution = 0;
+    double extent = 0;     // m, smallest half extent of the lesser shape
     double tolerance = 0;  // m, overlap that is let be
 };
 

@@ -21,10 +21,9 @@ std::string told(const CaseResult& result)
         + std::to_string(result.figure) + ", bound " + std::to_string(result.bound);
 }
 
-// A top's wobble that is damped
-// away with the energy that it holds; the one pair in 1e5 that a step does not see to touch while
-// it is barely deep; and what slides apart on rows that all but contradict one another, with the
-// right outcome, but not solved to the last digit.
+// A top's wobble that is damped away with the energy that it holds; the one pair in 1e5 that a step
+// does not see to touch while it is barely deep; and what slides apart on rows that all but
+// contradict one another, with the right outcome, but not solved to the last digit.
 bool is_known_to_fail(const CaseResult& result)
 {
     if (result.quantity == "falls: wrong outcomes" && result.figure == 0
