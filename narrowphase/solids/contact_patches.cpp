@@ -12,6 +12,7 @@
 #include "narrowphase/solids/contact_patches.hpp"
 
 #include "kernels/math/hash.hpp"
+#include "narrowphase/solids/patch_groups.hpp"
 #include "narrowphase/solids/places_between.hpp"
 
 #include <algorithm>
@@ -21,42 +22,22 @@
 namespace throng {
 namespace {
 
-// Cosine of the angle that a group takes in, 31 degrees. No round number: the normals of meshes
-// made by formula often stand exactly 30 from one another.
-constexpr double kAlike = 0.857;
-// Of the angle over which the touches of a group too many join another, 45 degrees.
-constexpr double kJoins = 0.7;
 // Cosines of the angles up to which a chosen place goes by its group's normal, 8 degrees, and from
 // which it goes by its own, 12; by some of either between them, so that what trembles does not
 // jump. By the group's up to 15 bolts made of spheres do not turn.
 constexpr double kGroupNormal = 0.9903, kOwnNormal = 0.9781;
-// Sine within which normals agree with one another: those of flat faces, rounding and grid
-// included.
-constexpr double kAgree = 0.05;
-// How often a group's middle is sought anew at most.
-constexpr int kRounds = 4;
 // How many times a depth missing weighs as much as a distance to span. Of a ball of radius R that
 // keeps what lies within R / 20 of the deepest place. Less where the reach is more than this part
 // of size, as then bodies are fast, and what is far apart yet may be the first to touch.
 constexpr double kShallow = 20, kShortReach = 0.1;
-// Cosine of the angle from which on two groups hold a body from opposite sides, 134 degrees. Part
-// of size that places between those that span a patch stand apart at least.
-constexpr double kOpposite = -0.7, kBetween = 0.03;
-// Far more groups than directions 31 degrees apart need. What is then left over joins or is left.
-constexpr std::size_t kMostGroups = 48;
-constexpr std::uint8_t kNone = 255;
+// Part of size that places between those that span a patch stand apart at least.
+constexpr double kBetween = 0.03;
 // More than there are names of groups. What is by itself is named by its group and which end it is.
 constexpr std::uint32_t kNames = 256;
 
 // Parts of size: steps in which depths are compared, and how far places are moved to tell equal
 // ones apart. A hundred and a thousand times what is left of a motion at rest.
 constexpr double kDepthStep = 1e-4, kApart = 1e-3;
-
-struct Group {
-    Vec3 normal = Vec3::Zero();
-    double deepest = std::numeric_limits<double>::infinity();  // least separation
-    bool kept = false;
-};
 
 bool comes_before(const SurfaceTouch& a, const SurfaceTouch& b)
 {
@@ -68,178 +49,6 @@ bool comes_before(const SurfaceTouch& a, const SurfaceTouch& b)
         if (a.normal[k] != b.normal[k]) return a.normal[k] < b.normal[k];
     return false;
 }
-
-// Axes that no face of a mesh is likely to look along.
-const Mat3& odd_axes()
-{
-    static const Mat3 axes = Quat(1, 0.31, 0.23, 0.47).normalized().toRotationMatrix();
-    return axes;
-}
-
-class Grouping {
-public:
-    Grouping(const std::vector<SurfaceTouch>& touches, double reach, double size)
-        : touches_(touches), group_of_(groups_of()), free_(free_ones())
-    {
-        group_of_.assign(touches.size(), kNone);
-        // What is just within reach hardly counts.
-        const double least_weight = 1e-6 * size;
-        for (std::uint32_t i = 0; i < touches.size(); ++i) {
-            const double within = reach - touches[i].separation + least_weight;
-            free_.push_back({touches[i].normal, within * within, i});
-        }
-        while (count_ < kMostGroups && gather()) ++count_;
-        keep_deepest();
-    }
-    /// Touches that overlap and are in no group.
-    std::size_t left_out() const
-    {
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < touches_.size(); ++i)
-            count += group_of_[i] == kNone && touches_[i].separation < 0 ? 1 : 0;
-        return count;
-    }
-    /// Visits each group that is kept, and the touches in it.
-    template <class Visit>
-    void visit(const Visit& visit) const
-    {
-        for (std::size_t g = 0; g < count_; ++g)
-            if (groups_[g].kept) visit(groups_[g].normal, static_cast<std::uint8_t>(g));
-    }
-    /// Whether two of the groups that are kept look at one another.
-    bool oppose() const
-    {
-        const auto kept = std::span(groups_).first(count_);
-        return std::any_of(kept.begin(), kept.end(), [&](const Group& a) {
-            return std::any_of(kept.begin(), kept.end(), [&](const Group& b) {
-                return a.kept && b.kept && a.normal.dot(b.normal) < kOpposite;
-            });
-        });
-    }
-    bool holds(std::uint8_t group, std::size_t touch) const { return group_of_[touch] == group; }
-
-private:
-    static std::vector<std::uint8_t>& groups_of()
-    {
-        thread_local std::vector<std::uint8_t> scratch;
-        return scratch;
-    }
-
-    // A touch that is in no group yet.
-    struct Free {
-        Vec3 normal;
-        double weight;
-        std::uint32_t touch;
-    };
-    static std::vector<Free>& free_ones()
-    {
-        thread_local std::vector<Free> scratch;
-        scratch.clear();
-        return scratch;
-    }
-
-    // One more group, from the free touch that looks furthest along the odd direction: the mean of
-    // what is round it, then the mean of what is round that, and so on to where most push, and most
-    // deeply. The mean of directions within an angle of another is itself within that angle of one
-    // of them, so a group is never empty.
-    //
-    // Source: the mean shift of Comaniciu and Meer, Mean Shift: A Robust Approach Toward Feature
-    //         Space Analysis (2002), a few steps of it.
-    bool gather()
-    {
-        if (free_.empty()) return false;
-        const Vec3 start = odd_axes().col(0);
-        const Free* seed = nullptr;
-        double furthest = -2;
-        for (const Free& one : free_) {
-            const double along = start.dot(one.normal);
-            if (!(along > furthest)) continue;
-            furthest = along;
-            seed = &one;
-        }
-        if (seed == nullptr) return false;
-        const std::uint32_t first = seed->touch;
-        Vec3 middle = seed->normal;
-        for (int round = 0; round < kRounds; ++round) {
-            const Vec3 before = middle;
-            middle = mean_round(middle, [](double) { return 1.0; });
-            if (middle == before) break;  // the same touches, and so from here on
-        }
-        // Less of what is much further from the direction than others are, so that a face on a face
-        // is not tilted by its rim.
-        for (int round = 0; round < 2; ++round)
-            middle = mean_round(middle, [](double off2) { return 1 / (off2 + kAgree * kAgree); });
-        groups_[count_].normal = middle;
-        const std::size_t were = free_.size();
-        std::erase_if(free_, [&](const Free& one) {
-            const bool taken = middle.dot(one.normal) >= kAlike;
-            if (taken) take(one.touch);
-            return taken;
-        });
-        if (free_.size() < were) return true;
-        // Rounding.
-        groups_[count_].normal = touches_[first].normal;
-        take(first);
-        std::erase_if(free_, [&](const Free& one) { return one.touch == first; });
-        return true;
-    }
-
-    // Smooth in what comes and goes.
-    //
-    //   share  of a normal, by the square of how far it is from the direction
-    template <class Share>
-    Vec3 mean_round(const Vec3& direction, const Share& share) const
-    {
-        Vec3 sum = Vec3::Zero();
-        for (const Free& one : free_) {
-            if (!(direction.dot(one.normal) >= kAlike)) continue;
-            sum += one.normal * (one.weight * share((one.normal - direction).squaredNorm()));
-        }
-        const double length = sum.norm();
-        return length > 0 ? Vec3(sum / length) : direction;
-    }
-
-    void take(std::size_t touch)
-    {
-        group_of_[touch] = static_cast<std::uint8_t>(count_);
-        groups_[count_].deepest = std::min(groups_[count_].deepest, touches_[touch].separation);
-    }
-
-    void keep_deepest()
-    {
-        std::array<std::size_t, kMostGroups> order;
-        for (std::size_t g = 0; g < count_; ++g) order[g] = g;
-        std::sort(order.begin(), order.begin() + count_, [&](std::size_t a, std::size_t b) {
-            return groups_[a].deepest != groups_[b].deepest
-                ? groups_[a].deepest < groups_[b].deepest
-                : a < b;
-        });
-        for (std::size_t k = 0; k < std::min(count_, kMostPatches); ++k)
-            groups_[order[k]].kept = true;
-        for (std::size_t i = 0; i < touches_.size(); ++i)
-            if (group_of_[i] == kNone || !groups_[group_of_[i]].kept)
-                group_of_[i] = nearest_kept(i);
-    }
-
-    std::uint8_t nearest_kept(std::size_t touch) const
-    {
-        std::uint8_t nearest = kNone;
-        double most = kJoins;
-        for (std::size_t g = 0; g < count_; ++g) {
-            const double along = groups_[g].normal.dot(touches_[touch].normal);
-            if (!groups_[g].kept || !(along > most)) continue;
-            most = along;
-            nearest = static_cast<std::uint8_t>(g);
-        }
-        return nearest;
-    }
-
-    const std::vector<SurfaceTouch>& touches_;
-    std::vector<std::uint8_t>& group_of_;
-    std::vector<Free>& free_;
-    std::array<Group, kMostGroups> groups_;
-    std::size_t count_ = 0;
-};
 
 // Which of 96 cells of a cube about odd axes the direction goes through: four by four a side.
 // Groups look 31 degrees apart or more, and cells span 27 or less.
@@ -474,7 +283,7 @@ private:
     }
 
     const std::vector<SurfaceTouch>& touches_;
-    const Grouping groups_;
+    const PatchGroups groups_;
     double reach_, size_;
     bool fills_;  // patches that bend
     std::vector<PatchManifold>& out_;
