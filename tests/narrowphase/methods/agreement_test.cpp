@@ -237,7 +237,7 @@ TEST_P(AgreementOnHullsFromGames, AllMethodsSayTheSame)
 
 INSTANTIATE_TEST_SUITE_P(Parts, AgreementOnHullsFromGames, testing::Range(0, kGameParts));
 
-// The planes of a plate's two sides, put out by rounding, meet far beyond the rim between them.
+// Four corners, each two of which are joined by an edge.
 Hull random_plate(Random& random, double thickness)
 {
     std::vector<Vec3> corners;
@@ -250,10 +250,7 @@ Hull random_plate(Random& random, double thickness)
 // Where the box's corner is so far from the plate's rim; below 0, within it.
 Pose beside_the_rim(const Hull& plate, Random& random, const Vec3& half, double gap)
 {
-    const auto corner = [&](int k) {
-        return plate.vertices[(random.below(2) + static_cast<std::size_t>(k)) % 4];
-    };
-    const Vec3 from = corner(0), to = corner(1);
+    const Vec3 &from = plate.vertices[random.below(2)], &to = plate.vertices[2 + random.below(2)];
     const Vec3 on_rim = from + (to - from) * random.uniform(0.1, 0.9);
     const Vec3 out = Vec3(on_rim - plate.center).normalized();
     // The corner that lies furthest back along the way out.
@@ -263,6 +260,7 @@ Pose beside_the_rim(const Hull& plate, Random& random, const Vec3& half, double 
     return {on_rim + gap * out - turn * nearest, turn};
 }
 
+// The planes of a plate's two sides, put out by rounding, meet far beyond the rim between them.
 TEST(Agreement, BesideTheSharpRimOfAPlateAllSayApart)
 {
     Random random(3000);

@@ -274,7 +274,7 @@ TEST(AskGjk, PointsFaceOneAnotherWhereTheGapIsRounding)
     }
 }
 
-// The gain from the last corner to the edge behind it is below rounding, the turn is not.
+// Round cores have no corners that tell where the points are.
 TEST(AskGjk, PointsOfDrumsAHairApartFaceOneAnother)
 {
     RandomShapes random(88);
@@ -283,8 +283,8 @@ TEST(AskGjk, PointsOfDrumsAHairApartFaceOneAnother)
     for (int i = 0; i < 2000; ++i) {
         SCOPED_TRACE("seed 88, pair " + std::to_string(i));
         const std::uint32_t other = i % 2 == 0 ? 0 : 1;
-        const double both = 0.01 + (other == 0 ? 0.01 : 0.2),
-                     off = std::pow(10, random.number(-7, -3));
+        const double both = 0.01 + shapes.cylinders[other].half_length;
+        const double off = std::pow(10, random.number(-7, -3));
         const Quat turn(Eigen::AngleAxisd(random.number(-3, 3), Vec3::UnitZ()));
         const double gap = random.number(-1, 1) * 1e-14;
         const Pose pose{Vec3(off, random.number(-1, 1) * off, both + gap), turn};
@@ -297,6 +297,7 @@ TEST(AskGjk, PointsOfDrumsAHairApartFaceOneAnother)
     }
 }
 
+// The gain from the last corner to the edge behind it is below rounding, the turn is not.
 TEST(AskGjk, TheNormalIsSquareToAnEdgeThatHardlyHelps)
 {
     Shapes shapes;
