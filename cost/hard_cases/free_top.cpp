@@ -115,16 +115,9 @@ void hold_to_known(CaseBench& bench, const KnownErrors& known, Rotation rotation
     }
 }
 
-// Adding rates about one axis after another is Euler's step, whatever the rest is worth.
-int order_of(Integrator integrator, Rotation rotation)
-{
-    const bool sheared = rotation == Rotation::matrix_euler && integrator == Integrator::splitting;
-    return sheared ? 1 : integrators()[static_cast<std::size_t>(integrator)].order;
-}
-
 void fit_order(CaseBench& bench, const Top& top, Integrator integrator, Rotation rotation)
 {
-    const int order = order_of(integrator, rotation);
+    const int order = integrators()[static_cast<std::size_t>(integrator)].order;
     if (order == 1 && &top == &tops()[1]) return;  // far off at every step that can be afforded
     const std::vector<double> steps = steps_to_fit(order);
     std::vector<double> errors;

@@ -1,5 +1,6 @@
 #include "kernels/math/rotation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace throng {
@@ -129,6 +130,19 @@ Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,
     return orientation * after_gyroscopic_torque_local(w, inertia_local, time);
 }
 
+namespace {
+
+// before / after, where before = after + lost. The loss is told apart, and no more of it made up
+// for than is left: of the least moments of a needle rounding may leave nothing but the loss.
+double gained_back(double before, double after, double lost)
+{
+    constexpr double kLeast = 1e-300;  // squares of a spin that is none
+    return lost > 0 ? (after + std::min(lost, after) + kLeast) / (after + kLeast)
+                    : (before + kLeast) / (before - lost + kLeast);
+}
+
+}  // namespace
+
 Vec3 after_gyroscopic_torque_local(const Vec3& w, const Sym3& inertia, double time)
 {
     const Vec3 momentum = times(inertia, w);
@@ -139,10 +153,14 @@ Vec3 after_gyroscopic_torque_local(const Vec3& w, const Sym3& inertia, double ti
     const Vec3 a = x + time * (w.cross(x) - Vec3(0, momentum.z(), -momentum.y()));
     const Vec3 b = y + time * (w.cross(y) - Vec3(-momentum.z(), 0, momentum.x()));
     const Vec3 c = z + time * (w.cross(z) - Vec3(momentum.y(), -momentum.x(), 0));
-    const Vec3 after = w - solved(a, b, c, residual);
-    // A body that turns by a radian and more in this time may come out of a single step faster.
-    const double energy = w.dot(momentum), energy_after = after.dot(times(inertia, after));
-    return energy_after > energy ? Vec3(after * std::sqrt(energy / energy_after)) : after;
+    const Vec3 change = solved(a, b, c, residual), momentum_change = times(inertia, change);
+    const Vec3 after = w - change, momentum_after = momentum - momentum_change;
+    const Vec3 both = momentum + momentum_after;
+    const double kept = gained_back(momentum.squaredNorm(), momentum_after.squaredNorm(),
+                                    momentum_change.dot(both));
+    const double allowed =
+        gained_back(w.dot(momentum), after.dot(momentum_after), change.dot(both));
+    return after * std::sqrt(std::min(kept, allowed));
 }
 
 Vec3 after_explicit_gyroscopic_torque(const Vec3& angular_velocity,

@@ -38,10 +38,11 @@ Real furthest_moved(const Vec3T<Real>& shift, const QuatT<Real>& turn, Real radi
 Sym3 in_world_axes(const Sym3& local, const Quat& orientation);
 
 /// Angular velocity after the gyroscopic torque has acted for a time: one Newton step of implicit
-/// Euler in body axes. It never gains energy (what the step would gain is taken away again); it
-/// loses some, by first order in time.
+/// Euler in body axes, brought back to the length that the angular momentum had or, where that is
+/// less, to the energy. So it gains neither and, but where it turns by radians in that time, loses
+/// one of them at most, by first order in time.
 ///
-/// Source: Catto, Numerical Methods (GDC 2015).
+/// Source: Catto, Numerical Methods (GDC 2015), for the step.
 Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,
                              const Sym3& inertia_local,
                              const Quat& orientation,

@@ -1,6 +1,8 @@
 // Solver bodies through a substep, written once over the width of the machine's registers.
 #include "kernels/solve/solve_lanes.hpp"
 
+#include <limits>
+
 namespace throng::THRONG_LANES {
 
 namespace {
@@ -33,7 +35,21 @@ V3<L> turned(const V3<L>& axis, L w, const V3<L>& v)
     return v + twice * w + cross(axis, twice);
 }
 
-// One Newton step of the implicit Euler equation of a free top.
+// before / after, where before = after + lost. The loss is told apart, and no more of it made up
+// for than is left: of the least moments of a needle rounding may leave nothing but the loss.
+template <class L>
+L gained_back(L before, L after, L lost)
+{
+    using Real = typename L::Number;
+    // Squares of a spin that is none.
+    const L least = std::numeric_limits<Real>::min() * Real(1e6);
+    const auto falls = lost > L(Real(0));
+    return (select(falls, after + min(lost, after), before) + least)
+        / (select(falls, after, before - lost) + least);
+}
+
+// One Newton step of the implicit Euler equation of a free top, which then has its momentum back
+// or, where that is less, its energy; see after_gyroscopic_torque().
 template <class L>
 V3<L> after_implicit(const Inertia<L>& inertia, const V3<L>& w, L time)
 {
@@ -52,14 +68,15 @@ V3<L> after_implicit(const Inertia<L>& inertia, const V3<L>& w, L time)
     const L determinant = dot(x, yz);
     const L sound = length_of(determinant);
     const L inverse = L(Real(1)) / select(sound > zero, determinant, L(Real(1)));
-    const V3<L> change{dot(residual, yz), dot(residual, cross(z, x)), dot(residual, cross(x, y))};
-    V3<L> after = w - change * inverse;
-    // A body that turns by a radian and more in this time may come out of a single step faster.
-    const L energy = dot(w, m), energy_after = dot(after, inertia * after);
-    const L shrink =
-        select(energy_after > energy,
-               sqrt(energy / select(energy_after > zero, energy_after, L(Real(1)))), L(Real(1)));
-    after = after * shrink;
+    const V3<L> change =
+        V3<L>{dot(residual, yz), dot(residual, cross(z, x)), dot(residual, cross(x, y))} * inverse;
+    const V3<L> m_change = inertia * change;
+    const V3<L> m_after = m - m_change, both = m + m_after;
+    V3<L> after = w - change;
+    const L energy = dot(w, m), energy_after = dot(after, m_after);
+    const L kept = gained_back(dot(m, m), dot(m_after, m_after), dot(m_change, both));
+    const L allowed = gained_back(energy, energy_after, dot(change, both));
+    after = after * sqrt(min(kept, allowed));
     // Rounding may leave nothing of the least moment of a needle, or squares of a spin may be past
     // all numbers: then it turns on as it did.
     const L there = select(energy > zero, sound, zero);

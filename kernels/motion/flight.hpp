@@ -35,8 +35,8 @@ struct FlightArrays {
 };
 
 /// Takes some bodies (ids, ascending) through one step. Those that spin too fast for the kernel's
-/// series, whose inertia has products, that would gain energy or leave what a step can hold are
-/// left as they are; their ids go to `left`, which has room for all. Returns how many they are.
+/// series, whose inertia has products or that would leave what a step can hold are left as they
+/// are; their ids go to `left`, which has room for all. Returns how many they are.
 ///
 /// Linear motion is summed up in closed form; turning goes substep by substep in body axes, about
 /// which an angular velocity stays as it is while the body turns about it. A body's result depends

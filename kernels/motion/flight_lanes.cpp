@@ -11,8 +11,8 @@ constexpr int kWidth = L::kWidth;
 
 // Turns of a quarter radian and more in a substep want more terms than the series below have.
 constexpr double kFastest = 0.0625;
-// What rounding may add to an energy and be none the worse for.
-constexpr double kRounding = 1 + 1e-13;
+// Less than the squares of any speed that can be told from nothing.
+constexpr double kLeast = 1e-300;
 // As much of anything as a step can hold, see holdable().
 constexpr double kMost = 1e16;
 
@@ -37,23 +37,27 @@ struct Spin {
     L ratio[3];  // h (I3 - I2) / I1 and so on: how strongly the other two axes act on each
     L pair[3];   // products of two ratios, and twice that of all three
     L triple;
-    L uneven;   // not 0 for those that precess
-    L energy;   // twice
-    L gained;   // most by which energy has grown, beyond rounding
-    L fastest;  // greatest square of a turn of one substep
+    L uneven;    // not 0 for those that precess
+    L energy;    // twice
+    L momentum;  // its square
+    L fastest;   // greatest square of a turn of one substep
 
     void square()
     {
         for (int k = 0; k < 3; ++k) squares[k] = w[k] * w[k];
     }
-    L energy_now() const
+    // And what follows from the squares.
+    void weigh()
     {
-        return moment[0] * squares[0] + moment[1] * squares[1] + moment[2] * squares[2];
+        L m[3];
+        for (int k = 0; k < 3; ++k) m[k] = moment[k] * squares[k];
+        energy = m[0] + m[1] + m[2] + L(kLeast);
+        momentum = moment[0] * m[0] + moment[1] * m[1] + moment[2] * m[2] + L(kLeast);
     }
     void start(L unevenly, double h, bool precesses)
     {
         square();
-        gained = fastest = 0.0;
+        fastest = 0.0;
         uneven = unevenly;
         if (!precesses) return;
         for (int k = 0; k < 3; ++k) {
@@ -62,11 +66,12 @@ struct Spin {
         }
         for (int k = 0; k < 3; ++k) pair[k] = ratio[(k + 1) % 3] * ratio[(k + 2) % 3];
         triple = L(2.0) * ratio[0] * pair[0];
-        energy = energy_now();
+        weigh();
     }
 
     // One Newton step of w' = w - h w' x I w' / I, its 3x3 system solved by hand: with r the ratios
-    // the matrix is 1 on the diagonal and r1 w3, r1 w2 and so on beside it.
+    // the matrix is 1 on the diagonal and r1 w3, r1 w2 and so on beside it. Then its momentum back
+    // or, where that is less, its energy; see after_gyroscopic_torque().
     void precess()
     {
         const L product = w[0] * w[1] * w[2];
@@ -83,9 +88,14 @@ struct Spin {
         }
         for (int k = 0; k < 3; ++k) w[k] -= change[k];
         square();
-        const L after = energy_now();
-        gained = max(after - energy * L(kRounding), gained);
-        energy = after;
+        const L had = energy, went = momentum;
+        weigh();
+        const L squared = min(went / momentum, had / energy);
+        const L scale = select(uneven > L(0.0), sqrt(squared), L(1.0));
+        for (int k = 0; k < 3; ++k) w[k] = w[k] * scale;
+        square();
+        energy = energy * squared;
+        momentum = momentum * squared;
     }
 
     // q turned by w for a substep: half the angle's sine over itself, and cosine, as series that
@@ -155,7 +165,6 @@ void spin(const FlightRule& rule, const FlightArrays& arrays, const RowIds& ids,
     body.trouble += trouble_where(spin.fastest < L(kFastest));
     if (!body.precesses) return;
     body.trouble += trouble_where(L::load(uneven) < L(1.5));  // its axes are principal ones
-    body.trouble += select(spin.gained > L(0.0), L(1.0), L(0.0));
     // What spins evenly keeps its velocity to the last bit.
     L world[3];
     turn(body.orientation, 1, spin.w, world);

@@ -155,8 +155,6 @@ TEST(Flight, LeavesToOthersWhatItCannotDoAndDoesTheRest)
         flyers.linear[17] = Vec3(1e300, 0, 0);  // beyond a step
         flyers.angular[20] = Vec3(NAN, 0, 0);   // not a number
         flyers.spins[41] = 2;                   // axes that are not principal ones
-        flyers.inertia[50] = {1e-9, 1, 1, 0, 0, 0};
-        flyers.angular[50] = Vec3(0.1, 55, -3);  // so long a rod might gain
         const Flyers stated = flyers;
         const auto left = fly(width, usual_rule(), all_of(flyers), flyers);
         for (const std::uint32_t id : {3u, 17u, 20u, 41u})
@@ -166,7 +164,7 @@ TEST(Flight, LeavesToOthersWhatItCannotDoAndDoesTheRest)
             EXPECT_EQ(flyers.linear[id], stated.linear[id]) << id;
             EXPECT_EQ(flyers.orientation[id].coeffs(), stated.orientation[id].coeffs()) << id;
         }
-        EXPECT_LE(left.size(), 5u);
+        EXPECT_EQ(left.size(), 4u);
         EXPECT_NE(flyers.position[4], stated.position[4]);
     }
 }
