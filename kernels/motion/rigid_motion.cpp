@@ -36,6 +36,22 @@ Vec3 dragged(const Vec3& spin, const Vec3& gained, const Mat3& z)
     return spin + slowed.inverse() * Vec3((one + 0.5 * z) * towards);
 }
 
+// By how much the moments beside a principal axis differ, of their sum.
+double asymmetry(const Vec3& moments, int axis)
+{
+    const double a = moments[(axis + 1) % 3], b = moments[(axis + 2) % 3];
+    return std::abs(a - b) / (a + b);
+}
+
+// The principal axis that comes nearest to one of symmetry.
+int axis_of_symmetry(const Vec3& moments)
+{
+    int best = 0;
+    for (int k = 1; k < 3; ++k)
+        if (asymmetry(moments, k) < asymmetry(moments, best)) best = k;
+    return best;
+}
+
 }  // namespace
 
 RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) const
@@ -57,7 +73,15 @@ RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) c
     if (masses.spins_unevenly[id] == 2) {
         const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia.matrix());
         body.axes = solver.eigenvectors();
+        // A left-handed set would turn the wrong way round.
+        if (body.axes.determinant() < 0) body.axes.col(0) *= -1;
         body.moments = solver.eigenvalues();
+    }
+    if (body.by_momentum && !adds_rates(rule_.rotation)) {
+        const int own = axis_of_symmetry(body.moments);
+        const double beside = body.moments[(own + 1) % 3] + body.moments[(own + 2) % 3];
+        body.own_axis = body.axes.col(own);
+        body.own_share = 1 / body.moments[own] - 2 / beside;
     }
     const Vec3& spin = facts_.velocities.angular[id];
     if (id < flights.memory.size()) {
@@ -101,12 +125,15 @@ void RigidMotion::settle()
         if (adds_rates(rule_.rotation)) {
             repair(rule_.rotation, turn);
             std::copy_n(turn, numbers_of(rule_.rotation), orientation.begin());
-        } else if (const Vec3 change = vector_at(turn); !change.isZero(0)) {
-            const Vec3 local = bodies_[i].by_momentum
+        } else if (const Vec3 change = vector_at(turn); !change.isZero(0) || turn[3] != 0) {
+            const Body& body = bodies_[i];
+            const Vec3 local = body.by_momentum
                 ? Vec3(matrix_of(rule_.rotation, orientation.data()).transpose() * change)
                 : change;
             turn_on(rule_.rotation, local, orientation.data());
-            put(Vec3::Zero(), turn);
+            if (body.by_momentum)
+                turn_on(rule_.rotation, turn[3] * body.own_axis, orientation.data());
+            std::fill_n(turn, 4, 0.0);
         }
     }
 }
@@ -140,9 +167,10 @@ Mat3 RigidMotion::turn_at(std::size_t i, const double* state) const
     if (adds_rates(rule_.rotation)) return matrix_of(rule_.rotation, place + 3);
     const Mat3 before = matrix_of(rule_.rotation, body.orientation.data());
     const Vec3 change = vector_at(place + 3);
-    if (change.isZero(0)) return before;
+    if (change.isZero(0) && place[6] == 0) return before;
     const Mat3 further = exponential(change).toRotationMatrix();
-    return body.by_momentum ? Mat3(further * before) : Mat3(before * further);
+    if (!body.by_momentum) return before * further;
+    return further * before * exponential(place[6] * body.own_axis).toRotationMatrix();
 }
 
 // Angular velocity in body axes.
@@ -272,16 +300,22 @@ void RigidMotion::place_rates(const double* state, double* rates)
         const double* const speed = state + speed_of(i);
         double* const rate = rates + place_of(i);
         put(vector_at(speed), rate);
-        const bool by_momentum = bodies_[i].by_momentum;
-        const Mat3 turn = by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
+        const Body& body = bodies_[i];
+        const Mat3 turn = body.by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
         const Vec3 spin = body_spin(i, turn, state);
-        if (adds_rates(rule_.rotation))
+        if (adds_rates(rule_.rotation)) {
             rates_of(rule_.rotation, place + 3, spin, rate + 3);
-        else if (by_momentum)
-            // From the left the series is that of the way back.
-            put(rate_of_turn(-vector_at(place + 3), turn * spin), rate + 3);
-        else
+            continue;
+        }
+        rate[6] = 0;
+        if (!body.by_momentum) {
             put(rate_of_turn(vector_at(place + 3), spin), rate + 3);
+            continue;
+        }
+        const Vec3 axis = turn * body.own_axis;
+        rate[6] = body.own_share * axis.dot(vector_at(speed + 3));
+        // From the left the series is that of the way back.
+        put(rate_of_turn(-vector_at(place + 3), Vec3(turn * spin) - rate[6] * axis), rate + 3);
     }
 }
 
@@ -387,20 +421,6 @@ void RigidMotion::swerve(double span, double* state)
     }
 }
 
-namespace {
-
-// Which principal axis has two equal moments beside it; -1: none has.
-int axis_of_symmetry(const Vec3& moments)
-{
-    for (int k = 0; k < 3; ++k) {
-        const double a = moments[(k + 1) % 3], b = moments[(k + 2) % 3];
-        if (std::abs(a - b) <= 1e-9 * (a + b)) return k;
-    }
-    return -1;
-}
-
-}  // namespace
-
 // A body with an axis of symmetry turns about its momentum and about that axis, both exactly. Any
 // other goes about one principal axis after another and back: each turn is exact and leaves the
 // length of the momentum alone.
@@ -431,7 +451,8 @@ void RigidMotion::turn_freely(std::size_t i, double span, double* state)
         momentum[last] = turn.cos * y - turn.sin * x;
         turn_by(angle * Vec3(axes.col(axis)));
     };
-    if (const int axis = axis_of_symmetry(body.moments); axis >= 0) {
+    const int axis = axis_of_symmetry(body.moments);
+    if (asymmetry(body.moments, axis) <= 1e-9) {
         const double across = body.moments[(axis + 1) % 3];
         turn_by(span / across * Vec3(axes * momentum));
         turn_about(axis, span * momentum[axis] * (1 / body.moments[axis] - 1 / across));

@@ -2,12 +2,14 @@
 //
 // To an integrator a state is a row of numbers. Here is what they are, body after body:
 //
-//   places  its position (3); then the change of rotation since the last call of settle() (3), or
-//           the numbers of a rotation that adds rates (4 or 9)
+//   places  its position (3); then the change of rotation since the last call of settle() (3) and
+//           an angle (1), or the numbers of a rotation that adds rates (4 or 9)
 //   speeds  velocity (3), angular velocity in body axes (3)
 //
 // A body on a pivot may have its angular momentum about the pivot in world axes instead, and its
-// change of rotation in world axes too: a fast top then has numbers that hardly change.
+// change of rotation in world axes too. What it spins about its axis of symmetry, or what comes
+// nearest to one, is then counted apart: that is the angle, which is nothing for other bodies. So
+// the numbers of a fast top hardly change, and those of one that nothing acts on are exact.
 #pragma once
 
 #include "kernels/data/bodies.hpp"
@@ -88,6 +90,8 @@ private:
         Mat3 ease = Mat3::Zero();        // inverse inertia
         Mat3 axes = Mat3::Identity();    // principal ones, as columns
         Vec3 moments = Vec3::Zero();     // about them
+        Vec3 own_axis = Vec3::Zero();    // that of the angle, in body axes
+        double own_share = 0;            // the angle's rate over momentum about it, 1 / (kg m2)
         Vec3 spin = Vec3::Zero();        // as taken up: the speeds it begins with
         OrientationNumbers orientation;  // as of the last settle()
     };
@@ -100,7 +104,7 @@ private:
 
     std::size_t place_numbers() const
     {
-        const int turn = adds_rates(rule_.rotation) ? numbers_of(rule_.rotation) : 3;
+        const int turn = adds_rates(rule_.rotation) ? numbers_of(rule_.rotation) : 4;
         return 3 + static_cast<std::size_t>(turn);
     }
     std::size_t place_of(std::size_t i) const { return i * place_numbers(); }

@@ -279,6 +279,38 @@ TEST(Pivot, APendulumSwingsByItsMomentAboutThePivot)
     }
 }
 
+// Three moments, and axes that are not those of the body: nothing about it is symmetric.
+Quat after_swinging(Integrator integrator, Rotation rotation, double substep)
+{
+    Scene scene = empty_scene(integrator);
+    scene.gravity = Vec3(0, 0, -10);
+    scene.settings.rotation = rotation;
+    scene.settings.substeps = static_cast<int>(std::lround(scene.settings.dt / substep));
+    BodyDescription& body = add_body(scene);
+    body.pivot = Vec3(0.1, 0.2, 0.5);
+    body.angular_velocity = Vec3(3, -2, 15);
+    World world(scene);
+    world.step(100);
+    return world.pose(world.bodies()[0]).orientation;
+}
+
+TEST(Pivot, WhatIsNotSymmetricSwingsAsExactlyAsEachMethodsOrder)
+{
+    const Quat wanted = after_swinging(Integrator::rk4, Rotation::quaternion, 1e-4);
+    for (const Rotation rotation :
+         {Rotation::quaternion, Rotation::rotation_vector, Rotation::matrix})
+        for (const auto& [integrator, order] :
+             {std::pair(Integrator::midpoint, 2), std::pair(Integrator::splitting, 2),
+              std::pair(Integrator::rk4, 4)}) {
+            const auto error = [&](double substep) {
+                return wanted.angularDistance(after_swinging(integrator, rotation, substep));
+            };
+            const double coarse = error(2e-3), fine = error(1e-3);
+            EXPECT_LT(fine, order == 2 ? 1e-3 : 1e-6) << int(integrator);
+            EXPECT_NEAR(std::log2(coarse / fine), order, 0.2) << int(integrator);
+        }
+}
+
 TEST(Pivot, AContactTurnsTheBodyAboutIt)
 {
     // A beam on a pivot in its middle; a crate that falls on one end brings that end down.
