@@ -49,6 +49,40 @@ apply_impulse(const DirectPoint& point, const Vec3& impulse, std::span<DirectBod
     push(point.b, point.arm_b, 1);
 }
 
+/// Angular velocity of b against a, rad/s.
+inline Vec3 spin_between(const DirectPoint& point, std::span<const DirectBody> bodies)
+{
+    const auto spin = [&](std::int32_t seat) -> Vec3 {
+        return seat < 0 ? Vec3(Vec3::Zero()) : bodies[static_cast<std::size_t>(seat)].spin;
+    };
+    return spin(point.b) - spin(point.a);
+}
+
+/// By how much a torque about an axis, for a time, changes the spin of b against a about it,
+/// 1 / (kg m2).
+inline double
+ease_about(const DirectPoint& point, const Vec3& axis, std::span<const DirectBody> bodies)
+{
+    const auto of = [&](std::int32_t seat) {
+        if (seat < 0) return 0.0;
+        const Mat3 inverse = bodies[static_cast<std::size_t>(seat)].inverse_inertia.matrix();
+        return axis.dot(Vec3(inverse * axis));
+    };
+    return of(point.a) + of(point.b);
+}
+
+/// Gives a torque for a time, N m s, to b, and its opposite to a.
+inline void apply_torque(const DirectPoint& point, const Vec3& torque, std::span<DirectBody> bodies)
+{
+    const auto turn = [&](std::int32_t seat, double sign) {
+        if (seat < 0) return;
+        DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+        body.spin += sign * Vec3(body.inverse_inertia.matrix() * torque);
+    };
+    turn(point.a, -1);
+    turn(point.b, 1);
+}
+
 /// The restitution of points that are struck together: the mean over the work that stopping each
 /// took, so that where coefficients differ none gains energy.
 ///

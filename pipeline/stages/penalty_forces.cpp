@@ -2,7 +2,8 @@
 //
 // Overlap under a load is the load over the stiffness. Friction is a damper across the normal that
 // gives way at Coulomb's limit, so that what should stick creeps: a box on four corners at eight
-// times the speed that it is given in a substep. Rolling friction has no force.
+// times the speed that it is given in a substep. Rolling friction is a damper between the spins
+// that gives way likewise.
 #include "pipeline/stages/whole_island.hpp"
 
 #include <algorithm>
@@ -29,8 +30,9 @@ constexpr double kShallow = 1e-3;
 
 // What a point is to the step.
 struct WholeIsland::Give {
-    double stiffness = 0, damping = 0, across = 0;  // N/m, N s/m, N s/m
-    double longest = 0;                             // s, of a step that keeps it from growing
+    double stiffness = 0, damping = 0;  // N/m, N s/m
+    double longest = 0;                 // s, of a step that keeps it from growing
+    std::uint32_t share = 1;            // of how many points what it bears is a part
 };
 
 // Whether the two overlap, or come to within that time: a spring that they fall into for a whole
@@ -70,7 +72,7 @@ WholeIsland::Give WholeIsland::give_of(std::size_t at, const Settings& settings,
         settings.penalty_damping >= 0 ? settings.penalty_damping : 2 * damped * frequency / ease;
     const double ratio = 0.5 * give.damping * ease / frequency;
     give.longest = 2 * (std::sqrt(1 + ratio * ratio) - ratio) / frequency;
-    give.across = 0.5 / (time * ease);
+    give.share = share;
     return give;
 }
 
@@ -94,6 +96,33 @@ void WholeIsland::find_unearned(const Conditions& conditions)
     }
 }
 
+// Dampers that stop half of the sliding between two, and of the turning, in a substep, all their
+// points together, up to what friction bears under a push, N s.
+void WholeIsland::damp_sliding(DirectPoint& point, double push, std::uint32_t share)
+{
+    const Vec3 between = velocity_between(point, before_);
+    const Vec3 sliding = between - point.normal * point.normal.dot(between);
+    const double fast = std::sqrt(sliding.squaredNorm());
+    if (!(fast > 0)) return;
+    const double ease = ease_along(point, sliding / fast, before_) * share;
+    if (!(ease > 0)) return;
+    const Vec3 impulse = sliding * (-std::min(0.5 / ease, point.friction * push / fast));
+    point.impulse += impulse;
+    apply_impulse(point, impulse, after_);
+}
+
+void WholeIsland::damp_turning(DirectPoint& point, double push, std::uint32_t share)
+{
+    const Vec3 turning = spin_between(point, before_);
+    const double fast = std::sqrt(turning.squaredNorm());
+    if (!(fast > 0)) return;
+    const double ease = ease_about(point, turning / fast, before_) * share;
+    if (!(ease > 0)) return;
+    const Vec3 torque = turning * (-std::min(0.5 / ease, point.rolling * push / fast));
+    point.torque += torque;
+    apply_torque(point, torque, after_);
+}
+
 // All forces are of the velocities before, so that no order of touches has a say.
 void WholeIsland::push_by_forces(const Conditions& conditions, double time)
 {
@@ -113,14 +142,11 @@ void WholeIsland::push_by_forces(const Conditions& conditions, double time)
         if (give.longest < time) give = give_of(i, softened, time);
         const double force =
             std::max(0.0, give.stiffness * pressed - give.damping * approach(i, before_));
-        const Vec3 between = velocity_between(point, before_);
-        const Vec3 sliding = between - point.normal * point.normal.dot(between);
-        const double fast = std::sqrt(sliding.squaredNorm());
-        const double hold = std::min(give.across * fast, point.friction * force);
-        Vec3 impulse = point.normal * (force * time);
-        if (fast > 0) impulse -= sliding * (hold * time / fast);
+        const Vec3 impulse = point.normal * (force * time);
         point.impulse += impulse;
         apply_impulse(point, impulse, after_);
+        if (point.friction > 0) damp_sliding(point, force * time, give.share);
+        if (point.rolling > 0) damp_turning(point, force * time, give.share);
     }
     going_ = after_;
     advance(time);

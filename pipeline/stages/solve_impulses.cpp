@@ -59,6 +59,7 @@ constexpr InnerRow kPenaltyTable[] = {
     {"turn_gyroscopic", {Effect::gyroscopic}, "each part of a substep"},
     {"push_by_forces", {Effect::contact}, "each part of a substep"},
     {"damp_sliding", {Effect::friction}, "each part of a substep", true},
+    {"resist_rolling", {Effect::rolling_friction}, "each part of a substep", true},
     {"move_bodies", {Effect::motion}, "each part of a substep"},
     {"turn_bodies", {Effect::rotation}, "each part of a substep"},
 };

@@ -83,6 +83,8 @@ private:
     Give give_of(std::size_t at, const Settings& settings, double time) const;
     void find_unearned(const Conditions& conditions);
     void push_by_forces(const Conditions& conditions, double time);
+    void damp_sliding(DirectPoint& point, double push, std::uint32_t share);
+    void damp_turning(DirectPoint& point, double push, std::uint32_t share);
     void separate(const Conditions& conditions);
     void stop_approach(std::size_t at);
     void push_apart(std::size_t at, double most);

@@ -106,6 +106,25 @@ TEST(Responses, PenaltyFrictionHoldsButCreeps)
     }
 }
 
+TEST(Responses, PenaltyRollingFrictionBringsABallToAStop)
+{
+    const double radius = 0.5, rolling = 0.02, speed = 0.5;
+    SceneOf made = on_a_floor(Response::penalty);
+    made.scene.materials[0].rolling_friction = rolling;
+    BodyDescription& ball = made.ball(radius, Vec3(0, 0, radius));
+    ball.mass = 1;
+    ball.velocity = Vec3(speed, 0, 0);
+    ball.angular_velocity = Vec3(0, speed / radius, 0);
+    World world(made.scene);
+    // A torque of rolling times the weight slows a solid ball that goes on rolling by this.
+    const double slowing = rolling * kGravity / (1.4 * radius);
+    world.step(60);
+    EXPECT_NEAR(world.velocity(last_of(world)).x(), speed - slowing, 0.02 * slowing);
+    world.step(120);
+    EXPECT_LT(world.velocity(last_of(world)).norm(), 1e-6);
+    EXPECT_LT(world.angular_velocity(last_of(world)).norm(), 1e-6);
+}
+
 // A heap falls onto springs a thousand times too stiff for its steps, and many of its boxes come to
 // overlap beside what contacts had looked for: centimeters, which such springs hold a megajoule by.
 TEST(Responses, PenaltyHeapOnStiffSpringsGainsNothing)
