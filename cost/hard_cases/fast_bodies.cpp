@@ -250,6 +250,23 @@ void run_between_plates(CaseBench& bench, const std::string& setting, const Shap
     });
 }
 
+// Sixty bounces to and fro, each whole: a face meets a face, and neither spin nor speed may come
+// of it.
+void bounce_between_plates(CaseBench& bench)
+{
+    Scene scene = weightless(bench, 1.0 / 60, ToiMethod::newton, 1);
+    for (const double side : {-1.0, 1.0})
+        add_still(scene, box({0.05, 2, 2}), {side * (0.55 + 1e-4), 0, 0});
+    add_body(scene, box(Vec3::Constant(0.5)), moving(Vec3::Zero(), {10, 0, 0}));
+    double energy = 0, gained = 0;
+    bench.look_at(scene, [&](const World& world) { energy = world.measure().kinetic_energy; });
+    bench.run(scene, 1, [&](World& world, double) {
+        gained = std::max(gained, world.measure().kinetic_energy / energy - 1);
+        return true;
+    });
+    bench.report("cube at 10 m/s that bounces between plates", "energy gained", gained, 1e-3, "1");
+}
+
 }  // namespace
 
 void case_fast_pair(CaseBench& bench)
@@ -274,6 +291,7 @@ void case_fast_pair(CaseBench& bench)
                        moving({0, -4, 0}, {0, 10, 0}));
     run_between_plates(bench, "cube at 10 m/s into a plate 0.1 mm away",
                        moving(Vec3::Zero(), {10, 0, 0}));
+    bounce_between_plates(bench);
 }
 
 }  // namespace throng

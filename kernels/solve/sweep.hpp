@@ -76,6 +76,9 @@ struct Substep {
     enum class Gyroscopic : std::uint8_t { off, implicit, direct } gyroscopic = Gyroscopic::off;
 };
 
+/// How often the points of a contact that bounces are visited.
+inline constexpr int kBounceVisits = 8;
+
 /// The solver's kernels for one width. All work in place on the blocks from `begin` to before
 /// `end`, or on `count` solver bodies.
 ///
@@ -84,7 +87,9 @@ struct Substep {
 ///   warm_start     gives the bodies the impulses that the contacts hold
 ///   sweep          moves every point towards its wanted normal speed, never pulling; then
 ///                  friction, a round cone of the contact's normal impulse; then the points again
-///   restitute      lets points that came in fast leave with `restitution` times that speed
+///   restitute      lets points that came in fast leave with `restitution` times that speed, those
+///                  of one contact together: in kBounceVisits of them, so that what meets face to
+///                  face leaves with the spin that it has, and with no energy from nowhere
 ///   begin_substep  stops bodies that ran away; adds gravity and the gyroscopic torque; then, but
 ///                  in the first substep, what all contacts gave in the last one: within a step
 ///                  arms and inertia do not change, so it is `motion` less `free`, and no contact

@@ -90,23 +90,34 @@ template <class L, bool turns>
     c.write(rows.bodies);
 }
 
+// Whether a point of the block came in fast and did touch; the others keep what the solver gave
+// them. Asked of whole blocks, which are the same at every width.
+template <class Real>
+bool bounces(const RowsView<Real>& rows, std::size_t place, Real threshold)
+{
+    const ContactBlock<Real>& block = rows.blocks[place];
+    for (int k = 0; k < block.points; ++k) {
+        const BounceRows<Real>& bounce = rows.bounces[block.first_point + std::uint32_t(k)];
+        bool any = false;
+        for (int at = 0; at < kBlock; ++at)
+            any |= (bounce.approach.at[at] < -threshold) & (bounce.greatest.at[at] > 0)
+                & (bounce.restitution.at[at] > 0);
+        if (any) return true;
+    }
+    return false;
+}
+
 template <class L, bool turns>
-[[gnu::flatten]] void restitute_lanes(const RowsView<typename L::Number>& rows,
-                                      std::size_t place,
-                                      int at,
-                                      typename L::Number threshold)
+void bounce_points(Contacts<L, turns>& c, BounceRows<typename L::Number>* bounces, int at, L slow)
 {
     using Real = typename L::Number;
     const L zero = Real(0), one = Real(1);
-    Contacts<L, turns> c(rows, place, at);
     for (int k = 0; k < c.block.points; ++k) {
         PointRows<Real>& point = c.points[k];
-        BounceRows<Real>& bounces = rows.bounces[c.block.first_point + std::uint32_t(k)];
-        const L bounce = lane<L>(bounces.restitution, at);
-        const L approach = lane<L>(bounces.approach, at);
-        // Only what came in fast and did touch; the others keep what the solver gave them.
-        const L fast = select(approach < L(-threshold), one, zero);
-        const L touched = select(lane<L>(bounces.greatest, at) > zero, fast, zero) * bounce;
+        const L bounce = lane<L>(bounces[k].restitution, at);
+        const L approach = lane<L>(bounces[k].approach, at);
+        const L fast = select(approach < -slow, one, zero);
+        const L touched = select(lane<L>(bounces[k].greatest, at) > zero, fast, zero) * bounce;
         L speed = c.rel.n, u = zero, w = zero;
         if constexpr (turns) {
             u = lane<L>(point.lever[0], at);
@@ -117,7 +128,7 @@ template <class L, bool turns>
         const L wanted = old - lane<L>(point.mass, at) * (speed + bounce * approach);
         const L total = select(touched > zero, max(wanted, zero), old), more = total - old;
         total.store(point.impulse.at + at);
-        max(total, lane<L>(bounces.greatest, at)).store(bounces.greatest.at + at);
+        max(total, lane<L>(bounces[k].greatest, at)).store(bounces[k].greatest.at + at);
         c.given.n += more;
         c.rel.n += c.answer(response::nn) * more;
         if constexpr (turns) {
@@ -131,6 +142,18 @@ template <class L, bool turns>
             c.rel.w2 += (n2 + u * w12 + w * c.answer(response::w22)) * more;
         }
     }
+}
+
+template <class L, bool turns>
+[[gnu::flatten]] void restitute_lanes(const RowsView<typename L::Number>& rows,
+                                      std::size_t place,
+                                      int at,
+                                      typename L::Number threshold)
+{
+    Contacts<L, turns> c(rows, place, at);
+    const int visits = c.block.points > 1 ? kBounceVisits : 1;
+    for (int visit = 0; visit < visits; ++visit)
+        bounce_points(c, rows.bounces + c.block.first_point, at, L(threshold));
     c.write(rows.bodies);
 }
 
@@ -194,9 +217,12 @@ void restitute(const RowsView<Real>& rows,
                Real threshold,
                const Visit<Real>& visit)
 {
-    for_lanes<Real>(begin, end, visit.turns, [&](auto turns, std::size_t place, int at) {
-        restitute_lanes<Lanes<Real>, turns.kValue>(rows, place, at, threshold);
-    });
+    for (std::size_t place = begin; place < end; ++place) {
+        if (!bounces(rows, place, threshold)) continue;
+        for_lanes<Real>(place, place + 1, visit.turns, [&](auto turns, std::size_t, int at) {
+            restitute_lanes<Lanes<Real>, turns.kValue>(rows, place, at, threshold);
+        });
+    }
 }
 
 template <class Real>

@@ -476,6 +476,23 @@ TEST(World, BallsLeaveACollisionAsRestitutionSays)
     }
 }
 
+TEST(World, AFaceThatMeetsAFaceLeavesItWhole)
+{
+    for (const double restitution : {0.3, 1.0}) {
+        SceneOf made;
+        made.scene.gravity.setZero();
+        made.scene.materials[0].restitution = restitution;
+        made.scene.materials[0].friction = 0;
+        made.box(Vec3(0.1, 3, 3), Vec3(2, 0, 0)).motion = Motion::static_;
+        made.box(Vec3(0.3, 0.5, 0.4), Vec3(0.1, 0.2, -0.1)).velocity = Vec3(10, 0, 0);
+        World world(made.scene);
+        world.step(60);
+        const BodyId box = world.bodies()[1];
+        EXPECT_NEAR(world.velocity(box).x(), -10 * restitution, 1e-2) << restitution;
+        EXPECT_LT(world.angular_velocity(box).norm(), 1e-2) << restitution;
+    }
+}
+
 TEST(World, AStackOfTenBoxesRests)
 {
     SceneOf made;

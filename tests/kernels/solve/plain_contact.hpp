@@ -138,14 +138,9 @@ public:
 
     void restitute(double threshold)
     {
-        for (Point& point : points) {
-            if (!(point.approach < -threshold) || point.greatest <= 0 || restitution <= 0) continue;
-            const double before = point.impulse;
-            const double wanted =
-                before - mass_of(point) * (speed_of(point) + restitution * point.approach);
-            point.impulse = std::max(0.0, wanted);
-            apply((point.impulse - before) * normal, point.arm_a, point.arm_b);
-        }
+        const int visits = points.size() > 1 ? kBounceVisits : 1;
+        for (int visit = 0; visit < visits; ++visit)
+            for (Point& point : points) bounce(point, threshold);
     }
 
     struct Point {
@@ -160,6 +155,16 @@ public:
     Vec3 friction_impulse, held_uncut, rolling_impulse;
     double twist_impulse;
     double held_by = 0, held_at = 0;  // load and its lever, by which friction went last
+
+    void bounce(Point& point, double threshold)
+    {
+        if (!(point.approach < -threshold) || point.greatest <= 0 || restitution <= 0) return;
+        const double before = point.impulse;
+        const double wanted =
+            before - mass_of(point) * (speed_of(point) + restitution * point.approach);
+        point.impulse = std::max(0.0, wanted);
+        apply((point.impulse - before) * normal, point.arm_a, point.arm_b);
+    }
 
     /// How far apart the surfaces are by now. Within a round side there is a core that turns with
     /// the body; the skin round it does not.
