@@ -210,8 +210,11 @@ void CaseBench::run(const Scene& scene,
     World world(planted, threads_);
     const double dt = scene.settings.dt;
     const int steps = static_cast<int>(std::llround(time / dt));
+    step_ms_ = steps_ = 0;
     for (int step = 1; step <= steps; ++step) {
         world.step();
+        step_ms_ += world.report().time_ms;
+        ++steps_;
         if (fault_ == Fault::float_poses) round_poses(world);
         stop_where_enough();
         if (!watch(world, step * dt)) break;
@@ -257,6 +260,12 @@ void CaseBench::report(
     std::string setting, std::string quantity, double figure, double bound, std::string unit)
 {
     keep(judged(std::move(setting), std::move(quantity), figure, bound, std::move(unit)));
+}
+
+void CaseBench::report_time(std::string setting, std::string quantity, double ns)
+{
+    constexpr double kShown = 1e9;  // not a bound that anything is held to
+    if (!brief()) report(std::move(setting), std::move(quantity), ns, kShown, "ns");
 }
 
 ConvexAnswer CaseBench::ask(ConvexQuery& query,

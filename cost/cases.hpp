@@ -123,6 +123,11 @@ public:
     void report(
         std::string setting, std::string quantity, double figure, double bound, std::string unit);
 
+    /// Adds a line of how long something took, ns: it is shown, and held to nothing.
+    void report_time(std::string setting, std::string quantity, double ns);
+    /// ns, the mean over the steps of the last run.
+    double time_a_step() const { return steps_ > 0 ? 1e6 * step_ms_ / steps_ : 0; }
+
     /// Adds a line about a method; time is what it took since its last line.
     void report_method(std::string_view method,
                        std::string_view setting,
@@ -161,6 +166,8 @@ private:
     CaseListener listener_;
     std::string name_;
     double spent_ms_ = 0;
+    double step_ms_ = 0;    // of the last run's steps
+    int steps_ = 0;         // of the last run
     std::size_t lost_ = 0;  // bodies quarantined since the last line
     double missed_ = 0;     // greatest residual of the direct solver, likewise
     std::map<std::string, double, std::less<>> method_ms_;

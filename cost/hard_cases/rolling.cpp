@@ -193,6 +193,7 @@ void balls_on_a_pulled_box(CaseBench& bench, const char* name, const Vec3& direc
 {
     bench.report(name, "greatest squared error of the velocities",
                  pull_box(bench, direction, FrictionCone::cone).worst, 1e-14, "m2/s2");
+    bench.report_time(name, "time a step", bench.time_a_step());
 }
 
 // Pulled aslant, neither part of the force is more than a side of the pyramid holds: the box stays
