@@ -1,6 +1,8 @@
 // Hash: a fingerprint of a state, so that two runs can be compared to the last bit.
 #pragma once
 
+#include "kernels/math/types.hpp"
+
 #include <bit>
 #include <cstdint>
 #include <string>
@@ -37,5 +39,17 @@ private:
     }
     std::uint64_t state_ = 0;
 };
+
+/// Somewhere in the cube from -1 to 1, each number at a spot of its own: what lies together is told
+/// apart by it, the same way on every run.
+inline Vec3 spot_of(std::uint64_t number)
+{
+    Hash hash;
+    hash.add(number);
+    const auto part = [&](int k) {
+        return static_cast<double>(hash.value() >> 21 * k & 0x1fffff) / 0x100000 - 1;
+    };
+    return {part(0), part(1), part(2)};
+}
 
 }  // namespace throng

@@ -76,12 +76,7 @@ free_name(const Vec3& normal, const std::vector<PatchManifold>& out, std::size_t
 // A place that differs from all as near to it, by the same however the bodies tremble.
 Vec3 told_apart(const SurfaceTouch& touch, double by)
 {
-    Hash hash;
-    hash.add(std::uint64_t{touch.feature});
-    const auto part = [&](int shift) {
-        return static_cast<double>(hash.value() >> shift & 0xffff) / 32768 - 1;
-    };
-    return touch.position + by * Vec3(part(0), part(16), part(32));
+    return touch.position + by * spot_of(touch.feature);
 }
 
 // A direction across the normal that moves smoothly with it, but for seams far from odd axes.

@@ -23,18 +23,6 @@ inline PairPlace place_of(PairKey key, const Colliders& colliders, const Bounds&
     return {a, b, colliders.body[a], colliders.body[b], bounds.reach[a] + bounds.reach[b]};
 }
 
-/// Somewhere in the cube from -1 to 1, each collider at a spot of its own.
-inline Vec3 spot_of(std::uint32_t collider)
-{
-    Hash hash;
-    hash.add(std::uint64_t{collider});
-    const std::uint64_t bits = hash.value();
-    const auto part = [&](int k) {
-        return static_cast<double>(bits >> 21 * k & 0x1fffff) / 0x100000 - 1;
-    };
-    return {part(0), part(1), part(2)};
-}
-
 /// From the center of a pair's first shape to that of its second, m. Where both are at one place no
 /// way apart is better than another, and each is taken to stand a hair from it towards its own
 /// spot: of a crowd made at one point all would part along the same line.

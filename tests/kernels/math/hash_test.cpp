@@ -66,5 +66,19 @@ TEST(Hash, IsWrittenAsSixteenDigits)
     EXPECT_EQ(std::stoull(hash.text(), nullptr, 16), hash.value());
 }
 
+TEST(Spot, FillsTheCubeEvenly)
+{
+    Vec3 mean = Vec3::Zero(), square = Vec3::Zero();
+    constexpr int kSpots = 10000;
+    for (std::uint64_t i = 0; i < kSpots; ++i) {
+        const Vec3 spot = spot_of(i);
+        ASSERT_LE(spot.cwiseAbs().maxCoeff(), 1);
+        mean += spot / kSpots;
+        square += spot.cwiseAbs2() / kSpots;
+    }
+    EXPECT_LT(mean.cwiseAbs().maxCoeff(), 0.03);
+    EXPECT_LT((square - Vec3::Constant(1.0 / 3)).cwiseAbs().maxCoeff(), 0.02);
+}
+
 }  // namespace
 }  // namespace throng
