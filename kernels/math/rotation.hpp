@@ -48,8 +48,8 @@ Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,
                              const Quat& orientation,
                              double time);
 
-/// The same for an angular velocity in body axes, which it stays in.
-Vec3 after_gyroscopic_torque_local(const Vec3& angular_velocity, const Sym3& inertia, double time);
+/// The same for an angular velocity w in body axes, which it stays in.
+Vec3 after_gyroscopic_torque_local(const Vec3& w, const Sym3& inertia, double time);
 
 /// The same by explicit Euler: cheaper, and unstable when spinning fast.
 Vec3 after_explicit_gyroscopic_torque(const Vec3& angular_velocity,
@@ -58,8 +58,6 @@ Vec3 after_explicit_gyroscopic_torque(const Vec3& angular_velocity,
                                       double time);
 
 /// Likewise in body axes.
-Vec3 after_explicit_gyroscopic_torque_local(const Vec3& angular_velocity,
-                                            const Sym3& inertia,
-                                            double time);
+Vec3 after_explicit_gyroscopic_torque_local(const Vec3& w, const Sym3& inertia, double time);
 
 }  // namespace throng

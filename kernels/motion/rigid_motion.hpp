@@ -112,7 +112,7 @@ private:
     double mass_of(const Body& body) const { return facts_.masses.mass[body.body]; }
     Mat3 turn_at(std::size_t i, const double* state) const;
     Vec3 body_spin(std::size_t i, const Mat3& turn, const double* state) const;
-    Body taken(std::uint32_t body, const Flights& flights) const;
+    Body taken(std::uint32_t id, const Flights& flights) const;
     Moment moment_at(std::size_t i, const double* state) const;
     Moment moment_outside(std::uint32_t body, double time) const;
     void look(const double* state);
