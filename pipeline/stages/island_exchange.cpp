@@ -14,7 +14,17 @@ Vec3 in_double(const Vec3T<Real>& v)
     return v.template cast<double>();
 }
 
+// About which a contact's twist is told, as an arm of a.
+Vec3 middle_of(std::span<const DirectPoint> points)
+{
+    Vec3 middle = Vec3::Zero();
+    for (const DirectPoint& point : points)
+        middle += point.arm_a / static_cast<double>(points.size());
+    return middle;
+}
+
 // The impulses of the last step as those of points: friction and twist shared as the points bear.
+// The twist is told about their plain middle, and given back about the middle of the load.
 template <class Real>
 void guess(const Contact<Real>& contact, std::span<DirectPoint> points)
 {
@@ -27,17 +37,20 @@ void guess(const Contact<Real>& contact, std::span<DirectPoint> points)
     }
     if (!(load > 0)) return;
     middle /= load;
+    const Vec3 friction = in_double(contact.friction);
+    const double rest = double{contact.twist}
+        + points.front().normal.dot((middle_of(points) - middle).cross(friction));
     double spread = 0;
     for (std::size_t k = 0; k < points.size(); ++k)
         spread += double{contact.points[k].impulse}
             * points[k].normal.cross(points[k].arm_a - middle).squaredNorm();
-    const double twist = spread > 0 ? double{contact.twist} / spread : 0;
+    const double twist = points.size() > 1 && spread > 0 ? rest / spread : 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
         DirectPoint& point = points[k];
         const auto impulse = double{contact.points[k].impulse};
         const Vec3 round = point.normal.cross(point.arm_a - middle);
-        point.impulse = point.normal * impulse + in_double(contact.friction) * (impulse / load)
-            + round * (twist * impulse);
+        point.impulse =
+            point.normal * impulse + friction * (impulse / load) + round * (twist * impulse);
         point.torque = in_double(contact.rolling) * (impulse / load);
     }
 }
@@ -174,10 +187,9 @@ template <class Real>
 void WholeIsland::give_impulses(std::size_t first, Contact<Real>& contact) const
 {
     const auto points = std::span(points_).subspan(first, static_cast<std::size_t>(contact.count));
-    Vec3 middle = Vec3::Zero(), friction = Vec3::Zero(), rolling = Vec3::Zero();
+    const Vec3 middle = middle_of(points);
+    Vec3 friction = Vec3::Zero(), rolling = Vec3::Zero();
     double twist = 0;
-    for (const DirectPoint& point : points)
-        middle += point.arm_a / static_cast<double>(points.size());
     for (std::size_t k = 0; k < points.size(); ++k) {
         const DirectPoint& point = points[k];
         const double normal = point.normal.dot(point.impulse);
