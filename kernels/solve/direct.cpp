@@ -3,6 +3,7 @@
 #include "kernels/solve/cone_hold.hpp"
 #include "kernels/solve/cone_multipliers.hpp"
 #include "kernels/solve/cone_path.hpp"
+#include "kernels/solve/cone_pivots.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -18,8 +19,10 @@ constexpr double kNear = 1e-3, kNearer = 0.01;
 constexpr int kHoldSteps = 8;  // factorisations of one try
 // Steps of the path without getting nearer by a tenth, after which it is left.
 constexpr int kPatience = 5;
-// Sweeps before holding is tried again, each time twice as many.
-constexpr int kFirstSweeps = 100, kLastSweeps = 400;
+// Sweeps before holding is tried again.
+constexpr int kSweeps[] = {100, 200, 400};
+// By how much closer sides stand about the way of the friction found before, try by try.
+constexpr int kCloser[] = {1, 2, 3, 4};
 // Factorisations spent on springs that start from a guess, before the path is tried.
 constexpr int kSpringSteps = 40;
 
@@ -51,13 +54,16 @@ struct DirectSolver::Work {
     DirectAnswer answer;
     int left = 0;          // steps
     bool guessed = false;  // whether any point came with an impulse
+    bool solvable = true;  // for certain, as no point is asked to part
 
     bool keep_if_better(double residual);
     bool hold();
     void go_back_to_best();
     bool start_from_guess();
     bool follow_path();
+    bool hold_from_here();
     bool sweep_and_hold();
+    bool pivot_and_hold();
     bool take_springs(int most);
     void find();
 };
@@ -88,12 +94,13 @@ bool DirectSolver::Work::start_from_guess()
     matrix.lay_out(island.columns(), island.ties());
     guessed = std::any_of(island.cones.begin(), island.cones.end(),
                           [](const ContactCone& cone) { return cone.impulse[0] > 0; });
-    if (!guessed) return false;
-    island.push_all(scratch);
-    for (ContactCone& cone : island.cones) {
-        cone.speed = sum(cone.free, island.seen(cone, scratch));
-        cone.speed[0] += width(cone.speed);
-    }
+    return guessed && hold_from_here();
+}
+
+// From the impulses in the cones.
+bool DirectSolver::Work::hold_from_here()
+{
+    ConeSweeps(island).run(0);
     return hold();
 }
 
@@ -122,13 +129,13 @@ bool DirectSolver::Work::follow_path()
     return false;
 }
 
-// Sweeps tell the kinds where the path has lost its way.
+// From the impulses in the cones. Sweeps tell the kinds where the path has lost its way.
 bool DirectSolver::Work::sweep_and_hold()
 {
     ConeSweeps sweeps(island);
     std::vector<ConeVector> swept(best.size());
-    go_back_to_best();
-    for (int many = kFirstSweeps; many <= kLastSweeps && left > 0; many *= 2) {
+    for (const int many : kSweeps) {
+        if (left <= 0) return false;
         sweeps.run(many);
         if (keep_if_better(island.residual(scratch))) return true;
         for (std::size_t i = 0; i < swept.size(); ++i) swept[i] = island.cones[i].impulse;
@@ -136,6 +143,23 @@ bool DirectSolver::Work::sweep_and_hold()
         if (hold() || answer.residual < kGood) return true;
         if (answer.residual < before) continue;
         for (std::size_t i = 0; i < swept.size(); ++i) island.cones[i].impulse = swept[i];
+    }
+    return false;
+}
+
+// Pivots come near to an answer where all else is caught by what only looks like one. They are off
+// by the width of their sides, so these come closer from try to try.
+bool DirectSolver::Work::pivot_and_hold()
+{
+    ConePivots pivots(island);
+    std::vector<ConeVector> found(best.size());
+    for (const int closer : kCloser) {
+        if (left <= 0 || !pivots.run(closer)) return false;
+        for (std::size_t i = 0; i < found.size(); ++i) found[i] = island.cones[i].impulse;
+        if (hold_from_here() || answer.residual < kGood) return true;
+        for (std::size_t i = 0; i < found.size(); ++i) island.cones[i].impulse = found[i];
+        if (sweep_and_hold()) return true;
+        for (std::size_t i = 0; i < found.size(); ++i) island.cones[i].impulse = found[i];
     }
     return false;
 }
@@ -157,7 +181,12 @@ void DirectSolver::Work::find()
     if (start_from_guess()) return;
     go_back_to_best();
     if (guessed && take_springs(kSpringSteps)) return;
-    if (follow_path() || sweep_and_hold()) return;
+    if (follow_path()) return;
+    go_back_to_best();
+    if (sweep_and_hold()) return;
+    go_back_to_best();
+    if (take_springs(solvable ? left / 2 : left)) return;
+    if (solvable && pivot_and_hold()) return;
     go_back_to_best();
     if (take_springs(left)) return;
     for (ContactCone& cone : island.cones) cone.impulse = {};
@@ -183,6 +212,8 @@ DirectSolver::solve(std::span<DirectBody> bodies, std::span<DirectPoint> points,
     work.best.assign(work.island.cones.size(), ConeVector{});
     work.answer.residual = kInfinite;
     work.left = most_steps;
+    work.solvable = std::all_of(points.begin(), points.end(),
+                                [](const DirectPoint& point) { return !(point.least > 0); });
     work.find();
     work.go_back_to_best();
     work.island.give(bodies, points);

@@ -66,7 +66,8 @@ inline constexpr int kDirectSteps = 200;
 ///          factorises masses + rows' W rows over the bodies; the correction that makes its answer
 ///          a contact's follows along from step to step. Then who parts, sticks and slides is taken
 ///          as known (cone_hold.hpp). Where that fails sweeps tell it (cone_sweeps.hpp), and where
-///          these do not either an augmented Lagrangian leads there (cone_multipliers.hpp).
+///          these do not either an augmented Lagrangian leads there (cone_multipliers.hpp); last of
+///          all the pivots of Lemke's method, with many-sided cones (cone_pivots.hpp).
 /// Source:  De Saxce and Feng (1998); Acary, Cadoux, Lemarechal and Malick, A formulation of the
 ///          linear discrete Coulomb friction problem via convex optimization (2011); Acary, Armand,
 ///          Nguyen and Shpakovych, Second-order cone programming for frictional contact mechanics
