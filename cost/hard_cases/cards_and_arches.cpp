@@ -41,10 +41,6 @@ Scene tent(const CaseBench& bench, double friction)
 
 struct Drift {
     double greatest = 0, of_last = 0;  // m, of any body; of the last, upwards or down
-    double ms = 0;                     // mean of a step
-    int steps = 0;
-
-    void time(const World& world) { ms += (world.report().time_ms - ms) / ++steps; }
 };
 
 Drift watch(CaseBench& bench, const Scene& scene, double time)
@@ -55,7 +51,6 @@ Drift watch(CaseBench& bench, const Scene& scene, double time)
     });
     Drift drift;
     bench.run(scene, time, [&](World& world, double) {
-        drift.time(world);
         const std::vector<BodyId> bodies = world.bodies();
         for (std::size_t i = 0; i < bodies.size(); ++i)
             drift.greatest =
@@ -123,25 +118,15 @@ Scene arch(const CaseBench& bench, int stones)
     return parts.scene();
 }
 
-// By the default solver, unless the case is brief.
-Drift compare(CaseBench& bench, const std::string& name, const std::string& quantity, Scene scene)
+void compare(CaseBench& bench, const std::string& name, const std::string& quantity, Scene scene)
 {
-    if (bench.brief()) return {};
+    if (bench.brief()) return;
     scene.settings.sleep = false;
     const Drift soft = watch(bench, scene, 10);
     bench.skip(name, quantity,
                "for comparison, of the default solver in 10 s: " + std::to_string(soft.greatest)
                    + " m");
-    return soft;
-}
-
-// No step is timed where figures are compared.
-void compare_times(CaseBench& bench, const std::string& name, const Drift& soft, const Drift& exact)
-{
-    if (bench.brief()) return;
-    bench.skip(name, "time a step",
-               "direct " + std::to_string(exact.ms) + " ms, the default solver "
-                   + std::to_string(soft.ms) + " ms");
+    bench.report_time(name + ", default", "time a step", bench.time_a_step());
 }
 
 }  // namespace
@@ -151,7 +136,7 @@ void case_cards(CaseBench& bench)
     for (const auto& [friction, stands] : {std::pair(0.245, true), std::pair(0.22, false)}) {
         const std::string name = stands ? "tent, mu 0.245" : "tent, mu 0.22";
         Scene scene = tent(bench, friction);
-        const Drift soft = compare(bench, name, "greatest drift", scene);
+        compare(bench, name, "greatest drift", scene);
         ask_exactly(scene.settings);
         scene.settings.sleep = false;
         const Drift drift = watch(bench, scene, bench.brief() ? 5 : 60);
@@ -160,7 +145,7 @@ void case_cards(CaseBench& bench)
         else
             bench.report(name + ", direct", "falls: wrong outcomes", drift.greatest < 0.05 ? 1 : 0,
                          0, "1");
-        compare_times(bench, name, soft, drift);
+        bench.report_time(name + ", direct", "time a step", bench.time_a_step());
     }
     struct House {
         const char* name;
@@ -172,13 +157,13 @@ void case_cards(CaseBench& bench)
           House{"4 levels, mu 0.5", 4, 0.5}, House{"5 levels, mu 0.7", 5, 0.7}}) {
         if (bench.brief() && house.levels > 2) continue;
         Scene scene = card_house(bench, house.levels, house.friction);
-        const Drift soft = compare(bench, house.name, "greatest drift", scene);
+        compare(bench, house.name, "greatest drift", scene);
         ask_exactly(scene.settings);
         scene.settings.sleep = false;
         const Drift drift = watch(bench, scene, bench.brief() ? 2 : 60);
-        bench.report(std::string(house.name) + ", direct", "greatest drift", drift.greatest, 1e-3,
-                     "m");
-        compare_times(bench, house.name, soft, drift);
+        const std::string name = std::string(house.name) + ", direct";
+        bench.report(name, "greatest drift", drift.greatest, 1e-3, "m");
+        bench.report_time(name, "time a step", bench.time_a_step());
     }
 }
 
@@ -189,14 +174,12 @@ void case_arch(CaseBench& bench)
         const std::string name = std::to_string(stones) + " stones";
         Scene scene = arch(bench, stones);
         scene.settings.dt = 0.01;
-        const Drift soft = compare(bench, name, "greatest drift", scene);
+        compare(bench, name, "greatest drift", scene);
         ask_exactly(scene.settings);
         scene.settings.sleep = false;
         double force = 0;
         double sag = 0;
-        Drift exact;
         bench.run(scene, bench.brief() ? 2 : 20, [&](World& world, double) {
-            exact.time(world);
             const BodyId crown = world.bodies()[static_cast<std::size_t>(stones + 1) / 2];
             const double first =
                 scene.bodies[static_cast<std::size_t>(stones + 1) / 2].position.z();
@@ -208,7 +191,7 @@ void case_arch(CaseBench& bench)
         bench.report(name + ", direct", "sag of the crown over a stone", sag, 0.01, "1");
         bench.report(name + ", direct", "error of the base force",
                      std::abs(force + weight) / weight, 1e-3, "1");
-        compare_times(bench, name, soft, exact);
+        bench.report_time(name + ", direct", "time a step", bench.time_a_step());
     }
 }
 
