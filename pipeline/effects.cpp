@@ -113,10 +113,15 @@ private:
     {
         if (facts_.conditions.settings.response != Response::impulse) return false;
         for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i)
-            if (facts_.colliders.body[i] != kNobody
-                && facts_.colliders.shape[i].kind == ShapeKind::solid)
+            if (facts_.colliders.body[i] != kNobody && !can_be_carried(facts_.colliders.shape[i]))
                 return false;
         return true;
+    }
+    // Of voxels and images no distance is known to within the tolerance.
+    bool can_be_carried(ShapeRef shape) const
+    {
+        return shape.kind != ShapeKind::solid
+            || facts_.shapes.solids[shape.index].way == SolidWay::spheres;
     }
 
     void find_motion()

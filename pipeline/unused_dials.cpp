@@ -76,7 +76,7 @@ std::string why_not_carried(const Scene& scene)
         return "response " + dial_value(scene.settings, "response") + " needs overlap";
     const auto is_solid = [&](const MeshShape* mesh) {
         const NonConvex way = settings_of(*mesh, scene.settings).nonconvex;
-        return way != NonConvex::parts && way != NonConvex::hull;
+        return way == NonConvex::voxels || way == NonConvex::depth_image;
     };
     const std::vector<const MeshShape*> moving = moving_meshes(scene);
     const ShapeUses uses = shape_uses(scene);
@@ -85,7 +85,8 @@ std::string why_not_carried(const Scene& scene)
         solid = solid
             || (std::holds_alternative<VoxelsShape>(scene.shapes[i].shape)
                 && (uses.dynamic[i] || uses.other[i]));
-    return solid ? "what is not convex is not held apart; contacts go by allow" : "";
+    return solid ? "what goes by voxels or depth images is not held apart; contacts go by allow"
+                 : "";
 }
 
 /// Why a dial of contacts does nothing where bodies are carried from touch to touch.

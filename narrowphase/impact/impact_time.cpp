@@ -2,6 +2,7 @@
 
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
+#include "narrowphase/impact/impact_of_spheres.hpp"
 #include "narrowphase/impact/moving_cores.hpp"
 
 #include <algorithm>
@@ -144,6 +145,7 @@ Impact impact_time(const Shapes& shapes,
                    const ImpactRule& rule)
 {
     if (a.shape.kind == ShapeKind::plane && b.shape.kind == ShapeKind::plane) return at_end(end, 0);
+    if (a.spheres || b.spheres) return impact_of_spheres(shapes, a, b, begin, end, rule);
     const Mesh *on_a = mesh_of(shapes, a), *on_b = mesh_of(shapes, b);
     if (a.shape.kind == ShapeKind::plane)
         return impact_of(OverPlane(shapes, a, b), begin, end, rule);

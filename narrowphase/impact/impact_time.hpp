@@ -16,14 +16,16 @@ namespace throng {
 
 /// A shape on its way.
 ///
-///   ball   m, above 0: a ball of this radius about the origin of `local` stands for the shape
-///   scale  of a sphere, capsule, cylinder or box, about its middle
+///   ball     m, above 0: a ball of this radius about the origin of `local` stands for the shape
+///   scale    of a sphere, capsule, cylinder or box, about its middle
+///   spheres  a solid that has spheres is these, and not its triangles
 struct MovingShape {
     ShapeRef shape;
     Sweep sweep;  // of its body
     Pose local;   // of the shape, in the body's frame
     double ball = 0;
     double scale = 1;
+    bool spheres = false;
 };
 
 enum class Meeting : std::uint8_t {

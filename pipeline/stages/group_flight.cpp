@@ -65,7 +65,19 @@ bool GroupFlight::fly(double begin, double span)
 Box3 GroupFlight::box_of(std::uint32_t collider, const Pose& body) const
 {
     const Colliders& colliders = scene_.colliders;
-    return shape_bounds(scene_.shapes, colliders.shape[collider], body * colliders.local[collider]);
+    Box3 box =
+        shape_bounds(scene_.shapes, colliders.shape[collider], body * colliders.local[collider]);
+    const double beyond = beyond_mesh(collider);
+    box.lower.array() -= beyond;
+    box.upper.array() += beyond;
+    return box;
+}
+
+// m, how far what stands for a solid may reach out of its triangles.
+double GroupFlight::beyond_mesh(std::uint32_t collider) const
+{
+    const ShapeRef shape = scene_.colliders.shape[collider];
+    return shape.kind == ShapeKind::solid ? scene_.shapes.solids[shape.index].error : 0;
 }
 
 void GroupFlight::add_pair(std::uint32_t a, std::uint32_t b)
@@ -85,7 +97,7 @@ void GroupFlight::find_pairs(double begin, double span)
         for (std::uint32_t k = 0; k < colliders.count[body]; ++k) {
             const std::uint32_t at = colliders.begin[body] + k;
             Box3 box = joined(box_of(at, scene_.poses.at(body)), box_of(at, ends_[i].pose));
-            const double slack = angle * colliders.outer_radius[at]
+            const double slack = angle * (colliders.outer_radius[at] + beyond_mesh(at))
                 + 2 * scene_.conditions.settings.toi_tolerance * colliders.inner_extent[at];
             box.lower.array() -= slack;
             box.upper.array() += slack;
@@ -103,7 +115,8 @@ void GroupFlight::find_pairs(double begin, double span)
             if (scene_.states.kind[body] == BodyKind::kinematic) {
                 box = joined(box, box_of(at, pose_at(body, begin + span)));
                 const double angle = scene_.velocities.angular[body].norm() * span;
-                const double slack = std::min(angle, 2.0) * colliders.outer_radius[at];
+                const double slack =
+                    std::min(angle, 2.0) * (colliders.outer_radius[at] + beyond_mesh(at));
                 box.lower.array() -= slack;
                 box.upper.array() += slack;
             }
@@ -125,8 +138,9 @@ FirstImpact GroupFlight::look_ahead(std::span<const PairKey> asked, double begin
         const Vec3 spin = member >= 0 ? ends_[static_cast<std::size_t>(member)].spin
                                       : scene_.velocities.angular[body];
         const Pose from = pose_at(body, begin), to = end_of(body, begin + span);
-        shapes.push_back(
-            {colliders.shape[at], sweep_between(from, to, spin * span), colliders.local[at]});
+        const ShapeRef shape = colliders.shape[at];
+        shapes.push_back({shape, sweep_between(from, to, spin * span), colliders.local[at]});
+        shapes.back().spheres = shape.kind == ShapeKind::solid;
         return static_cast<std::uint32_t>(shapes.size() - 1);
     };
     for (const PairKey key : asked) {

@@ -106,6 +106,7 @@ private:
     double tolerance_of(PairKey key) const;
     std::int32_t member_of(std::uint32_t body) const;
     Box3 box_of(std::uint32_t collider, const Pose& body) const;
+    double beyond_mesh(std::uint32_t collider) const;
 
     // Where two are: see group_meetings.cpp.
     void meet(PairKey key, const Pose& a, const Pose& b, double reach);
@@ -122,6 +123,7 @@ private:
     bool carry_piece(double begin, double span, bool shortest);
     double depth_of(PairKey key, double end);
     bool may_pass(PairKey key, double begin, double span) const;
+    double least_piece(std::uint32_t collider) const;
     bool is_mesh(PairKey key) const;
     bool ends_well(double begin, double span, bool shortest);
 

@@ -1,5 +1,6 @@
 // Group meetings: where and how near two shapes of a group are, whatever their kinds.
 #include "narrowphase/methods/ask_gjk.hpp"
+#include "narrowphase/methods/sphere_gaps.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages/group_flight.hpp"
 
@@ -8,21 +9,44 @@
 
 namespace throng {
 
-// Where two touch with their bodies at these poses, out to `reach`: a mesh has many places.
+namespace {
+
+// Who of two is told from: a solid before a mesh, before what is convex, before a plane.
+int stands_first(ShapeKind kind)
+{
+    switch (kind) {
+    case ShapeKind::solid:
+        return 3;
+    case ShapeKind::mesh:
+        return 2;
+    case ShapeKind::plane:
+        return 0;
+    default:
+        return 1;
+    }
+}
+
+}  // namespace
+
+// Where two touch with their bodies at these poses, out to `reach`: meshes and solids have many
+// places.
 void GroupFlight::meet(PairKey key, const Pose& a, const Pose& b, double reach)
 {
     const Colliders& colliders = scene_.colliders;
     const Shapes& shapes = scene_.shapes;
     std::uint32_t first = first_of(key), second = second_of(key);
     Pose pose_a = a * colliders.local[first], pose_b = b * colliders.local[second];
-    const ShapeKind kind = colliders.shape[first].kind;
-    if (kind == ShapeKind::plane || colliders.shape[second].kind == ShapeKind::mesh) {
+    if (stands_first(colliders.shape[second].kind) > stands_first(colliders.shape[first].kind)) {
         std::swap(first, second);
         std::swap(pose_a, pose_b);
     }
     met_ = {first, second, pose_a, {}};
     const ShapeRef shape_a = colliders.shape[first], shape_b = colliders.shape[second];
     const Pose seen = pose_seen_from_a(shapes, shape_b, pose_a, pose_b);
+    if (shape_a.kind == ShapeKind::solid) {
+        find_sphere_gaps(shapes, shape_a, shape_b, seen, reach, met_.manifolds);
+        return;
+    }
     if (shape_a.kind == ShapeKind::mesh) {
         triangles_.clear();
         collide_mesh<double>(shapes, shape_a, shape_b, seen, reach, triangles_);

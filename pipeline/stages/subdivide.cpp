@@ -9,6 +9,7 @@
 #include "pipeline/stages/group_flight.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace throng {
 
@@ -51,8 +52,20 @@ bool GroupFlight::may_pass(PairKey key, double begin, double span) const
         if (colliders.shape[at].kind != ShapeKind::plane)
             turned += spin.norm() * span * colliders.outer_radius[at];
     }
-    return passed.norm() + turned
-        > impact_size(scene_.shapes, colliders.shape[first], colliders.shape[second]);
+    double size = impact_size(scene_.shapes, colliders.shape[first], colliders.shape[second]);
+    for (const std::uint32_t at : {first, second}) size = std::min(size, least_piece(at));
+    return passed.norm() + turned > size;
+}
+
+// m, the radius of the smallest sphere that stands for a solid; infinity for all else.
+double GroupFlight::least_piece(std::uint32_t collider) const
+{
+    double least = std::numeric_limits<double>::infinity();
+    const ShapeRef shape = scene_.colliders.shape[collider];
+    if (shape.kind != ShapeKind::solid) return least;
+    for (const auto& node : scene_.shapes.solids[shape.index].spheres.levels.back().nodes)
+        least = std::min(least, double{node.radius});
+    return least;
 }
 
 bool GroupFlight::is_mesh(PairKey key) const

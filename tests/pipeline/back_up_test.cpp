@@ -205,7 +205,7 @@ TEST(BackUp, TellsTheForceOfContacts)
     }
 }
 
-TEST(BackUp, SolidsGoByOverlapAndItIsSaid)
+TEST(BackUp, VoxelsGoByOverlapAndItIsSaid)
 {
     SceneOf made = backed_up(0.5, 0);
     MeshShape cube;
@@ -221,7 +221,8 @@ TEST(BackUp, SolidsGoByOverlapAndItIsSaid)
     made.scene.dials_set = {"overlap"};
     ASSERT_EQ(unused_dials(made.scene).size(), 1u);
     EXPECT_EQ(unused_dials(made.scene)[0],
-              "overlap: unused, what is not convex is not held apart; contacts go by allow");
+              "overlap: unused, what goes by voxels or depth images is not held apart; contacts "
+              "go by allow");
     made.scene.settings.nonconvex = NonConvex::hull;
     EXPECT_TRUE(World(made.scene).effects().on.has(Effect::no_overlap));
     EXPECT_TRUE(unused_dials(made.scene).empty());
