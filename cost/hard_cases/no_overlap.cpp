@@ -5,6 +5,7 @@
 #include "cost/hard_cases/hard_cases.hpp"
 #include "pipeline/world.hpp"
 #include "scenes/catalog.hpp"
+#include "scenes/closed_meshes.hpp"
 #include "scenes/random.hpp"
 
 #include <algorithm>
@@ -306,6 +307,77 @@ void report_house(CaseBench& bench)
                  kShown, "ns");
 }
 
+struct Rings : Price {
+    double deepest = 0, speed = 0;
+    std::uint64_t fallbacks = 0;
+};
+
+// Six rings as spheres, let fall into a shaft one above the other, leaning ever more.
+Scene rings_in_a_shaft(const CaseBench& bench, Overlap overlap)
+{
+    SceneParts parts(bench.scene());
+    hold_apart(parts.scene().settings, overlap);
+    parts.scene().settings.nonconvex = NonConvex::spheres;
+    const std::uint32_t material = parts.material(0.5);
+    parts.plane(material, Vec3::UnitZ(), 0);
+    for (const double side : {-1.0, 1.0})
+        for (const Vec3& across : {Vec3::UnitX(), Vec3::UnitY()})
+            parts.plane(material, side * across, -0.6);
+    const TriangleSoup soup = torus_mesh(0.3, 0.12, 24, 12);
+    MeshShape ring;
+    ring.vertices = soup.vertices;
+    ring.triangles = soup.triangles;
+    Scene& scene = parts.scene();
+    scene.shapes.push_back({"ring", ring});
+    for (int i = 0; i < 6; ++i) {
+        BodyDescription body;
+        body.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+        body.material = material;
+        body.position = Vec3(0.04 * i - 0.1, 0.07 - 0.03 * i, 0.45 + 0.85 * i);
+        const double lean = 0.1 + 0.2 * i;
+        body.orientation = Quat(std::cos(lean), 0.8 * std::sin(lean), 0.6 * std::sin(lean), 0);
+        scene.bodies.push_back(body);
+    }
+    return std::move(scene);
+}
+
+Rings rings(CaseBench& bench, Overlap overlap)
+{
+    Rings seen;
+    bench.run(rings_in_a_shaft(bench, overlap), bench.brief() ? 0.5 : 3, [&](World& world, double) {
+        seen.speed = 0;
+        for (const BodyId body : world.bodies())
+            seen.speed = std::max(seen.speed, world.velocity(body).norm());
+        seen.fallbacks = world.report().fallbacks;
+        seen.deepest = world.report().deepest;
+        seen.add(world);
+        return true;
+    });
+    return seen;
+}
+
+void report_rings(CaseBench& bench)
+{
+    const double tolerance = bench.settings().toi_tolerance * 0.12;
+    for (const Overlap overlap : {Overlap::back_up, Overlap::subdivide}) {
+        const Rings seen = rings(bench, overlap);
+        const bool backs = overlap == Overlap::back_up;
+        const std::string by =
+            std::string("six rings as spheres in a shaft, ") + (backs ? "back_up" : "subdivide");
+        bench.report(by, "greatest overlap, at any step", seen.overlap, backs ? 0 : tolerance, "m");
+        if (!backs)
+            bench.report(by, "greatest overlap, in any piece of one", seen.deepest, tolerance, "m");
+        if (!bench.brief()) bench.report(by, "speed at the end", seen.speed, 1e-3, "m/s");
+        bench.report(by, "groups or pieces given up", static_cast<double>(seen.fallbacks), 0, "1");
+        bench.report(by, "time a step", seen.ms * 1e6, kShown, "ns");
+    }
+    const Rings usual = rings(bench, Overlap::allow);
+    const char* const allowed = "six rings as spheres in a shaft, allow";
+    constexpr double kAnyOverlap = 0.1;  // m, not a bound that anything is held to
+    bench.report(allowed, "greatest overlap, at any step", usual.overlap, kAnyOverlap, "m");
+    bench.report(allowed, "time a step", usual.ms * 1e6, kShown, "ns");
+}
+
 }  // namespace
 
 void case_no_overlap(CaseBench& bench)
@@ -329,6 +401,7 @@ void case_no_overlap(CaseBench& bench)
     bench.report(allowed, "greatest overlap, at any step", usual.overlap, kAnyOverlap, "m");
     bench.report(allowed, "time a step", usual.ms * 1e6, kShown, "ns");
     report_house(bench);
+    report_rings(bench);
 }
 
 }  // namespace throng
