@@ -154,7 +154,7 @@ void collide_mesh(const Shapes& shapes,
                   std::vector<TriangleManifold<Real>>& out)
 {
     thread_local std::vector<std::uint32_t> near;
-    const Mesh& surface = shapes.meshes[mesh.index];
+    const Mesh& surface = *mesh_of(shapes, mesh);
     const Pose pose{b_in_a.position.template cast<double>(),
                     b_in_a.orientation.template cast<double>().normalized()};
     Box3 box = shape_bounds(shapes, b, pose);

@@ -35,6 +35,7 @@ struct TriangleManifold {
 /// Where a convex shape touches a static triangle mesh: one manifold a triangle, in order of
 /// triangle, contacts on internal edges turned to the surface so that sliding meets no bumps.
 ///
+///   mesh     or a solid, which is its triangles here
 ///   b_in_a   pose of the convex shape in the mesh's frame
 ///   out      appended to
 template <class Real>

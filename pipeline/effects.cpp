@@ -109,20 +109,7 @@ private:
         if (settings.overlap == Overlap::allow || !carries()) return Effect::contact;
         return settings.overlap == Overlap::back_up ? Effect::no_overlap : Effect::little_overlap;
     }
-    bool carries() const
-    {
-        if (facts_.conditions.settings.response != Response::impulse) return false;
-        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i)
-            if (facts_.colliders.body[i] != kNobody && !can_be_carried(facts_.colliders.shape[i]))
-                return false;
-        return true;
-    }
-    // Of voxels and images no distance is known to within the tolerance.
-    bool can_be_carried(ShapeRef shape) const
-    {
-        return shape.kind != ShapeKind::solid
-            || facts_.shapes.solids[shape.index].way == SolidWay::spheres;
-    }
+    bool carries() const { return facts_.conditions.settings.response == Response::impulse; }
 
     void find_motion()
     {

@@ -74,19 +74,7 @@ std::string why_not_carried(const Scene& scene)
     if (scene.settings.overlap == Overlap::allow) return {};
     if (scene.settings.response != Response::impulse)
         return "response " + dial_value(scene.settings, "response") + " needs overlap";
-    const auto is_solid = [&](const MeshShape* mesh) {
-        const NonConvex way = settings_of(*mesh, scene.settings).nonconvex;
-        return way == NonConvex::voxels || way == NonConvex::depth_image;
-    };
-    const std::vector<const MeshShape*> moving = moving_meshes(scene);
-    const ShapeUses uses = shape_uses(scene);
-    bool solid = std::any_of(moving.begin(), moving.end(), is_solid);
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
-        solid = solid
-            || (std::holds_alternative<VoxelsShape>(scene.shapes[i].shape)
-                && (uses.dynamic[i] || uses.other[i]));
-    return solid ? "what goes by voxels or depth images is not held apart; contacts go by allow"
-                 : "";
+    return {};
 }
 
 /// Why a dial of contacts does nothing where bodies are carried from touch to touch.

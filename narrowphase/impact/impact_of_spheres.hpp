@@ -5,6 +5,9 @@
 
 namespace throng {
 
+/// Whether the shape is a solid that is to be taken by its pieces, and these are spheres.
+bool stands_as_spheres(const Shapes& shapes, const MovingShape& moving);
+
 /// The first of the impacts of its spheres, each for itself, as impact_time() has it; where both
 /// stand as spheres, of each two of them. Those that touch as it begins are left out one by one:
 /// the others are looked at all the same.

@@ -3,6 +3,7 @@
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "narrowphase/impact/impact_of_spheres.hpp"
+#include "narrowphase/impact/impact_of_surfaces.hpp"
 #include "narrowphase/impact/moving_cores.hpp"
 
 #include <algorithm>
@@ -120,6 +121,11 @@ const Mesh* mesh_of(const Shapes& shapes, const MovingShape& moving)
 
 }  // namespace
 
+Impact impact_of_cores(const MovingCores& cores, double begin, double end, const ImpactRule& rule)
+{
+    return impact_of(cores, begin, end, rule);
+}
+
 double impact_size(const Shapes& shapes, ShapeRef a, ShapeRef b)
 {
     constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -145,12 +151,15 @@ Impact impact_time(const Shapes& shapes,
                    const ImpactRule& rule)
 {
     if (a.shape.kind == ShapeKind::plane && b.shape.kind == ShapeKind::plane) return at_end(end, 0);
-    if (a.spheres || b.spheres) return impact_of_spheres(shapes, a, b, begin, end, rule);
+    if (stands_as_spheres(shapes, a) || stands_as_spheres(shapes, b))
+        return impact_of_spheres(shapes, a, b, begin, end, rule);
     const Mesh *on_a = mesh_of(shapes, a), *on_b = mesh_of(shapes, b);
     if (a.shape.kind == ShapeKind::plane)
         return impact_of(OverPlane(shapes, a, b), begin, end, rule);
     if (b.shape.kind == ShapeKind::plane)
         return turned_round(impact_of(OverPlane(shapes, b, a), begin, end, rule));
+    if (on_a && on_b && (a.pieces || b.pieces))
+        return impact_of_surfaces(*on_a, a, *on_b, b, begin, end, rule);
     if (on_a && on_b) return impact_of_meshes(shapes, a, b, begin, end, rule);
     if (on_a) {
         const Core<double> core = moving_core(shapes, b);

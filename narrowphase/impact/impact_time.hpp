@@ -18,14 +18,15 @@ namespace throng {
 ///
 ///   ball     m, above 0: a ball of this radius about the origin of `local` stands for the shape
 ///   scale    of a sphere, capsule, cylinder or box, about its middle
-///   spheres  a solid that has spheres is these, and not its triangles
+///   pieces   a solid that has spheres is these, and not its triangles; of two meshes both are
+///            triangles, and neither is a ball
 struct MovingShape {
     ShapeRef shape;
     Sweep sweep;  // of its body
     Pose local;   // of the shape, in the body's frame
     double ball = 0;
     double scale = 1;
-    bool spheres = false;
+    bool pieces = false;
 };
 
 enum class Meeting : std::uint8_t {
@@ -64,7 +65,7 @@ ImpactRule impact_rule(ToiMethod method, double tolerance);
 ///
 /// Spheres, capsules, cylinders, boxes and hulls, at most one plane, and meshes, which are their
 /// triangles, as are solids; of two meshes one is taken by its triangles and the other as the ball
-/// within it. Never throws; allocates nothing but for the mesh whose triangles are looked at.
+/// within it, but where they are to be taken by their pieces. Never throws; allocates nothing but for the mesh whose triangles are looked at.
 ///
 /// Source: Mirtich, Impulse-based Dynamic Simulation (1996), section 2.3, for `conservative`;
 /// Catto,

@@ -63,6 +63,9 @@ private:
     double rounding_;  // m, that arithmetic may be off by
 };
 
+/// The impact of two cores, as impact_time() has it.
+Impact impact_of_cores(const MovingCores& cores, double begin, double end, const ImpactRule& rule);
+
 /// A shape over a plane; a mesh is its corners.
 class OverPlane {
 public:

@@ -113,20 +113,21 @@ void find_sphere_gaps(const Shapes& shapes,
     THRONG_CHECK(solid.kind == ShapeKind::solid, "spheres stand for a solid");
     const SphereTree& tree = shapes.solids[solid.index].spheres;
     NearestGaps gaps;
-    if (other.kind == ShapeKind::solid) {
+    if (other.kind == ShapeKind::solid && !shapes.solids[other.index].spheres.levels.empty()) {
         const SphereTree& beyond = shapes.solids[other.index].spheres;
         find_between_trees(tree, beyond, other_in_solid, reach, gaps);
         gaps.append_to(out);
         return;
     }
+    const Mesh* const mesh = mesh_of(shapes, other);
     const auto reached = [&](const Node& node) {
         const double limit = double{node.bound} + reach;
         const Vec3 place = other_in_solid.to_local(center_of(node));
         return distance_from(shapes, other, place, limit) <= limit;
     };
     visit_spheres(tree, reached, [&](const Node& node, std::uint32_t) {
-        if (other.kind == ShapeKind::mesh) {
-            find_on_mesh(shapes.meshes[other.index], node, other_in_solid, reach, gaps);
+        if (mesh != nullptr) {
+            find_on_mesh(*mesh, node, other_in_solid, reach, gaps);
             return;
         }
         const Vec3 center = center_of(node);

@@ -21,7 +21,8 @@ inline constexpr std::size_t kMostSphereGaps = 64;
 /// to the other. Where there are more than kMostSphereGaps, the nearest. Never throws.
 ///
 ///   solid  one with spheres
-///   other  solid with spheres, sphere, capsule, cylinder, box, hull, plane, or mesh (its front)
+///   other  solid (by its spheres, else the front of its triangles), sphere, capsule, cylinder,
+///          box, hull, plane, or mesh (its front)
 void find_sphere_gaps(const Shapes& shapes,
                       ShapeRef solid,
                       ShapeRef other,

@@ -140,7 +140,7 @@ FirstImpact GroupFlight::look_ahead(std::span<const PairKey> asked, double begin
         const Pose from = pose_at(body, begin), to = end_of(body, begin + span);
         const ShapeRef shape = colliders.shape[at];
         shapes.push_back({shape, sweep_between(from, to, spin * span), colliders.local[at]});
-        shapes.back().spheres = shape.kind == ShapeKind::solid;
+        shapes.back().pieces = shape.kind == ShapeKind::solid;
         return static_cast<std::uint32_t>(shapes.size() - 1);
     };
     for (const PairKey key : asked) {

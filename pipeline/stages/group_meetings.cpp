@@ -2,6 +2,7 @@
 #include "narrowphase/methods/ask_gjk.hpp"
 #include "narrowphase/methods/sphere_gaps.hpp"
 #include "narrowphase/narrowphase.hpp"
+#include "narrowphase/solids/surface_gaps.hpp"
 #include "pipeline/stages/group_flight.hpp"
 
 #include <algorithm>
@@ -11,12 +12,17 @@ namespace throng {
 
 namespace {
 
-// Who of two is told from: a solid before a mesh, before what is convex, before a plane.
-int stands_first(ShapeKind kind)
+bool has_spheres(const Shapes& shapes, ShapeRef shape)
 {
-    switch (kind) {
+    return shape.kind == ShapeKind::solid && !shapes.solids[shape.index].spheres.levels.empty();
+}
+
+// Who of two is told from: a solid before a mesh, before what is convex, before a plane.
+int stands_first(const Shapes& shapes, ShapeRef shape)
+{
+    switch (shape.kind) {
     case ShapeKind::solid:
-        return 3;
+        return has_spheres(shapes, shape) ? 4 : 3;
     case ShapeKind::mesh:
         return 2;
     case ShapeKind::plane:
@@ -36,18 +42,24 @@ void GroupFlight::meet(PairKey key, const Pose& a, const Pose& b, double reach)
     const Shapes& shapes = scene_.shapes;
     std::uint32_t first = first_of(key), second = second_of(key);
     Pose pose_a = a * colliders.local[first], pose_b = b * colliders.local[second];
-    if (stands_first(colliders.shape[second].kind) > stands_first(colliders.shape[first].kind)) {
+    if (stands_first(shapes, colliders.shape[second])
+        > stands_first(shapes, colliders.shape[first])) {
         std::swap(first, second);
         std::swap(pose_a, pose_b);
     }
     met_ = {first, second, pose_a, {}};
     const ShapeRef shape_a = colliders.shape[first], shape_b = colliders.shape[second];
     const Pose seen = pose_seen_from_a(shapes, shape_b, pose_a, pose_b);
-    if (shape_a.kind == ShapeKind::solid) {
+    if (has_spheres(shapes, shape_a)) {
         find_sphere_gaps(shapes, shape_a, shape_b, seen, reach, met_.manifolds);
         return;
     }
-    if (shape_a.kind == ShapeKind::mesh) {
+    const bool flat = shape_b.kind == ShapeKind::plane;
+    if (mesh_of(shapes, shape_a) && (flat || mesh_of(shapes, shape_b))) {
+        find_surface_gaps(shapes, shape_a, shape_b, seen, reach, met_.manifolds);
+        return;
+    }
+    if (mesh_of(shapes, shape_a)) {
         triangles_.clear();
         collide_mesh<double>(shapes, shape_a, shape_b, seen, reach, triangles_);
         for (const auto& touched : triangles_) met_.manifolds.push_back(touched.manifold);

@@ -57,13 +57,16 @@ bool GroupFlight::may_pass(PairKey key, double begin, double span) const
     return passed.norm() + turned > size;
 }
 
-// m, the radius of the smallest sphere that stands for a solid; infinity for all else.
+// m, the radius of the smallest sphere that stands for a solid, or what of its triangles is too
+// small to be told; infinity for all else.
 double GroupFlight::least_piece(std::uint32_t collider) const
 {
     double least = std::numeric_limits<double>::infinity();
     const ShapeRef shape = scene_.colliders.shape[collider];
     if (shape.kind != ShapeKind::solid) return least;
-    for (const auto& node : scene_.shapes.solids[shape.index].spheres.levels.back().nodes)
+    const Solid& solid = scene_.shapes.solids[shape.index];
+    if (solid.spheres.levels.empty()) return solid.error;
+    for (const auto& node : solid.spheres.levels.back().nodes)
         least = std::min(least, double{node.radius});
     return least;
 }

@@ -205,25 +205,19 @@ TEST(BackUp, TellsTheForceOfContacts)
     }
 }
 
-TEST(BackUp, VoxelsGoByOverlapAndItIsSaid)
+TEST(BackUp, IsLeftWhereTheResponseNeedsOverlapAndItIsSaid)
 {
     SceneOf made = backed_up(0.5, 0);
-    MeshShape cube;
-    for (int i = 0; i < 8; ++i)
-        cube.vertices.emplace_back(0.1 * (i & 1), 0.1 * (i >> 1 & 1), 0.1 * (i >> 2));
-    cube.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    made.scene.settings.response = Response::penalty;
     made.floor();
-    made.body(made.shape(cube), Vec3(0, 0, 1));
+    made.ball(0.1, Vec3(0, 0, 1));
     World world(made.scene);
     EXPECT_TRUE(world.effects().on.has(Effect::contact));
     EXPECT_FALSE(world.effects().on.has(Effect::no_overlap));
     made.scene.dials_set = {"overlap"};
     ASSERT_EQ(unused_dials(made.scene).size(), 1u);
-    EXPECT_EQ(unused_dials(made.scene)[0],
-              "overlap: unused, what goes by voxels or depth images is not held apart; contacts "
-              "go by allow");
-    made.scene.settings.nonconvex = NonConvex::hull;
+    EXPECT_EQ(unused_dials(made.scene)[0], "overlap: unused, response penalty needs overlap");
+    made.scene.settings.response = Response::impulse;
     EXPECT_TRUE(World(made.scene).effects().on.has(Effect::no_overlap));
     EXPECT_TRUE(unused_dials(made.scene).empty());
 }

@@ -60,7 +60,7 @@ MovingShape on_its_way(test::Dice& dice, ShapeRef shape, const Vec3& at, const V
 {
     MovingShape moving;
     moving.shape = shape;
-    moving.spheres = shape.kind == ShapeKind::solid;
+    moving.pieces = shape.kind == ShapeKind::solid;
     moving.sweep = {{at, dice.turn()}, way, dice.point(2)};
     if (shape.kind == ShapeKind::plane) moving.sweep = {};
     return moving;
@@ -73,7 +73,7 @@ TEST(ImpactOfSpheres, IsNeverLateAndNeverEarlierThanTheTolerance)
     int met = 0, missed = 0;
     for (const ShapeRef shape : kOthers)
         for (const ToiMethod method : test::kToiMethods)
-            for (int i = 0; i < 12; ++i) {
+            for (int i = 0; i < 8; ++i) {
                 const MovingShape ring =
                     on_its_way(dice, kRing, dice.point(0.5), Vec3(2, 0, 0) + dice.point(0.7));
                 const MovingShape other = on_its_way(dice, shape, Vec3(1.9, 0, 0), dice.point(0.5));
@@ -91,8 +91,8 @@ TEST(ImpactOfSpheres, IsNeverLateAndNeverEarlierThanTheTolerance)
                 EXPECT_EQ(turned.meeting, impact.meeting);
                 EXPECT_NEAR(turned.time, impact.time, tolerance);
             }
-    EXPECT_GT(met, 60);
-    EXPECT_GT(missed, 20);
+    EXPECT_GT(met, 40);
+    EXPECT_GT(missed, 10);
 }
 
 // A ring rests on a plane with one of its spheres; the others are found as it tips over.
@@ -101,7 +101,7 @@ TEST(ImpactOfSpheres, LeavesOutOnlyTheSpheresThatTouchAsItBegins)
     const double tolerance = 1e-3;
     MovingShape ring, plane;
     ring.shape = kRing;
-    ring.spheres = true;
+    ring.pieces = true;
     ring.sweep.begin.orientation = Quat(std::cos(0.2), std::sin(0.2), 0, 0);
     plane.shape = {ShapeKind::plane, 0};
     plane.sweep.begin.orientation = Quat(std::sqrt(0.5), 0, std::sqrt(0.5), 0);
