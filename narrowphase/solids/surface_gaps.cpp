@@ -17,7 +17,11 @@ using Manifold = LocalManifold<double>;
 // What is so near the rim of a face, as a part of a triangle's size, is over it: rounding alone
 // says which of two triangles a place on their seam is over.
 constexpr double kSeam = 1e-9;
-// Places this near one another, as a part of the reach, are the same, told of two triangles.
+// An edge goes through a triangle that it passes so near, likewise: what is more would take two
+// that are hardly apart for crossed.
+constexpr double kRounding = 1e-13;
+// Places this near one another, as a part of the reach, with normals as near, are the same, told of
+// two triangles.
 constexpr double kSame = 1e-3;
 // Sine of the angle between edges that are level with one another.
 constexpr double kLevel = 1e-6;
@@ -73,7 +77,7 @@ bool pierces(const Placed& one, const Placed& other)
         const Vec3 place = from + (to - from) * (begin / (begin - end));
         const auto& c = other.corners;
         const auto nearest = closest_on_triangle<double>(place, c[0], c[1], c[2]);
-        if ((nearest.point - place).norm() <= kSeam * other.size()) return true;
+        if ((nearest.point - place).norm() <= kRounding * other.size()) return true;
     }
     return false;
 }
@@ -177,7 +181,7 @@ private:
     {
         for (const Manifold& other : found_)
             if ((other.points[0].position - place).norm() <= kSame * wide_
-                && normal.dot(other.normal) > 1 - kSame)
+                && (other.normal - normal).norm() <= kSame)
                 return;
         Manifold manifold;
         manifold.normal = normal;

@@ -32,7 +32,9 @@ bool GroupFlight::stay_apart(double time)
         double least = tolerance_of(key) / 4;
         if (const auto now = gap_now_.find(key); now != gap_now_.end()) {
             const double gap = now->second;
-            least = std::min(least, gap > 0 ? gap * kKept : gap - least * (1 - kKept));
+            if (gap <= 0 && depth_error(key) > 0) continue;
+            const double deeper = gap - least * (1 - kKept);
+            least = std::min(least, gap > 0 ? gap * kKept : deeper);
         }
         const std::uint32_t a = scene_.colliders.body[first_of(key)];
         const std::uint32_t b = scene_.colliders.body[second_of(key)];

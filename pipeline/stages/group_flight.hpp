@@ -115,6 +115,7 @@ private:
                             double reach,
                             LocalManifold<double>& found);
     double gap_of(PairKey key, const Pose& a, const Pose& b, double reach);
+    double depth_error(PairKey key) const;
 
     // Spans up to a touch: see back_up.cpp.
     bool stay_apart(double time);

@@ -99,6 +99,18 @@ void GroupFlight::look_closer(const ConvexPair& pair,
     found.points[0].separation = nearest.separation;
 }
 
+// m, by how much the depth of two that overlap may be told wrong: see find_surface_gaps().
+double GroupFlight::depth_error(PairKey key) const
+{
+    double error = 0;
+    for (const std::uint32_t at : {first_of(key), second_of(key)}) {
+        const ShapeRef shape = scene_.colliders.shape[at];
+        if (shape.kind == ShapeKind::solid && !has_spheres(scene_.shapes, shape))
+            error += scene_.shapes.solids[shape.index].error;
+    }
+    return error;
+}
+
 // m, of bodies at these poses; `reach` where it is more.
 double GroupFlight::gap_of(PairKey key, const Pose& a, const Pose& b, double reach)
 {
