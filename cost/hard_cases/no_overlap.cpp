@@ -318,6 +318,7 @@ Scene rings_in_a_shaft(const CaseBench& bench, Overlap overlap, NonConvex way)
     SceneParts parts(bench.scene());
     hold_apart(parts.scene().settings, overlap);
     parts.scene().settings.nonconvex = way;
+    if (bench.brief()) parts.scene().settings.sphere_levels = 3;
     const std::uint32_t material = parts.material(0.5);
     parts.plane(material, Vec3::UnitZ(), 0);
     for (const double side : {-1.0, 1.0})
