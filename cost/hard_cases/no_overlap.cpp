@@ -281,8 +281,6 @@ House house(CaseBench& bench, Overlap overlap, int levels)
     return seen;
 }
 
-constexpr double kShown = 1e9;  // ns, not a bound that anything is held to
-
 void report_house(CaseBench& bench)
 {
     const auto name_of = [](int levels) {
@@ -297,14 +295,14 @@ void report_house(CaseBench& bench)
         bench.report(by, "greatest overlap, at any step", seen.overlap, most, "m");
         bench.report(by, "drift at the end", seen.drift, 1e-3, "m");
         bench.report(by, "groups or pieces given up", static_cast<double>(seen.fallbacks), 0, "1");
-        bench.report(by, "time a step", seen.ms * 1e6, kShown, "ns");
+        bench.report_time(by, "time a step", seen.ms * 1e6);
     };
     const int few = bench.brief() ? 1 : 2;
     report(Overlap::back_up, few);
     report(Overlap::subdivide, few);
     if (!bench.brief()) report(Overlap::back_up, 5);
-    bench.report(name_of(few) + "allow", "time a step", house(bench, Overlap::allow, few).ms * 1e6,
-                 kShown, "ns");
+    bench.report_time(name_of(few) + "allow", "time a step",
+                      house(bench, Overlap::allow, few).ms * 1e6);
 }
 
 struct Rings : Price {
@@ -367,7 +365,7 @@ void report_voxel_rings(CaseBench& bench)
     bench.report(by, "greatest overlap as voxels tell it", seen.overlap, half_voxel, "m");
     if (!bench.brief()) bench.report(by, "speed at the end", seen.speed, 1e-3, "m/s");
     bench.report(by, "groups or pieces given up", static_cast<double>(seen.fallbacks), 0, "1");
-    bench.report(by, "time a step", seen.ms * 1e6, kShown, "ns");
+    bench.report_time(by, "time a step", seen.ms * 1e6);
 }
 
 void report_rings(CaseBench& bench)
@@ -383,14 +381,14 @@ void report_rings(CaseBench& bench)
             bench.report(by, "greatest overlap, in any piece of one", seen.deepest, tolerance, "m");
         if (!bench.brief()) bench.report(by, "speed at the end", seen.speed, 1e-3, "m/s");
         bench.report(by, "groups or pieces given up", static_cast<double>(seen.fallbacks), 0, "1");
-        bench.report(by, "time a step", seen.ms * 1e6, kShown, "ns");
+        bench.report_time(by, "time a step", seen.ms * 1e6);
     }
     report_voxel_rings(bench);
     const Rings usual = rings(bench, Overlap::allow);
     const char* const allowed = "six rings as spheres in a shaft, allow";
     constexpr double kAnyOverlap = 0.1;  // m, not a bound that anything is held to
     bench.report(allowed, "greatest overlap, at any step", usual.overlap, kAnyOverlap, "m");
-    bench.report(allowed, "time a step", usual.ms * 1e6, kShown, "ns");
+    bench.report_time(allowed, "time a step", usual.ms * 1e6);
 }
 
 }  // namespace
@@ -403,18 +401,18 @@ void case_no_overlap(CaseBench& bench)
     bench.report(name, "least distance, at any step, wanting", seen.gap > 0 ? 0 : 1, 0, "1");
     bench.report(name, "greatest overlap, at any step", seen.overlap, 0, "m");
     bench.report(name, "speed at the end", seen.speed, 1e-3, "m/s");
-    bench.report(name, "time a step", seen.ms * 1e6, kShown, "ns");
+    bench.report_time(name, "time a step", seen.ms * 1e6);
     const char* const by_halves = "the same, overlap=subdivide";
     const double tolerance = bench.settings().toi_tolerance * 0.5;
     bench.report(by_halves, "greatest overlap, at any step", halved.overlap, tolerance, "m");
     bench.report(by_halves, "greatest overlap, in any piece of one", halved.deepest, tolerance,
                  "m");
     bench.report(by_halves, "speed at the end", halved.speed, 1e-3, "m/s");
-    bench.report(by_halves, "time a step", halved.ms * 1e6, kShown, "ns");
+    bench.report_time(by_halves, "time a step", halved.ms * 1e6);
     constexpr double kAnyOverlap = 0.1;  // m, likewise
     const char* const allowed = "the same, overlap=allow";
     bench.report(allowed, "greatest overlap, at any step", usual.overlap, kAnyOverlap, "m");
-    bench.report(allowed, "time a step", usual.ms * 1e6, kShown, "ns");
+    bench.report_time(allowed, "time a step", usual.ms * 1e6);
     report_house(bench);
     report_rings(bench);
 }

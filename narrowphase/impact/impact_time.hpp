@@ -65,7 +65,8 @@ ImpactRule impact_rule(ToiMethod method, double tolerance);
 ///
 /// Spheres, capsules, cylinders, boxes and hulls, at most one plane, and meshes, which are their
 /// triangles, as are solids; of two meshes one is taken by its triangles and the other as the ball
-/// within it, but where they are to be taken by their pieces. Never throws; allocates nothing but for the mesh whose triangles are looked at.
+/// within it, but where they are to be taken by their pieces. Never throws; allocates nothing but
+/// for the mesh whose triangles are looked at.
 ///
 /// Source: Mirtich, Impulse-based Dynamic Simulation (1996), section 2.3, for `conservative`;
 /// Catto,
