@@ -185,9 +185,10 @@ void DirectSolver::Work::find()
     go_back_to_best();
     if (sweep_and_hold()) return;
     go_back_to_best();
-    if (take_springs(solvable ? left / 2 : left)) return;
-    if (solvable && pivot_and_hold()) return;
-    go_back_to_best();
+    if (solvable) {
+        if (take_springs(left / 2) || pivot_and_hold()) return;
+        go_back_to_best();
+    }
     if (take_springs(left)) return;
     for (ContactCone& cone : island.cones) cone.impulse = {};
     take_springs(left);
