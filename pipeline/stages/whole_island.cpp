@@ -8,7 +8,7 @@ namespace {
 
 // The share of the overlap that a substep takes away.
 constexpr double kPartShare = 0.5;
-constexpr int kPartTries = 6;
+constexpr int kPartTries = 3;
 
 }  // namespace
 
