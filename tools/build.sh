@@ -139,7 +139,7 @@ test_sanitized() {
     else
         local compares="SameBits|SolidBits|SweepWidths|PlantedFault|OnThreeThreads|ChangesNoBit"
         compares+="|OnAnyNumberOfThreads|IslandsThatAreCut|Catalog.(SameSeed|OtherSeed)"
-        local repeats="KeepsItsBounds/H(37|43)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
+        local repeats="KeepsItsBounds/H(37|43|48)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
         repeats+="|ProgressIs|Bench.ValuesOfADial|ConvexCover.T|ConvexParts.(ErrorIs|SizeChanges)"
         repeats+="|PartsCache.Damaged|Friction.OfEveryKind|Subdivide.WhatIsJammed"
         which+=(-E "$compares|$repeats")

@@ -1,7 +1,6 @@
 #include "narrowphase/impact/impact_of_spheres.hpp"
 
 #include "narrowphase/methods/sphere_gaps.hpp"
-#include "narrowphase/methods/sphere_tree.hpp"
 #include "tests/narrowphase/impact/moving_pairs.hpp"
 #include "tests/narrowphase/methods/closed_meshes.hpp"
 
@@ -10,22 +9,13 @@
 namespace throng {
 namespace {
 
-Solid solid_of(const TriangleSoup& soup)
-{
-    Solid solid;
-    solid.way = SolidWay::spheres;
-    solid.mesh = closed(soup);
-    solid.spheres = build_sphere_tree(solid.mesh, {3, 64, 0, 50000});
-    return solid;
-}
-
 // Two rings, and one of each kind of shape that they may meet.
 const Shapes& shapes()
 {
     static const Shapes made = [] {
         Shapes all;
-        all.solids.push_back(solid_of(torus_mesh(0.35, 0.15, 24, 12)));
-        all.solids.push_back(solid_of(noisy_ball(7, 0.4, 0.1)));
+        all.solids.push_back(in_spheres(torus_mesh(0.35, 0.15, 24, 12)));
+        all.solids.push_back(in_spheres(noisy_ball(7, 0.4, 0.1)));
         const Vec3 half(0.5, 0.4, 0.3);
         all.boxes = {{half}};
         all.capsules = {{0.2, 0.3}};

@@ -1,6 +1,7 @@
 // Closed meshes made ready: what the tests of solids are made of.
 #pragma once
 
+#include "narrowphase/methods/sphere_tree.hpp"
 #include "tests/narrowphase/polyhedra.hpp"
 #include "tests/narrowphase/solids/closed.hpp"
 
@@ -13,6 +14,16 @@ inline TriangleSoup noisy_ball(std::uint64_t seed, double radius, double noise)
     TriangleSoup soup = ball_mesh(radius, 16, 10);
     for (Vec3& vertex : soup.vertices) vertex *= 1 + random.number(-noise, noise);
     return soup;
+}
+
+/// A solid that goes by a tree of two thousand spheres or so.
+inline Solid in_spheres(const TriangleSoup& soup)
+{
+    Solid solid;
+    solid.way = SolidWay::spheres;
+    solid.mesh = closed(soup);
+    solid.spheres = build_sphere_tree(solid.mesh, {3, 64, 0, 50000});
+    return solid;
 }
 
 inline double size_of(const Mesh& mesh)

@@ -1,6 +1,5 @@
 #include "narrowphase/methods/sphere_gaps.hpp"
 
-#include "narrowphase/methods/sphere_tree.hpp"
 #include "tests/narrowphase/methods/closed_meshes.hpp"
 
 #include <gtest/gtest.h>
@@ -12,21 +11,12 @@ namespace {
 
 constexpr ShapeRef kRing{ShapeKind::solid, 0}, kLump{ShapeKind::solid, 1};
 
-Solid solid_of(const TriangleSoup& soup)
-{
-    Solid solid;
-    solid.way = SolidWay::spheres;
-    solid.mesh = closed(soup);
-    solid.spheres = build_sphere_tree(solid.mesh, {3, 64, 0, 50000});
-    return solid;
-}
-
 const Shapes& shapes()
 {
     static const Shapes made = [] {
         Shapes all;
-        all.solids.push_back(solid_of(torus_mesh(0.35, 0.15, 24, 12)));
-        all.solids.push_back(solid_of(noisy_ball(7, 0.4, 0.1)));
+        all.solids.push_back(in_spheres(torus_mesh(0.35, 0.15, 24, 12)));
+        all.solids.push_back(in_spheres(noisy_ball(7, 0.4, 0.1)));
         const Vec3 half(0.5, 0.4, 0.3);
         all.boxes = {{half}};
         all.spheres = {{0.3}};

@@ -3,7 +3,6 @@
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
 #include "narrowphase/methods/sphere_cover.hpp"
-#include "narrowphase/methods/sphere_tree.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "tests/narrowphase/methods/closed_meshes.hpp"
 
@@ -17,15 +16,6 @@ namespace {
 constexpr ShapeRef kRing{ShapeKind::solid, 0}, kLump{ShapeKind::solid, 1};
 constexpr ShapeRef kFieldBox{ShapeKind::solid, 2}, kBareBox{ShapeKind::solid, 3};
 constexpr double kVoxel = 0.05;
-
-Solid solid_of(const TriangleSoup& soup)
-{
-    Solid solid;
-    solid.way = SolidWay::spheres;
-    solid.mesh = closed(soup);
-    solid.spheres = build_sphere_tree(solid.mesh, {3, 64, 0, 50000});
-    return solid;
-}
 
 Solid box_in_voxels(const Vec3& half)
 {
@@ -42,8 +32,8 @@ const Shapes& shapes()
 {
     static const Shapes made = [] {
         Shapes all;
-        all.solids.push_back(solid_of(torus_mesh(0.35, 0.15, 24, 12)));
-        all.solids.push_back(solid_of(noisy_ball(7, 0.4, 0.1)));
+        all.solids.push_back(in_spheres(torus_mesh(0.35, 0.15, 24, 12)));
+        all.solids.push_back(in_spheres(noisy_ball(7, 0.4, 0.1)));
         const Vec3 half(0.5, 0.4, 0.3);
         all.solids.push_back(box_in_voxels(half));
         all.solids.push_back({});
