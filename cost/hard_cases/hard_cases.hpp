@@ -38,6 +38,8 @@ void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
 void case_recovery(CaseBench& bench);  // H47, recovery.cpp
 
+void case_sticks(CaseBench& bench);  // H71, sticks.cpp
+
 // Bodies that are never to overlap: no_overlap.cpp.
 void bounces(CaseBench& bench);             // H15 (a), (b)
 void case_pile_of_balls(CaseBench& bench);  // H16

@@ -68,12 +68,13 @@ public:
               const Bounds& bounds,
               const Pairs& pairs,
               const BodyStates& states,
+              const Masses& masses,
               Poses& poses,
               Velocities& velocities,
               FastBodies& fast)
         : settings_(conditions.settings), shapes_(shapes), colliders_(colliders), filter_(filter),
-          bounds_(bounds), pairs_(pairs), states_(states), poses_(poses), velocities_(velocities),
-          fast_(fast)
+          bounds_(bounds), pairs_(pairs), states_(states), masses_(masses), poses_(poses),
+          velocities_(velocities), fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& awoken)
@@ -455,7 +456,11 @@ private:
             if (!way.held) continue;
             const Pose end = pose_on(way, 1);
             poses_.position[way.body] = end.position;
-            poses_.orientation[way.body] = end.orientation.normalized();
+            const Quat held = end.orientation.normalized();
+            if (masses_.spins_unevenly[way.body] != 0)
+                velocities_.angular[way.body] = held
+                    * (poses_.orientation[way.body].conjugate() * velocities_.angular[way.body]);
+            poses_.orientation[way.body] = held;
             fast_.held.push_back(way.body);
         }
     }
@@ -467,6 +472,7 @@ private:
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;
+    const Masses& masses_;
     Poses& poses_;
     Velocities& velocities_;
     FastBodies& fast_;
@@ -489,6 +495,7 @@ void sweep_fast(const Conditions& conditions,
                 const Bounds& bounds,
                 const Pairs& pairs,
                 const BodyStates& states,
+                const Masses& masses,
                 const Rest& rest,
                 Poses& poses,
                 Velocities& velocities,
@@ -496,7 +503,8 @@ void sweep_fast(const Conditions& conditions,
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, poses, velocities, fast)
+    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, masses, poses,
+              velocities, fast)
         .run(rest.awoken);
 }
 
