@@ -87,6 +87,10 @@ constexpr HardCase kCases[] = {
     {"H48", "a tower stands without a touch, and what that costs", case_no_overlap, Fault::overlap},
     {"H71", "heaps of sticks, plates and slivers fall, and make no energy", case_sticks,
      Fault::haste},
+    {"H75", "slender bars that only turn are stopped by what they swing down on", case_slender_bars,
+     Fault::float_poses},
+    {"H80", "hulls with finely rounded rims come to rest, and sink into nothing", case_round_rims,
+     Fault::float_poses},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

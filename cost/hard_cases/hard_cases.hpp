@@ -71,6 +71,10 @@ void case_through_hole(CaseBench& bench);  // H43, through_hole.cpp
 void case_solid_heap(CaseBench& bench);    // H44, solid_heap.cpp
 void case_convergence(CaseBench& bench);   // H45, convergence.cpp
 
+// Scenes a step beside those above: docs/accuracy.md.
+void case_slender_bars(CaseBench& bench);  // H75, slender_bars.cpp
+void case_round_rims(CaseBench& bench);    // H80, round_rims.cpp
+
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);
 
