@@ -91,6 +91,7 @@ constexpr HardCase kCases[] = {
      Fault::float_poses},
     {"H80", "hulls with finely rounded rims come to rest, and sink into nothing", case_round_rims,
      Fault::float_poses},
+    {"H81", "floors of tiles take no speed, and steps do", case_tiles, Fault::friction},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

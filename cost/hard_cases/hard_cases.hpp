@@ -74,6 +74,8 @@ void case_convergence(CaseBench& bench);   // H45, convergence.cpp
 // Scenes a step beside those above: docs/accuracy.md.
 void case_slender_bars(CaseBench& bench);  // H75, slender_bars.cpp
 void case_round_rims(CaseBench& bench);    // H80, round_rims.cpp
+// Bodies on floors of many pieces.
+void case_tiles(CaseBench& bench);  // H81, tiles.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);
