@@ -71,9 +71,9 @@ public:
               Poses& poses,
               Velocities& velocities,
               FastBodies& fast)
-        : settings_(conditions.settings), shapes_(shapes), colliders_(colliders), filter_(filter),
-          bounds_(bounds), pairs_(pairs), states_(states), poses_(poses), velocities_(velocities),
-          fast_(fast)
+        : settings_(conditions.settings), gravity_(conditions.gravity), shapes_(shapes),
+          colliders_(colliders), filter_(filter), bounds_(bounds), pairs_(pairs), states_(states),
+          poses_(poses), velocities_(velocities), fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& awoken)
@@ -384,6 +384,17 @@ private:
         if (pressing > 0) velocity -= pressing * normal;
     }
 
+    // Who is kept from the rest of its way has not fallen down it: what gravity gave it for that
+    // goes, and what it took comes back. Else who is held high bounces higher than it fell.
+    void take_back_fall(std::uint32_t body, const Vec3& held)
+    {
+        Vec3& velocity = velocities_.linear[body];
+        const double square = velocity.squaredNorm();
+        const double fallen = 2 * gravity_.dot(held - poses_.position[body]);
+        if (square > 0 && states_.dynamic(body))
+            velocity *= std::sqrt(std::max(0.0, 1 + fallen / square));
+    }
+
     // Each is stopped on its own way once, and once more on that of what carries it.
     bool may_change(const Way& way) const
     {
@@ -454,6 +465,7 @@ private:
         for (const Way& way : ways_) {
             if (!way.held) continue;
             const Pose end = pose_on(way, 1);
+            if (way.sweep.still()) take_back_fall(way.body, end.position);
             poses_.position[way.body] = end.position;
             poses_.orientation[way.body] = end.orientation.normalized();
             fast_.held.push_back(way.body);
@@ -461,6 +473,7 @@ private:
     }
 
     const Settings& settings_;
+    Vec3 gravity_;
     const Shapes& shapes_;
     const Colliders& colliders_;
     const PairFilter& filter_;
