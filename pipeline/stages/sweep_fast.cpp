@@ -388,11 +388,15 @@ private:
     // goes, and what it took comes back. Else who is held high bounces higher than it fell.
     void take_back_fall(std::uint32_t body, const Vec3& held)
     {
+        const double pull = gravity_.norm();
+        if (!(pull > 0) || !states_.dynamic(body)) return;
+        const Vec3 down = gravity_ / pull;
         Vec3& velocity = velocities_.linear[body];
-        const double square = velocity.squaredNorm();
-        const double fallen = 2 * gravity_.dot(held - poses_.position[body]);
-        if (square > 0 && states_.dynamic(body))
-            velocity *= std::sqrt(std::max(0.0, 1 + fallen / square));
+        const double falling = down.dot(velocity);
+        const double gained = 2 * gravity_.dot(held - poses_.position[body]);
+        if (!(falling * gained < 0)) return;
+        const double left = std::sqrt(std::max(0.0, falling * falling + gained));
+        velocity += (std::copysign(left, falling) - falling) * down;
     }
 
     // Each is stopped on its own way once, and once more on that of what carries it.
