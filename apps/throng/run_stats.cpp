@@ -102,7 +102,8 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("ms_per_step",
              "{\"mean\": " + json_number(steps.mean())
                  + ", \"median\": " + json_number(steps.percentile(0.5))
-                 + ", \"p99\": " + json_number(steps.percentile(0.99)) + '}');
+                 + ", \"p99\": " + json_number(steps.percentile(0.99))
+                 + ", \"greatest\": " + json_number(steps.greatest()) + '}');
     json.add("stages", stages_json(stats.times));
     json.add("realtime_factor", stats.realtime_factor());
     json.add("pairs", std::uint64_t{stats.last.pairs});
@@ -119,6 +120,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("energy_gained_steps",
              '[' + std::to_string(stats.energy.from_step()) + ", "
                  + std::to_string(stats.energy.to_step()) + ']');
+    json.add("greatest_kinetic_energy_j", stats.energy.greatest_kinetic());
     json.add("momentum", vector_json(stats.measures.momentum));
     json.add("angular_momentum", vector_json(stats.measures.angular_momentum));
     json.add("bodies_awake", std::uint64_t{stats.last.bodies_awake});

@@ -12,6 +12,7 @@ void TimeSample::add(double time_ms)
     constexpr std::size_t kMost = 1 << 16;
     if (count_++ % every_ == 0) sample_.push_back(time_ms);
     total_ += time_ms;
+    greatest_ = std::max(greatest_, time_ms);
     if (sample_.size() < kMost) return;
     for (std::size_t i = 0; 2 * i < sample_.size(); ++i) sample_[i] = sample_[2 * i];
     sample_.resize(sample_.size() / 2);

@@ -16,13 +16,14 @@ class TimeSample {
 public:
     void add(double time_ms);
     double total() const { return total_; }
+    double greatest() const { return greatest_; }
     std::uint64_t count() const { return count_; }
     double mean() const { return count_ == 0 ? 0 : total_ / static_cast<double>(count_); }
     /// The time that the given part of all stay at or below; 0 when there are none.
     double percentile(double part) const;
 
 private:
-    double total_ = 0;
+    double total_ = 0, greatest_ = 0;
     std::uint64_t count_ = 0;
     std::uint64_t every_ = 1;  // which of the times are in the sample
     std::vector<double> sample_;

@@ -260,13 +260,27 @@ void RigidMotion::find_wrenches(double time, bool all_drag)
     }
 }
 
-RigidMotion::Pull RigidMotion::pull_on(std::size_t i)
+// What is held for a span is what drag comes to over all of it: as it is at the beginning, a strong
+// one would turn velocities round, and more each time.
+RigidMotion::Pull RigidMotion::pull_on(std::size_t i, double span)
 {
+    const Body& body = bodies_[i];
+    const Forces& forces = facts_.forces;
+    const bool slows = !body.by_momentum
+        && (of(forces.linear_drag, body.body, 0.0) > 0
+            || of(forces.angular_drag, body.body, 0.0) > 0);
     look(state_.data());
-    find_wrenches(0, true);
+    find_wrenches(0, !slows);
     const Mat3& turn = moments_[i].turn;
-    return {bodies_[i].inverse_mass * wrenches_[i].force,
-            turn * Vec3(bodies_[i].ease * Vec3(turn.transpose() * wrenches_[i].torque))};
+    if (!slows)
+        return {body.inverse_mass * wrenches_[i].force,
+                turn * Vec3(body.ease * Vec3(turn.transpose() * wrenches_[i].torque))};
+    const double* const before = state_.data() + speed_of(i);
+    double after[6];
+    std::copy_n(before, 6, after);
+    push(i, span, after);
+    return {Vec3(vector_at(after) - vector_at(before)) / span - fall_of(body),
+            turn * Vec3((vector_at(after + 3) - vector_at(before + 3)) / span)};
 }
 
 void RigidMotion::place_rates(const double* state, double* rates)

@@ -68,12 +68,12 @@ public:
     };
     Outcome outcome(std::size_t i) const;
 
-    /// What forces do to it at the step's beginning, world axes, m/s2 and rad/s2. Gravity is among
-    /// them where it hangs from a pivot, and not where it falls.
+    /// What forces do to it at the step's beginning, and drag in a span from there on, world axes,
+    /// m/s2 and rad/s2. Gravity is among them where it hangs from a pivot, and not where it falls.
     struct Pull {
         Vec3 linear, angular;
     };
-    Pull pull_on(std::size_t i);
+    Pull pull_on(std::size_t i, double span);
 
     std::size_t places() const override { return bodies_.size() * place_numbers(); }
     std::size_t speeds() const override { return bodies_.size() * 6; }

@@ -17,6 +17,9 @@ namespace {
 // Distances found afresh. What is not settled by then grazes, and is told early. Advancement takes
 // a step a round, and past a wall that it misses by a millionth some ten thousand.
 constexpr int kMostRounds = 512, kMostAdvances = 32768;
+// Separations asked for, but for those of one last fall: of two that turn faster than any search
+// can follow. A triangle of a mesh has some left even when those before it used them up.
+constexpr int kMostEvaluations = 8192, kLeastEvaluations = 64;
 
 int most_rounds(ToiMethod method)
 {
@@ -33,11 +36,16 @@ Impact at_end(double end, int evaluations)
 
 // Along the direction that parts them now until that no longer does, then along the next.
 template <class Ways>
-Impact impact_of(const Ways& ways, double begin, double end, const ImpactRule& rule)
+Impact impact_of(const Ways& ways,
+                 double begin,
+                 double end,
+                 const ImpactRule& rule,
+                 int most_evaluations = kMostEvaluations)
 {
     Impact impact;
     double time = begin;
     const int most = most_rounds(rule.method);
+    if (rule.method == ToiMethod::conservative) most_evaluations = 2 * kMostAdvances;
     for (int round = 0;; ++round) {
         const Apart apart = ways.distance_at(time);
         ++impact.evaluations;
@@ -48,7 +56,7 @@ Impact impact_of(const Ways& ways, double begin, double end, const ImpactRule& r
             impact.meeting = round == 0 ? Meeting::at_start : Meeting::meet;
             return impact;
         }
-        if (round == most) break;
+        if (round == most || impact.evaluations >= most_evaluations) break;
         const auto gap_at = [&](double at) {
             ++impact.evaluations;
             return ways.gap_along(apart.normal, at);
@@ -79,7 +87,9 @@ Impact impact_with_mesh(const Mesh& mesh,
         const auto& [u, v, w] = mesh.triangles[at];
         const Vec3 corners[] = {mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]};
         const MovingCores cores(core_of_points(std::span<const Vec3>(corners)), on, core, other);
-        const Impact impact = impact_of(cores, begin, first.time, rule);
+        const Impact impact =
+            impact_of(cores, begin, first.time, rule,
+                      std::max(kLeastEvaluations, kMostEvaluations - evaluations));
         evaluations += impact.evaluations;
         if (impact.meeting == Meeting::none) return;
         if (first.meeting != Meeting::none && impact.time >= first.time) {

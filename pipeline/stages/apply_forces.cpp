@@ -33,7 +33,7 @@ void apply_forces(const Conditions& conditions,
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = movers[i];
             law.take({&body, 1}, none);
-            const RigidMotion::Pull pull = law.pull_on(0);
+            const RigidMotion::Pull pull = law.pull_on(0, conditions.settings.dt);
             pulls.linear[body] = pull.linear;
             pulls.angular[body] = pull.angular;
         }

@@ -9,8 +9,7 @@ namespace throng {
 
 namespace {
 
-// Spans that a step is cut into at most, and the shortest of them as a share of it.
-constexpr int kMostSpans = 20000;
+// The shortest span that a step is cut into, as a share of it.
 constexpr double kLeastSpan = 1e-9;
 // A time that is a step but for rounding.
 constexpr double kWhole = 1 - 1e-12;
@@ -49,7 +48,7 @@ void GroupFlight::back_up()
     const double dt = scene_.conditions.settings.dt, whole = scene_.conditions.substep();
     double time = 0, span = whole;
     int calm = kCalm;
-    for (int round = 0; round < kMostSpans && time < dt * kWhole; ++round) {
+    while (time < dt * kWhole && may_go_on()) {
         double next = std::min(span, dt - time);
         if (dt - time - next < dt * (1 - kWhole)) next = dt - time;
         touches_.clear();

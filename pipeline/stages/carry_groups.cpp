@@ -21,6 +21,12 @@ namespace throng {
 
 namespace {
 
+// What a step may cost for each body in it, see GroupFlight::spend(): four times what heaps that
+// fall on one another take, and twice what two meshes do that lie face on face. Groups that are
+// joined are carried again on what is left of it, and on no less than so much for a body as takes
+// it through a quiet step.
+constexpr std::uint64_t kWork = 50000, kLeastWork = 200;
+
 // One of GroupFlight's two ways through a step.
 using CarryGroup = void (GroupFlight::*)();
 
@@ -34,6 +40,7 @@ public:
         const std::size_t count = scene.states.kind.size();
         scene.flights.memory.resize(count);
         scene.ways.resize(count);
+        work_left_ = kWork * bodies_.size();
         sets_.reset(count);
         for (const std::uint32_t body : bodies_) sets_.add(body);
         for (std::uint32_t i = 0; i < scene.colliders.size(); ++i) {
@@ -56,7 +63,7 @@ public:
         }
         for (const auto& [first, group] : groups_) {
             const GroupOutcome& outcome = group.outcome;
-            trouble.held_groups += outcome.held ? 1 : 0;
+            trouble.held_groups += outcome.held || outcome.short_of_work ? 1 : 0;
             trouble.deep_pieces += outcome.deep_pieces;
             trouble.deepest = std::max(trouble.deepest, outcome.deepest);
             trouble.direct_residual = std::max(trouble.direct_residual, outcome.residual);
@@ -97,9 +104,13 @@ private:
 
     void carry_groups()
     {
+        std::size_t bodies = 0;
+        for (const Group* group : changed_) bodies += group->bodies.size();
+        work_of_body_ = std::max(kLeastWork, work_left_ / std::max<std::size_t>(bodies, 1));
         for_each_block(changed_.size(), 1, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) carry(*changed_[i]);
         });
+        for (const Group* group : changed_) work_left_ -= std::min(work_left_, group->outcome.work);
     }
 
     void carry(Group& group)
@@ -111,7 +122,7 @@ private:
             scene_.velocities.angular[body] = velocities_.angular[body];
             scene_.ways[body] = {};
         }
-        GroupFlight flight(scene_, group.bodies);
+        GroupFlight flight(scene_, group.bodies, group.bodies.size() * work_of_body_);
         (flight.*way_)();
         group.outcome = flight.outcome();
     }
@@ -151,6 +162,7 @@ private:
     DisjointSets sets_;
     std::map<std::uint32_t, Group> groups_;  // by their first bodies
     std::vector<Group*> changed_;
+    std::uint64_t work_left_ = 0, work_of_body_ = 0;
 };
 
 // clang-format off

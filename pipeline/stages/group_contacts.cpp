@@ -23,6 +23,8 @@ constexpr int kMostStrikes = 1000;  // of a pair in a step
 constexpr double kRounding = 1e-11;
 // The share of what is missing to the gap at rest that a span gives back.
 constexpr double kPartShare = 0.5;
+// Who misses no more than this share of it rests, and takes no solve of his own to be moved.
+constexpr double kMissed = 1e-3;
 // As far as this, in tolerances, at the end of a span, bodies are not held.
 constexpr double kClear = 2;
 // Deeper than this, in tolerances, two are moved apart.
@@ -210,7 +212,7 @@ bool GroupFlight::strike()
     struck_.assign(touches_.size(), 0);
     const bool together = scene_.conditions.settings.impact_law == ImpactLaw::simultaneous;
     int passes = 0;
-    while (passes < kMostPasses
+    while (passes < kMostPasses && may_go_on()
            && (together ? reflect(0, touches_.size(), bodies) : reflect_in_order(bodies)))
         ++passes;
     grip(bodies);
@@ -226,7 +228,21 @@ bool GroupFlight::strike()
 // All impacts of this moment.
 void GroupFlight::settle_impacts()
 {
-    for (int left = kMostStrikes; left > 0 && strike();) --left;
+    for (int left = kMostStrikes; left > 0 && strike() && may_go_on();) --left;
+}
+
+// What rests is pressed as it was in the span before: then the solve has little left to do.
+void GroupFlight::guess(double span, std::vector<DirectPoint>& points) const
+{
+    auto before = pressing_.begin();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const PairKey key = touches_[resting_[k]].key;
+        while (before != pressing_.end() && before->key < key) ++before;
+        if (before == pressing_.end() || before->key != key) continue;
+        points[k].impulse = before->force * span;
+        points[k].torque = before->torque * span;
+        ++before;
+    }
 }
 
 // Holds those that would be too near at the end of the way ahead. False if there are none.
@@ -250,8 +266,13 @@ bool GroupFlight::rest(double span)
         points.back().least = -std::max(touch.gap - touch.rest_gap, 0.0) / span;
     }
     if (resting_.empty()) return false;
+    guess(span, points);
     Motions held = bodies;
     solve(held, points);
+    pressing_.clear();
+    for (std::size_t k = 0; k < points.size(); ++k)
+        pressing_.push_back(
+            {touches_[resting_[k]].key, points[k].impulse / span, points[k].torque / span});
     pressed_ = std::move(points);
     part(span, held);
     return true;
@@ -267,7 +288,7 @@ void GroupFlight::part(double span, const Motions& solved)
         points.push_back(touch.point);
         points.back().friction = points.back().rolling = 0;
         points.back().least = -std::max(touch.gap - touch.rest_gap, 0.0) / span;
-        if (!(touch.gap < touch.rest_gap * (1 - kRounding))) continue;
+        if (!(touch.gap < touch.rest_gap * (1 - kMissed))) continue;
         any = true;
         points.back().least = std::min((touch.rest_gap - touch.gap) * kPartShare / span,
                                        scene_.conditions.settings.push_limit);

@@ -9,10 +9,26 @@
 
 namespace throng {
 
-GroupFlight::GroupFlight(GroupScene& scene, std::span<const std::uint32_t> bodies)
-    : scene_(scene), bodies_(bodies), rule_(rigid_rule(scene.conditions)),
+namespace {
+
+// In work: of what is small, so many make one.
+constexpr std::size_t kBoxPairs = 64, kEvaluations = 4;
+
+}  // namespace
+
+GroupFlight::GroupFlight(GroupScene& scene,
+                         std::span<const std::uint32_t> bodies,
+                         std::uint64_t most_work)
+    : scene_(scene), bodies_(bodies), most_work_(most_work), rule_(rigid_rule(scene.conditions)),
       law_(rule_, {scene.forces, scene.masses, scene.poses, scene.velocities}), ends_(bodies.size())
 { }
+
+// Asked wherever work could go on without end.
+bool GroupFlight::may_go_on()
+{
+    outcome_.short_of_work = outcome_.short_of_work || outcome_.work >= most_work_;
+    return !outcome_.short_of_work;
+}
 
 std::int32_t GroupFlight::member_of(std::uint32_t body) const
 {
@@ -49,6 +65,7 @@ bool GroupFlight::fly(double begin, double span)
 {
     const auto& integrator =
         integrators()[static_cast<std::size_t>(scene_.conditions.settings.integrator)];
+    spend(bodies_.size());
     law_.take(bodies_, scene_.flights);
     integrator.advance(law_, begin, span, room_, law_.state());
     law_.settle();
@@ -124,6 +141,7 @@ void GroupFlight::find_pairs(double begin, double span)
         }
     }
     std::sort(pairs_.begin(), pairs_.end());
+    spend(boxes_.size() * (boxes_.size() + scene_.obstacles.size()) / kBoxPairs);
 }
 
 // The first touch of those asked about that do not touch yet.
@@ -148,8 +166,10 @@ FirstImpact GroupFlight::look_ahead(std::span<const PairKey> asked, double begin
         pairs.push_back({a, b});
     }
     const Settings& settings = scene_.conditions.settings;
-    return first_impact(scene_.shapes, shapes, pairs, 0, 1, settings.toi_method,
-                        settings.toi_tolerance);
+    const FirstImpact first = first_impact(scene_.shapes, shapes, pairs, 0, 1, settings.toi_method,
+                                           settings.toi_tolerance);
+    spend(pairs.size() + static_cast<std::size_t>(first.impact.evaluations) / kEvaluations);
+    return first;
 }
 
 void GroupFlight::commit()

@@ -41,13 +41,16 @@ struct GroupScene {
 /// What came of a group's step.
 ///
 ///   held         the work came to its bound: the bodies wait where they last were apart
+///   work         spent on it: see GroupFlight::spend()
+///   short_of_work  it came to an end of what it was given
 ///   residual     of the joint solves, the greatest: see DirectAnswer
 ///   deep_pieces  those that no halving was left for: see GroupFlight::subdivide()
 ///   deepest      m, by how much any two overlapped at the end of a piece
 ///   pushes       N s of all contacts, by body, of the group and of what it met
 ///   pairs, touching, points  see CarriedContacts
 struct GroupOutcome {
-    bool held = false;
+    bool held = false, short_of_work = false;
+    std::uint64_t work = 0;
     double residual = 0;
     std::uint64_t deep_pieces = 0;
     double deepest = 0;
@@ -57,8 +60,9 @@ struct GroupOutcome {
 
 class GroupFlight {
 public:
-    /// bodies: dynamic ones, ascending
-    GroupFlight(GroupScene& scene, std::span<const std::uint32_t> bodies);
+    /// bodies     dynamic ones, ascending
+    /// most_work  what its step may cost: see spend()
+    GroupFlight(GroupScene& scene, std::span<const std::uint32_t> bodies, std::uint64_t most_work);
 
     /// Takes the bodies through a step, cut at each first touch, and tells their ways.
     void back_up();
@@ -94,7 +98,17 @@ private:
         Pose at_first;                        // of its shape
         std::vector<LocalManifold<double>> manifolds;
     };
+    // What held a point of two that rest.
+    struct Press {
+        PairKey key = 0;
+        Vec3 force, torque;
+    };
     using Motions = std::vector<DirectBody>;
+
+    // Work is counted, never timed, so that where it ends does not hang on the machine: one is
+    // about what asking how far apart two convex shapes are takes, a microsecond.
+    void spend(std::uint64_t work) { outcome_.work += work; }
+    bool may_go_on();
 
     void commit();
     bool fly(double begin, double span);
@@ -141,6 +155,7 @@ private:
     void grip(Motions& bodies);
     double restitution_of(const Touch& touch) const;
     void note_push(const Touch& touch, const Vec3& impulse);
+    void guess(double span, std::vector<DirectPoint>& points) const;
     bool rest(double span);
     void part(double span, const Motions& solved);
     void end_with(const Motions& speeds, const Motions& ways, double span);
@@ -154,6 +169,7 @@ private:
 
     GroupScene& scene_;
     std::span<const std::uint32_t> bodies_;
+    std::uint64_t most_work_ = 0;
     RigidRule rule_;
     RigidMotion law_;
     IntegratorRoom room_;
@@ -168,6 +184,7 @@ private:
     std::vector<Touch> touches_;
     std::vector<std::size_t> resting_;   // touches that may press, of this span
     std::vector<DirectPoint> pressed_;   // [resting_] with the impulses of this span
+    std::vector<Press> pressing_;        // by pair, of the last span that held any
     std::vector<double> struck_;         // [touches] N s, of all impacts of this moment
     std::map<PairKey, double> gap_now_;  // m, of pairs that touch
     std::map<PairKey, int> strikes_;     // in this step

@@ -115,6 +115,7 @@ double GroupFlight::depth_error(PairKey key) const
 double GroupFlight::gap_of(PairKey key, const Pose& a, const Pose& b, double reach)
 {
     meet(key, a, b, reach);
+    spend(1 + met_.manifolds.size());
     double gap = reach;
     for (const LocalManifold<double>& found : met_.manifolds)
         for (int k = 0; k < found.count; ++k)

@@ -9,6 +9,8 @@ namespace {
 
 // Visits to every point, where the joint solve comes to no sound answer.
 constexpr int kPlainSweeps = 200;
+// In work, of a point in a factorisation.
+constexpr std::size_t kPointWork = 2;
 // A residual that is no answer.
 constexpr double kLost = 0.1;
 // Contacts that do not bounce leave nobody this much faster than the fastest of them was.
@@ -21,6 +23,7 @@ void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
     const int asked = scene_.conditions.settings.iterations;
     const Motions before = bodies;
     const DirectAnswer answer = solver_.solve(bodies, points, asked > 0 ? asked : kDirectSteps);
+    spend(points.size() * (1 + kPointWork * static_cast<std::size_t>(answer.steps)));
     const bool sound = std::all_of(bodies.begin(), bodies.end(), [](const DirectBody& body) {
         return holdable(body.velocity) && holdable(body.spin);
     });
@@ -33,6 +36,7 @@ void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
     bodies = before;
     for (DirectPoint& point : points) point.impulse = point.torque = Vec3::Zero();
     sweep_points(bodies, points);
+    spend(points.size() * kPlainSweeps / 4);
 }
 
 // m/s, by how much the points close faster than they may, at worst.

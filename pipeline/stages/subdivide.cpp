@@ -147,7 +147,8 @@ void GroupFlight::subdivide()
             const auto share = [&](std::uint64_t pieces) {
                 return static_cast<double>(pieces) / static_cast<double>(whole);
             };
-            if (!carry_piece((k + share(done)) * substep, share(size) * substep, size == 1)) {
+            if (!carry_piece((k + share(done)) * substep, share(size) * substep,
+                             size == 1 || !may_go_on())) {
                 size /= 2;
                 continue;
             }

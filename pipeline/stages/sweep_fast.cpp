@@ -77,9 +77,9 @@ public:
               Poses& poses,
               Velocities& velocities,
               FastBodies& fast)
-        : settings_(conditions.settings), shapes_(shapes), colliders_(colliders), filter_(filter),
-          bounds_(bounds), pairs_(pairs), states_(states), masses_(masses), poses_(poses),
-          velocities_(velocities), fast_(fast)
+        : settings_(conditions.settings), gravity_(conditions.gravity), shapes_(shapes),
+          colliders_(colliders), filter_(filter), bounds_(bounds), pairs_(pairs), states_(states),
+          masses_(masses), poses_(poses), velocities_(velocities), fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& awoken)
@@ -432,6 +432,33 @@ private:
         if (pressing > 0) velocity -= pressing * normal;
     }
 
+    // Who is kept from the rest of its way has not fallen down it: what gravity gave it for that
+    // goes, and what it took comes back. Else who is held high bounces higher than it fell.
+    void take_back_fall(std::uint32_t body, const Vec3& held)
+    {
+        const double pull = gravity_.norm();
+        if (!(pull > 0) || !states_.dynamic(body)) return;
+        const Vec3 down = gravity_ / pull;
+        Vec3& velocity = velocities_.linear[body];
+        const double falling = down.dot(velocity);
+        const double gained = 2 * gravity_.dot(held - poses_.position[body]);
+        if (!(falling * gained < 0)) return;
+        const double left = std::sqrt(std::max(0.0, falling * falling + gained));
+        velocity += (std::copysign(left, falling) - falling) * down;
+    }
+
+    // What does not turn as far as it would have keeps the spin that it has in its own axes: its
+    // inertia is in these.
+    void turn_back(std::uint32_t body, const Quat& held)
+    {
+        Quat& orientation = poses_.orientation[body];
+        if (masses_.spins_unevenly[body] != 0 && settings_.gyroscopic != Gyroscopic::off) {
+            Vec3& spin = velocities_.angular[body];
+            spin = held * (orientation.conjugate() * spin);
+        }
+        orientation = held;
+    }
+
     // Each is stopped on its own way once, and once more on that of what carries it.
     bool may_change(const Way& way) const
     {
@@ -503,17 +530,15 @@ private:
         for (const Way& way : ways_) {
             if (!way.held) continue;
             const Pose end = pose_on(way, 1);
+            if (way.sweep.still()) take_back_fall(way.body, end.position);
             poses_.position[way.body] = end.position;
-            const Quat held = end.orientation.normalized();
-            if (masses_.spins_unevenly[way.body] != 0)
-                velocities_.angular[way.body] = held
-                    * (poses_.orientation[way.body].conjugate() * velocities_.angular[way.body]);
-            poses_.orientation[way.body] = held;
+            turn_back(way.body, end.orientation.normalized());
             fast_.held.push_back(way.body);
         }
     }
 
     const Settings& settings_;
+    Vec3 gravity_;
     const Shapes& shapes_;
     const Colliders& colliders_;
     const PairFilter& filter_;

@@ -54,6 +54,43 @@ TEST(BackUp, ElasticBallKeepsItsEnergyWhereItsFlightDoes)
     }
 }
 
+// Eight balls at 100 m/s between two walls strike some ten thousand times in a second.
+TEST(BackUp, StepEndsWhereItsWorkDoesAndSaysSo)
+{
+    SceneOf made = backed_up(0, 1);
+    made.scene.gravity = Vec3::Zero();
+    made.scene.settings.dt = 10;
+    for (const double x : {-1.0, 1.78})
+        made.box(Vec3(0.9, 1, 1), Vec3(x, 0, 0)).motion = Motion::static_;
+    for (int i = 0; i < 8; ++i)
+        made.ball(0.05, Vec3(0.11 * i - 0.04, 0, 0)).velocity.x() = i % 2 == 0 ? 100 : -70;
+    World world(made.scene);
+    const double before = energy_of(world);
+    world.step();
+    EXPECT_EQ(world.report().fallbacks, 1u);
+    EXPECT_LE(energy_of(world), before * (1 + 1e-9));
+    EXPECT_EQ(world.measure().overlapping_pairs, 0u);
+}
+
+// Two towers of five.
+TEST(BackUp, RestingBodiesStayAsTheyLie)
+{
+    SceneOf made = backed_up(0.5, 0);
+    made.scene.settings.substeps = 4;
+    made.floor();
+    for (int i = 0; i < 10; ++i)
+        made.box(Vec3(0.5, 0.5, 0.5), Vec3(1.5 * (i % 2), 0, 0.5001 + 1.0002 * (i / 2)));
+    World world(made.scene);
+    world.step(60);
+    std::vector<Vec3> before;
+    for (std::size_t i = 1; i <= 10; ++i) before.push_back(place_of(world, i));
+    world.step(60);
+    for (std::size_t i = 1; i <= 10; ++i)
+        EXPECT_LT((place_of(world, i) - before[i - 1]).norm(), 1e-8) << i;
+    EXPECT_EQ(world.measure().overlapping_pairs, 0u);
+    EXPECT_EQ(world.report().fallbacks, 0u);
+}
+
 TEST(BackUp, BouncingBallComesToRestInTheTimeItShould)
 {
     SceneOf made = backed_up(0, 0.5);

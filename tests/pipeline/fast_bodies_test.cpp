@@ -1,5 +1,6 @@
 // Fast bodies: whoever goes far in a step is stopped where it meets something, and by nothing else.
 #include "kernels/math/rotation.hpp"
+#include "pipeline/energy_ledger.hpp"
 #include "pipeline/world.hpp"
 #include "tests/pipeline/small_scenes.hpp"
 #include "tests/support/dice.hpp"
@@ -96,6 +97,27 @@ TEST(FastBodies, BounceOffWithWhatTheyHad)
     world.step(4);
     EXPECT_NEAR(world.velocity(world.bodies()[1]).x(), -300, 0.3);
     EXPECT_LT(x_of(world, 1), -5);
+}
+
+// Who is held at a touch has not fallen the rest of the step's way, and has not its speed.
+TEST(FastBodies, AreHeldWithTheEnergyTheyHad)
+{
+    for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 240})
+        for (const double height : {0.96, 1.1, 3.0}) {
+            SceneOf made;
+            made.scene.settings.dt = dt;
+            made.scene.materials[0].friction = 0;
+            made.floor();
+            made.body(made.shape(CylinderShape{0.48, 0.48}), Vec3(0, 0, 0.48 + height)).fast = true;
+            World world(made.scene);
+            EnergyLedger ledger;
+            for (int step = 0; step < static_cast<int>(1 / dt); ++step) {
+                ledger.before_step(world);
+                world.step();
+                ledger.after_step(world);
+            }
+            EXPECT_LE(ledger.gained(), 1e-4 * ledger.greatest_kinetic()) << dt << ' ' << height;
+        }
 }
 
 TEST(FastBodies, FlyPastACornerUndeflected)

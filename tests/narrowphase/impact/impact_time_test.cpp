@@ -170,6 +170,19 @@ TEST(ImpactTime, MissesByAHair)
     }
 }
 
+// A billion turns in the time looked at: no search follows them.
+TEST(ImpactTime, EndsWithinItsWorkHoweverFastTheTwoTurn)
+{
+    for (const ToiMethod method : kToiMethods) {
+        MovingPair pair = rod_beside_wall(0.1, 6e9, 1.2, ShapeKind::box);
+        pair.a.sweep.shift = Vec3(0.5, 0, 0);
+        const Impact impact = impact_of(pair, method, 1e-5);
+        EXPECT_EQ(impact.meeting, Meeting::meet);
+        EXPECT_LT(impact.evaluations, 40000);
+        EXPECT_GT(test::distance_at(pair, impact.time), 0);
+    }
+}
+
 TEST(ImpactTime, SaysWhereTheTwoTouchFromTheStart)
 {
     for (const ToiMethod method : kToiMethods)

@@ -1,0 +1,167 @@
+"""Random scene judge: what a run of a random scene promises, and which of it was not kept.
+
+Every bound follows from the scene: a share of its greatest motion, of its smallest thickness, of
+what one step of falling gives. None is a scene's own.
+"""
+import csv
+import json
+import math
+
+# Of the greatest kinetic energy: what may be made over a run without a word, as `throng run` has it.
+ENERGY_SHARE = 0.01
+# Of the energy of who neither rubs nor gives way: what a run may lose or gain.
+KEPT_SHARE = 0.02
+# m/s, by all of a scene together: bodies that lie still may tremble slower than this.
+REST_SPEED = 0.02
+# Of the smallest thickness in a scene: how deep any two may be in one another once all is at rest.
+OVERLAP_SHARE = 0.05
+# ms: steps that take longer have lost their way, on any machine however busy: the hundredth longest,
+# and any of them. Modes that take their time have ten times as much.
+STEP_MS, ANY_STEP_MS, SLOW_TIMES = 50, 1000, 10
+
+# Ways to step that give energy or lose it by what they are; the rest is judged all the same.
+TEXTBOOK = {"response": {"kinematic"}, "integrator": {"euler"}, "gyroscopic": {"explicit", "off"},
+            "rotation": {"quaternion_euler", "matrix_euler", "matrix_euler_repaired"}}
+
+
+class Run:
+    """What a run left behind: exit code, last words, stats and final states.
+
+    stretch: time by the clock over time of the processor, which others may use as well
+    """
+
+    def __init__(self, code, words, stats=None, before=None, bodies=(), timed_out=False, stretch=1):
+        self.code, self.words, self.timed_out = code, words, timed_out
+        self.stretch = max(stretch, 1)
+        self.stats, self.before, self.bodies = stats or {}, before or {}, bodies
+
+
+def read_json(path):
+    try:
+        return json.loads(path.read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def read_bodies(path):
+    """[(position, velocity)] by id, or none where there is no file."""
+    try:
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        return [([float(row[k]) for k in ("px", "py", "pz")],
+                 [float(row[k]) for k in ("vx", "vy", "vz")]) for row in rows]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+
+
+def is_textbook(scene):
+    return any(scene["settings"].get(dial) in values for dial, values in TEXTBOOK.items())
+
+
+def step_of(scene):
+    over, under = str(scene["settings"].get("dt", "1/60")).split("/")
+    return float(over) / float(under)
+
+
+def trivial_energy(made, stats):
+    """J: a hundredth of what falling for one step gives all bodies."""
+    dt, gravity = stats.get("dt", 1 / 60), 9.81
+    mass = made.mass
+    return 0.01 * mass * (gravity * dt) ** 2 / 2
+
+
+def ending(run):
+    if run.timed_out:
+        return "hang: no end within its time"
+    if run.code < 0:
+        return f"crash: signal {-run.code}"
+    named = {1: "quarantine", 2: "refusal", 3: "fault"}
+    if run.code != 0:
+        return f"{named.get(run.code, 'exit')}: code {run.code}: {run.words}"
+    if not run.stats or not run.bodies:
+        return "output: stats or final states are missing"
+    return None
+
+
+def not_finite(made, run):
+    for i, (position, velocity) in enumerate(run.bodies):
+        if not all(math.isfinite(x) for x in position + velocity):
+            return f"finite: body {i} is not"
+    return None
+
+
+def through_floor(made, run):
+    if made.floor is None:
+        return None
+    for i, (piece, (position, _)) in enumerate(zip(made.pieces, run.bodies)):
+        if piece is None or "pivot" in made.scene["bodies"][i]:
+            continue
+        # The middle of what is not convex may lie beside it.
+        bound = piece.radius if piece.kind in ("mesh", "compound") else 0.0
+        deep = made.floor(position[0], position[1]) - position[2]
+        if bound < deep < math.inf:
+            return f"floor: body {i}, {piece.kind}, is {deep:.3g} m below it"
+    return None
+
+
+def energy_made(made, run):
+    stats = run.stats
+    if is_textbook(made.scene):
+        return None
+    greatest = max(stats["greatest_kinetic_energy_j"], run.before.get("kinetic_energy_j", 0))
+    bound = ENERGY_SHARE * greatest + trivial_energy(made, stats)
+    gained = stats["energy_gained_j"]
+    if not gained <= bound:
+        return f"energy: {gained:.3g} J made, of {greatest:.3g} J at most in motion"
+    if made.driven or not run.before:
+        return None
+    total = [s["kinetic_energy_j"] + s["potential_energy_j"] for s in (run.before, stats)]
+    net = total[1] - total[0]
+    if not net <= bound:
+        return f"energy net: {net:.3g} J more at the end, of {greatest:.3g} J at most in motion"
+    if made.kept and not -net <= KEPT_SHARE * greatest:
+        return f"energy kept: {-net:.3g} J of {greatest:.3g} J lost where nothing takes any"
+    return None
+
+
+def not_at_rest(made, run):
+    stats = run.stats
+    if is_textbook(made.scene) or stats["steps"] * stats["dt"] < made.rests_by:
+        return None
+    speed = math.sqrt(2 * stats["kinetic_energy_j"] / made.mass)
+    if stats["bodies_awake"] > 0 and not speed <= REST_SPEED:
+        return f"rest: {speed:.3g} m/s on the average, long after all should lie still"
+    return None
+
+
+def too_deep(made, run):
+    """Of scenes at rest: a blow may press bodies deeper for a step."""
+    stats = run.stats
+    if stats["steps"] * stats["dt"] < made.rests_by or "response" in made.scene["settings"]:
+        return None
+    thick = max(2 * p.inner for p in made.pieces if p is not None)
+    if any(p.kind == "mesh" for p in made.pieces if p is not None):
+        return None  # stand-ins of meshes have an error of their own
+    deep = stats["max_overlap_m"]
+    if not deep <= OVERLAP_SHARE * thick + 1e-5:
+        return f"overlap: {deep:.3g} m at rest, of bodies {thick:.3g} m thick"
+    return None
+
+
+def too_slow(made, run):
+    ms = run.stats["ms_per_step"]
+    times = run.stretch * (SLOW_TIMES if made.slow else 1)
+    if ms["greatest"] > ANY_STEP_MS * times:
+        return f"slow: a step took {ms['greatest']:.3g} ms"
+    if ms["p99"] > STEP_MS * times:
+        return f"slow: one in a hundred steps took {ms['p99']:.3g} ms or more"
+    return None
+
+
+def failures(made, run):
+    """What was not kept, gravest first; each begins with the name of its kind."""
+    end = ending(run)
+    if end:
+        return [end]
+    judges = (not_finite, through_floor, energy_made, not_at_rest, too_deep, too_slow)
+    return [found for found in (judge(made, run) for judge in judges) if found]
