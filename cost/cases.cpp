@@ -85,6 +85,10 @@ constexpr HardCase kCases[] = {
     {"H47", "bodies made inside one another part slowly, and come to rest", case_recovery,
      Fault::float_poses},
     {"H48", "a tower stands without a touch, and what that costs", case_no_overlap, Fault::overlap},
+    {"H73", "what loses nothing in a closed room keeps its energy", case_closed_room,
+     Fault::restitution},
+    {"H77", "a ball that slides through its bounce is slowed by all that presses it",
+     case_sliding_bounce, Fault::friction},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };
@@ -113,6 +117,9 @@ void plant(Fault fault, Scene& scene)
         for (Material& material : scene.materials) material.friction *= 0.9;
         for (MaterialPair& pair : scene.pairs)
             if (pair.friction) *pair.friction *= 0.9;
+        break;
+    case Fault::restitution:
+        for (Material& material : scene.materials) material.restitution *= 0.9;
         break;
     case Fault::mass:
         for (BodyDescription& body : scene.bodies)

@@ -64,6 +64,7 @@ public:
     FastSweep(const Conditions& conditions,
               const Shapes& shapes,
               const Colliders& colliders,
+              const Surfaces& surfaces,
               const PairFilter& filter,
               const Bounds& bounds,
               const Pairs& pairs,
@@ -71,9 +72,9 @@ public:
               Poses& poses,
               Velocities& velocities,
               FastBodies& fast)
-        : settings_(conditions.settings), shapes_(shapes), colliders_(colliders), filter_(filter),
-          bounds_(bounds), pairs_(pairs), states_(states), poses_(poses), velocities_(velocities),
-          fast_(fast)
+        : settings_(conditions.settings), shapes_(shapes), colliders_(colliders),
+          surfaces_(surfaces), filter_(filter), bounds_(bounds), pairs_(pairs), states_(states),
+          poses_(poses), velocities_(velocities), fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& awoken)
@@ -367,7 +368,8 @@ private:
         Way &yields = yields_a ? a : b, &other = yields_a ? b : a;
         if (candidate.pressed && !states_.dynamic(other.body))
             stop_pressing(yields.body, other.body,
-                          yields_a ? candidate.normal : Vec3(-candidate.normal));
+                          yields_a ? candidate.normal : Vec3(-candidate.normal),
+                          restitution_of(candidate.key));
         if (yields.rides != kNobody || other.sweep.still())
             hold(yields, time);
         else
@@ -376,12 +378,20 @@ private:
     }
 
     // Its middle goes no further into what it is pressed into, and cannot move: a corner that holds
-    // it at its side, while it turns about that faster than steps can follow, would let it.
-    void stop_pressing(std::uint32_t body, std::uint32_t on, const Vec3& normal)
+    // it at its side, while it turns about that faster than steps can follow, would let it. What
+    // bounces is thrown back.
+    void stop_pressing(std::uint32_t body, std::uint32_t on, const Vec3& normal, double restitution)
     {
         Vec3& velocity = velocities_.linear[body];
         const double pressing = normal.dot(velocity - velocities_.linear[on]);
-        if (pressing > 0) velocity -= pressing * normal;
+        if (pressing > 0) velocity -= (1 + restitution) * pressing * normal;
+    }
+
+    double restitution_of(PairKey key) const
+    {
+        return surfaces_
+            .between(colliders_.material[first_of(key)], colliders_.material[second_of(key)])
+            .restitution;
     }
 
     // Each is stopped on its own way once, and once more on that of what carries it.
@@ -463,6 +473,7 @@ private:
     const Settings& settings_;
     const Shapes& shapes_;
     const Colliders& colliders_;
+    const Surfaces& surfaces_;
     const PairFilter& filter_;
     const Bounds& bounds_;
     const Pairs& pairs_;
@@ -485,6 +496,7 @@ private:
 void sweep_fast(const Conditions& conditions,
                 const Shapes& shapes,
                 const Colliders& colliders,
+                const Surfaces& surfaces,
                 const PairFilter& filter,
                 const Bounds& bounds,
                 const Pairs& pairs,
@@ -496,7 +508,8 @@ void sweep_fast(const Conditions& conditions,
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, poses, velocities, fast)
+    FastSweep(conditions, shapes, colliders, surfaces, filter, bounds, pairs, states, poses,
+              velocities, fast)
         .run(rest.awoken);
 }
 
