@@ -92,6 +92,10 @@ constexpr HardCase kCases[] = {
     {"H80", "hulls with finely rounded rims come to rest, and sink into nothing", case_round_rims,
      Fault::float_poses},
     {"H81", "floors of tiles take no speed, and steps do", case_tiles, Fault::friction},
+    {"H73", "what loses nothing in a closed room keeps its energy", case_closed_room,
+     Fault::restitution},
+    {"H77", "a ball that slides through its bounce is slowed by all that presses it",
+     case_sliding_bounce, Fault::friction},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };
@@ -120,6 +124,9 @@ void plant(Fault fault, Scene& scene)
         for (Material& material : scene.materials) material.friction *= 0.9;
         for (MaterialPair& pair : scene.pairs)
             if (pair.friction) *pair.friction *= 0.9;
+        break;
+    case Fault::restitution:
+        for (Material& material : scene.materials) material.restitution *= 0.9;
         break;
     case Fault::mass:
         for (BodyDescription& body : scene.bodies)

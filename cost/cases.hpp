@@ -50,6 +50,7 @@ enum class Fault : std::uint8_t {
     late,         // times of impact a hundredth too late, and touches at the start not seen
     overlap,      // bodies that may overlap, whatever was asked
     haste,        // bodies that go 5 % faster after every step
+    restitution,  // coefficients of restitution 10 % too small
     shrink,       // meshes a tenth too small, and all that is asked for its shared volume
 };
 

@@ -196,6 +196,7 @@ void EnergyLedger::after_step(const World& world)
     for (const OfGroup& group : groups_) {
         double rise = group.after - group.before - group.work;
         if (group.driven || !std::isfinite(rise)) continue;
+        net_ += rise;
         if (group.touches && rise > 0) rise = std::min(rise, std::max(0.0, group.faster));
         if (rise > 0) rise = std::max(0.0, rise - group.rounding);
         if (group.touches) (rise > 0 ? by_contacts : taken) += std::abs(rise);

@@ -35,6 +35,9 @@ public:
     /// Of that rise: the step after which it began, and after which it was greatest. 0: none.
     std::uint64_t from_step() const { return from_step_; }
     std::uint64_t to_step() const { return to_step_; }
+    /// J, by how much kinetic and potential energy changed from the first step to the last, less
+    /// all that work: below 0 where friction, impacts and drag took more than was made.
+    double net() const { return net_; }
     /// J, the greatest kinetic energy after any step, beside which the figure is much or little.
     double greatest_kinetic() const { return greatest_kinetic_; }
 
@@ -66,7 +69,7 @@ private:
     Look before_, after_;
     DisjointSets sets_;            // of bodies
     std::vector<OfGroup> groups_;  // [bodies] at the first of each
-    double account_ = 0, lowest_ = 0, gained_ = 0, greatest_kinetic_ = 0;
+    double account_ = 0, lowest_ = 0, gained_ = 0, net_ = 0, greatest_kinetic_ = 0;
     // J, that contacts took in each of the last steps: of more of them than the four for which a
     // soft contact swings where a step has one substep.
     std::array<double, 6> taken_ = {};

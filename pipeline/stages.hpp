@@ -180,6 +180,7 @@ void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
 void sweep_fast(const Conditions&,
                 const Shapes&,
                 const Colliders&,
+                const Surfaces&,
                 const PairFilter&,
                 const Bounds&,
                 const Pairs&,

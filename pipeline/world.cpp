@@ -1,7 +1,7 @@
 #include "pipeline/world.hpp"
 
 #include "broadphase/margins.hpp"
-#include "kernels/solve/sweep.hpp"
+#include "kernels/solve/contact_rows.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/force_builder.hpp"
 #include "pipeline/names.hpp"
@@ -23,6 +23,32 @@ void check_settings(const Settings& settings, const char* caller)
     scene.settings = settings;
     if (const std::string trouble = check_scene(scene); !trouble.empty())
         throw std::invalid_argument(std::string(caller) + ": " + trouble);
+}
+
+// N s, what the impacts of the last step gave a body. Islands that the direct solver took have it
+// among what their contacts hold.
+template <class Real>
+Vec3 impacts_on(std::uint32_t body,
+                const Layout& layout,
+                const ActiveContacts& active,
+                const Rows<Real>& rows)
+{
+    Vec3 impulse = Vec3::Zero();
+    if (rows.bounces.empty()) return impulse;
+    for (const Batch& batch : layout.batches) {
+        if (batch.direct) continue;
+        const Slice &first = layout.slices[batch.first_slice],
+                    &last = layout.slices[batch.first_slice + batch.slices - 1];
+        for (std::size_t i = first.first_contact; i < last.first_contact + last.contacts; ++i) {
+            const auto& entry = active.entries[layout.contacts[i]];
+            if (entry.body_a != body && entry.body_b != body) continue;
+            const std::size_t lane = layout.lane[i];
+            const Vec3 on_b = impact_impulse(rows, lane / kBlock, static_cast<int>(lane % kBlock))
+                                  .template cast<double>();
+            impulse += entry.body_b == body ? on_b : Vec3(-on_b);
+        }
+    }
+    return impulse;
 }
 
 }  // namespace
@@ -410,6 +436,9 @@ Vec3 World::contact_force(BodyId body) const
                 if (entry.contact.count > 0) add(entry.pair, entry.contact);
             for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
                 if (entry.contact.count > 0) add(entry.pair, entry.contact);
+            if (state_->effects.on.has(Effect::restitution))
+                impulse += impacts_on(at, std::get<Layout>(data), std::get<ActiveContacts>(data),
+                                      std::get<Rows<Real>>(data));
         },
         state_->step);
     return impulse / substep;

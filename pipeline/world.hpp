@@ -78,8 +78,9 @@ public:
     /// textbook's forms no rotation after a while.
     Mat3 rotation_matrix(BodyId body) const;
 
-    /// Force of the contacts on a body over the last substep, N, friction included; by overlap
-    /// back_up and subdivide the mean over the last step, impacts included.
+    /// Force of the contacts on a body over the last substep, N, friction included, and all impacts
+    /// of the step as if they had been in it; by overlap back_up and subdivide the mean over the
+    /// last step, impacts included.
     Vec3 contact_force(BodyId body) const;
 
     const StepReport& report() const;

@@ -117,6 +117,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("kinetic_energy_j", stats.measures.kinetic_energy);
     json.add("potential_energy_j", stats.measures.potential_energy);
     json.add("energy_gained_j", stats.energy.gained());
+    json.add("energy_net_j", stats.energy.net());
     json.add("energy_gained_steps",
              '[' + std::to_string(stats.energy.from_step()) + ", "
                  + std::to_string(stats.energy.to_step()) + ']');

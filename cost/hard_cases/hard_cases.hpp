@@ -39,6 +39,9 @@ void case_planks(CaseBench& bench);     // H25, turntable.cpp
 void case_recovery(CaseBench& bench);  // H47, recovery.cpp
 
 void case_sticks(CaseBench& bench);  // H71, sticks.cpp
+// What bounces, by default and by every solver.
+void case_closed_room(CaseBench& bench);     // H73, closed_room.cpp
+void case_sliding_bounce(CaseBench& bench);  // H77, sliding_bounce.cpp
 
 // Bodies that are never to overlap: no_overlap.cpp.
 void bounces(CaseBench& bench);             // H15 (a), (b)

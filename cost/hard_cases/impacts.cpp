@@ -133,11 +133,33 @@ Scene billiards(const CaseBench& bench, bool backwards)
 
 Vec3 mirrored(const Vec3& v) { return {v.x(), -v.y(), v.z()}; }
 
+// A solver in its digits, and the bound that these leave.
+struct ImpactSolver {
+    const char* name;
+    Solver solver;
+    Precision precision;
+    double bound;
+};
+constexpr ImpactSolver kImpactSolvers[] = {
+    {"direct", Solver::direct, Precision::double_, kExact},
+    {"direct, float", Solver::direct, Precision::float_, 1e-4},
+    {"soft_step", Solver::soft_step, Precision::double_, kExact},
+    {"soft_step, float", Solver::soft_step, Precision::float_, 1e-4},
+    {"pgs", Solver::pgs, Precision::double_, kExact},
+    {"pgs, float", Solver::pgs, Precision::float_, 1e-4},
+};
+
 // A ball of radius 0.1 m strikes the floor at (3, -4) m/s, turning at `spin`.
-void spin_bounce(
-    CaseBench& bench, const char* name, double friction, double spin, const Vec3& wanted)
+void spin_bounce(CaseBench& bench,
+                 const ImpactSolver& by,
+                 const char* name,
+                 double friction,
+                 double spin,
+                 const Vec3& wanted)
 {
     SceneParts parts = without_gravity(bench, ImpactLaw::sequential);
+    parts.scene().settings.solver = by.solver;
+    parts.scene().settings.precision = by.precision;
     const std::uint32_t material = parts.material(friction, 0.8);
     parts.plane(material, Vec3::UnitZ(), 0);
     const std::uint32_t ball = parts.ball(material, 1, 0.1, Vec3(0, 0, 0.1));
@@ -145,7 +167,8 @@ void spin_bounce(
     parts.body(ball).angular_velocity = Vec3(0, -spin, 0);  // counter-clockwise seen from -y
     const End end = end_of(bench, parts.scene(), 0.001);
     const Vec3 got(end.velocity.back().x(), end.velocity.back().z(), -end.spin.back().y());
-    bench.report(name, "error of velocity and spin", (got - wanted).norm(), kExact, "1");
+    bench.report(std::string(name) + ", " + by.name, "error of velocity and spin",
+                 (got - wanted).norm(), by.bound, "1");
 }
 
 }  // namespace
@@ -153,9 +176,11 @@ void spin_bounce(
 void case_spin_bounce(CaseBench& bench)
 {
     const double grips = 15.0 / 7, fast = 27.0 / 7;
-    spin_bounce(bench, "(c) mu 0.2, no spin", 0.2, 0, Vec3(grips, 3.2, -grips / 0.1));
-    spin_bounce(bench, "(c) mu 0.2, spin -60", 0.2, -60, Vec3(fast, 3.2, -fast / 0.1));
-    spin_bounce(bench, "(c) mu 0.05, no spin", 0.05, 0, Vec3(2.64, 3.2, -9));
+    for (const ImpactSolver& by : kImpactSolvers) {
+        spin_bounce(bench, by, "(c) mu 0.2, no spin", 0.2, 0, Vec3(grips, 3.2, -grips / 0.1));
+        spin_bounce(bench, by, "(c) mu 0.2, spin -60", 0.2, -60, Vec3(fast, 3.2, -fast / 0.1));
+        spin_bounce(bench, by, "(c) mu 0.05, no spin", 0.05, 0, Vec3(2.64, 3.2, -9));
+    }
     bounces(bench);
 }
 

@@ -96,12 +96,12 @@ struct ContactBlock {
     Lane16<Real> twist_mass, twist_impulse;
 };
 
-/// What restitution needs of a point of 16 contacts.
+/// What restitution needs of 16 contacts.
 template <class Real>
 struct BounceRows {
     Lane16<Real> restitution;  // coefficient
-    Lane16<Real> approach;     // m/s, normal velocity before the step
-    Lane16<Real> greatest;     // N s, greatest impulse of the step
+    Lane16<Real>
+        impulse[3];  // N s on b in all impacts of the step: along the normal, tangent, other
 };
 
 /// What resisting to roll needs of 16 contacts.
@@ -173,7 +173,7 @@ struct Layout {
 /// The rows of a step. What an effect needs is there only where the effect is.
 ///
 ///   first_point  [blocks] place of the first among the points
-///   bounces      [points] while restitution acts
+///   bounces      [blocks] while restitution acts
 ///   rollings     [blocks] while rolling friction acts
 ///   grips        [points] while friction acts at points or within a pyramid
 ///   inertias     [bodies] while the gyroscopic torque acts

@@ -104,6 +104,23 @@ struct Motion {
                         spin.x,     spin.y,     spin.z,     L(Real(0))};
         scatter_8(m, bodies->motion, kStride, index, writes);
     }
+    /// As write(), and what bodies would do without contacts changes likewise: these give in the
+    /// next substep what they gave in this one.
+    void write_free(SolverBody<Real>* bodies, const std::int32_t* index, unsigned writes) const
+    {
+        Real m[6][L::kWidth];
+        velocity.x.store(m[0]), velocity.y.store(m[1]), velocity.z.store(m[2]);
+        spin.x.store(m[3]), spin.y.store(m[4]), spin.z.store(m[5]);
+        for (int lane = 0; lane < L::kWidth; ++lane) {
+            if ((writes >> lane & 1) == 0) continue;
+            SolverBody<Real>& body = bodies[index[lane]];
+            for (int k = 0; k < (turns ? 6 : 3); ++k) {
+                const int to = k < 3 ? k : k + 1;
+                body.free[to] += m[k][lane] - body.motion[to];
+                body.motion[to] = m[k][lane];
+            }
+        }
+    }
     V3<L> at(const V3<L>& arm) const
     {
         if constexpr (turns) return velocity + cross(spin, arm);

@@ -100,6 +100,16 @@ void store_impulses(const RowsView<Real>& rows,
 }
 
 template <class Real>
+Vec3T<Real> impact_impulse(const Rows<Real>& rows, std::size_t place, int lane_at)
+{
+    const auto lane = static_cast<std::size_t>(lane_at);
+    const ContactBlock<Real>& block = rows.blocks[place];
+    const Vec3T<Real> normal = get3(block.normal, lane), tangent = get3(block.tangent, lane);
+    const Vec3T<Real> given = get3(rows.bounces[place].impulse, lane);
+    return normal * given.x() + tangent * given.y() + normal.cross(tangent) * given.z();
+}
+
+template <class Real>
 void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& contact)
 {
     bool any = false;
@@ -130,6 +140,7 @@ void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& cont
     template void loosen_nothing<Real>(int, LooseBlock<Real>&);                                    \
     template void hold_uncut<Real>(const Contact<Real>&, int, ContactBlock<Real>&);                \
     template void store_impulses<Real>(const RowsView<Real>&, std::size_t, int, Contact<Real>&);   \
+    template Vec3T<Real> impact_impulse<Real>(const Rows<Real>&, std::size_t, int);                \
     template void carry_impulses<Real>(const Contact<Real>&, Real, Contact<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

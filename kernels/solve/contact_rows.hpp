@@ -56,6 +56,10 @@ void store_impulses(const RowsView<Real>& rows,
                     int lane,
                     Contact<Real>& contact);
 
+/// What the impacts of the step gave b in a lane, N s. Rows of a scene where something bounces.
+template <class Real>
+Vec3T<Real> impact_impulse(const Rows<Real>& rows, std::size_t place, int lane);
+
 /// Carries impulses over from the contact of the same pair in the last step: point by point where
 /// the same features touch, friction turned into the new tangent plane. What of it lies beyond the
 /// cone is cut when rows are made.

@@ -8,7 +8,7 @@
 // The pyramid has its sides along and across a direction that depends on the normal alone: each of
 // its two impulses goes up to friction times load by itself, so that along a diagonal they add up
 // to sqrt(2) times that.
-#include "kernels/solve/visit_lanes.hpp"
+#include "kernels/solve/impact_lanes.hpp"
 
 namespace throng::THRONG_LANES {
 
@@ -199,11 +199,14 @@ template <class L>
     Contacts<L, true> c(rows, place, at);
     Aim<L> aims[4];
     take_aim(c, rows.bodies, visit, aims);
+    if (rows.bounces != nullptr && !visit.push)
+        leave_to_impact(c, rows.bounces[place], visit, aims);
     push_together(c, aims);
     for (int sweep = 1; sweep < visit.normal_sweeps; ++sweep) push_points(c, aims);
     L load, lever;
     weigh(c, aims, load, lever);
-    settle_slip(c, visit.rolls ? rows.rollings + place : nullptr, load);
+    settle_slip(c);
+    if (visit.rolls) give_turn(c, resist_rolling(c, rows.rollings[place], load));
     // What resisting to spin did besides turning, which settle_slip leaves to what follows it.
     c.rel.v1 += c.spin_answer(2, 1) * c.given.wn;
     c.rel.v2 += c.spin_answer(2, 2) * c.given.wn;
@@ -215,8 +218,52 @@ template <class L>
         hold_middle(c, pyramid, load, lever);
     tell_points(c);
     push_points(c, aims);
-    keep_impulses(c, rows, aims);
+    keep_impulses(c, aims);
     c.write(rows.bodies);
+}
+
+// Friction in an impact, beside what the contact holds at rest: at every point by its own load, or
+// at the middle and about the normal.
+template <class L>
+void slide(Contacts<L, true>& c, const Sides<L>* pyramid, bool at_points, const Strike<L>& strike)
+{
+    const L zero = typename L::Number(0), friction = lane<L>(c.block.friction, c.at);
+    const Grip<L> none{zero, zero};
+    if (!at_points) {
+        if (c.block.points > 1) give(c, zero, zero, twist_within(c, zero, friction * strike.lever));
+        const Grip<L> held = grip_at(pyramid, matrix_at(c, zero, zero), none, c.rel.v1, c.rel.v2,
+                                     friction * strike.load);
+        return give(c, held.impulse_1, held.impulse_2, zero);
+    }
+    for (int k = 0; k < c.block.points; ++k) {
+        const L u = lane<L>(c.points[k].lever[0], c.at), w = lane<L>(c.points[k].lever[1], c.at);
+        const Grip<L> held = grip_at(pyramid, matrix_at(c, u, w), none, c.rel.v1 - u * c.rel.wn,
+                                     c.rel.v2 - w * c.rel.wn, friction * strike.impulse[k]);
+        give(c, held.impulse_1, held.impulse_2, -(u * held.impulse_1 + w * held.impulse_2));
+    }
+}
+
+template <class L>
+[[gnu::flatten]] bool bounce_grips_lanes(const RowsView<typename L::Number>& rows,
+                                         std::size_t place,
+                                         int at,
+                                         const Visit<typename L::Number>& visit)
+{
+    Contacts<L, true> c(rows, place, at);
+    Strike<L> strike;
+    find_strike(c, rows, rows.bounces[place], visit, strike);
+    if (strike.lanes == 0) return false;
+    reflect(c, rows.bounces[place], strike);
+    const L zero = typename L::Number(0);
+    settle_slip(c);
+    if (visit.rolls)
+        give_turn(c, rolling_within(c, rows.rollings[place], V3<L>{zero, zero, zero}, strike.load));
+    c.rel.v1 += c.spin_answer(2, 1) * c.given.wn;
+    c.rel.v2 += c.spin_answer(2, 2) * c.given.wn;
+    const Sides<L> sides = sides_of(c);
+    slide(c, visit.pyramid ? &sides : nullptr, visit.at_points, strike);
+    give_strike(c, rows, rows.bounces[place], strike);
+    return strike.lasts;
 }
 
 // How the friction that a contact holds is shared among its points: each takes its share of the
@@ -336,7 +383,22 @@ void sweep_grips(const RowsView<Real>& rows,
             sweep_grips_lanes<Lanes<Real>>(rows, place, at, visit);
 }
 
+template <class Real>
+bool bounce_grips(const RowsView<Real>& rows,
+                  std::size_t begin,
+                  std::size_t end,
+                  const Visit<Real>& visit)
+{
+    bool any = false;
+    for (std::size_t place = begin; place < end; ++place)
+        for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
+            any |= bounce_grips_lanes<Lanes<Real>>(rows, place, at, visit);
+    return any;
+}
+
 #define THRONG_INSTANTIATE(Real)                                                                   \
+    template bool bounce_grips<Real>(const RowsView<Real>&, std::size_t, std::size_t,              \
+                                     const Visit<Real>&);                                          \
     template void warm_start_grips<Real>(const RowsView<Real>&, std::size_t, std::size_t,          \
                                          const Visit<Real>&);                                      \
     template void sweep_grips<Real>(const RowsView<Real>&, std::size_t, std::size_t,               \

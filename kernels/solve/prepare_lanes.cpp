@@ -223,23 +223,15 @@ void fill_held(ContactBlock<typename L::Number>& block,
     (held_2 * shrink).store(block.friction_impulse[1].at + at);
 }
 
-template <class L, bool turns>
+template <class L>
 void fill_bounce(BounceRows<typename L::Number>& bounce,
                  int at,
-                 const LooseBlock<typename L::Number>& loose,
-                 const Frame<L, turns>& frame,
-                 const PointRows<typename L::Number>& point,
-                 const Motion<L, turns>& a,
-                 const Motion<L, turns>& b)
+                 const LooseBlock<typename L::Number>& loose)
 {
     using Real = typename L::Number;
-    Six<L> speed = frame.between(a, b);
-    if constexpr (turns)
-        speed.n = speed.n + lane<L>(point.lever[0], at) * speed.w1
-            + lane<L>(point.lever[1], at) * speed.w2;
-    speed.n.store(bounce.approach.at + at);
+    const L zero = Real(0);
     lane<L>(loose.restitution, at).store(bounce.restitution.at + at);
-    L(Real(0)).store(bounce.greatest.at + at);
+    store3(V3<L>{zero, zero, zero}, bounce.impulse, at);
 }
 
 template <class L, bool turns>
@@ -329,11 +321,7 @@ template <class L, bool turns>
 
     if (rows.rollings != nullptr)
         fill_rolling(rows.rollings[place], at, from, loose.rolling, frame, a, b);
-    if (rows.bounces == nullptr) return;
-    const Motion<L, turns> motion_a(rows.bodies, block.a + at), motion_b(rows.bodies, block.b + at);
-    for (int k = 0; k < block.points; ++k)
-        fill_bounce(rows.bounces[block.first_point + std::uint32_t(k)], at, from, frame, points[k],
-                    motion_a, motion_b);
+    if (rows.bounces != nullptr) fill_bounce<L>(rows.bounces[place], at, from);
 }
 
 }  // namespace

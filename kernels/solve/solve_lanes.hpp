@@ -37,4 +37,10 @@ void sweep_grips(const RowsView<Real>& rows,
                  std::size_t end,
                  const Visit<Real>& visit);
 
+template <class Real>
+bool bounce_grips(const RowsView<Real>& rows,
+                  std::size_t begin,
+                  std::size_t end,
+                  const Visit<Real>& visit);
+
 }  // namespace throng::THRONG_LANES

@@ -26,6 +26,8 @@ struct Visit {
     int normal_sweeps = 2;     // times the points are gone through; the last one after friction
     bool at_points = false;    // friction at each point: asked by sweep_grips alone
     bool pyramid = false;      // friction within a pyramid: likewise
+    Real slow = 0;             // m/s: what comes in slower than that rests, and does not bounce
+    Real fall[3] = {};         // m/s, what gravity adds in a substep: asked by impacts alone
 };
 
 /// Where the numbers of a contact are, counted in numbers of its kind (see Contact): the kernels
@@ -76,8 +78,12 @@ struct Substep {
     enum class Gyroscopic : std::uint8_t { off, implicit, direct } gyroscopic = Gyroscopic::off;
 };
 
-/// How often the points of a contact that bounces are visited.
+/// How often the points of a contact that strike together are visited.
 inline constexpr int kBounceVisits = 8;
+
+/// Who goes less far in a substep than this share of the overlap that a contact turns rigid at has
+/// come to rest: another round of impacts is not for him.
+inline constexpr double kAtRest = 1e-4;
 
 /// The solver's kernels for one width. All work in place on the blocks from `begin` to before
 /// `end`, or on `count` solver bodies.
@@ -87,9 +93,10 @@ inline constexpr int kBounceVisits = 8;
 ///   warm_start     gives the bodies the impulses that the contacts hold
 ///   sweep          moves every point towards its wanted normal speed, never pulling; then
 ///                  friction, a round cone of the contact's normal impulse; then the points again
-///   restitute      lets points that came in fast leave with `restitution` times that speed, those
-///                  of one contact together: in kBounceVisits of them, so that what meets face to
-///                  face leaves with the spin that it has, and with no energy from nowhere
+///   bounce         impacts, one contact after another: points that come in faster than `slow` and
+///                  would touch before the substep ends leave again, those of a contact together,
+///                  with friction within the cone of what the impact loads it with. Tells whether
+///                  any did that was not all but at rest
 ///   begin_substep  stops bodies that ran away; adds gravity and the gyroscopic torque; then, but
 ///                  in the first substep, what all contacts gave in the last one: within a step
 ///                  arms and inertia do not change, so it is `motion` less `free`, and no contact
@@ -97,12 +104,13 @@ inline constexpr int kBounceVisits = 8;
 ///   advance        moves and turns bodies by their velocities for a time; returns how many turn
 ///                  too fast for it and were moved only (see turn_fast)
 ///
-/// Two more for friction of another kind, at each point or within a pyramid, as the visit asks.
+/// Three more for friction of another kind, at each point or within a pyramid, as the visit asks.
 /// They need RowsView::grips, and rows prepared as for bodies that turn.
 ///
 ///   warm_start_grips  shares the friction that a contact holds among its points by their loads, so
 ///                     that they add up to the same force and torque; then as warm_start
 ///   sweep_grips       as sweep, with friction of that kind
+///   bounce_grips      as bounce, likewise
 ///
 /// Source: Catto, Iterative Dynamics with Temporal Coherence (2005) for impulses that accumulate;
 ///         Catto, Solver2D (2024) for substeps of soft contacts with a relaxing visit.
@@ -122,11 +130,10 @@ struct SolveKernels {
                   std::size_t begin,
                   std::size_t end,
                   const Visit<Real>& visit);
-    void (*restitute)(const RowsView<Real>& rows,
-                      std::size_t begin,
-                      std::size_t end,
-                      Real threshold,
-                      const Visit<Real>& visit);
+    bool (*bounce)(const RowsView<Real>& rows,
+                   std::size_t begin,
+                   std::size_t end,
+                   const Visit<Real>& visit);
     void (*begin_substep)(SolverBody<Real>* bodies,
                           const SpinInertia<Real>* inertias,
                           std::size_t count,
@@ -144,6 +151,10 @@ struct SolveKernels {
                         std::size_t begin,
                         std::size_t end,
                         const Visit<Real>& visit);
+    bool (*bounce_grips)(const RowsView<Real>& rows,
+                         std::size_t begin,
+                         std::size_t end,
+                         const Visit<Real>& visit);
 };
 
 /// The kernels of one width: "scalar", "avx2" or "avx512"; none where the machine has not got it

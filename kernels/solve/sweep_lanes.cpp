@@ -1,6 +1,6 @@
 // One visit of the solver, written once over the width of the machine's registers: friction at the
 // middle of a contact's points, in a round cone. For the other choices see grip_lanes.cpp.
-#include "kernels/solve/visit_lanes.hpp"
+#include "kernels/solve/impact_lanes.hpp"
 
 namespace throng::THRONG_LANES {
 
@@ -37,7 +37,8 @@ void hold_point(Contacts<L, turns>& c, L load)
 template <class L>
 void hold_points(Contacts<L, true>& c, RollingRows<typename L::Number>* rolling, L load, L lever)
 {
-    settle_slip(c, rolling, load);
+    settle_slip(c);
+    if (rolling != nullptr) give_turn(c, resist_rolling(c, *rolling, load));
     const L friction = lane<L>(c.block.friction, c.at);
     if (c.block.points > 1) c.given.wn += hold_twist(c, friction * lever);
     c.rel.v1 += c.spin_answer(2, 1) * c.given.wn;
@@ -55,6 +56,8 @@ template <class L, bool turns, int most>
     Contacts<L, turns> c(rows, place, at);
     Aim<L> aims[most];
     take_aim(c, rows.bodies, visit, aims);
+    if (rows.bounces != nullptr && !visit.push)
+        leave_to_impact(c, rows.bounces[place], visit, aims);
     if constexpr (turns && most > 1) push_together(c, aims);
     for (int sweep = 1; sweep < visit.normal_sweeps; ++sweep) push_points(c, aims);
     if (visit.grips) {
@@ -67,7 +70,7 @@ template <class L, bool turns, int most>
     }
     // Last, so that whatever friction did to the normal speeds is put right.
     push_points(c, aims);
-    keep_impulses(c, rows, aims);
+    keep_impulses(c, aims);
     c.write(rows.bodies);
 }
 
@@ -90,71 +93,63 @@ template <class L, bool turns>
     c.write(rows.bodies);
 }
 
-// Whether a point of the block came in fast and did touch; the others keep what the solver gave
-// them. Asked of whole blocks, which are the same at every width.
-template <class Real>
-bool bounces(const RowsView<Real>& rows, std::size_t place, Real threshold)
+// Friction in an impact, within the cone of its load: beside what the contact holds at rest.
+template <class L, bool turns>
+void slide(Contacts<L, turns>& c, L reach)
 {
-    const ContactBlock<Real>& block = rows.blocks[place];
-    for (int k = 0; k < block.points; ++k) {
-        const BounceRows<Real>& bounce = rows.bounces[block.first_point + std::uint32_t(k)];
-        bool any = false;
-        for (int at = 0; at < kBlock; ++at)
-            any |= (bounce.approach.at[at] < -threshold) & (bounce.greatest.at[at] > 0)
-                & (bounce.restitution.at[at] > 0);
-        if (any) return true;
-    }
-    return false;
+    const L zero = typename L::Number(0);
+    const Grip<L> held = grip_in_cone(friction_mass<L>(c.block, c.at), Grip<L>{zero, zero},
+                                      c.rel.v1, c.rel.v2, reach);
+    c.given.v1 += held.impulse_1;
+    c.given.v2 += held.impulse_2;
 }
 
 template <class L, bool turns>
-void bounce_points(Contacts<L, turns>& c, BounceRows<typename L::Number>* bounces, int at, L slow)
+void slide_point(Contacts<L, turns>& c, const Strike<L>& strike)
 {
-    using Real = typename L::Number;
-    const L zero = Real(0), one = Real(1);
-    for (int k = 0; k < c.block.points; ++k) {
-        PointRows<Real>& point = c.points[k];
-        const L bounce = lane<L>(bounces[k].restitution, at);
-        const L approach = lane<L>(bounces[k].approach, at);
-        const L fast = select(approach < -slow, one, zero);
-        const L touched = select(lane<L>(bounces[k].greatest, at) > zero, fast, zero) * bounce;
-        L speed = c.rel.n, u = zero, w = zero;
-        if constexpr (turns) {
-            u = lane<L>(point.lever[0], at);
-            w = lane<L>(point.lever[1], at);
-            speed += u * c.rel.w1 + w * c.rel.w2;
-        }
-        const L old = lane<L>(point.impulse, at);
-        const L wanted = old - lane<L>(point.mass, at) * (speed + bounce * approach);
-        const L total = select(touched > zero, max(wanted, zero), old), more = total - old;
-        total.store(point.impulse.at + at);
-        max(total, lane<L>(bounces[k].greatest, at)).store(bounces[k].greatest.at + at);
-        c.given.n += more;
-        c.rel.n += c.answer(response::nn) * more;
-        if constexpr (turns) {
-            if (c.block.points == 1) continue;
-            const L n1 = c.spin_answer(0, 0), n2 = c.spin_answer(1, 0);
-            const L w12 = c.answer(response::w12);
-            c.given.w1 += u * more;
-            c.given.w2 += w * more;
-            c.rel.n += (u * n1 + w * n2) * more;
-            c.rel.w1 += (n1 + u * c.answer(response::w11) + w * w12) * more;
-            c.rel.w2 += (n2 + u * w12 + w * c.answer(response::w22)) * more;
-        }
-    }
+    c.rel.v1 += c.answer(response::n1) * c.given.n;
+    c.rel.v2 += c.answer(response::n2) * c.given.n;
+    slide(c, lane<L>(c.block.friction, c.at) * strike.load);
+}
+
+template <class L>
+void slide_points(Contacts<L, true>& c,
+                  const RollingRows<typename L::Number>* rolling,
+                  const Strike<L>& strike)
+{
+    const L zero = typename L::Number(0), friction = lane<L>(c.block.friction, c.at);
+    settle_slip(c);
+    if (rolling != nullptr)
+        give_turn(c, rolling_within(c, *rolling, V3<L>{zero, zero, zero}, strike.load));
+    if (c.block.points > 1) c.given.wn += twist_within(c, zero, friction * strike.lever);
+    c.rel.v1 += c.spin_answer(2, 1) * c.given.wn;
+    c.rel.v2 += c.spin_answer(2, 2) * c.given.wn;
+    slide(c, friction * strike.load);
 }
 
 template <class L, bool turns>
-[[gnu::flatten]] void restitute_lanes(const RowsView<typename L::Number>& rows,
-                                      std::size_t place,
-                                      int at,
-                                      typename L::Number threshold)
+[[gnu::flatten]] bool bounce_lanes(const RowsView<typename L::Number>& rows,
+                                   std::size_t place,
+                                   int at,
+                                   const Visit<typename L::Number>& visit)
 {
     Contacts<L, turns> c(rows, place, at);
-    const int visits = c.block.points > 1 ? kBounceVisits : 1;
-    for (int visit = 0; visit < visits; ++visit)
-        bounce_points(c, rows.bounces + c.block.first_point, at, L(threshold));
-    c.write(rows.bodies);
+    Strike<L> strike;
+    find_strike(c, rows, rows.bounces[place], visit, strike);
+    if (strike.lanes == 0) return false;
+    reflect(c, rows.bounces[place], strike);
+    if (visit.grips) {
+        if constexpr (turns) {
+            if (c.block.points > 1 || visit.rolls)
+                slide_points(c, visit.rolls ? rows.rollings + place : nullptr, strike);
+            else
+                slide_point(c, strike);
+        } else {
+            slide_point(c, strike);
+        }
+    }
+    give_strike(c, rows, rows.bounces[place], strike);
+    return strike.lasts;
 }
 
 template <bool value>
@@ -211,27 +206,25 @@ void sweep(const RowsView<Real>& rows, std::size_t begin, std::size_t end, const
 }
 
 template <class Real>
-void restitute(const RowsView<Real>& rows,
-               std::size_t begin,
-               std::size_t end,
-               Real threshold,
-               const Visit<Real>& visit)
+bool bounce(const RowsView<Real>& rows,
+            std::size_t begin,
+            std::size_t end,
+            const Visit<Real>& visit)
 {
-    for (std::size_t place = begin; place < end; ++place) {
-        if (!bounces(rows, place, threshold)) continue;
-        for_lanes<Real>(place, place + 1, visit.turns, [&](auto turns, std::size_t, int at) {
-            restitute_lanes<Lanes<Real>, turns.kValue>(rows, place, at, threshold);
-        });
-    }
+    bool any = false;
+    for_lanes<Real>(begin, end, visit.turns, [&](auto turns, std::size_t place, int at) {
+        any |= bounce_lanes<Lanes<Real>, turns.kValue>(rows, place, at, visit);
+    });
+    return any;
 }
 
 template <class Real>
 constexpr SolveKernels<Real> table()
 {
     return {THRONG_LANES_NAME,   Lanes<Real>::kWidth, prepare<Real>,
-            warm_start<Real>,    sweep<Real>,         restitute<Real>,
+            warm_start<Real>,    sweep<Real>,         bounce<Real>,
             begin_substep<Real>, advance<Real>,       warm_start_grips<Real>,
-            sweep_grips<Real>};
+            sweep_grips<Real>,   bounce_grips<Real>};
 }
 
 }  // namespace

@@ -141,6 +141,27 @@ void take_aim(const Contacts<L, turns>& c,
     }
 }
 
+// What comes in fast is left to its impact, which the next substep begins with.
+template <class L, bool turns, int most>
+void leave_to_impact(const Contacts<L, turns>& c,
+                     const BounceRows<typename L::Number>& bounce,
+                     const Visit<typename L::Number>& visit,
+                     Aim<L> (&aims)[most])
+{
+    using Real = typename L::Number;
+    const L zero = Real(0);
+    // Nobody is as fast as that where nothing bounces.
+    const L slow = select(lane<L>(bounce.restitution, c.at) > zero, L(-visit.slow), L(Real(-1e30)));
+    const int count = most == 1 ? 1 : c.block.points;
+    for (int k = 0; k < count; ++k) {
+        L speed = c.rel.n;
+        if constexpr (turns && most > 1)
+            speed += lane<L>(c.points[k].lever[0], c.at) * c.rel.w1
+                + lane<L>(c.points[k].lever[1], c.at) * c.rel.w2;
+        aims[k].keep = select(speed < slow, zero, aims[k].keep);
+    }
+}
+
 // Every point towards its wanted normal speed; then refuse to pull.
 template <class L, bool turns, int most>
 void push_points(Contacts<L, turns>& c, Aim<L> (&aims)[most])
@@ -278,23 +299,33 @@ Grip<L> grip_in_cone(const FrictionMass<L>& mass, const Grip<L>& old, L slip_1, 
     return {select(slides, slide_1 * shrink, stick_1), select(slides, slide_2 * shrink, stick_2)};
 }
 
-// Friction about the normal, for contacts of several points. Returns the change.
+// Friction about the normal, for contacts of several points: its impulse, from the old one.
+template <class L, bool turns>
+L twist_within(const Contacts<L, turns>& c, L old, L most)
+{
+    const L wanted = old - lane<L>(c.block.twist_mass, c.at) * c.rel.wn;
+    return max(min(wanted, most), -most);
+}
+
+// The same of what the contact holds. Returns the change.
 template <class L, bool turns>
 L hold_twist(Contacts<L, turns>& c, L most)
 {
     const L old = lane<L>(c.block.twist_impulse, c.at);
-    const L wanted = old - lane<L>(c.block.twist_mass, c.at) * c.rel.wn;
-    const L total = max(min(wanted, most), -most);
+    const L total = twist_within(c, old, most);
     total.store(c.block.twist_impulse.at + c.at);
     return total - old;
 }
 
-// Friction against rolling and spinning. Returns the change, about tangent, other and normal.
+// Friction against rolling and spinning, about tangent, other and normal: its impulse, from the old
+// one.
 template <class L, bool turns>
-V3<L> resist_rolling(Contacts<L, turns>& c, RollingRows<typename L::Number>& rolling, L load)
+V3<L> rolling_within(const Contacts<L, turns>& c,
+                     const RollingRows<typename L::Number>& rolling,
+                     const V3<L>& old,
+                     L load)
 {
     using Real = typename L::Number;
-    const V3<L> old = lane3<L>(rolling.impulse, c.at);
     const L most = lane<L>(rolling.rolling, c.at) * load;
     const L mass = lane<L>(rolling.mass, c.at);
     const V3<L> wanted = old - V3<L>{c.rel.w1, c.rel.w2, c.rel.wn} * mass;
@@ -305,37 +336,48 @@ V3<L> resist_rolling(Contacts<L, turns>& c, RollingRows<typename L::Number>& rol
     const L length = greatest * sqrt(dot(parts, parts));
     const L shrink =
         select(length > most, most / select(length > L(Real(0)), length, L(Real(1))), L(Real(1)));
-    const V3<L> total = wanted * shrink;
+    return wanted * shrink;
+}
+
+// The same of what the contact holds. Returns the change.
+template <class L, bool turns>
+V3<L> resist_rolling(Contacts<L, turns>& c, RollingRows<typename L::Number>& rolling, L load)
+{
+    const V3<L> old = lane3<L>(rolling.impulse, c.at);
+    const V3<L> total = rolling_within(c, rolling, old, load);
     store3(total, rolling.impulse, c.at);
     return total - old;
 }
 
-// What the points did to the other three numbers, and what resisting to roll does to all.
+// What the points did to the other three numbers.
 template <class L>
-void settle_slip(Contacts<L, true>& c, RollingRows<typename L::Number>* rolling, L load)
+void settle_slip(Contacts<L, true>& c)
 {
     const auto spin_by = [&](int velocity) {
         return c.spin_answer(0, velocity) * c.given.w1 + c.spin_answer(1, velocity) * c.given.w2;
     };
     c.rel.v1 += c.answer(response::n1) * c.given.n + spin_by(1);
     c.rel.v2 += c.answer(response::n2) * c.given.n + spin_by(2);
-    const L wnn = c.answer(response::wnn), w1n = c.answer(response::w1n);
-    const L w2n = c.answer(response::w2n);
+    const L w1n = c.answer(response::w1n), w2n = c.answer(response::w2n);
     c.rel.wn += c.spin_answer(2, 0) * c.given.n + w1n * c.given.w1 + w2n * c.given.w2;
-    if (rolling != nullptr) {
-        const V3<L> by = resist_rolling(c, *rolling, load);
-        const L w12 = c.answer(response::w12);
-        c.given.w1 += by.x;
-        c.given.w2 += by.y;
-        c.given.wn += by.z;
-        // What it did about the normal, below, counts the whole of given.wn.
-        c.rel.w1 += c.answer(response::w11) * by.x + w12 * by.y;
-        c.rel.w2 += w12 * by.x + c.answer(response::w22) * by.y;
-        c.rel.wn += w1n * by.x + w2n * by.y + wnn * by.z;
-        c.rel.n += c.spin_answer(0, 0) * by.x + c.spin_answer(1, 0) * by.y;
-        c.rel.v1 += c.spin_answer(0, 1) * by.x + c.spin_answer(1, 1) * by.y;
-        c.rel.v2 += c.spin_answer(0, 2) * by.x + c.spin_answer(1, 2) * by.y;
-    }
+}
+
+// What resisting to roll does to all, but for what it does about the normal to v1 and v2: that
+// counts the whole of given.wn, later.
+template <class L>
+void give_turn(Contacts<L, true>& c, const V3<L>& by)
+{
+    const L wnn = c.answer(response::wnn), w1n = c.answer(response::w1n);
+    const L w2n = c.answer(response::w2n), w12 = c.answer(response::w12);
+    c.given.w1 += by.x;
+    c.given.w2 += by.y;
+    c.given.wn += by.z;
+    c.rel.w1 += c.answer(response::w11) * by.x + w12 * by.y;
+    c.rel.w2 += w12 * by.x + c.answer(response::w22) * by.y;
+    c.rel.wn += w1n * by.x + w2n * by.y + wnn * by.z;
+    c.rel.n += c.spin_answer(0, 0) * by.x + c.spin_answer(1, 0) * by.y;
+    c.rel.v1 += c.spin_answer(0, 1) * by.x + c.spin_answer(1, 1) * by.y;
+    c.rel.v2 += c.spin_answer(0, 2) * by.x + c.spin_answer(1, 2) * by.y;
 }
 
 // What friction did to the speeds of the points.
@@ -391,18 +433,10 @@ void give_rolling(Contacts<L, true>& c, const RollingRows<typename L::Number>& r
 
 // The impulses of the points as a visit leaves them.
 template <class L, bool turns, int most>
-void keep_impulses(Contacts<L, turns>& c,
-                   const RowsView<typename L::Number>& rows,
-                   const Aim<L> (&aims)[most])
+void keep_impulses(Contacts<L, turns>& c, const Aim<L> (&aims)[most])
 {
-    using Real = typename L::Number;
     const int count = most == 1 ? 1 : c.block.points;
-    for (int k = 0; k < count; ++k) {
-        aims[k].impulse.store(c.points[k].impulse.at + c.at);
-        if (rows.bounces == nullptr) continue;
-        Lane16<Real>& greatest = rows.bounces[c.block.first_point + std::uint32_t(k)].greatest;
-        max(aims[k].impulse, lane<L>(greatest, c.at)).store(greatest.at + c.at);
-    }
+    for (int k = 0; k < count; ++k) aims[k].impulse.store(c.points[k].impulse.at + c.at);
 }
 
 }  // namespace throng::THRONG_LANES

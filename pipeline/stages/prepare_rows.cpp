@@ -108,7 +108,7 @@ void prepare_rows(const Conditions& conditions,
         points += layout.points[i];
     }
     rows.points.resize(points);
-    rows.bounces.resize(conditions.has(Effect::restitution) ? points : 0);
+    rows.bounces.resize(conditions.has(Effect::restitution) ? blocks : 0);
     rows.grips.resize(conditions.grips_apart() ? points : 0);
     rows.rollings.resize(conditions.has(Effect::rolling_friction) ? blocks : 0);
 }

@@ -6,6 +6,7 @@
 #include "pipeline/stages/parting.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 namespace throng {
 
@@ -28,6 +29,10 @@ constexpr int kInHeaps = 1, kInStructures = 2;
 // point overlap by a seventh after 10 s. While each still lies in hundreds of others one visit is
 // many pushes: so many a body will do.
 constexpr std::size_t kPartingVisits = 12, kPartingPushes = 128;
+
+// Rounds of impacts a substep at most. Each takes a blow on by one body at least, and mostly there
+// are one or two; what still comes in after so many is stopped.
+constexpr int kImpactRounds = 16;
 
 // One pass over the contacts or the bodies of a slice.
 struct Pass {
@@ -61,6 +66,7 @@ public:
           parting_(parting), view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
           warm_start_(conditions.grips_apart() ? kernels_.warm_start_grips : kernels_.warm_start),
           sweep_(conditions.grips_apart() ? kernels_.sweep_grips : kernels_.sweep),
+          bounce_(conditions.grips_apart() ? kernels_.bounce_grips : kernels_.bounce),
           time_(static_cast<Real>(conditions.substep()))
     {
         visit_.inverse_substep = static_cast<Real>(1 / conditions.substep());
@@ -70,6 +76,11 @@ public:
         visit_.grips = conditions.has(Effect::friction) || visit_.rolls;
         visit_.at_points = conditions.settings.friction_at == FrictionAt::points;
         visit_.pyramid = conditions.settings.friction_cone == FrictionCone::pyramid;
+        // Slower than what gravity gives in two steps is resting, not bouncing.
+        const Settings& settings = conditions.settings;
+        visit_.slow = static_cast<Real>(2 * conditions.gravity.norm() * settings.dt);
+        for (int k = 0; k < 3; ++k)
+            visit_.fall[k] = static_cast<Real>(conditions.gravity[k] * conditions.substep());
         on_faces_ = 2 * batch.on_faces > batch.contacts;
     }
 
@@ -90,6 +101,7 @@ public:
             // side. Heaps and crowds, which have no side, come to rest sooner in one order.
             const bool backward = on_faces_ && step % 2 == 1;
             const auto add = [&](Pass::Kind kind) { add_pass({kind, step == 0, backward}); };
+            if (conditions_.has(Effect::restitution)) bounce_all();
             add(begin);
             if (step == 0) add(warm_start);
             const int relaxes = parts || on_faces_ ? kInStructures : kInHeaps;
@@ -106,7 +118,6 @@ public:
             }
             if (on_faces_ || !window_fits()) run_passes();
         }
-        if (conditions_.has(Effect::restitution)) add_pass({bounce});
         add_pass({store});
         run_passes();
     }
@@ -180,7 +191,7 @@ private:
                 warm_start_(view_, from, end, visit_);
             });
         case Pass::Kind::bounce:
-            return bounce(slice, shared);
+            return bounce(slice, shared, pass.backward);
         default:
             return sweep(pass, slice, shared);
         }
@@ -301,13 +312,22 @@ private:
         });
     }
 
-    // Slower than what gravity gives in two steps is resting, not bouncing.
-    void bounce(const Slice& slice, bool shared)
+    // Impacts, one contact after another, round after round, forth and back: each takes both bodies
+    // as the ones before have left them.
+    void bounce_all()
     {
-        const auto threshold =
-            static_cast<Real>(2 * conditions_.gravity.norm() * conditions_.settings.dt);
-        for_colors(slice, shared, false, [&](std::size_t begin, std::size_t end) {
-            kernels_.restitute(view_, begin, end, threshold, visit_);
+        for (int round = 0; round < kImpactRounds; ++round) {
+            struck_ = false;
+            add_pass({Pass::Kind::bounce, false, round % 2 == 1});
+            run_passes();
+            if (!struck_) return;
+        }
+    }
+
+    void bounce(const Slice& slice, bool shared, bool backward)
+    {
+        for_colors(slice, shared, backward, [&](std::size_t begin, std::size_t end) {
+            if (bounce_(view_, begin, end, visit_)) struck_ = true;
         });
     }
 
@@ -319,9 +339,11 @@ private:
     Parting& parting_;
     RowsView<Real> view_;
     const SolveKernels<Real>& kernels_;
-    using Over = decltype(SolveKernels<Real>::sweep);
-    Over warm_start_, sweep_;  // with friction of the kind that is asked for
-    Real time_;                // s, of a substep
+    // With friction of the kind that is asked for.
+    decltype(SolveKernels<Real>::sweep) warm_start_, sweep_;
+    decltype(SolveKernels<Real>::bounce) bounce_;
+    std::atomic<bool> struck_ = false;  // in the last round of impacts
+    Real time_;                         // s, of a substep
     Visit<Real> visit_;
     bool on_faces_ = false;
     PutAside<Real> put_aside_;  // while bodies of the batch part

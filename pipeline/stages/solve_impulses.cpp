@@ -19,6 +19,7 @@ constexpr std::array<InnerRow, 11> solve_rows(std::string_view friction)
 {
     return {{
         {"make_rows", {Effect::contact}, "before the first substep"},
+        {"bounce", {Effect::restitution}, "as each substep begins"},
         {"add_gravity", {Effect::gravity}, "each substep"},
         {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
         {"warm_start", {Effect::contact}, "in the first substep"},
@@ -28,7 +29,6 @@ constexpr std::array<InnerRow, 11> solve_rows(std::string_view friction)
         {"move_bodies", {Effect::motion}, "each substep"},
         {"turn_bodies", {Effect::rotation}, "each substep"},
         {"relax_contacts", {Effect::contact}, "each substep"},
-        {"bounce", {Effect::restitution}, "after the last substep"},
     }};
 }
 

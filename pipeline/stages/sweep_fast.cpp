@@ -69,6 +69,7 @@ public:
     FastSweep(const Conditions& conditions,
               const Shapes& shapes,
               const Colliders& colliders,
+              const Surfaces& surfaces,
               const PairFilter& filter,
               const Bounds& bounds,
               const Pairs& pairs,
@@ -78,8 +79,9 @@ public:
               Velocities& velocities,
               FastBodies& fast)
         : settings_(conditions.settings), gravity_(conditions.gravity), shapes_(shapes),
-          colliders_(colliders), filter_(filter), bounds_(bounds), pairs_(pairs), states_(states),
-          masses_(masses), poses_(poses), velocities_(velocities), fast_(fast)
+          colliders_(colliders), surfaces_(surfaces), filter_(filter), bounds_(bounds),
+          pairs_(pairs), states_(states), masses_(masses), poses_(poses), velocities_(velocities),
+          fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& awoken)
@@ -415,7 +417,8 @@ private:
         Way &yields = yields_a ? a : b, &other = yields_a ? b : a;
         if (candidate.pressed && !states_.dynamic(other.body))
             stop_pressing(yields.body, other.body,
-                          yields_a ? candidate.normal : Vec3(-candidate.normal));
+                          yields_a ? candidate.normal : Vec3(-candidate.normal),
+                          restitution_of(candidate.key));
         if (yields.rides != kNobody || other.sweep.still())
             hold(yields, time);
         else
@@ -424,12 +427,20 @@ private:
     }
 
     // Its middle goes no further into what it is pressed into, and cannot move: a corner that holds
-    // it at its side, while it turns about that faster than steps can follow, would let it.
-    void stop_pressing(std::uint32_t body, std::uint32_t on, const Vec3& normal)
+    // it at its side, while it turns about that faster than steps can follow, would let it. What
+    // bounces is thrown back.
+    void stop_pressing(std::uint32_t body, std::uint32_t on, const Vec3& normal, double restitution)
     {
         Vec3& velocity = velocities_.linear[body];
         const double pressing = normal.dot(velocity - velocities_.linear[on]);
-        if (pressing > 0) velocity -= pressing * normal;
+        if (pressing > 0) velocity -= (1 + restitution) * pressing * normal;
+    }
+
+    double restitution_of(PairKey key) const
+    {
+        return surfaces_
+            .between(colliders_.material[first_of(key)], colliders_.material[second_of(key)])
+            .restitution;
     }
 
     // Who is kept from the rest of its way has not fallen down it: what gravity gave it for that
@@ -541,6 +552,7 @@ private:
     Vec3 gravity_;
     const Shapes& shapes_;
     const Colliders& colliders_;
+    const Surfaces& surfaces_;
     const PairFilter& filter_;
     const Bounds& bounds_;
     const Pairs& pairs_;
@@ -564,6 +576,7 @@ private:
 void sweep_fast(const Conditions& conditions,
                 const Shapes& shapes,
                 const Colliders& colliders,
+                const Surfaces& surfaces,
                 const PairFilter& filter,
                 const Bounds& bounds,
                 const Pairs& pairs,
@@ -576,7 +589,7 @@ void sweep_fast(const Conditions& conditions,
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, masses, poses,
+    FastSweep(conditions, shapes, colliders, surfaces, filter, bounds, pairs, states, masses, poses,
               velocities, fast)
         .run(rest.awoken);
 }

@@ -43,7 +43,7 @@ struct Heap {
         rows.blocks.resize(counts.size());
         rows.points.resize(points);
         rows.rollings.resize(wish.rolls ? counts.size() : 0);
-        rows.bounces.resize(wish.bounces ? points : 0);
+        rows.bounces.resize(wish.bounces ? counts.size() : 0);
         points = 0;
         for (std::size_t place = 0; place < counts.size(); ++place) {
             fill(random, place, counts[place], points, positions, wish);

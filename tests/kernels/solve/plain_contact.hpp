@@ -61,6 +61,9 @@ struct PlainVisit {
     bool at_points = false, pyramid = false;  // friction of another kind
     bool together = true;                     // the points are first pushed all at once
     int normal_sweeps = 1;
+    bool bounces = false;  // what comes in faster than `slow` is left to its impact
+    double slow = 0;
+    Vec3 fall = Vec3::Zero();
 };
 
 class PlainContact {
@@ -87,7 +90,6 @@ public:
             point.arm_a = from.from_a.template cast<double>();
             point.arm_b = point.arm_a + normal * point.separation + between;
             point.impulse = from.impulse;
-            point.approach = speed_of(point);
             center_a += point.arm_a / contact.count;
             center_b += point.arm_b / contact.count;
             total += point.impulse;
@@ -133,38 +135,51 @@ public:
             for (Point& point : points) push(point);
         if (visit.grips) hold(visit);
         for (Point& point : points) push(point);
-        for (Point& point : points) point.greatest = std::max(point.greatest, point.impulse);
     }
 
-    void restitute(double threshold)
+    // An impact is a contact of its own that holds nothing yet: of the points that strike, seen in
+    // the middle of what gravity does.
+    void bounce(const PlainVisit& visit)
     {
-        const int visits = points.size() > 1 ? kBounceVisits : 1;
-        for (int visit = 0; visit < visits; ++visit)
-            for (Point& point : points) bounce(point, threshold);
+        PlainContact struck = *this;
+        const double falls = (b.inverse_mass > 0 ? 1 : 0) - (a.inverse_mass > 0 ? 1 : 0);
+        const Vec3 half = visit.fall * falls / 2;
+        struck.b.velocity += half;
+        struck.friction_impulse = struck.rolling_impulse = Vec3::Zero();
+        struck.twist_impulse = 0;
+        std::vector<std::size_t> strikes;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            Point& point = struck.points[k];
+            point.impulse = 0;
+            point.friction = Vec3::Zero();
+            const double speed = struck.speed_of(point);
+            const double then = separation_of(point) / visit.substep + speed + normal.dot(half);
+            if (restitution > 0 && speed < -visit.slow && then < 0 && mass_of(point) > 0)
+                strikes.push_back(k);
+        }
+        if (strikes.empty()) return;
+        struck.throw_back(strikes);
+        if (visit.grips) struck.hold(visit);
+        a = struck.a;
+        b = struck.b;
+        b.velocity -= half;
+        for (const Point& point : struck.points) impact_impulse += normal * point.impulse;
+        impact_impulse += struck.friction_impulse;
     }
 
     struct Point {
         Vec3 arm_a, arm_b, off = Vec3::Zero();
-        double separation = 0, impulse = 0, approach = 0, greatest = 0, bias = 0, leak = 0;
+        double separation = 0, impulse = 0, bias = 0, leak = 0;
+        bool left = false;  // to its impact
         Vec3 friction = Vec3::Zero();
     };
     PlainBody a, b;
     Vec3 normal;
     std::vector<Point> points;
     Vec3 center_a = Vec3::Zero(), center_b = Vec3::Zero();
-    Vec3 friction_impulse, held_uncut, rolling_impulse;
+    Vec3 friction_impulse, held_uncut, rolling_impulse, impact_impulse = Vec3::Zero();
     double twist_impulse;
     double held_by = 0, held_at = 0;  // load and its lever, by which friction went last
-
-    void bounce(Point& point, double threshold)
-    {
-        if (!(point.approach < -threshold) || point.greatest <= 0 || restitution <= 0) return;
-        const double before = point.impulse;
-        const double wanted =
-            before - mass_of(point) * (speed_of(point) + restitution * point.approach);
-        point.impulse = std::max(0.0, wanted);
-        apply((point.impulse - before) * normal, point.arm_a, point.arm_b);
-    }
 
     /// How far apart the surfaces are by now. Within a round side there is a core that turns with
     /// the body; the skin round it does not.
@@ -221,6 +236,8 @@ private:
         const double separation = separation_of(point);
         point.leak = 0;
         point.bias = separation > 0 ? separation / visit.substep : 0;
+        point.left =
+            visit.bounces && !visit.push && restitution > 0 && speed_of(point) < -visit.slow;
         if (separation > 0 || !visit.push) return;
         // Three points share a load: they may go three times as deep before they turn rigid.
         const double turns_rigid = deep * (overlapping >= 3 ? 3 : 1);
@@ -230,6 +247,7 @@ private:
     }
     void push(Point& point)
     {
+        if (point.left) return;
         const double before = point.impulse;
         const double change = -mass_of(point) * (1 - point.leak) * (speed_of(point) + point.bias)
             - point.leak * before;
@@ -245,7 +263,7 @@ private:
         Eigen::VectorXd right(count);
         for (Eigen::Index i = 0; i < count; ++i) {
             const Point& at = points[static_cast<std::size_t>(i)];
-            const double keep = mass_of(at) * (1 - at.leak);
+            const double keep = at.left ? 0 : mass_of(at) * (1 - at.leak);
             for (Eigen::Index k = 0; k < count; ++k)
                 system(i, k) = keep * answer_at(at, points[static_cast<std::size_t>(k)]);
             system(i, i) += std::max(at.leak, double{0.03f});
@@ -258,6 +276,24 @@ private:
             Point& at = points[static_cast<std::size_t>(i)];
             at.impulse += more[i];
             apply(more[i] * normal, at.arm_a, at.arm_b);
+        }
+    }
+    // Stops the points by sweeps; then as much of those impulses as leaves 1 - e2 of the energy
+    // that it took behind.
+    void throw_back(const std::vector<std::size_t>& strikes)
+    {
+        PlainContact stopped = *this;
+        for (int visit = 0; visit < kBounceVisits; ++visit)
+            for (const std::size_t k : strikes) stopped.push(stopped.points[k]);
+        double in = 0, change = 0;
+        for (const std::size_t k : strikes) {
+            const double came = speed_of(points[k]);
+            in -= stopped.points[k].impulse * came;
+            change += stopped.points[k].impulse * (stopped.speed_of(stopped.points[k]) - came);
+        }
+        for (const std::size_t k : strikes) {
+            points[k].impulse = stopped.points[k].impulse * (1 + restitution) * in / change;
+            apply(points[k].impulse * normal, points[k].arm_a, points[k].arm_b);
         }
     }
     // The normal speed that an impulse of one on a point gives at another.

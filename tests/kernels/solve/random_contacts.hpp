@@ -91,9 +91,10 @@ struct BlockCase {
         const auto visited = rows.grips.empty() ? kernels.sweep : kernels.sweep_grips;
         visited(view(), kPlace, kPlace + 1, visit);
     }
-    void restitute(const SolveKernels<Real>& kernels, Real threshold, const Visit<Real>& visit)
+    bool bounce(const SolveKernels<Real>& kernels, const Visit<Real>& visit)
     {
-        kernels.restitute(view(), kPlace, kPlace + 1, threshold, visit);
+        const auto struck = rows.grips.empty() ? kernels.bounce : kernels.bounce_grips;
+        return struck(view(), kPlace, kPlace + 1, visit);
     }
 };
 
@@ -109,7 +110,7 @@ void make_room(int points, const BlockWish& wish, BlockCase<Real>& made)
     const std::size_t all = kFirstPoint + static_cast<std::size_t>(points) + 2;
     poison(made.rows.blocks, kPlace + 2);
     poison(made.rows.points, all);
-    poison(made.rows.bounces, wish.bounces ? all : 0);
+    poison(made.rows.bounces, wish.bounces ? kPlace + 2 : 0);
     poison(made.rows.rollings, wish.rolls ? kPlace + 2 : 0);
     poison(made.rows.grips, wish.grips_apart() ? all : 0);
     made.block().points = points;

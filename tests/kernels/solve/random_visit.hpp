@@ -17,21 +17,23 @@ Visit<Real> random_visit(std::mt19937& random, const BlockWish& wish)
     visit.at_points = wish.at_points;
     visit.pyramid = wish.pyramid;
     visit.rolls = wish.rolls;
+    visit.slow = Real(0.5);
+    for (Real& number : visit.fall) number = static_cast<Real>(random_number(random, -0.05, 0.05));
     visit.normal_sweeps = 1 + static_cast<int>(random() % 3);
     return visit;
 }
 
-/// A substep's worth of visits: a warm start, one that pushes and one that relaxes in either order,
-/// and a bounce.
+/// A substep's worth of visits: impacts, a warm start, one that pushes and one that relaxes in
+/// either order.
 template <class Real>
 void run_all(const SolveKernels<Real>& kernels, BlockCase<Real>& made, const Visit<Real>& visit)
 {
+    if (!made.rows.bounces.empty()) made.bounce(kernels, visit);
     made.warm_start(kernels, visit);
     made.sweep(kernels, visit);
     Visit<Real> other = visit;
     other.push = !visit.push;
     made.sweep(kernels, other);
-    if (!made.rows.bounces.empty()) made.restitute(kernels, Real(0.5), visit);
 }
 
 }  // namespace throng::given

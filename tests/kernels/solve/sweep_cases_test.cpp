@@ -58,41 +58,82 @@ TEST(SweepCases, AVisitThatDoesNotPushStopsABallDead)
     }
 }
 
+template <class Real>
+Visit<Real> visit_of_impact()
+{
+    Visit<Real> visit = plain_visit<Real>();
+    visit.slow = Real(0.5);
+    return visit;
+}
+
 TEST(SweepCases, ABallLeavesWithItsShareOfTheSpeedItCameWith)
 {
     for (const double share : {0.25, 0.5, 1.0}) {
         BlockCase<double> made = falling_ball(3, share);
-        made.sweep(solve_kernels<double>(), plain_visit<double>());
-        made.restitute(solve_kernels<double>(), 0.5, plain_visit<double>());
+        EXPECT_TRUE(made.bounce(solve_kernels<double>(), visit_of_impact<double>()));
         EXPECT_NEAR(made.rows.bodies[1].motion[2], 3 * share, 1e-12);
+        EXPECT_NEAR(made.rows.bounces[given::kPlace].impulse[0].at[0], 2 * 3 * (1 + share), 1e-12);
     }
 }
 
-TEST(SweepCases, ABallThatCameSlowlyOrNeverTouchedDoesNotBounce)
+TEST(SweepCases, ABallThatComesSlowlyOrDoesNotTouchYetDoesNotBounce)
 {
     const auto& kernels = solve_kernels<double>();
     BlockCase<double> slow = falling_ball(0.4, 1);
-    slow.sweep(kernels, plain_visit<double>());
-    slow.restitute(kernels, 0.5, plain_visit<double>());
-    EXPECT_NEAR(slow.rows.bodies[1].motion[2], 0, 1e-13);
+    EXPECT_FALSE(slow.bounce(kernels, visit_of_impact<double>()));
+    EXPECT_EQ(slow.rows.bodies[1].motion[2], -0.4);
     BlockCase<double> far = falling_ball(3, 1);
-    far.point(0).gap.at[0] += 1;
-    far.sweep(kernels, plain_visit<double>());
-    far.restitute(kernels, 0.5, plain_visit<double>());
-    EXPECT_EQ(far.rows.bodies[1].motion[2], -3);
+    for (const double substeps : {1.01, 0.99}) {
+        far.point(0).gap.at[0] = substeps * 3 / 240;
+        EXPECT_EQ(far.bounce(kernels, visit_of_impact<double>()), substeps < 1);
+        EXPECT_NEAR(far.rows.bodies[1].motion[2], substeps < 1 ? 3 : -3, 1e-12);
+    }
 }
 
-TEST(SweepCases, ATouchInAnEarlierVisitIsEnoughToBounce)
+TEST(SweepCases, WhatFallsRisesAgainAsHigh)
+{
+    // As fast as it was in the middle of a substep before, whatever gravity adds in one.
+    BlockCase<double> made = falling_ball(3, 1);
+    Visit<double> visit = visit_of_impact<double>();
+    visit.fall[2] = -0.04;
+    made.bounce(solve_kernels<double>(), visit);
+    EXPECT_NEAR(made.rows.bodies[1].motion[2] - 0.02, 3 + 0.02, 1e-12);
+}
+
+TEST(SweepCases, WhatContactsGaveIsNotTakenForAnImpact)
 {
     BlockCase<double> made = falling_ball(3, 1);
-    made.sweep(solve_kernels<double>(), plain_visit<double>());
-    // By the last visit it is on its way already.
-    made.rows.bodies[1].motion[2] = 1;
-    made.sweep(solve_kernels<double>(), plain_visit<double>());
-    EXPECT_GT(made.rows.bounces[given::kFirstPoint].greatest.at[0], 5);
-    EXPECT_LT(made.point(0).impulse.at[0], 5);
-    made.restitute(solve_kernels<double>(), 0.5, plain_visit<double>());
-    EXPECT_NEAR(made.rows.bodies[1].motion[2], 3, 1e-12);
+    const SolverBody<double> before = made.rows.bodies[1];
+    made.bounce(solve_kernels<double>(), visit_of_impact<double>());
+    const SolverBody<double>& after = made.rows.bodies[1];
+    for (int k = 0; k < 8; ++k)
+        EXPECT_NEAR(after.motion[k] - after.free[k], before.motion[k] - before.free[k], 1e-12);
+}
+
+TEST(SweepCases, OnlyPushingStopsWhatIsAboutToBounce)
+{
+    for (const bool push : {false, true}) {
+        BlockCase<double> made = falling_ball(3, 1);
+        Visit<double> visit = visit_of_impact<double>();
+        visit.push = push;
+        made.sweep(solve_kernels<double>(), visit);
+        EXPECT_NEAR(made.rows.bodies[1].motion[2], push ? 0 : -3, 0.02);
+    }
+}
+
+TEST(SweepCases, AnImpactRubsByAllThatItLoads)
+{
+    // Friction 0.5: of a ball of 2 kg and 0.2 kg m2, that grips once 3.5 of the speed are lost.
+    for (const double share : {0.2, 0.8})
+        for (const double slides : {1.0, 20.0}) {
+            BlockCase<double> made = falling_ball(3, share);
+            made.rows.bodies[1].motion[0] = slides;
+            made.bounce(solve_kernels<double>(), visit_of_impact<double>());
+            const double most = 0.5 * (1 + share) * 3;
+            const double answer = 1.0 / 2 + 5 * 0.1 * 0.1;  // 1/kg
+            const double grips = slides / (answer * 2);
+            EXPECT_NEAR(made.rows.bodies[1].motion[0], slides - std::min(most, grips), 1e-12);
+        }
 }
 
 // A ball that has rolled half a turn lies as deep as it did; a box that tips does not.
