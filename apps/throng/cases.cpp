@@ -156,10 +156,12 @@ int run_cases(const Options& options)
         failed += result.verdict == Verdict::fail ? 1 : 0;
         skipped += result.verdict == Verdict::skipped ? 1 : 0;
     };
+    // Nobody reads on: there is nothing left to run for.
+    const auto ended = [&] { return interrupted() || (!std::cout && !json.asked_for()); };
     for (const HardCase* one : cases) {
         run_case(*one, settings, Fault::none, threads_asked(options), Extent::whole,
-                 {take_line, interrupted});
-        if (interrupted()) break;
+                 {take_line, ended});
+        if (ended()) break;
     }
     if (json.asked_for()) {
         json.stream() << "[\n" << lines << "\n]\n";

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <iostream>
 #include <new>
+#include <poll.h>
+#include <unistd.h>
 
 namespace throng {
 namespace {
@@ -34,6 +36,12 @@ void print_help(std::ostream& out)
            "  2    bad input or usage, or an output that cannot be written\n"
            "  3    a fault of throng\n"
            "  130  interrupted (files are closed and readable)\n";
+}
+
+void print_help_of(const Command& command)
+{
+    print_usage(command.usage, std::cout);
+    if (command.more_help != nullptr) command.more_help(std::cout);
 }
 
 const Command& find_command(std::string_view name)
@@ -67,8 +75,12 @@ int run_command(std::span<const std::string_view> arguments)
         return kBadInput;
     }
     const std::string_view first = arguments.front();
-    if (first == "--help" || first == "-h") {
-        print_help(std::cout);
+    if (first == "--help" || first == "-h" || first == "help") {
+        const bool of_command = first == "help" && arguments.size() > 1;
+        if (of_command)
+            print_help_of(find_command(arguments[1]));
+        else
+            print_help(std::cout);
         return kDone;
     }
     if (first == "--version") {
@@ -81,9 +93,15 @@ int run_command(std::span<const std::string_view> arguments)
         check_environment();
         return command.run(options);
     }
-    print_usage(command.usage, std::cout);
-    if (command.more_help != nullptr) command.more_help(std::cout);
+    print_help_of(command);
     return kDone;
+}
+
+// Of a pipe that standard output goes to: `throng cases | head` is no error.
+bool reader_left()
+{
+    struct pollfd out = {STDOUT_FILENO, POLLOUT, 0};
+    return ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
 }
 
 int complain(std::string_view what, int code)
@@ -129,9 +147,8 @@ int main(int count, char** words)
     } catch (...) {
         code = explain_exception();
     }
-    errno = 0;
     std::cout.flush();
-    if (!std::cout && code == kDone && errno != EPIPE)
+    if (!std::cout && code == kDone && !reader_left())
         code = complain("error: standard output: cannot be written", kBadInput);
     return code;
 }

@@ -35,7 +35,7 @@ bool create(const std::string& path)
 }  // namespace
 
 OutputFile::OutputFile(std::string_view option, std::string_view path)
-    : option_(option), path_(path), growing_(path)
+    : option_(option), path_(path == "-" ? "/dev/stdout" : path), growing_(path_)
 {
     if (path.empty()) return;
     const auto refuse = [&](const std::string& why) {

@@ -36,7 +36,7 @@ constexpr Option kOptions[] = {
      "256 MB before compression)"},
     kTraceOption,
     kTraceStepsOption,
-    {"--quiet", "", "no progress, warnings or summary"},
+    {"--quiet", "", "no progress, warnings or summary; --stats has the warnings all the same"},
 };
 
 /// Steps between frames that keep a run moderate: what a screen can show, on a disk that holds it.
@@ -130,15 +130,15 @@ StepTimes run_steps(World& world,
 
 // A hundredth of the greatest motion is more than soft contacts give back as they push bodies out
 // of what they sank into one another.
-void warn_of_energy(const EnergyLedger& ledger)
+std::string energy_warning(const EnergyLedger& ledger)
 {
     const double greatest = ledger.greatest_kinetic();
-    if (!(ledger.gained() > 0.01 * greatest)) return;
-    std::cerr << "warning: energy grew by " << number_text(ledger.gained())
-              << " J without a source from step " << ledger.from_step() << " to "
-              << ledger.to_step() << ", beside a kinetic energy of " << number_text(greatest)
-              << " J at most; a shorter dt or more substeps help, and bodies that do not begin "
-                 "inside one another\n";
+    if (!(ledger.gained() > 0.01 * greatest)) return {};
+    return "energy grew by " + number_text(ledger.gained()) + " J without a source from step "
+        + std::to_string(ledger.from_step()) + " to " + std::to_string(ledger.to_step())
+        + ", beside a kinetic energy of " + number_text(greatest)
+        + " J at most; a shorter dt or more substeps help, and bodies that do not begin inside "
+          "one another";
 }
 
 void name_quarantined(const World& world)
@@ -191,7 +191,8 @@ int run(const Options& options)
     const std::int64_t every =
         every_asked > 0 ? every_asked : standard_every(steps, world.body_count());
     std::optional<EnergyLedger> ledger;
-    if (stats_file.asked_for()) ledger.emplace();
+    // Who sees neither stats nor warnings spends nothing on them.
+    if (stats_file.asked_for() || !quiet) ledger.emplace();
     StepTimes times = [&] {
         try {
             Frames frames(run_file, argument, world, every);
@@ -204,9 +205,12 @@ int run(const Options& options)
     RunStats stats = collect_stats(world, std::move(times));
     stats.scene = argument.label;
     stats.seed = argument.seed;
+    stats.warnings = world.remarks();
     if (ledger) {
         stats.energy = *ledger;
-        if (!quiet) warn_of_energy(*ledger);
+        const std::string warning = energy_warning(*ledger);
+        if (!quiet && !warning.empty()) std::cerr << "warning: " << warning << '\n';
+        if (!warning.empty()) stats.warnings.push_back(warning);
     }
     if (stats_file.asked_for()) write_stats_json(stats, stats_file.stream());
     if (final_file.asked_for()) write_final_csv(world, final_file.stream());

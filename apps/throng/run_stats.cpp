@@ -122,6 +122,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
              '[' + std::to_string(stats.energy.from_step()) + ", "
                  + std::to_string(stats.energy.to_step()) + ']');
     json.add("greatest_kinetic_energy_j", stats.energy.greatest_kinetic());
+    json.add("warnings", '[' + joined(stats.warnings, ", ", json_string) + ']');
     json.add("momentum", vector_json(stats.measures.momentum));
     json.add("angular_momentum", vector_json(stats.measures.angular_momentum));
     json.add("bodies_awake", std::uint64_t{stats.last.bodies_awake});

@@ -21,6 +21,7 @@ struct RunStats {
     StepReport last;
     Measures measures;
     EnergyLedger energy;
+    std::vector<std::string> warnings;  // of what bodies lost as they were made, and of energy
     std::string state_hash;
     double peak_rss_mb = 0;
 

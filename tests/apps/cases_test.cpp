@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <set>
 #include <thread>
 
@@ -14,6 +15,16 @@ namespace throng {
 namespace {
 
 using Node = JsonDocument::Node;
+
+// As a shell has it: `throng cases H1 | head -1`.
+TEST(Cases, EndQuietlyWhenNobodyReadsOn)
+{
+    const TestFolder folder;
+    const std::string command = std::string("'" THRONG_COMMAND "' cases H1 2>'") + folder / "err"
+        + "' | head -1 >/dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0);  // NOLINT(concurrency-mt-unsafe)
+    EXPECT_EQ(folder.read("err"), "");
+}
 
 TEST(Cases, MethodsAreSummedUpCaseByCase)
 {

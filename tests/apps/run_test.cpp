@@ -87,6 +87,38 @@ std::vector<double> numbers_of(const std::string& line)
     return numbers;
 }
 
+TEST(Run, StatsGoToStandardOutputByADash)
+{
+    const Outcome outcome =
+        run_throng({"run", "pile:20", "--steps", "2", "--quiet", "--stats", "-"});
+    EXPECT_EQ(outcome.code, 0);
+    const JsonDocument stats(outcome.out, "stats");
+    EXPECT_EQ(stats.number(stats.find(JsonDocument::kRoot, "steps")), 2);
+}
+
+// A spring that the step cannot follow, by a textbook method that gains.
+TEST(Run, WarnsOfEnergyWithoutStatsAndTellsItInQuietOnes)
+{
+    const TestFolder folder;
+    const std::string scene =
+        folder.write("spring.json",
+                     R"({"throng": 1, "gravity": [0, 0, 0], "settings": {"integrator": "euler"},
+            "bodies": [{"name": "a", "shape": null, "mass": 1, "inertia": [1, 1, 1, 0, 0, 0],
+                        "position": [1, 0, 0]}],
+            "springs": [{"a": "a", "b": null, "stiffness": 400}]})");
+    const Names words = {"run", scene, "--steps", "200"};
+    EXPECT_NE(run_throng(words).err.find("warning: energy grew by"), std::string::npos);
+    Names quiet = words;
+    for (const char* word : {"--quiet", "--stats", "-"}) quiet.emplace_back(word);
+    const Outcome outcome = run_throng(quiet);
+    EXPECT_EQ(outcome.err.find("energy"), std::string::npos);
+    const JsonDocument stats(outcome.out, "stats");
+    const auto warnings = stats.find(JsonDocument::kRoot, "warnings");
+    ASSERT_EQ(stats.size(warnings), 2u);  // the other one is of the spring
+    const auto last = stats.next(stats.first(warnings));
+    EXPECT_EQ(stats.text(last).find("energy grew by"), 0u);
+}
+
 TEST(RunFinal, ReadsBackToTheSameBits)
 {
     const TestFolder folder;

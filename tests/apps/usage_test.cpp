@@ -32,6 +32,17 @@ TEST(Usage, RunHelpListsTheDials)
         EXPECT_NE(help.out.find(name), std::string::npos) << name;
 }
 
+TEST(Usage, HelpIsACommandToo)
+{
+    EXPECT_EQ(run_throng({"help"}).out, run_throng({"--help"}).out);
+    for (const char* name : {"run", "cases", "scene"}) {
+        const Outcome help = run_throng({"help", name});
+        EXPECT_EQ(help.code, 0);
+        EXPECT_EQ(help.out, run_throng({name, "--help"}).out);
+    }
+    EXPECT_EQ(run_throng({"help", "runn"}).code, 2);
+}
+
 TEST(Usage, HelpForgivesTheRest)
 {
     EXPECT_EQ(run_throng({"run", "--steps", "x", "--help"}).code, 0);
