@@ -85,6 +85,7 @@ constexpr HardCase kCases[] = {
     {"H47", "bodies made inside one another part slowly, and come to rest", case_recovery,
      Fault::float_poses},
     {"H48", "a tower stands without a touch, and what that costs", case_no_overlap, Fault::overlap},
+    {"H74", "thin bodies that tip over win no energy", case_thin_falls, Fault::float_poses},
     {"H75", "slender bars that only turn are stopped by what they swing down on", case_slender_bars,
      Fault::float_poses},
     {"H80", "hulls with finely rounded rims come to rest, and sink into nothing", case_round_rims,

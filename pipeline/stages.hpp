@@ -165,6 +165,7 @@ void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
 
 /// Bodies that go so far in a step that they could pass through something: held where they first
 /// meet it, for the contacts of the next step.
+template <class Real>
 void sweep_fast(const Conditions&,
                 const Shapes&,
                 const Colliders&,
@@ -173,6 +174,8 @@ void sweep_fast(const Conditions&,
                 const Pairs&,
                 const BodyStates&,
                 const Rest&,
+                const ConvexContacts<Real>&,
+                const MeshContacts<Real>&,
                 Poses&,
                 Velocities&,
                 FastBodies&);

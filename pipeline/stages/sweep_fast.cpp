@@ -20,6 +20,7 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <span>
 
 namespace throng {
 
@@ -46,6 +47,7 @@ struct Candidate {
     double time = kNever;        // of their next impact
     Vec3 normal = Vec3::Zero();  // from a to b then
     bool pressed = false;        // they touched before, and contact has not held them
+    bool followed = false;       // contacts were looked for ahead of them
 };
 
 // The way of a body from some time on: that of another it has come to ride on, or its own.
@@ -68,11 +70,14 @@ public:
               const Bounds& bounds,
               const Pairs& pairs,
               const BodyStates& states,
+              std::span<const std::uint32_t> followed,
+              std::span<const std::uint32_t> on_meshes,
               Poses& poses,
               Velocities& velocities,
               FastBodies& fast)
-        : settings_(conditions.settings), shapes_(shapes), colliders_(colliders), filter_(filter),
-          bounds_(bounds), pairs_(pairs), states_(states), poses_(poses), velocities_(velocities),
+        : settings_(conditions.settings), gravity_(conditions.gravity), shapes_(shapes),
+          colliders_(colliders), filter_(filter), bounds_(bounds), pairs_(pairs), states_(states),
+          followed_(followed), on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
           fast_(fast)
     { }
 
@@ -110,9 +115,10 @@ private:
         if (colliders_.count[body] != 1) return false;
         const std::uint32_t at = colliders_.begin[body];
         const double inner = colliders_.inner_extent[at], dt = settings_.dt;
+        const double turned = velocities_.angular[body].squaredNorm() * dt * dt;
         return bounds_.reach[at] <= kHurriedReach * inner
             && 4 * velocities_.linear[body].squaredNorm() * dt * dt <= inner * inner
-            && velocities_.angular[body].squaredNorm() * dt * dt <= kSmallTurn * kSmallTurn;
+            && turned <= kSmallTurn * kSmallTurn && !strays(colliders_, at, turned);
     }
 
     // Round all of a collider's way.
@@ -138,15 +144,18 @@ private:
     {
         if (colliders_.count[body] == 0 || states_.kind[body] == BodyKind::gone) return false;
         if (surely_slow(body)) return false;
-        const Vec3 way = poses_.position[body] - began(body).position;
-        const double length = way.norm();
+        const Pose before = began(body);
+        const double length = (poses_.position[body] - before.position).norm();
         const double angle = velocities_.angular[body].norm() * settings_.dt;
-        if (!(length > 0 || angle > 0) || !std::isfinite(length)) return false;
+        // What it turned by, where it has been stopped since.
+        const Vec3 half_turn = (before.orientation.conjugate() * poses_.orientation[body]).vec();
+        const double square = std::max(angle * angle, 4 * half_turn.squaredNorm());
+        if (!(length > 0 || square > 0) || !std::isfinite(length)) return false;
         for (std::uint32_t k = 0; k < colliders_.count[body]; ++k) {
             const std::uint32_t at = colliders_.begin[body] + k;
             const double inner = colliders_.inner_extent[at];
             const double turning = inner > 0 ? way_of_turning(colliders_, at, angle) : 0;
-            if (length + turning > inner) return true;
+            if (length + turning > inner || strays(colliders_, at, square)) return true;
         }
         return false;
     }
@@ -188,6 +197,12 @@ private:
         return true;
     }
 
+    bool on_mesh(PairKey key) const
+    {
+        return colliders_.shape[first_of(key)].kind == ShapeKind::mesh
+            || colliders_.shape[second_of(key)].kind == ShapeKind::mesh;
+    }
+
     bool ways_cross(PairKey key) const
     {
         const std::uint32_t a = first_of(key), b = second_of(key);
@@ -205,7 +220,11 @@ private:
         for_each_block(pairs_.keys.size(), kKeys, [&](auto begin, auto end, auto block) {
             for (std::size_t i = begin; i < end; ++i) {
                 const PairKey key = pairs_.keys[i];
-                if (worth_asking(key) && ways_cross(key)) lists[block].push_back({key});
+                if (!worth_asking(key) || !ways_cross(key)) continue;
+                Candidate& found = lists[block].emplace_back();
+                found.key = key;
+                const auto list = on_mesh(key) ? on_meshes_ : followed_;
+                found.followed = std::binary_search(list.begin(), list.end(), i);
             }
         });
         lists.append_to(candidates_);
@@ -214,7 +233,7 @@ private:
                 look_beyond_box(colliders_.begin[body] + k);
         const auto less = [](const Candidate& a, const Candidate& b) { return a.key < b.key; };
         const auto same = [](const Candidate& a, const Candidate& b) { return a.key == b.key; };
-        std::sort(candidates_.begin(), candidates_.end(), less);
+        std::stable_sort(candidates_.begin(), candidates_.end(), less);
         candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), same),
                           candidates_.end());
     }
@@ -304,7 +323,7 @@ private:
         const ImpactRule rule = impact_rule(
             settings_.toi_method, settings_.toi_tolerance * impact_size(shapes_, shape_a, shape_b));
         const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
-        const bool ahead = way_a.ahead || way_b.ahead;
+        const bool ahead = (way_a.ahead || way_b.ahead) && !candidate.followed;
         Impact impact;
         if (ahead) impact = impact_time(shapes_, moving(a), moving(b), since, 1, rule);
         candidate.pressed = impact.meeting == Meeting::at_start;
@@ -420,6 +439,16 @@ private:
             [&](std::uint32_t way, std::uint32_t i) { in_way_.candidates[next[way]++] = i; });
     }
 
+    // Where a body is held it has the speed that it has there, not what it would have got by
+    // falling on: each time it would be higher for nothing.
+    void take_back_fall(std::uint32_t body, const Vec3& held_by)
+    {
+        Vec3& velocity = velocities_.linear[body];
+        const double square = velocity.squaredNorm();
+        const double left = square + 2 * gravity_.dot(held_by);
+        if (square > 0 && left < square) velocity *= std::sqrt(std::max(left, 0.0) / square);
+    }
+
     // The earliest impact, what it changes, and again. Of those at one time the first goes first.
     void hold_all()
     {
@@ -454,6 +483,8 @@ private:
         for (const Way& way : ways_) {
             if (!way.held) continue;
             const Pose end = pose_on(way, 1);
+            if (way.rides == kNobody)
+                take_back_fall(way.body, end.position - poses_.position[way.body]);
             poses_.position[way.body] = end.position;
             poses_.orientation[way.body] = end.orientation.normalized();
             fast_.held.push_back(way.body);
@@ -461,12 +492,15 @@ private:
     }
 
     const Settings& settings_;
+    const Vec3 gravity_;
     const Shapes& shapes_;
     const Colliders& colliders_;
     const PairFilter& filter_;
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;
+    // Pairs whose contacts saw ahead, ascending.
+    std::span<const std::uint32_t> followed_, on_meshes_;
     Poses& poses_;
     Velocities& velocities_;
     FastBodies& fast_;
@@ -482,6 +516,7 @@ private:
 
 }  // namespace
 
+template <class Real>
 void sweep_fast(const Conditions& conditions,
                 const Shapes& shapes,
                 const Colliders& colliders,
@@ -490,14 +525,26 @@ void sweep_fast(const Conditions& conditions,
                 const Pairs& pairs,
                 const BodyStates& states,
                 const Rest& rest,
+                const ConvexContacts<Real>& contacts,
+                const MeshContacts<Real>& on_meshes,
                 Poses& poses,
                 Velocities& velocities,
                 FastBodies& fast)
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, poses, velocities, fast)
+    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, contacts.followed,
+              on_meshes.followed, poses, velocities, fast)
         .run(rest.awoken);
 }
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void sweep_fast<Real>(const Conditions&, const Shapes&, const Colliders&,             \
+                                   const PairFilter&, const Bounds&, const Pairs&,                 \
+                                   const BodyStates&, const Rest&, const ConvexContacts<Real>&,    \
+                                   const MeshContacts<Real>&, Poses&, Velocities&, FastBodies&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
 
 }  // namespace throng
