@@ -87,6 +87,7 @@ constexpr HardCase kCases[] = {
     {"H48", "a tower stands without a touch, and what that costs", case_no_overlap, Fault::overlap},
     {"H71", "heaps of sticks, plates and slivers fall, and make no energy", case_sticks,
      Fault::haste},
+    {"H74", "thin bodies that tip over win no energy", case_thin_falls, Fault::float_poses},
     {"H75", "slender bars that only turn are stopped by what they swing down on", case_slender_bars,
      Fault::float_poses},
     {"H80", "hulls with finely rounded rims come to rest, and sink into nothing", case_round_rims,

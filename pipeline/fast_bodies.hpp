@@ -38,6 +38,18 @@ inline double way_of_turning(const Colliders& colliders, std::size_t at, double 
     return angle > kSmallTurn ? std::min(angle, 2.0) * outer : 0;
 }
 
+/// A body that turns strays from the straight ways that contacts take its points for by half of
+/// outer_radius * angle^2 at most. From this share of its smallest half extent on what is slender
+/// may be found deeper than contacts saw, and with more beyond what it met.
+inline constexpr double kStrayed = 0.25;
+
+/// Whether turning by an angle, of which the square is told, takes a collider as far astray.
+inline bool strays(const Colliders& colliders, std::size_t at, double square)
+{
+    const double inner = colliders.inner_extent[at], outer = colliders.outer_radius[at];
+    return inner > 0 && outer > inner && outer * square > 2 * kStrayed * inner;
+}
+
 /// Whether a body is hurried, of those that have colliders.
 ///
 ///   falls   m, what gravity may add to its way in a step
@@ -56,6 +68,7 @@ inline bool hurries(const Colliders& colliders,
         const double turning = inner > 0 ? way_of_turning(colliders, at, angle) : 0;
         const double rest = std::max(kRestingReach * inner, falls);
         if (rest + way + turning > kHurriedReach * inner && way + turning + falls > 0) return true;
+        if (strays(colliders, at, angle * angle)) return true;
     }
     return false;
 }

@@ -177,6 +177,7 @@ void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
 
 /// Bodies that go so far in a step that they could pass through something: held where they first
 /// meet it, for the contacts of the next step.
+template <class Real>
 void sweep_fast(const Conditions&,
                 const Shapes&,
                 const Colliders&,
@@ -187,6 +188,8 @@ void sweep_fast(const Conditions&,
                 const BodyStates&,
                 const Masses&,
                 const Rest&,
+                const ConvexContacts<Real>&,
+                const MeshContacts<Real>&,
                 Poses&,
                 Velocities&,
                 FastBodies&);

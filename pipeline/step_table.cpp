@@ -29,7 +29,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, carry_groups>         ("subdivide",         {little_overlap}),
     stage<Real, integrate_poses>      ("integrate_poses",   {motion}),
     stage<Real, quarantine_bodies>    ("quarantine_bodies", {motion}),
-    stage<Real, sweep_fast>           ("sweep_fast",        {fast_motion}),
+    stage<Real, sweep_fast<Real>>     ("sweep_fast",        {fast_motion}),
     stage<Real, rest_islands>         ("rest_islands",      {sleeping}),
 };
 // clang-format on

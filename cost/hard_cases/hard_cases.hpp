@@ -75,6 +75,7 @@ void case_solid_heap(CaseBench& bench);    // H44, solid_heap.cpp
 void case_convergence(CaseBench& bench);   // H45, convergence.cpp
 
 // Scenes a step beside those above: docs/accuracy.md.
+void case_thin_falls(CaseBench& bench);    // H74, thin_falls.cpp
 void case_slender_bars(CaseBench& bench);  // H75, slender_bars.cpp
 void case_round_rims(CaseBench& bench);    // H80, round_rims.cpp
 // Bodies on floors of many pieces.

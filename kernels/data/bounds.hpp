@@ -73,6 +73,8 @@ struct NearBox {
 ///   stretch   how many times further than usual margins look ahead: see stretch_for()
 ///   fast      bodies that a later stage stops where they meet something, ascending: contacts are
 ///             looked for no further from them than from bodies at rest
+///   kept      [colliders] m, of those of fast bodies, else 0: how far contacts that they have
+///             already are looked for; empty where nobody is ever stopped
 ///   hurried   the first body that may go about half its smallest half extent in this step, or more
 ///   flags     [colliders] scratch, all 0 between stages
 struct Bounds {
@@ -87,6 +89,7 @@ struct Bounds {
     std::vector<std::uint8_t> form;
     double stretch = 1;
     std::vector<std::uint32_t> fast;
+    std::vector<double> kept;
     static constexpr std::uint32_t kNone = 0xffffffffu;
     std::uint32_t hurried = kNone;
     std::vector<std::uint8_t> flags;

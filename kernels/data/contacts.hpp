@@ -115,6 +115,10 @@ struct ConvexContacts {
     std::vector<float> apart_until;  // [pairs] m, no contact before their approaches come to this
     Travels travels;
 
+    // Pairs that were looked at further than fast bodies are, as they touched already; ascending.
+    std::vector<std::uint32_t> followed;
+    BlockLists<std::uint32_t> followed_of_block;  // scratch
+
     /// The contact of a pair, or none.
     const Contact<Real>* at(std::size_t pair) const
     {
@@ -140,7 +144,11 @@ struct ManyContacts {
 
 /// Contacts of convex colliders with meshes; a part is a triangle.
 template <class Real>
-struct MeshContacts : ManyContacts<Real> { };
+struct MeshContacts : ManyContacts<Real> {
+    // As of ConvexContacts.
+    std::vector<std::uint32_t> followed;
+    BlockLists<std::uint32_t> followed_of_block;  // scratch
+};
 
 /// Contacts of solids with whatever there is; a part is a patch of the two surfaces.
 template <class Real>

@@ -6,6 +6,7 @@
 #include "narrowphase/narrowphase.hpp"
 #include "pipeline/stages.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace throng {
@@ -37,6 +38,15 @@ inline Vec3 between_centers(std::uint32_t first,
     if (from != to) return to - from;
     const double least = std::min(colliders.inner_extent[first], colliders.inner_extent[second]);
     return kHair * least * (spot_of(second) - spot_of(first));
+}
+
+/// How far a pair that touched in the last step is looked at, m. A fast body looks for no contacts
+/// ahead, but for those with what it slides on: it would lose that to a breath, and fall into it,
+/// at every other step.
+inline double kept_reach(const PairPlace& pair, const Bounds& bounds)
+{
+    return std::max(bounds.reach[pair.a], bounds.kept[pair.a])
+        + std::max(bounds.reach[pair.b], bounds.kept[pair.b]);
 }
 
 /// The pose of a pair's second shape as its first sees it; the two are told apart like that.

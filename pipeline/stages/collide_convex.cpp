@@ -62,7 +62,7 @@ public:
             if (k + kFar < count) ask_for(pairs_.keys[near[k + kFar]]);
             const std::uint32_t i = near[k];
             PairPlace pair = place_of(pairs_.keys[i], colliders_, bounds_);
-            if (!bounds_.fast.empty()) keep_touching(i, pair);
+            if (!bounds_.fast.empty()) keep_touching(i, pair, block);
             if (wants_contact(pair, states_))
                 collide_one(i, pair, boxes, block);
             else if (const std::uint32_t place = contacts_.of_pair[i].contact;
@@ -93,16 +93,13 @@ private:
         __builtin_prefetch(&colliders_.body[b]);
     }
 
-    // A fast body looks for no contacts ahead, but what it slides on it goes on touching: it would
-    // lose that to a breath, and fall into it, at every other step.
-    void keep_touching(std::size_t i, PairPlace& pair) const
+    void keep_touching(std::size_t i, PairPlace& pair, std::size_t block) const
     {
         if (contacts_.of_pair[i].contact == PairState::kApart) return;
-        double rest = 0;
-        for (const std::uint32_t at : {pair.a, pair.b})
-            if (colliders_.shape[at].kind != ShapeKind::plane)
-                rest += kRestingReach * colliders_.inner_extent[at];
-        pair.reach = std::max(pair.reach, rest);
+        const double kept = kept_reach(pair, bounds_);
+        if (!(kept > pair.reach)) return;
+        pair.reach = kept;
+        contacts_.followed_of_block[block].push_back(static_cast<std::uint32_t>(i));
     }
 
     void part(std::size_t i, std::size_t block)
@@ -307,6 +304,7 @@ void collide_convex(const Conditions& conditions,
     const std::size_t blocks = block_count(pairs.keys.size(), kGrain);
     contacts.begun.resize(blocks);
     contacts.parted.start(blocks);
+    contacts.followed_of_block.start(bounds.fast.empty() ? 0 : blocks);
     ChosenMethod chosen(conditions, pairs, shapes, colliders, bounds, blocks, method_pairs);
     const bool recycles = !shapes.hulls.empty() && !chosen.has_method();
     if (recycles && !contacts.recycles) forget_found(contacts);
@@ -321,6 +319,8 @@ void collide_convex(const Conditions& conditions,
                                        chosen, contacts)
                            .look_at(begin, end, block);
                    });
+    contacts.followed.clear();
+    contacts.followed_of_block.append_to(contacts.followed);
     chosen.count_fallbacks();
     move_in_and_out(contacts);
     put_in_order(contacts);

@@ -22,17 +22,23 @@ void collide_meshes(const Conditions& conditions,
                     MeshContacts<Real>& contacts)
 {
     const Real scale = static_cast<Real>(impulse_scale(conditions));
-    const auto find = [&](std::uint32_t, const PairPlace& pair, const auto& old, std::size_t,
-                          ContactEntries<Real>& out) {
+    contacts.followed_of_block.start(block_count(pairs.on_mesh.size(), kGrain));
+    const auto find = [&](std::uint32_t i, const PairPlace& pair, const auto& old,
+                          std::size_t block, ContactEntries<Real>& out) {
         static thread_local std::vector<TriangleManifold<Real>> found;
         const bool mesh_first = colliders.shape[pair.a].kind == ShapeKind::mesh;
         const std::uint32_t mesh = mesh_first ? pair.a : pair.b;
         const std::uint32_t other = mesh_first ? pair.b : pair.a;
         found.clear();
+        double reach = pair.reach;
+        if (!bounds.fast.empty() && !old.empty()) {
+            reach = kept_reach(pair, bounds);
+            if (reach > pair.reach) contacts.followed_of_block[block].push_back(i);
+        }
         collide_mesh(shapes, colliders.shape[mesh], colliders.shape[other],
                      rounded<Real>(pose_seen_from_a(shapes, colliders.shape[other],
                                                     bounds.placed[mesh], bounds.placed[other])),
-                     static_cast<Real>(pair.reach), found);
+                     static_cast<Real>(reach), found);
         for (const TriangleManifold<Real>& touch : found) {
             auto& entry = out.emplace_back();
             entry.part = touch.triangle;
@@ -51,6 +57,8 @@ void collide_meshes(const Conditions& conditions,
     };
     refresh_contacts<Real>(conditions, pairs, pairs.on_mesh, colliders, bounds, states, kGrain,
                            contacts, find);
+    contacts.followed.clear();
+    contacts.followed_of_block.append_to(contacts.followed);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \

@@ -20,6 +20,7 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <span>
 
 namespace throng {
 
@@ -50,6 +51,7 @@ struct Candidate {
     double time = kNever;        // of their next impact
     Vec3 normal = Vec3::Zero();  // from a to b then
     bool pressed = false;        // they touched before, and contact has not held them
+    bool followed = false;       // contacts were looked for ahead of them
 };
 
 // The way of a body from some time on: that of another it has come to ride on, or its own.
@@ -75,12 +77,15 @@ public:
               const Pairs& pairs,
               const BodyStates& states,
               const Masses& masses,
+              std::span<const std::uint32_t> followed,
+              std::span<const std::uint32_t> on_meshes,
               Poses& poses,
               Velocities& velocities,
               FastBodies& fast)
         : settings_(conditions.settings), gravity_(conditions.gravity), shapes_(shapes),
           colliders_(colliders), surfaces_(surfaces), filter_(filter), bounds_(bounds),
-          pairs_(pairs), states_(states), masses_(masses), poses_(poses), velocities_(velocities),
+          pairs_(pairs), states_(states), masses_(masses), followed_(followed),
+          on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
           fast_(fast)
     { }
 
@@ -122,9 +127,10 @@ private:
         if (colliders_.count[body] != 1) return false;
         const std::uint32_t at = colliders_.begin[body];
         const double inner = colliders_.inner_extent[at], dt = settings_.dt;
+        const double turned = velocities_.angular[body].squaredNorm() * dt * dt;
         return bounds_.reach[at] <= kHurriedReach * inner
             && 4 * velocities_.linear[body].squaredNorm() * dt * dt <= inner * inner
-            && velocities_.angular[body].squaredNorm() * dt * dt <= kSmallTurn * kSmallTurn;
+            && turned <= kSmallTurn * kSmallTurn && !strays(colliders_, at, turned);
     }
 
     // Round all of a collider's way.
@@ -150,15 +156,18 @@ private:
     {
         if (colliders_.count[body] == 0 || states_.kind[body] == BodyKind::gone) return false;
         if (surely_slow(body)) return false;
-        const Vec3 way = poses_.position[body] - began(body).position;
-        const double length = way.norm();
+        const Pose before = began(body);
+        const double length = (poses_.position[body] - before.position).norm();
         const double angle = velocities_.angular[body].norm() * settings_.dt;
-        if (!(length > 0 || angle > 0) || !std::isfinite(length)) return false;
+        // What it turned by, where it has been stopped since.
+        const Vec3 half_turn = (before.orientation.conjugate() * poses_.orientation[body]).vec();
+        const double square = std::max(angle * angle, 4 * half_turn.squaredNorm());
+        if (!(length > 0 || square > 0) || !std::isfinite(length)) return false;
         for (std::uint32_t k = 0; k < colliders_.count[body]; ++k) {
             const std::uint32_t at = colliders_.begin[body] + k;
             const double inner = colliders_.inner_extent[at];
             const double turning = inner > 0 ? way_of_turning(colliders_, at, angle) : 0;
-            if (length + turning > inner) return true;
+            if (length + turning > inner || strays(colliders_, at, square)) return true;
         }
         return false;
     }
@@ -200,6 +209,12 @@ private:
         return true;
     }
 
+    bool on_mesh(PairKey key) const
+    {
+        return colliders_.shape[first_of(key)].kind == ShapeKind::mesh
+            || colliders_.shape[second_of(key)].kind == ShapeKind::mesh;
+    }
+
     bool ways_cross(PairKey key) const
     {
         const std::uint32_t a = first_of(key), b = second_of(key);
@@ -217,7 +232,11 @@ private:
         for_each_block(pairs_.keys.size(), kKeys, [&](auto begin, auto end, auto block) {
             for (std::size_t i = begin; i < end; ++i) {
                 const PairKey key = pairs_.keys[i];
-                if (worth_asking(key) && ways_cross(key)) lists[block].push_back({key});
+                if (!worth_asking(key) || !ways_cross(key)) continue;
+                Candidate& found = lists[block].emplace_back();
+                found.key = key;
+                const auto list = on_mesh(key) ? on_meshes_ : followed_;
+                found.followed = std::binary_search(list.begin(), list.end(), i);
             }
         });
         lists.append_to(candidates_);
@@ -226,7 +245,7 @@ private:
                 look_beyond_box(colliders_.begin[body] + k);
         const auto less = [](const Candidate& a, const Candidate& b) { return a.key < b.key; };
         const auto same = [](const Candidate& a, const Candidate& b) { return a.key == b.key; };
-        std::sort(candidates_.begin(), candidates_.end(), less);
+        std::stable_sort(candidates_.begin(), candidates_.end(), less);
         candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), same),
                           candidates_.end());
     }
@@ -321,7 +340,7 @@ private:
         const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
         const ImpactRule rule = rule_of(candidate.key);
         const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
-        const bool ahead = way_a.ahead || way_b.ahead;
+        const bool ahead = (way_a.ahead || way_b.ahead) && !candidate.followed;
         Impact impact;
         if (ahead) impact = impact_time(shapes_, moving(a), moving(b), since, 1, rule);
         candidate.pressed = impact.meeting == Meeting::at_start;
@@ -541,7 +560,7 @@ private:
         for (const Way& way : ways_) {
             if (!way.held) continue;
             const Pose end = pose_on(way, 1);
-            if (way.sweep.still()) take_back_fall(way.body, end.position);
+            if (way.rides == kNobody) take_back_fall(way.body, end.position);
             poses_.position[way.body] = end.position;
             turn_back(way.body, end.orientation.normalized());
             fast_.held.push_back(way.body);
@@ -549,7 +568,7 @@ private:
     }
 
     const Settings& settings_;
-    Vec3 gravity_;
+    const Vec3 gravity_;
     const Shapes& shapes_;
     const Colliders& colliders_;
     const Surfaces& surfaces_;
@@ -558,6 +577,8 @@ private:
     const Pairs& pairs_;
     const BodyStates& states_;
     const Masses& masses_;
+    // Pairs whose contacts saw ahead, ascending.
+    std::span<const std::uint32_t> followed_, on_meshes_;
     Poses& poses_;
     Velocities& velocities_;
     FastBodies& fast_;
@@ -573,6 +594,7 @@ private:
 
 }  // namespace
 
+template <class Real>
 void sweep_fast(const Conditions& conditions,
                 const Shapes& shapes,
                 const Colliders& colliders,
@@ -583,15 +605,26 @@ void sweep_fast(const Conditions& conditions,
                 const BodyStates& states,
                 const Masses& masses,
                 const Rest& rest,
+                const ConvexContacts<Real>& contacts,
+                const MeshContacts<Real>& on_meshes,
                 Poses& poses,
                 Velocities& velocities,
                 FastBodies& fast)
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, surfaces, filter, bounds, pairs, states, masses, poses,
-              velocities, fast)
+    FastSweep(conditions, shapes, colliders, surfaces, filter, bounds, pairs, states, masses,
+              contacts.followed, on_meshes.followed, poses, velocities, fast)
         .run(rest.awoken);
 }
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void sweep_fast<Real>(const Conditions&, const Shapes&, const Colliders&,             \
+                                   const PairFilter&, const Bounds&, const Pairs&,                 \
+                                   const BodyStates&, const Rest&, const ConvexContacts<Real>&,    \
+                                   const MeshContacts<Real>&, Poses&, Velocities&, FastBodies&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
 
 }  // namespace throng

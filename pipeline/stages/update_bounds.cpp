@@ -134,6 +134,7 @@ public:
         make_room();
         const std::vector<std::uint32_t> touched = take_touched();
         bounds_.asked.clear();
+        if (!bounds_.fast.empty()) std::fill(bounds_.kept.begin(), bounds_.kept.end(), 0.0);
         bounds_.fast.clear();
         bounds_.hurried = Bounds::kNone;
         of_movers(states_.movers.kinematic, 0);
@@ -149,6 +150,7 @@ private:
     void make_room()
     {
         const std::size_t count = colliders_.size();
+        if (sweeps_ && bounds_.kept.size() != count) bounds_.kept.resize(count, 0.0);
         if (bounds_.boxes.size() == count && bounds_.flags.size() == count) return;
         bounds_.boxes.resize(count);
         bounds_.reach.resize(count, 0.0);
@@ -237,17 +239,21 @@ private:
             bounds_.hurried_of_block[block] = std::min(bounds_.hurried_of_block[block], body);
         if (!sweeps_ || !states_.dynamic(body)) return;
         const double inner = colliders_.inner_extent[collider];
-        const double way = velocities_.linear[body].norm() * dt_
-            + way_of_turning(colliders_, collider, velocities_.angular[body].norm() * dt_);
+        const double turning =
+            way_of_turning(colliders_, collider, velocities_.angular[body].norm() * dt_);
+        const double way = velocities_.linear[body].norm() * dt_ + turning;
         const double most = states_.marked_fast(body) ? kRestingReach : kAheadOfContacts;
         if (!(way > most * inner)) return;
         // It is stopped where it meets something, so that what it only may meet is no contact: one
-        // far ahead would turn aside what flies past a corner. Its box holds all of its way.
-        const double reach = kHeldReach * tolerance_ * inner;
+        // far ahead would turn aside what flies past a corner. Its box holds all of its way. What
+        // it touches already it goes on touching, as far ahead as contacts see: a rod that falls
+        // over would lose the floor at every other step.
+        const double reach = kHeldReach * tolerance_ * inner, rest = kRestingReach * inner;
+        bounds_.kept[collider] = turning > 0 ? rest : std::max(bounds_.reach[collider], rest);
         bounds_.reach[collider] = reach;
         bounds_.near[collider] =
             near_box(shape_bounds(shapes_, colliders_.shape[collider], bounds_.placed[collider]),
-                     std::max(reach, kRestingReach * inner));
+                     std::max(reach, bounds_.kept[collider]));
         std::vector<std::uint32_t>& fast = bounds_.fast_of_block[block];
         if (fast.empty() || fast.back() != body) fast.push_back(body);
     }

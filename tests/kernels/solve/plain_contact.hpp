@@ -229,7 +229,7 @@ private:
             if (torque.norm() > 1e-2 * arm.norm())
                 by_levers += torque.dot(body->inverse_inertia * torque);
         }
-        return 2 * by_levers < answer || answer == 0 ? 0 : 1 / answer;
+        return 2 * by_levers < answer || answer <= 0 ? 0 : 1 / answer;
     }
     void aim(Point& point, const PlainVisit& visit, int overlapping) const
     {
