@@ -9,6 +9,7 @@
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
 #include "kernels/geometry/shape_bounds.hpp"
+#include "kernels/motion/spring_limit.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/impact/impact_time.hpp"
 #include "pipeline/fast_bodies.hpp"
@@ -59,12 +60,17 @@ struct Way {
     bool ahead = false;  // of contacts: those that it may come to were not looked for
 };
 
+// Of the longest step that springs bear, from which on who is on them is not held.
+constexpr double kSprung = 0.25;
+
 class FastSweep {
 public:
     FastSweep(const Conditions& conditions,
               const Shapes& shapes,
               const Colliders& colliders,
               const PairFilter& filter,
+              const Forces& forces,
+              const Masses& masses,
               const Bounds& bounds,
               const Pairs& pairs,
               const BodyStates& states,
@@ -72,8 +78,8 @@ public:
               Velocities& velocities,
               FastBodies& fast)
         : settings_(conditions.settings), shapes_(shapes), colliders_(colliders), filter_(filter),
-          bounds_(bounds), pairs_(pairs), states_(states), poses_(poses), velocities_(velocities),
-          fast_(fast)
+          forces_(forces), masses_(masses), bounds_(bounds), pairs_(pairs), states_(states),
+          poses_(poses), velocities_(velocities), fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& awoken)
@@ -166,6 +172,21 @@ private:
         }
         std::sort(found_.begin(), found_.end());
         found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+        leave_out_sprung();
+    }
+
+    // Who is held while a spring's other end goes on draws the spring out. Where that would be more
+    // than it may move by in a step it is left to contacts, unless it was marked.
+    void leave_out_sprung()
+    {
+        if (forces_.groups.empty()) return;
+        std::vector<std::uint8_t> stiff(forces_.groups.size(), 0);
+        for (std::size_t i = 0; i < stiff.size(); ++i)
+            stiff[i] = settings_.dt > kSprung * longest_step(forces_, masses_, forces_.groups[i]);
+        std::erase_if(found_, [&](std::uint32_t body) {
+            const std::uint32_t group = forces_.group_of[body];
+            return group != kNobody && stiff[group] != 0 && !states_.marked_fast(body);
+        });
     }
 
     bool is_fast(std::uint32_t body) const { return fast_.flags[body] != 0; }
@@ -464,6 +485,8 @@ private:
     const Shapes& shapes_;
     const Colliders& colliders_;
     const PairFilter& filter_;
+    const Forces& forces_;
+    const Masses& masses_;
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;
@@ -486,6 +509,8 @@ void sweep_fast(const Conditions& conditions,
                 const Shapes& shapes,
                 const Colliders& colliders,
                 const PairFilter& filter,
+                const Forces& forces,
+                const Masses& masses,
                 const Bounds& bounds,
                 const Pairs& pairs,
                 const BodyStates& states,
@@ -496,7 +521,8 @@ void sweep_fast(const Conditions& conditions,
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, poses, velocities, fast)
+    FastSweep(conditions, shapes, colliders, filter, forces, masses, bounds, pairs, states, poses,
+              velocities, fast)
         .run(rest.awoken);
 }
 
