@@ -80,7 +80,8 @@ constexpr HardCase kCases[] = {
     {"H44", "heaps of scans and lumps come to rest and hardly overlap", case_solid_heap,
      Fault::shrink},
     {"H45", "shared volumes and depths converge as they should", case_convergence, Fault::shrink},
-    {"H46", "springs swing wider beyond the limit, which is told, and not within",
+    {"H46",
+     "springs swing wider beyond the limit of who asked for it, which is told, and not within",
      case_spring_limit, Fault::stiffness},
     {"H47", "bodies made inside one another part slowly, and come to rest", case_recovery,
      Fault::float_poses},
@@ -97,6 +98,8 @@ constexpr HardCase kCases[] = {
      Fault::restitution},
     {"H77", "a ball that slides through its bounce is slowed by all that presses it",
      case_sliding_bounce, Fault::friction},
+    {"H72", "springs on bodies in contact keep their swing and make no energy, however stiff",
+     case_springs_in_contact, Fault::stiffness},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

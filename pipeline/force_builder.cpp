@@ -1,6 +1,7 @@
 #include "pipeline/force_builder.hpp"
 
 #include "kernels/math/rotation.hpp"
+#include "kernels/motion/spring_limit.hpp"
 #include "kernels/parallel/disjoint_sets.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/names.hpp"
@@ -12,12 +13,6 @@
 namespace throng {
 
 namespace {
-
-// From where a body's position is to its center of mass, body axes.
-Vec3 hang_of(const Forces& forces, std::uint32_t body)
-{
-    return body < forces.hang.size() ? forces.hang[body] : Vec3(Vec3::Zero());
-}
 
 // At a place of lists that all have it or none.
 template <class... Lists>
@@ -79,14 +74,6 @@ void sort_springs(const BodyStates& states, Forces& forces)
     }
 }
 
-// How easily a body gives way at a point of it, in whatever direction is easiest, 1/kg.
-double ease_at(const Masses& masses, std::uint32_t body, const Vec3& lever)
-{
-    if (body == kNobody) return 0;
-    const Sym3& turning = masses.inverse_inertia[body];
-    return masses.inverse_mass[body] + (turning.xx + turning.yy + turning.zz) * lever.squaredNorm();
-}
-
 std::string spring_warning(std::size_t i, double limit, const Settings& settings)
 {
     const std::string_view integrator =
@@ -135,7 +122,7 @@ void join_springs(std::span<const Spring> springs,
 {
     const auto id = [&](std::uint32_t end) { return end == kNone ? kNobody : ids[end]; };
     const auto lever = [&](std::uint32_t body, const Vec3& at) {
-        return body == kNobody ? at : Vec3(at - center[body] - hang_of(forces, body));
+        return body == kNobody ? at : Vec3(at - center[body] - forces.hang_of(body));
     };
     for (const Spring& stated : springs) {
         SpringForce spring{id(stated.a),     id(stated.b),   {},           {},
@@ -167,33 +154,20 @@ void drop_forces(std::span<const std::uint8_t> going, const BodyStates& states, 
 std::vector<std::string>
 unstable_springs(const Forces& forces, const Masses& masses, const Settings& settings)
 {
-    // Springs that share a body add up: the square of the fastest frequency is at most what they
-    // come to side by side, and just that for a spring by itself.
-    std::vector<double> square(forces.springs.size(), 0), damping(forces.springs.size(), 0);
-    for (std::size_t i = 0; i < forces.springs.size(); ++i) {
-        const SpringForce& spring = forces.springs[i];
-        const auto add = [&](std::uint32_t body) {
-            if (body == kNobody) return;
-            for (std::uint32_t k = forces.first_spring[body]; k < forces.first_spring[body + 1];
-                 ++k) {
-                const SpringForce& other = forces.springs[forces.spring_of[k]];
-                const Vec3& at = other.a == body ? other.at_a : other.at_b;
-                const double ease = ease_at(masses, body, hang_of(forces, body) + at);
-                square[i] += other.stiffness * ease;
-                damping[i] += other.damping * ease;
-            }
-        };
-        add(spring.a);
-        add(spring.b);
-    }
+    // Then they go by a rule that bears any step: see stages/following_forces.hpp.
+    if (settings.integrator == Integrator::semi_implicit && settings.response != Response::penalty
+        && settings.overlap == Overlap::allow)
+        return {};
     const IntegratorRow& integrator = integrators()[static_cast<std::size_t>(settings.integrator)];
     const double span = settings.dt / settings.substeps;
     std::map<double, double> limits;  // by damping ratio: springs are mostly alike
     std::vector<std::string> warnings;
-    for (std::size_t i = 0; i < square.size(); ++i) {
-        if (!(square[i] > 0)) continue;
-        const double frequency = std::sqrt(square[i]);
-        const double ratio = damping[i] / (2 * frequency);
+    for (std::size_t i = 0; i < forces.springs.size(); ++i) {
+        const SpringForce& spring = forces.springs[i];
+        const SpringLoad load =
+            spring_load(forces, masses, spring.a) + spring_load(forces, masses, spring.b);
+        if (!(load.square > 0)) continue;
+        const double frequency = std::sqrt(load.square), ratio = damping_ratio(load);
         const auto [known, fresh] = limits.try_emplace(ratio, 0.0);
         if (fresh) known->second = stable_span(integrator, ratio);
         const double limit = known->second / frequency;
@@ -206,7 +180,7 @@ double spring_energy(const SpringForce& spring, const Forces& forces, const Pose
 {
     const auto point = [&](std::uint32_t body, const Vec3& at) {
         if (body == kNobody) return at;
-        return Vec3(poses.at(body) * Vec3(hang_of(forces, body) + at));
+        return Vec3(poses.at(body) * Vec3(forces.hang_of(body) + at));
     };
     const double distance = (point(spring.b, spring.at_b) - point(spring.a, spring.at_a)).norm();
     const double stretch = distance - spring.length;
@@ -218,7 +192,7 @@ attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, st
 {
     double energy = 0;
     for (const AttractorForce& attractor : forces.attractors) {
-        const Vec3 place = poses.at(body) * hang_of(forces, body);
+        const Vec3 place = poses.at(body) * forces.hang_of(body);
         const double distance = (place - attractor.position).norm();
         if (masses.mass[body] > 0 && distance > 0)
             energy -= masses.mass[body] * attractor.strength / distance;

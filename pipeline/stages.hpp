@@ -91,8 +91,9 @@ void gather_contacts(const Pairs&,
                      const SolidContacts<Real>&,
                      ActiveContacts&);
 
-/// Contacts into islands.
-void split_islands(const ActiveContacts&, const BodyStates&, IslandFinder&, Islands&);
+/// Contacts into islands, with those that springs join to who is in one.
+void split_islands(
+    const ActiveContacts&, const BodyStates&, const Forces&, IslandFinder&, Islands&);
 
 /// Islands into batches, slices, colors and blocks.
 void color_rows(const Conditions&,
@@ -103,8 +104,9 @@ void color_rows(const Conditions&,
                 Painter&,
                 Layout&);
 
-/// Forces into what they do to the velocities of bodies that touch something. Those in flight ask
-/// for themselves, as often as their integrator does.
+/// Forces that stay as they are through the step into what they do to the velocities of bodies that
+/// touch something. Those that follow the bodies are asked in each substep; and who is in flight
+/// asks for itself, as often as its integrator does.
 void apply_forces(const Conditions&,
                   const Forces&,
                   const Rest&,
@@ -132,6 +134,7 @@ void solve_impulses(const Conditions&,
                     const Layout&,
                     const ActiveContacts&,
                     const Masses&,
+                    const Forces&,
                     const Pulls&,
                     Rows<Real>&,
                     ConvexContacts<Real>&,
@@ -166,7 +169,6 @@ void integrate_poses(const Conditions&,
                      const Masses&,
                      const BodyStates&,
                      const Forces&,
-                     const Pulls&,
                      Flights&,
                      Poses&,
                      Velocities&,
@@ -183,10 +185,11 @@ void sweep_fast(const Conditions&,
                 const Colliders&,
                 const Surfaces&,
                 const PairFilter&,
+                const Forces&,
+                const Masses&,
                 const Bounds&,
                 const Pairs&,
                 const BodyStates&,
-                const Masses&,
                 const Rest&,
                 const ConvexContacts<Real>&,
                 const MeshContacts<Real>&,

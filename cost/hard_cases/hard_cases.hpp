@@ -15,6 +15,7 @@ void case_rotation_drift(CaseBench& bench);  // H6, free_top.cpp
 void case_ballistic(CaseBench& bench);       // H7, ballistic.cpp
 void case_spring_limit(CaseBench& bench);    // H46, spring_limit.cpp, and penalty_limit.cpp
 void penalty_limit(CaseBench& bench);
+void case_springs_in_contact(CaseBench& bench);  // H72, springs_in_contact.cpp
 
 // Every dial beside every other.
 void case_dial_pairs(CaseBench& bench);  // pairs, dial_pairs.cpp

@@ -67,16 +67,29 @@ struct Forces {
         return !force.empty() || !linear_drag.empty() || !attractors.empty() || field
             || !hang.empty() || !springs.empty();
     }
-    /// Whether a body is held by something that may move it from rest at any time.
-    bool stirs(std::uint32_t body) const
+    bool has_springs(std::uint32_t body) const
     {
-        return field
-            || (body + std::size_t{1} < first_spring.size()
-                && first_spring[body] != first_spring[body + 1]);
+        return body + std::size_t{1} < first_spring.size()
+            && first_spring[body] != first_spring[body + 1];
+    }
+    /// Whether a body is held by something that may move it from rest at any time.
+    bool stirs(std::uint32_t body) const { return field || has_springs(body); }
+    /// Whether what acts on a body changes as it goes: to take it as it was when the step began
+    /// would make energy.
+    bool follow(std::uint32_t body) const
+    {
+        return field || !attractors.empty() || has_springs(body)
+            || (body < hangs.size() && hangs[body] != 0);
+    }
+    /// From where a body's position is to its center of mass, m, body axes.
+    Vec3 hang_of(std::uint32_t body) const
+    {
+        return body < hang.size() ? hang[body] : Vec3(Vec3::Zero());
     }
 };
 
-/// What the forces of the step's beginning do to the velocities of bodies that the solver moves.
+/// What forces that stay as they are through a step (see Forces::follow) do to the velocities of
+/// bodies that the solver moves.
 struct Pulls {
     std::vector<Vec3> linear, angular;  // [bodies] m/s2, rad/s2 in world axes; empty: no forces
 };

@@ -194,7 +194,7 @@ void RigidMotion::add_springs(std::size_t i, double time, Wrench& on) const
 {
     const Forces& forces = facts_.forces;
     const std::uint32_t id = bodies_[i].body;
-    if (id + 1 >= forces.first_spring.size()) return;
+    if (!by_springs_ || id + 1 >= forces.first_spring.size()) return;
     for (std::uint32_t k = forces.first_spring[id]; k < forces.first_spring[id + 1]; ++k) {
         const SpringForce& spring = forces.springs[forces.spring_of[k]];
         const bool first = spring.a == id;
@@ -225,10 +225,10 @@ void RigidMotion::add_springs(std::size_t i, double time, Wrench& on) const
     }
 }
 
-void RigidMotion::find_wrenches(double time, bool all_drag)
+void RigidMotion::find_wrenches(double time, bool all_drag, std::size_t begin, std::size_t end)
 {
     const Forces& forces = facts_.forces;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
         const std::uint32_t id = bodies_[i].body;
         const Moment& now = moments_[i];
         const double mass = mass_of(bodies_[i]);
@@ -260,9 +260,31 @@ void RigidMotion::find_wrenches(double time, bool all_drag)
     }
 }
 
+void RigidMotion::stand(std::size_t i, const Pose& pose, const Vec3& velocity, const Vec3& spin)
+{
+    Moment& now = moments_[i];
+    now.turn = pose.orientation.toRotationMatrix();
+    now.arm = now.turn * facts_.forces.hang_of(bodies_[i].body);
+    now.position = pose.position;
+    now.velocity = velocity + spin.cross(now.arm);
+    now.spin = spin;
+}
+
+void RigidMotion::find_pulls(double time, std::size_t begin, std::size_t end)
+{
+    find_wrenches(time, true, begin, end);
+}
+
+RigidMotion::Pull RigidMotion::pull_on(std::size_t i) const
+{
+    const Mat3& turn = moments_[i].turn;
+    return {bodies_[i].inverse_mass * wrenches_[i].force,
+            turn * Vec3(bodies_[i].ease * Vec3(turn.transpose() * wrenches_[i].torque))};
+}
+
 // What is held for a span is what drag comes to over all of it: as it is at the beginning, a strong
 // one would turn velocities round, and more each time.
-RigidMotion::Pull RigidMotion::pull_on(std::size_t i, double span)
+RigidMotion::Pull RigidMotion::pull_over(std::size_t i, double span)
 {
     const Body& body = bodies_[i];
     const Forces& forces = facts_.forces;
@@ -270,17 +292,30 @@ RigidMotion::Pull RigidMotion::pull_on(std::size_t i, double span)
         && (of(forces.linear_drag, body.body, 0.0) > 0
             || of(forces.angular_drag, body.body, 0.0) > 0);
     look(state_.data());
-    find_wrenches(0, !slows);
+    find_wrenches(0, !slows, i, i + 1);
+    if (!slows) return pull_on(i);
     const Mat3& turn = moments_[i].turn;
-    if (!slows)
-        return {body.inverse_mass * wrenches_[i].force,
-                turn * Vec3(body.ease * Vec3(turn.transpose() * wrenches_[i].torque))};
     const double* const before = state_.data() + speed_of(i);
     double after[6];
     std::copy_n(before, 6, after);
     push(i, span, after);
     return {Vec3(vector_at(after) - vector_at(before)) / span - fall_of(body),
             turn * Vec3((vector_at(after + 3) - vector_at(before + 3)) / span)};
+}
+
+RigidMotion::Going RigidMotion::going(std::size_t i) const
+{
+    const double* const state = state_.data();
+    const Mat3 turn = turn_at(i, state);
+    return {vector_at(state + place_of(i)), turn, vector_at(state + speed_of(i)),
+            turn * body_spin(i, turn, state), Mat3(turn * bodies_[i].ease) * turn.transpose()};
+}
+
+void RigidMotion::add_speed(std::size_t i, const Vec3& velocity, const Vec3& spin)
+{
+    double* const speed = state_.data() + speed_of(i);
+    put(vector_at(speed) + velocity, speed);
+    put(vector_at(speed + 3) + turn_at(i, state_.data()).transpose() * spin, speed + 3);
 }
 
 void RigidMotion::place_rates(const double* state, double* rates)
@@ -311,16 +346,13 @@ void RigidMotion::place_rates(const double* state, double* rates)
 
 void RigidMotion::speed_rates(double time, const double* state, double* rates)
 {
-    if (forced_ || held_ != nullptr) look(state);
-    if (forced_ && held_ == nullptr) find_wrenches(time, true);
+    if (forced_) look(state);
+    if (forced_) find_wrenches(time, true, 0, bodies_.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Body& body = bodies_[i];
         const Mat3& turn = moments_[i].turn;
-        Vec3 linear = fall_of(body), angular = Vec3::Zero(), torque = Vec3::Zero();
-        if (held_ != nullptr) {
-            linear += held_->linear[body.body];
-            angular = turn.transpose() * held_->angular[body.body];
-        } else if (forced_) {
+        Vec3 linear = fall_of(body), torque = Vec3::Zero();
+        if (forced_) {
             linear += body.inverse_mass * wrenches_[i].force;
             torque = turn.transpose() * wrenches_[i].torque;
         }
@@ -334,22 +366,14 @@ void RigidMotion::speed_rates(double time, const double* state, double* rates)
             add_momentum(i, 1, rates + i * 6 + 3);
             continue;
         }
-        put(body.turns ? Vec3(angular + body.ease * torque) : Vec3(Vec3::Zero()),
-            rates + i * 6 + 3);
+        put(body.turns ? Vec3(body.ease * torque) : Vec3(Vec3::Zero()), rates + i * 6 + 3);
     }
 }
 
-// What a torque, or an acceleration that is held, adds to an angular momentum in a time.
+// What a torque adds to an angular momentum in a time.
 void RigidMotion::add_momentum(std::size_t i, double span, double* momentum) const
 {
-    Vec3 rate = wrenches_[i].torque;
-    if (held_ != nullptr) {
-        const std::uint32_t id = bodies_[i].body;
-        const Mat3& turn = moments_[i].turn;
-        const Vec3 local = turn.transpose() * held_->angular[id];
-        rate = turn * Vec3(facts_.masses.inertia[id].matrix() * local);
-    }
-    put(vector_at(momentum) + span * rate, momentum);
+    put(vector_at(momentum) + span * wrenches_[i].torque, momentum);
 }
 
 // Forces, and drag by itself, so that however strong it only slows.
@@ -379,18 +403,13 @@ void RigidMotion::push(std::size_t i, double span, double* speed) const
 
 void RigidMotion::kick(double time, double span, double* state)
 {
-    if (forced_ || held_ != nullptr) look(state);
-    if (forced_ && held_ == nullptr) find_wrenches(time, false);
+    if (forced_) look(state);
+    if (forced_) find_wrenches(time, false, 0, bodies_.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Body& body = bodies_[i];
         double* const speed = state + speed_of(i);
         if (body.by_momentum) {
             add_momentum(i, span, speed + 3);
-        } else if (held_ != nullptr) {
-            const Vec3 angular = moments_[i].turn.transpose() * held_->angular[body.body];
-            const Vec3 linear = fall_of(body) + held_->linear[body.body];
-            put(vector_at(speed) + span * linear, speed);
-            put(vector_at(speed + 3) + span * angular, speed + 3);
         } else if (forced_) {
             push(i, span, speed);
         } else {

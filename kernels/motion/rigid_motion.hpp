@@ -55,8 +55,8 @@ public:
     /// not among them moves on at its velocity.
     void take(std::span<const std::uint32_t> bodies, const Flights& flights);
     double* state() { return state_.data(); }
-    /// From now on these accelerations act in place of forces, whatever the bodies do.
-    void hold(const Pulls& pulls) { held_ = &pulls; }
+    /// From now on springs are somebody else's (see stiff_springs.hpp).
+    void leave_springs() { by_springs_ = false; }
     /// After each call of an integrator: changes of rotation are taken into the orientations.
     void settle();
 
@@ -68,12 +68,31 @@ public:
     };
     Outcome outcome(std::size_t i) const;
 
-    /// What forces do to it at the step's beginning, and drag in a span from there on, world axes,
-    /// m/s2 and rad/s2. Gravity is among them where it hangs from a pivot, and not where it falls.
+    /// Puts a body where it is at some moment of the step, for find_pulls(); its state stays.
+    void stand(std::size_t i, const Pose& pose, const Vec3& velocity, const Vec3& spin);
+    /// What forces do to those that stand, from a place to before another, at a time, s since the
+    /// step began.
+    void find_pulls(double time, std::size_t begin, std::size_t end);
+    /// World axes, m/s2 and rad/s2. Gravity is among them where it hangs from a pivot, and not
+    /// where it falls.
     struct Pull {
         Vec3 linear, angular;
     };
-    Pull pull_on(std::size_t i, double span);
+    Pull pull_on(std::size_t i) const;
+    /// The same of one as its state has it, at the step's beginning, and of drag its mean over a
+    /// span from there on.
+    Pull pull_over(std::size_t i, double span);
+
+    /// Where its state has a body and how fast that goes, world axes.
+    struct Going {
+        Vec3 position;
+        Mat3 turn;
+        Vec3 velocity, spin;
+        Mat3 inverse_inertia;
+    };
+    Going going(std::size_t i) const;
+    /// Adds to that. Not for bodies that have a momentum in place of a spin.
+    void add_speed(std::size_t i, const Vec3& velocity, const Vec3& spin);
 
     std::size_t places() const override { return bodies_.size() * place_numbers(); }
     std::size_t speeds() const override { return bodies_.size() * 6; }
@@ -116,7 +135,7 @@ private:
     Moment moment_at(std::size_t i, const double* state) const;
     Moment moment_outside(std::uint32_t body, double time) const;
     void look(const double* state);
-    void find_wrenches(double time, bool all_drag);
+    void find_wrenches(double time, bool all_drag, std::size_t begin, std::size_t end);
     void add_springs(std::size_t i, double time, Wrench& on) const;
     void push(std::size_t i, double span, double* speed) const;
     Vec3 fall_of(const Body& body) const
@@ -129,7 +148,7 @@ private:
     const RigidRule& rule_;
     RigidFacts facts_;
     bool forced_;  // there is more than gravity
-    const Pulls* held_ = nullptr;
+    bool by_springs_ = true;
     std::vector<Body> bodies_;
     std::vector<double> state_;
     std::vector<Moment> moments_;   // [bodies]

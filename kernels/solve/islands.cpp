@@ -1,5 +1,7 @@
 #include "kernels/solve/islands.hpp"
 
+#include <algorithm>
+
 namespace throng {
 
 namespace {
@@ -24,6 +26,20 @@ void IslandFinder::join(const ActiveContacts& contacts, const BodyStates& states
                            if (a && b) sets_.join(contact.body_a, contact.body_b);
                        }
                    });
+}
+
+void IslandFinder::join(const BodyGroups& groups, const BodyStates& states)
+{
+    for (const auto& group : groups) {
+        const auto first = std::find_if(group.begin(), group.end(),
+                                        [&](std::uint32_t body) { return sets_.holds(body); });
+        if (first == group.end()) continue;
+        for (const std::uint32_t body : group) {
+            if (!states.movable(body)) continue;
+            sets_.add(body);
+            sets_.join(*first, body);
+        }
+    }
 }
 
 // Islands count up in order of their smallest body, which is their root. Returns how many there are
@@ -59,9 +75,13 @@ std::size_t IslandFinder::number_islands(const BodyStates& states, Islands& isla
     return roots_.size();
 }
 
-void IslandFinder::find(const ActiveContacts& contacts, const BodyStates& states, Islands& islands)
+void IslandFinder::find(const ActiveContacts& contacts,
+                        const BodyStates& states,
+                        const BodyGroups& groups,
+                        Islands& islands)
 {
     join(contacts, states);
+    join(groups, states);
     const std::size_t found = number_islands(states, islands);
     const std::size_t count = contacts.entries.size();
     of_contact_.resize(count);

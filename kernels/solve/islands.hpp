@@ -10,14 +10,22 @@
 
 namespace throng {
 
+/// Bodies that are joined by something else than contacts.
+using BodyGroups = std::vector<std::vector<std::uint32_t>>;
+
 /// Splits the awake dynamic bodies into islands by the contacts between them. A contact belongs to
-/// the island of its movable side; still and kinematic bodies join nothing.
+/// the island of its movable side; still and kinematic bodies join nothing. A group of which one
+/// body is in an island is in it with all that can move.
 class IslandFinder {
 public:
-    void find(const ActiveContacts& contacts, const BodyStates& states, Islands& islands);
+    void find(const ActiveContacts& contacts,
+              const BodyStates& states,
+              const BodyGroups& groups,
+              Islands& islands);
 
 private:
     void join(const ActiveContacts& contacts, const BodyStates& states);
+    void join(const BodyGroups& groups, const BodyStates& states);
     std::size_t number_islands(const BodyStates& states, Islands& islands);
 
     DisjointSets sets_;  // of bodies that can move and that something touches

@@ -1,4 +1,6 @@
-// Apply forces: what acts besides gravity and contacts, once a step, on whoever a contact may hold.
+// Apply forces: what acts besides gravity and contacts and stays as it is through a step, on
+// whoever a contact may hold. What follows the bodies is asked within the step: see
+// following_forces.hpp.
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
 #include "pipeline/stages/rigid_law.hpp"
@@ -32,8 +34,10 @@ void apply_forces(const Conditions& conditions,
         RigidMotion law(rule, {forces, masses, poses, velocities});
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = movers[i];
+            pulls.linear[body] = pulls.angular[body] = Vec3::Zero();
+            if (forces.follow(body)) continue;
             law.take({&body, 1}, none);
-            const RigidMotion::Pull pull = law.pull_on(0, conditions.settings.dt);
+            const RigidMotion::Pull pull = law.pull_over(0, conditions.settings.dt);
             pulls.linear[body] = pull.linear;
             pulls.angular[body] = pull.angular;
         }

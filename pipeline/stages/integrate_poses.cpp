@@ -3,8 +3,11 @@
 // In double throughout: free flight is exact where the integrator is.
 #include "kernels/math/rotation.hpp"
 #include "kernels/motion/flight.hpp"
+#include "kernels/motion/spring_limit.hpp"
+#include "kernels/motion/stiff_springs.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
+#include "pipeline/stages/following_forces.hpp"
 #include "pipeline/stages/rigid_law.hpp"
 
 #include <algorithm>
@@ -81,30 +84,21 @@ class LawFlight {
 public:
     LawFlight(const Conditions& conditions,
               const RigidFacts& facts,
-              const Pulls& pulls,
               Poses& poses,
               Velocities& velocities,
               Flights& flights)
-        : conditions_(conditions), rule_(rigid_rule(conditions)), facts_(facts), pulls_(pulls),
+        : conditions_(conditions), rule_(rigid_rule(conditions)), facts_(facts),
           integrator_(integrators()[static_cast<std::size_t>(conditions.settings.integrator)]),
           poses_(poses), velocities_(velocities), flights_(flights)
     { }
 
-    /// Each body for itself, but for those that springs join: they go together, or where a contact
-    /// holds one of them, by the forces of the step's beginning, which it is moved by too.
+    /// Each body for itself, but for those that springs join: they go together.
     ///
     ///   bodies  ascending
     void fly(const std::vector<std::uint32_t>& bodies, const BodyStates& states, Trouble& trouble)
     {
         flights_.memory.resize(states.kind.size());
         const Forces& forces = facts_.forces;
-        const auto flies = [&](std::uint32_t body) {
-            return states.moves(body) && std::binary_search(bodies.begin(), bodies.end(), body);
-        };
-        const auto whole = [&](std::uint32_t group) {
-            const auto& members = forces.groups[group];
-            return std::all_of(members.begin(), members.end(), flies);
-        };
         // The outcome is written down when all have read.
         std::vector<std::vector<Landing>> landings(block_count(bodies.size(), kBodies));
         for_each_block(bodies.size(), kBodies, [&](auto begin, auto end, auto block) {
@@ -116,14 +110,13 @@ public:
                     body < forces.group_of.size() ? forces.group_of[body] : kNobody;
                 if (group == kNobody) {
                     carry(law, {&body, 1}, landings[block]);
-                } else if (!whole(group)) {
-                    // Where nothing touches there are no pulls, and who does not fly stands still.
-                    RigidMotion held(rule_, facts_);
-                    if (body < pulls_.linear.size()) held.hold(pulls_);
-                    carry(held, {&body, 1}, landings[block]);
-                } else if (forces.groups[group].front() == body) {
-                    carry(law, forces.groups[group], landings[block]);
+                    continue;
                 }
+                // Of a group of which one touches something nobody is here.
+                std::vector<std::uint32_t> flying;
+                for (const std::uint32_t member : forces.groups[group])
+                    if (states.movable(member)) flying.push_back(member);
+                if (flying.front() == body) carry_joined(law, flying, landings[block]);
             }
         });
         for (const auto& list : landings)
@@ -149,6 +142,60 @@ private:
             integrator_.advance(law, step * span, span, room, law.state());
             law.settle();
         }
+        note(law, bodies, landings);
+    }
+
+    // Who springs join, by the rule that such springs ask for.
+    void carry_joined(RigidMotion& law,
+                      std::span<const std::uint32_t> bodies,
+                      std::vector<Landing>& landings)
+    {
+        if (by_stiff_springs(conditions_, facts_.forces, facts_.masses, bodies))
+            carry_stiff(bodies, landings);
+        else
+            carry(law, bodies, landings);
+    }
+
+    // What else acts is taken half before places change and half after it, as springs are.
+    void carry_stiff(std::span<const std::uint32_t> bodies, std::vector<Landing>& landings)
+    {
+        const double span = conditions_.substep();
+        RigidMotion law(rule_, facts_);
+        law.leave_springs();
+        law.take(bodies, flights_);
+        StiffSprings springs(facts_.forces, facts_.masses, facts_.poses, facts_.velocities, bodies);
+        const auto look = [&] {
+            for (std::size_t i = 0; i < bodies.size(); ++i) {
+                const RigidMotion::Going going = law.going(i);
+                SpringBody& body = springs.bodies()[i];
+                body.position = going.position;
+                body.turn = going.turn;
+                body.velocity = going.velocity;
+                body.spin = going.spin;
+                body.inverse_inertia = going.inverse_inertia;
+            }
+        };
+        const auto give = [&](std::span<const StiffSprings::Six> change) {
+            for (std::size_t i = 0; i < bodies.size(); ++i)
+                law.add_speed(i, change[i].linear, change[i].angular);
+        };
+        for (int step = 0; step < conditions_.settings.substeps; ++step) {
+            law.kick(step * span, 0.5 * span, law.state());
+            look();
+            give(springs.begin(step * span, span));
+            law.coast(span, law.state());
+            look();
+            give(springs.end());
+            law.kick((step + 1) * span, 0.5 * span, law.state());
+            law.settle();
+        }
+        note(law, bodies, landings);
+    }
+
+    void note(const RigidMotion& law,
+              std::span<const std::uint32_t> bodies,
+              std::vector<Landing>& landings)
+    {
         const std::size_t first = landings.size();
         for (std::size_t i = 0; i < bodies.size(); ++i)
             landings.push_back({bodies[i], law.outcome(i)});
@@ -159,7 +206,8 @@ private:
                             lost))
             return;
         landings.resize(first);
-        for (const std::uint32_t body : bodies) carry(law, {&body, 1}, landings);
+        RigidMotion alone(rule_, facts_);
+        for (const std::uint32_t body : bodies) carry(alone, {&body, 1}, landings);
     }
 
     // Whether a step can hold it.
@@ -184,7 +232,6 @@ private:
     const Conditions& conditions_;
     RigidRule rule_;
     RigidFacts facts_;
-    const Pulls& pulls_;
     const IntegratorRow& integrator_;
     Poses& poses_;
     Velocities& velocities_;
@@ -206,7 +253,6 @@ void integrate_poses(const Conditions& conditions,
                      const Masses& masses,
                      const BodyStates& states,
                      const Forces& forces,
-                     const Pulls& pulls,
                      Flights& flights,
                      Poses& poses,
                      Velocities& velocities,
@@ -239,8 +285,7 @@ void integrate_poses(const Conditions& conditions,
     if (falls_alone(conditions))
         fly(free);
     else
-        LawFlight(conditions, {forces, masses, poses, velocities}, pulls, poses, velocities,
-                  flights)
+        LawFlight(conditions, {forces, masses, poses, velocities}, poses, velocities, flights)
             .fly(free, states, trouble);
     fly(states.movers.kinematic);
 }

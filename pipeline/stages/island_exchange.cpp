@@ -64,6 +64,7 @@ WholeIsland::WholeIsland(const DirectScene<Real>& scene, const Batch& batch)
     const int steps = scene.conditions.settings.iterations;
     steps_ = steps > 0 ? steps : kDirectSteps;
     take_bodies(scene, slice);
+    take_forces(scene, slice);
     for (std::uint32_t i = 0; i < slice.contacts; ++i)
         take_contact(scene, slice, slice.first_contact + i);
     gaps_.resize(touches_.size());
@@ -78,8 +79,9 @@ void WholeIsland::take_bodies(const DirectScene<Real>& scene, const Slice& slice
         seat.body = layout.body_of_slot[slot];
         seat.dynamic = dynamic;
         seat.advances = advances;
-        const bool uneven = scene.masses.spins_unevenly[seat.body] != 0;
+        const bool uneven = scene.facts.masses.spins_unevenly[seat.body] != 0;
         seat.precesses = dynamic && uneven && scene.conditions.has(Effect::gyroscopic);
+        seat.position = scene.poses.position[seat.body];
         seat.orientation = scene.poses.orientation[seat.body];
         if (dynamic && scene.conditions.effects.meets(kForces)) {
             seat.pull = scene.pulls.linear[seat.body];
@@ -89,11 +91,11 @@ void WholeIsland::take_bodies(const DirectScene<Real>& scene, const Slice& slice
         body.velocity = scene.velocities.linear[seat.body];
         body.spin = scene.velocities.angular[seat.body];
         const bool turns = dynamic && scene.conditions.has(Effect::rotation);
-        if (dynamic) body.inverse_mass = scene.masses.inverse_mass[seat.body];
+        if (dynamic) body.inverse_mass = scene.facts.masses.inverse_mass[seat.body];
         seats_.push_back(seat);
         after_.push_back(body);
-        inertia_.push_back(scene.masses.inertia[seat.body]);
-        inverse_inertia_.push_back(turns ? scene.masses.inverse_inertia[seat.body] : Sym3{});
+        inertia_.push_back(scene.facts.masses.inertia[seat.body]);
+        inverse_inertia_.push_back(turns ? scene.facts.masses.inverse_inertia[seat.body] : Sym3{});
     };
     for (std::uint32_t i = 0; i < slice.dynamic; ++i) add(slice.first_body + i, true, true);
     // Those that stay where they are while their surface moves come last.
@@ -107,6 +109,17 @@ void WholeIsland::take_bodies(const DirectScene<Real>& scene, const Slice& slice
     }
     for (std::uint32_t i = 0; i < visitors; ++i)
         add(slice.first_visitor + i, false, i < slice.kinematic);
+}
+
+template <class Real>
+void WholeIsland::take_forces(const DirectScene<Real>& scene, const Slice& slice)
+{
+    const Set<Effect> follow = {Effect::forces, Effect::springs, Effect::attractors, Effect::pivot};
+    if (!scene.conditions.effects.meets(follow)) return;
+    std::vector<std::uint32_t> bodies;
+    for (std::uint32_t i = 0; i < slice.dynamic; ++i) bodies.push_back(seats_[i].body);
+    following_ = std::make_unique<FollowingForces>(scene.conditions, scene.facts, bodies);
+    if (following_->followers().empty()) following_.reset();
 }
 
 std::int32_t WholeIsland::seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const

@@ -70,6 +70,9 @@ void WholeIsland::separate(const Conditions& conditions)
     going_ = after_;
     advance(time);
     place_points();
+    if (end_following())
+        for (int sweep = 0; sweep < sweeps; ++sweep)
+            for (std::size_t i = 0; i < touches_.size(); ++i) stop_approach(i);
     for (int sweep = 0; sweep < sweeps; ++sweep)
         for (std::size_t i = 0; i < touches_.size(); ++i) push_apart(i, most);
 }

@@ -16,8 +16,8 @@ namespace {
 // Of auto: by how many radians it swings in a substep, and the share of critical damping where
 // nothing bounces; together half of what a semi-implicit step bears.
 constexpr double kSwing = 0.5, kDamped = 0.7;
-// A substep is cut to this share of the limit.
-constexpr double kWithin = 0.9;
+// A substep is cut to this share of the limit; to that of springs that join bodies.
+constexpr double kWithin = 0.9, kWithinSprings = 0.5;
 
 // What presses a spring in is seen by the load that it bore and by how fast the two go on closing;
 // this many times as deep as both say it may be, for the load is that of a whole substep.
@@ -160,6 +160,7 @@ void WholeIsland::penalise(const Conditions& conditions)
     count_touching(conditions, time);
     find_unearned(conditions);
     double longest = time;
+    if (following_) longest = std::min(longest, kWithinSprings * following_->longest_step());
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         points_[i].impulse = points_[i].torque = Vec3::Zero();
         if (!presses(i, conditions, time)) continue;

@@ -3,10 +3,12 @@
 #include "kernels/motion/solver_bodies.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solve/sweep.hpp"
+#include "pipeline/stages/following_forces.hpp"
 #include "pipeline/stages/parting.hpp"
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 namespace throng {
 
@@ -34,6 +36,10 @@ constexpr std::size_t kPartingVisits = 12, kPartingPushes = 128;
 // are one or two; what still comes in after so many is stopped.
 constexpr int kImpactRounds = 16;
 
+// How often contacts and stiff springs take turns in a substep, at least: each sees what the other
+// gave the time before.
+constexpr int kSpringTurns = 4;
+
 // One pass over the contacts or the bodies of a slice.
 struct Pass {
     enum class Kind : std::uint8_t {
@@ -57,13 +63,15 @@ template <class Real>
 class Task {
 public:
     Task(const Conditions& conditions,
+         const RigidFacts& facts,
          const Layout& layout,
          const Batch& batch,
          const RowMaker<Real>& maker,
          Rows<Real>& rows,
          Parting& parting)
-        : conditions_(conditions), layout_(layout), batch_(batch), maker_(maker), rows_(rows),
-          parting_(parting), view_(RowsView<Real>::of(rows)), kernels_(solve_kernels<Real>()),
+        : conditions_(conditions), facts_(facts), layout_(layout), batch_(batch), maker_(maker),
+          rows_(rows), parting_(parting), view_(RowsView<Real>::of(rows)),
+          kernels_(solve_kernels<Real>()),
           warm_start_(conditions.grips_apart() ? kernels_.warm_start_grips : kernels_.warm_start),
           sweep_(conditions.grips_apart() ? kernels_.sweep_grips : kernels_.sweep),
           bounce_(conditions.grips_apart() ? kernels_.bounce_grips : kernels_.bounce),
@@ -82,6 +90,7 @@ public:
         for (int k = 0; k < 3; ++k)
             visit_.fall[k] = static_cast<Real>(conditions.gravity[k] * conditions.substep());
         on_faces_ = 2 * batch.on_faces > batch.contacts;
+        find_following();
     }
 
     void run()
@@ -103,6 +112,7 @@ public:
             const auto add = [&](Pass::Kind kind) { add_pass({kind, step == 0, backward}); };
             if (conditions_.has(Effect::restitution)) bounce_all();
             add(begin);
+            begin_following(step);
             if (step == 0) add(warm_start);
             const int relaxes = parts || on_faces_ ? kInStructures : kInHeaps;
             if (parts) {
@@ -111,10 +121,16 @@ public:
                 for (std::size_t i = 0; i < parting_visits(); ++i) add(part);
                 add(advance);
                 add(put_back);
+                end_following();
             } else {
-                for (int i = 0; i < pushes; ++i) add(push);
+                const bool turns = following_ && following_->stiff();
+                for (int i = 0; i < (turns ? std::max(pushes, kSpringTurns) : pushes); ++i) {
+                    if (turns && i > 0 && i < kSpringTurns) turn_to_springs();
+                    add(push);
+                }
                 add(advance);
-                for (int i = 0; i < relaxes && !pgs; ++i) add(relax);
+                const bool late = end_following();
+                for (int i = 0; i < relaxes && (!pgs || late); ++i) add(relax);
             }
             if (on_faces_ || !window_fits()) run_passes();
         }
@@ -123,6 +139,79 @@ public:
     }
 
 private:
+    // Forces that change as the bodies of the batch go.
+    void find_following()
+    {
+        const Forces& forces = facts_.forces;
+        if (forces.springs.empty() && forces.hangs.empty() && forces.attractors.empty()
+            && !forces.field)
+            return;
+        std::vector<std::uint32_t> bodies;
+        for (std::uint32_t i = 0; i < batch_.slices; ++i) {
+            const Slice& slice = layout_.slices[batch_.first_slice + i];
+            for (std::uint32_t k = 0; k < slice.dynamic; ++k)
+                bodies.push_back(layout_.body_of_slot[slice.first_body + k]);
+        }
+        following_.emplace(conditions_, facts_, bodies);
+        if (following_->followers().empty()) following_.reset();
+    }
+
+    // Followers as they are now, less what contacts gave in this substep if that is asked.
+    void look_at_followers(bool without_contacts)
+    {
+        run_passes();
+        for (Follower& follower : following_->followers()) {
+            const SolverBody<Real>& seat = rows_.bodies[layout_.slot[follower.body]];
+            const Real* const motion = without_contacts ? seat.free : seat.motion;
+            const auto at = [](const Real* v) {
+                return Vec3(double{v[0]}, double{v[1]}, double{v[2]});
+            };
+            follower.pose = {facts_.poses.position[follower.body] + at(seat.drift),
+                             turn_of(seat) * facts_.poses.orientation[follower.body]};
+            follower.velocity = at(motion);
+            follower.spin = spin_axes(seat) * at(motion + 4);
+        }
+    }
+
+    // Forces move a body with contacts and without, so that what contacts gave stays what it was.
+    void move_followers()
+    {
+        for (const Follower& follower : following_->followers()) {
+            SolverBody<Real>& seat = rows_.bodies[layout_.slot[follower.body]];
+            const Vec3 spin = spin_axes(seat).conjugate() * follower.gained_spin;
+            for (int k = 0; k < 3; ++k)
+                for (Real* const motion : {seat.motion, seat.free}) {
+                    motion[k] += static_cast<Real>(follower.gained[k]);
+                    motion[4 + k] += static_cast<Real>(spin[k]);
+                }
+        }
+    }
+
+    void begin_following(int step)
+    {
+        if (!following_) return;
+        look_at_followers(true);
+        following_->begin(step * conditions_.substep(), conditions_.substep());
+        move_followers();
+    }
+
+    void turn_to_springs()
+    {
+        look_at_followers(false);
+        following_->again();
+        move_followers();
+    }
+
+    // Whether anything acts after bodies moved.
+    bool end_following()
+    {
+        if (!following_ || !following_->late()) return false;
+        look_at_followers(false);
+        following_->end();
+        move_followers();
+        return true;
+    }
+
     // Slices are prepared as late as can be, to be solved while they are in cache: but here all
     // are looked at before anything else is done.
     bool find_parting()
@@ -291,15 +380,26 @@ private:
         return rows_.inertias.empty() ? nullptr : rows_.inertias.data() + at;
     }
 
+    // The axes that a body's spin is in, by now.
+    Quat spin_axes(const SolverBody<Real>& body) const
+    {
+        return spin_frame(body, inertias_at(static_cast<std::size_t>(&body - rows_.bodies.data())));
+    }
+
     // Forces move a body with contacts and without, so that what contacts gave stays what it was.
     void pull(std::size_t at, std::size_t count)
     {
-        for (std::size_t i = at; i < at + count; ++i)
-            for (int k = 0; k < 8; ++k) {
-                const Real change = rows_.pulls[i].rate[k] * time_;
-                rows_.bodies[i].motion[k] += change;
-                rows_.bodies[i].free[k] += change;
-            }
+        for (std::size_t i = at; i < at + count; ++i) {
+            SolverBody<Real>& body = rows_.bodies[i];
+            const Real* const rate = rows_.pulls[i].rate;
+            Vec3 spin(double{rate[4]}, double{rate[5]}, double{rate[6]});
+            if (!spin.isZero(0)) spin = spin_axes(body).conjugate() * spin;
+            for (int k = 0; k < 3; ++k)
+                for (Real* const motion : {body.motion, body.free}) {
+                    motion[k] += rate[k] * time_;
+                    motion[4 + k] += static_cast<Real>(spin[k]) * time_;
+                }
+        }
     }
 
     void advance(const Slice& slice, bool shared)
@@ -332,6 +432,7 @@ private:
     }
 
     const Conditions& conditions_;
+    const RigidFacts& facts_;
     const Layout& layout_;
     const Batch& batch_;
     const RowMaker<Real>& maker_;
@@ -347,6 +448,7 @@ private:
     Visit<Real> visit_;
     bool on_faces_ = false;
     PutAside<Real> put_aside_;  // while bodies of the batch part
+    std::optional<FollowingForces> following_;
     std::vector<Pass> passes_;  // that wait to be run
 };
 
@@ -354,18 +456,19 @@ private:
 
 template <class Real>
 void solve_batch(const Conditions& conditions,
+                 const RigidFacts& facts,
                  const Layout& layout,
                  const Batch& batch,
                  const RowMaker<Real>& maker,
                  Rows<Real>& rows,
                  Parting& parting)
 {
-    Task<Real>(conditions, layout, batch, maker, rows, parting).run();
+    Task<Real>(conditions, facts, layout, batch, maker, rows, parting).run();
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void solve_batch<Real>(const Conditions&, const Layout&, const Batch&,                \
-                                    const RowMaker<Real>&, Rows<Real>&, Parting&);
+    template void solve_batch<Real>(const Conditions&, const RigidFacts&, const Layout&,           \
+                                    const Batch&, const RowMaker<Real>&, Rows<Real>&, Parting&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

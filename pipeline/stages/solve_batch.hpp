@@ -7,6 +7,7 @@
 // positions alone decide.
 #pragma once
 
+#include "kernels/motion/rigid_motion.hpp"
 #include "pipeline/stages/row_maker.hpp"
 #include "pipeline/step_data.hpp"
 
@@ -14,8 +15,11 @@ namespace throng {
 
 /// Makes the rows of a batch, solves them, moves its bodies, and gives the contacts their impulses.
 /// A wide batch uses all threads of the pool; of others, many may be solved at the same time.
+///
+///   facts  as the step began
 template <class Real>
 void solve_batch(const Conditions& conditions,
+                 const RigidFacts& facts,
                  const Layout& layout,
                  const Batch& batch,
                  const RowMaker<Real>& maker,

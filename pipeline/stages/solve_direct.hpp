@@ -5,6 +5,7 @@
 // apart in this substep, which changes places and no velocity. Friction holds in each.
 #pragma once
 
+#include "kernels/motion/rigid_motion.hpp"
 #include "pipeline/stages/row_maker.hpp"
 
 namespace throng {
@@ -15,7 +16,7 @@ struct DirectScene {
     const Conditions& conditions;
     const Layout& layout;
     const ActiveContacts& active;
-    const Masses& masses;
+    const RigidFacts& facts;  // as the step began, of the bodies of any batch not yet solved
     const Pulls& pulls;
     const RowMaker<Real>& maker;
     Poses& poses;

@@ -116,6 +116,7 @@ void solve_impulses(const Conditions& conditions,
                     const Layout& layout,
                     const ActiveContacts& active,
                     const Masses& masses,
+                    const Forces& forces,
                     const Pulls& pulls,
                     Rows<Real>& rows,
                     ConvexContacts<Real>& convex,
@@ -128,7 +129,8 @@ void solve_impulses(const Conditions& conditions,
 {
     trouble.quarantined.clear();
     const RowMaker<Real> maker(conditions, layout, active, convex, meshes, solids, rows);
-    const DirectScene<Real> direct{conditions, layout, active, masses,
+    const RigidFacts facts{forces, masses, poses, velocities};
+    const DirectScene<Real> direct{conditions, layout, active, facts,
                                    pulls,      maker,  poses,  velocities};
     start_direct(layout, rows, trouble);
     start_parting(layout, parting);
@@ -136,7 +138,7 @@ void solve_impulses(const Conditions& conditions,
         if (batch.direct)
             solve_direct(direct, batch, rows, trouble);
         else
-            solve_batch(conditions, layout, batch, maker, rows, parting);
+            solve_batch(conditions, facts, layout, batch, maker, rows, parting);
     };
     // Big islands use all threads themselves, so they go one after another.
     for (const Batch& batch : layout.batches)
@@ -171,9 +173,9 @@ void solve_impulses(const Conditions& conditions,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(                                                            \
-        const Conditions&, const Layout&, const ActiveContacts&, const Masses&, const Pulls&,      \
-        Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&, SolidContacts<Real>&, Poses&,     \
-        Velocities&, Parting&, Trouble&);
+        const Conditions&, const Layout&, const ActiveContacts&, const Masses&, const Forces&,     \
+        const Pulls&, Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,                     \
+        SolidContacts<Real>&, Poses&, Velocities&, Parting&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -9,6 +9,7 @@
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
 #include "kernels/geometry/shape_bounds.hpp"
+#include "kernels/motion/spring_limit.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/impact/impact_time.hpp"
 #include "pipeline/fast_bodies.hpp"
@@ -66,6 +67,9 @@ struct Way {
     bool slides = false;  // it touches what does not yield to it
 };
 
+// Of the longest step that springs bear, from which on who is on them is not held.
+constexpr double kSprung = 0.25;
+
 class FastSweep {
 public:
     FastSweep(const Conditions& conditions,
@@ -73,20 +77,20 @@ public:
               const Colliders& colliders,
               const Surfaces& surfaces,
               const PairFilter& filter,
+              const Forces& forces,
+              const Masses& masses,
               const Bounds& bounds,
               const Pairs& pairs,
               const BodyStates& states,
-              const Masses& masses,
               std::span<const std::uint32_t> followed,
               std::span<const std::uint32_t> on_meshes,
               Poses& poses,
               Velocities& velocities,
               FastBodies& fast)
         : settings_(conditions.settings), gravity_(conditions.gravity), shapes_(shapes),
-          colliders_(colliders), surfaces_(surfaces), filter_(filter), bounds_(bounds),
-          pairs_(pairs), states_(states), masses_(masses), followed_(followed),
-          on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
-          fast_(fast)
+          colliders_(colliders), surfaces_(surfaces), filter_(filter), forces_(forces),
+          masses_(masses), bounds_(bounds), pairs_(pairs), states_(states), followed_(followed),
+          on_meshes_(on_meshes), poses_(poses), velocities_(velocities), fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& awoken)
@@ -187,6 +191,21 @@ private:
         }
         std::sort(found_.begin(), found_.end());
         found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+        leave_out_sprung();
+    }
+
+    // Who is held while a spring's other end goes on draws the spring out. Where that would be more
+    // than it may move by in a step it is left to contacts, unless it was marked.
+    void leave_out_sprung()
+    {
+        if (forces_.groups.empty()) return;
+        std::vector<std::uint8_t> stiff(forces_.groups.size(), 0);
+        for (std::size_t i = 0; i < stiff.size(); ++i)
+            stiff[i] = settings_.dt > kSprung * longest_step(forces_, masses_, forces_.groups[i]);
+        std::erase_if(found_, [&](std::uint32_t body) {
+            const std::uint32_t group = forces_.group_of[body];
+            return group != kNobody && stiff[group] != 0 && !states_.marked_fast(body);
+        });
     }
 
     bool is_fast(std::uint32_t body) const { return fast_.flags[body] != 0; }
@@ -573,10 +592,11 @@ private:
     const Colliders& colliders_;
     const Surfaces& surfaces_;
     const PairFilter& filter_;
+    const Forces& forces_;
+    const Masses& masses_;
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;
-    const Masses& masses_;
     // Pairs whose contacts saw ahead, ascending.
     std::span<const std::uint32_t> followed_, on_meshes_;
     Poses& poses_;
@@ -600,10 +620,11 @@ void sweep_fast(const Conditions& conditions,
                 const Colliders& colliders,
                 const Surfaces& surfaces,
                 const PairFilter& filter,
+                const Forces& forces,
+                const Masses& masses,
                 const Bounds& bounds,
                 const Pairs& pairs,
                 const BodyStates& states,
-                const Masses& masses,
                 const Rest& rest,
                 const ConvexContacts<Real>& contacts,
                 const MeshContacts<Real>& on_meshes,
@@ -613,7 +634,7 @@ void sweep_fast(const Conditions& conditions,
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, surfaces, filter, bounds, pairs, states, masses,
+    FastSweep(conditions, shapes, colliders, surfaces, filter, forces, masses, bounds, pairs, states,
               contacts.followed, on_meshes.followed, poses, velocities, fast)
         .run(rest.awoken);
 }

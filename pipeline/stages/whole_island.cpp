@@ -9,6 +9,9 @@ namespace {
 // The share of the overlap that a substep takes away.
 constexpr double kPartShare = 0.5;
 constexpr int kPartTries = 3;
+// How often contacts and stiff springs take turns in a substep: each sees what the other gave the
+// time before.
+constexpr int kSpringTurns = 4;
 
 }  // namespace
 
@@ -75,7 +78,77 @@ void WholeIsland::move_freely(const Conditions& conditions, double time)
             : after_explicit_gyroscopic_torque;
         body.spin = torque(body.spin, inertia_[i], seat.turned * seat.orientation, time);
     }
+    begin_following(time);
     free_ = after_;
+}
+
+void WholeIsland::look_at_followers()
+{
+    for (Follower& follower : following_->followers()) {
+        const IslandSeat& seat = seats_[follower.at];
+        follower.pose = {seat.position + seat.moved, seat.turned * seat.orientation};
+        follower.velocity = after_[follower.at].velocity;
+        follower.spin = after_[follower.at].spin;
+    }
+}
+
+void WholeIsland::move_followers(std::vector<DirectBody>& bodies) const
+{
+    for (const Follower& follower : following_->followers()) {
+        bodies[follower.at].velocity += follower.gained;
+        bodies[follower.at].spin += follower.gained_spin;
+    }
+}
+
+void WholeIsland::begin_following(double time)
+{
+    if (!following_) return;
+    look_at_followers();
+    following_->begin(elapsed_, time);
+    move_followers(after_);
+}
+
+// False where nothing acts after bodies moved.
+bool WholeIsland::end_following()
+{
+    if (!following_ || !following_->late()) return false;
+    look_at_followers();
+    following_->end();
+    move_followers(after_);
+    return true;
+}
+
+// Contacts, and stiff springs with them.
+void WholeIsland::hold_contacts(double time)
+{
+    for (std::size_t i = 0; i < points_.size(); ++i)
+        points_[i].least = -std::max(gaps_[i], 0.0) / time;
+    solve(after_, points_);
+    if (!following_ || !following_->stiff()) return;
+    for (int turn = 1; turn < kSpringTurns; ++turn) {
+        look_at_followers();
+        following_->again();
+        move_followers(free_);
+        after_ = free_;
+        solve(after_, points_);
+    }
+}
+
+// What acts after bodies moved, contacts answer then.
+void WholeIsland::answer_late_forces(const Conditions& conditions)
+{
+    if (!end_following()) return;
+    place_points();
+    others_ = points_;
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+        others_[i].least = -std::max(gaps_[i], 0.0) / conditions.substep();
+        others_[i].impulse = others_[i].torque = Vec3::Zero();
+    }
+    solve(after_, others_);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+        points_[i].impulse += others_[i].impulse;
+        points_[i].torque += others_[i].torque;
+    }
 }
 
 void WholeIsland::solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
@@ -124,6 +197,7 @@ void WholeIsland::push_as_far_as_goes()
 
 void WholeIsland::advance(double time)
 {
+    elapsed_ += time;
     for (std::size_t i = 0; i < seats_.size(); ++i) {
         if (!seats_[i].advances) continue;
         seats_[i].moved += going_[i].velocity * time;
@@ -143,13 +217,12 @@ void WholeIsland::substep(const Conditions& conditions)
     const double time = conditions.substep();
     place_points();
     move_freely(conditions, time);
-    for (std::size_t i = 0; i < points_.size(); ++i)
-        points_[i].least = -std::max(gaps_[i], 0.0) / time;
-    solve(after_, points_);
+    hold_contacts(time);
     going_ = after_;
     part(conditions);
     if (bounce(conditions)) points_ = others_;
     advance(time);
+    answer_late_forces(conditions);
 }
 
 }  // namespace throng

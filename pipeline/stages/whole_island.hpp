@@ -3,7 +3,10 @@
 #pragma once
 
 #include "kernels/solve/direct_points.hpp"
+#include "pipeline/stages/following_forces.hpp"
 #include "pipeline/stages/solve_direct.hpp"
+
+#include <memory>
 
 namespace throng {
 
@@ -13,7 +16,8 @@ namespace throng {
 struct IslandSeat {
     std::uint32_t body = kNobody;
     bool dynamic = false, advances = false, precesses = false;
-    Quat orientation = Quat::Identity();             // as the step began
+    Vec3 position = Vec3::Zero();                    // as the step began
+    Quat orientation = Quat::Identity();             // likewise
     Vec3 pull = Vec3::Zero(), twist = Vec3::Zero();  // m/s2, rad/s2: what forces do
     Vec3 moved = Vec3::Zero();
     Quat turned = Quat::Identity();
@@ -55,6 +59,8 @@ private:
     template <class Real>
     void take_bodies(const DirectScene<Real>& scene, const Slice& slice);
     template <class Real>
+    void take_forces(const DirectScene<Real>& scene, const Slice& slice);
+    template <class Real>
     void take_contact(const DirectScene<Real>& scene, const Slice& slice, std::uint32_t place);
     template <class Real>
     void give_states(const DirectScene<Real>& scene, const Slice& slice, Rows<Real>& rows) const;
@@ -67,6 +73,13 @@ private:
     double gap_now(std::size_t at) const;
     void move_freely(const Conditions& conditions, double time);
     double approach(std::size_t point, std::span<const DirectBody> bodies) const;
+    // Forces that change as bodies go.
+    void look_at_followers();
+    void move_followers(std::vector<DirectBody>& bodies) const;
+    void begin_following(double time);
+    bool end_following();
+    void hold_contacts(double time);
+    void answer_late_forces(const Conditions& conditions);
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     // Impacts: see island_impacts.cpp.
     bool bounce(const Conditions& conditions);
@@ -107,6 +120,8 @@ private:
     std::vector<Sym3> inertia_, inverse_inertia_;            // [seats] body axes
     std::vector<std::uint32_t> pressed_;                     // [seats] touches that overlap
     std::vector<double> unearned_;                           // [touches] m, overlap without a push
+    std::unique_ptr<FollowingForces> following_;             // none: empty
+    double elapsed_ = 0;                                     // s, since the step began
     DirectSolver solver_;
     int steps_ = 0, cuts_ = 1;
     double residual_ = 0;

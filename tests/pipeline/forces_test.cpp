@@ -367,9 +367,119 @@ TEST(Pivot, RulesOutAVelocityOfItsOwn)
     EXPECT_THROW(World{scene}, std::invalid_argument);
 }
 
-TEST(Springs, ThatSwingWiderAreToldWithWhatWouldDo)
+// A crate on a smooth floor, 0.1 m along a spring; without a substep that it flies.
+double widest_swing(Scene scene, double stiffness, int steps)
+{
+    scene.gravity = Vec3(0, 0, -10);
+    add_floor(scene, 0);
+    add_crate(scene, Vec3(0.1, 0, 0.25));
+    Spring spring = spring_between(1, kNone, stiffness, 2);
+    spring.at_b = Vec3(-2, 0, 0.25);
+    scene.springs.push_back(spring);
+    World world(scene);
+    double widest = 0;
+    for (int i = 0; i < steps; ++i) {
+        world.step(1);
+        widest = std::max(widest, std::abs(world.pose(world.bodies()[1]).position.x()));
+    }
+    EXPECT_GT(world.report().contacts, 0u);
+    return widest;
+}
+
+TEST(Springs, OnWhatTouchesSomethingSwingNoWiderThanTheyBegan)
+{
+    for (const double stiffness : {1e2, 1e4, 1e6, 1e8})
+        for (const Response response : {Response::impulse, Response::penalty, Response::kinematic})
+            for (const Solver solver : {Solver::soft_step, Solver::pgs, Solver::direct}) {
+                if (response != Response::impulse && solver != Solver::soft_step) continue;
+                Scene scene = empty_scene(Integrator::semi_implicit);
+                scene.settings.response = response;
+                scene.settings.solver = solver;
+                EXPECT_LT(widest_swing(scene, stiffness, 300), 0.116)
+                    << stiffness << " N/m, response " << static_cast<int>(response) << ", solver "
+                    << static_cast<int>(solver);
+            }
+}
+
+TEST(Springs, KeepTheSwingOfWhatTouchesSomethingByEveryIntegrator)
+{
+    for (const Integrator integrator :
+         {Integrator::semi_implicit, Integrator::splitting, Integrator::rk4}) {
+        Scene scene = empty_scene(integrator);
+        EXPECT_NEAR(widest_swing(scene, 100, 1000), 0.1, 1e-3);
+    }
+}
+
+// What damps must not bear up what is at rest: the weight hangs as deep as the spring says.
+TEST(Springs, DampedOnesBearAWeightByAWall)
+{
+    for (const double stiffness : {1e3, 1e5, 1e7}) {
+        Scene scene = empty_scene(Integrator::semi_implicit);
+        scene.gravity = Vec3(0, 0, -10);
+        scene.materials.push_back({"m", 1000, 0, 0, 0});
+        scene.shapes.push_back({"wall", PlaneShape{Vec3::UnitX(), 0}});
+        scene.shapes.push_back({"crate", BoxShape{Vec3::Constant(0.1)}});
+        BodyDescription wall;
+        wall.shape = wall.material = 0;
+        wall.motion = Motion::static_;
+        scene.bodies.push_back(wall);
+        BodyDescription& crate = add_crate(scene, Vec3(0.1, 0, 0));
+        crate.force = Vec3(-5, 0, 0);
+        Spring spring = spring_between(1, kNone, stiffness, 1);
+        spring.at_b = Vec3(0.1, 0, 1);
+        spring.damping = 2 * std::sqrt(stiffness);
+        scene.springs.push_back(spring);
+        World world(scene);
+        world.step(300);
+        const BodyId id = world.bodies()[1];
+        EXPECT_NEAR(-world.pose(id).position.z() * stiffness / 10, 1, 1e-3) << stiffness;
+        EXPECT_LT(world.velocity(id).norm(), 1e-6) << stiffness;
+        EXPECT_NEAR(world.contact_force(id).x(), 5, 0.01) << stiffness;
+    }
+}
+
+// A pendulum whose side slides along a smooth wall swings as it does in the air.
+TEST(Pivot, OfWhatTouchesSomethingMakesNoEnergy)
 {
     Scene scene = empty_scene(Integrator::semi_implicit);
+    scene.gravity = Vec3(0, 0, -10);
+    scene.materials.push_back({"m", 1000, 0, 0, 0});
+    scene.shapes.push_back({"wall", PlaneShape{Vec3::UnitY(), -0.1}});
+    scene.shapes.push_back({"bar", BoxShape{Vec3(0.1, 0.1, 0.5)}});
+    BodyDescription wall;
+    wall.shape = wall.material = 0;
+    wall.motion = Motion::static_;
+    scene.bodies.push_back(wall);
+    BodyDescription& bar = add_crate(scene, Vec3(0.5, 0, 1));
+    bar.orientation = Quat(std::sqrt(0.5), 0, std::sqrt(0.5), 0);
+    bar.pivot = Vec3(0, 0, -0.5);
+    World world(scene);
+    const double first = energy(world);
+    double most = first;
+    for (int i = 0; i < 1000; ++i) {
+        world.step(1);
+        most = std::max(most, energy(world));
+    }
+    EXPECT_GT(world.report().contacts, 0u);
+    EXPECT_LT(most - first, 0.1);   // of 10 J that it swings by
+    EXPECT_GT(energy(world) - first, -0.3);
+}
+
+TEST(Springs, ByDefaultAreToldNothingOfAndHold)
+{
+    Scene scene = empty_scene(Integrator::semi_implicit);
+    add_body(scene, Vec3(1.1, 0, 0));
+    scene.springs.push_back(spring_between(0, kNone, 2e8, 1));
+    World world(scene);
+    EXPECT_TRUE(world.remarks().empty());
+    const double first = energy(world);
+    world.step(500);
+    EXPECT_NEAR(energy(world) / first, 1, 1e-6);
+}
+
+TEST(Springs, ThatSwingWiderAreToldWithWhatWouldDo)
+{
+    Scene scene = empty_scene(Integrator::splitting);
     add_body(scene, Vec3(1, 0, 0));
     scene.springs.push_back(spring_between(0, kNone, 2e6, 1));  // limit 2 ms
     World world(scene);
