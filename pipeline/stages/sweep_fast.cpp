@@ -634,16 +634,16 @@ void sweep_fast(const Conditions& conditions,
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, surfaces, filter, forces, masses, bounds, pairs, states,
-              contacts.followed, on_meshes.followed, poses, velocities, fast)
+    FastSweep(conditions, shapes, colliders, surfaces, filter, forces, masses, bounds, pairs,
+              states, contacts.followed, on_meshes.followed, poses, velocities, fast)
         .run(rest.awoken);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void sweep_fast<Real>(const Conditions&, const Shapes&, const Colliders&,             \
-                                   const PairFilter&, const Bounds&, const Pairs&,                 \
-                                   const BodyStates&, const Rest&, const ConvexContacts<Real>&,    \
-                                   const MeshContacts<Real>&, Poses&, Velocities&, FastBodies&);
+    template void sweep_fast<Real>(                                                                \
+        const Conditions&, const Shapes&, const Colliders&, const Surfaces&, const PairFilter&,    \
+        const Forces&, const Masses&, const Bounds&, const Pairs&, const BodyStates&, const Rest&, \
+        const ConvexContacts<Real>&, const MeshContacts<Real>&, Poses&, Velocities&, FastBodies&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE
