@@ -85,8 +85,12 @@ std::uint32_t put_bar(SceneParts& parts, std::uint32_t material, const Swing& sw
     return id;
 }
 
-// How deep it ever is below where it would lie, over its radius.
-double deepest(CaseBench& bench, const Swing& swing, const Settings& settings)
+struct Swung {
+    double deepest = 0;  // of its radius, below where it would lie
+    double moved = 0;    // m, the place that it turns about
+};
+
+Swung swung(CaseBench& bench, const Swing& swing, const Settings& settings)
 {
     SceneParts parts(bench.scene());
     parts.scene().settings = settings;
@@ -97,22 +101,25 @@ double deepest(CaseBench& bench, const Swing& swing, const Settings& settings)
     const std::uint32_t bar = put_bar(parts, material, swing);
     if (swing.last) put_obstacle(parts, material, swing);
     const Vec3 up = swing.frame().orientation * Vec3::UnitZ();
-    double most = 0;
+    Swung most;
     bench.run(parts.scene(), bench.brief() ? 1.0 : 3.0, [&](World& world, double) {
         const Pose pose = world.pose(world.bodies()[bar]);
         const Vec3 along = pose.orientation * Vec3::UnitZ();
         const Vec3 from = swing.pivots ? Vec3(pose * Vec3(0, 0, -kLength / 2)) : pose.position;
-        const double below = -up.dot(from - swing.frame().position) - swing.arm() * up.dot(along);
-        most = std::max(most, below);
+        const Vec3 off = from - swing.frame().position;
+        const double below = -up.dot(off) - swing.arm() * up.dot(along);
+        most.deepest = std::max(most.deepest, below / swing.radius());
+        most.moved = std::max(most.moved, off.norm());
         return true;
     });
-    return most / swing.radius();
+    return most;
 }
 
 void judge(CaseBench& bench, const Swing& swing, const std::string& how, const Settings& settings)
 {
-    bench.report(swing.name() + how, "greatest depth over the radius",
-                 deepest(bench, swing, settings), 0.5, "1");
+    const Swung most = swung(bench, swing, settings);
+    bench.report(swing.name() + how, "greatest depth over the radius", most.deepest, 0.5, "1");
+    bench.report(swing.name() + how, "what it turns about moved by", most.moved, 1e-6, "m");
 }
 
 void swing_all(CaseBench& bench, const std::string& how, const Settings& settings)
