@@ -15,13 +15,17 @@ namespace {
 
 constexpr std::size_t kBodies = 512;  // a block
 
-constexpr std::array<InnerRow, 11> solve_rows(std::string_view friction)
+// What calls for forces that change as bodies go: see following_forces.hpp.
+constexpr Set<Effect> kFollowing = {Effect::springs, Effect::attractors, Effect::pivot};
+
+constexpr std::array<InnerRow, 12> solve_rows(std::string_view friction)
 {
     return {{
         {"make_rows", {Effect::contact}, "before the first substep"},
         {"bounce", {Effect::restitution}, "as each substep begins"},
         {"add_gravity", {Effect::gravity}, "each substep"},
         {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
+        {"begin_following", kFollowing, "each substep"},
         {"warm_start", {Effect::contact}, "in the first substep"},
         {"push_contacts", {Effect::contact}, "each visit"},
         {friction, {Effect::friction}, "each visit", true},
@@ -33,7 +37,7 @@ constexpr std::array<InnerRow, 11> solve_rows(std::string_view friction)
 }
 
 // By where friction acts, then by its cone.
-constexpr std::array<InnerRow, 11> kSolveTables[2][2] = {
+constexpr std::array<InnerRow, 12> kSolveTables[2][2] = {
     {solve_rows("hold_friction"), solve_rows("hold_in_pyramid")},
     {solve_rows("hold_at_points"), solve_rows("hold_at_points_in_pyramid")}};
 
@@ -42,6 +46,7 @@ constexpr InnerRow kDirectTable[] = {
     {"place_points", {Effect::contact}, "each substep"},
     {"add_gravity", {Effect::gravity}, "each substep"},
     {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
+    {"begin_following", kFollowing, "each substep"},
     {"solve_exactly", {Effect::contact}, "each substep"},
     {"hold_friction", {Effect::friction}, "each substep", true},
     {"resist_rolling", {Effect::rolling_friction}, "each substep", true},
@@ -57,6 +62,7 @@ constexpr InnerRow kPenaltyTable[] = {
     {"place_points", {Effect::contact}, "each part of a substep"},
     {"add_gravity", {Effect::gravity}, "each part of a substep"},
     {"turn_gyroscopic", {Effect::gyroscopic}, "each part of a substep"},
+    {"begin_following", kFollowing, "each part of a substep"},
     {"push_by_forces", {Effect::contact}, "each part of a substep"},
     {"damp_sliding", {Effect::friction}, "each part of a substep", true},
     {"resist_rolling", {Effect::rolling_friction}, "each part of a substep", true},
@@ -68,6 +74,7 @@ constexpr InnerRow kKinematicTable[] = {
     {"take_islands", {Effect::contact}, "before the first substep"},
     {"add_gravity", {Effect::gravity}, "each substep"},
     {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
+    {"begin_following", kFollowing, "each substep"},
     {"stop_approach", {Effect::contact}, "each sweep of a substep"},
     {"slow_sliding", {Effect::friction}, "each sweep of a substep", true},
     {"move_bodies", {Effect::motion}, "each substep"},

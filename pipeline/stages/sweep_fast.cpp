@@ -203,7 +203,8 @@ private:
         for (std::size_t i = 0; i < stiff.size(); ++i)
             stiff[i] = settings_.dt > kSprung * longest_step(forces_, masses_, forces_.groups[i]);
         std::erase_if(found_, [&](std::uint32_t body) {
-            const std::uint32_t group = forces_.group_of[body];
+            const std::uint32_t group =
+                body < forces_.group_of.size() ? forces_.group_of[body] : kNobody;
             return group != kNobody && stiff[group] != 0 && !states_.marked_fast(body);
         });
     }

@@ -461,7 +461,7 @@ TEST(Pivot, OfWhatTouchesSomethingMakesNoEnergy)
         most = std::max(most, energy(world));
     }
     EXPECT_GT(world.report().contacts, 0u);
-    EXPECT_LT(most - first, 0.1);   // of 10 J that it swings by
+    EXPECT_LT(most - first, 0.1);  // of 10 J that it swings by
     EXPECT_GT(energy(world) - first, -0.3);
 }
 

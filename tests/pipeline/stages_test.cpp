@@ -181,8 +181,8 @@ TEST(IntegratePoses, MovesTheLoneAndLeavesTheOthersToTheSolver)
     islands.lone = {1, 2};
     Trouble trouble;
     Flights flights;
-    integrate_poses(b.conditions, islands, b.masses, b.states, {}, {}, flights, b.poses,
-                    b.velocities, trouble);
+    integrate_poses(b.conditions, islands, b.masses, b.states, {}, flights, b.poses, b.velocities,
+                    trouble);
     EXPECT_EQ(b.poses.position[0], Vec3(0, 0, 0));
     EXPECT_NEAR(b.poses.position[1].x(), 1 + 1.0 / 60, 1e-15);
     EXPECT_LT(b.poses.position[1].z(), 0);
@@ -198,8 +198,8 @@ TEST(IntegratePoses, LeavesWhatAStepCannotHoldWhereItWasAndReportsIt)
     islands.lone = {0, 1};
     Trouble trouble;
     Flights flights;
-    integrate_poses(b.conditions, islands, b.masses, b.states, {}, {}, flights, b.poses,
-                    b.velocities, trouble);
+    integrate_poses(b.conditions, islands, b.masses, b.states, {}, flights, b.poses, b.velocities,
+                    trouble);
     EXPECT_EQ(trouble.quarantined, (std::vector<std::uint32_t>{1}));
     EXPECT_EQ(b.poses.position[1], Vec3(1, 0, 0));
     quarantine_bodies(trouble, b.states, b.masses, b.velocities);

@@ -112,7 +112,8 @@ Sprung chain(int count, double stiffness, double arm, double heavy, bool hangs)
         const Vec3 off = 0.1 * any(), velocity = any();
         all.add(i % 2 == 0 ? 1 : heavy, Vec3(0.3 * i, off.y(), off.z()), velocity, any());
         const auto id = static_cast<std::uint32_t>(i);
-        SpringForce spring{id, i > 0 ? id - 1 : kNobody, arm * any(), arm * any(), stiffness, 0, 0.3};
+        SpringForce spring{id, i > 0 ? id - 1 : kNobody, arm * any(), arm * any(), stiffness, 0,
+                           0.3};
         if (i == 0) spring.at_b = Vec3(-0.3, 0, 0);
         if (i > 0 || hangs) all.forces.springs.push_back(spring);
     }
@@ -159,7 +160,7 @@ TEST(StiffSprings, KeepMomentumAndNeverGain)
             Sprung all = chain(5, stiffness, 0.05, heavy, false);
             const Vec3 momentum = all.momentum();
             const double first = all.energy();
-            for (int i = 0; i < 500; ++i) {
+            for (int i = 0; i < 150; ++i) {
                 all.step();
                 ASSERT_LT(all.energy(), first * (1 + 1e-5)) << stiffness << " N/m, step " << i;
             }
