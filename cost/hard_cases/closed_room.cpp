@@ -107,7 +107,6 @@ void case_closed_room(CaseBench& bench)
 {
     const auto finely = [](Settings& settings) { settings.precision = Precision::double_; };
     const auto plainly = [](Settings& settings) { settings.solver = Solver::pgs; };
-    const auto exactly = [](Settings& settings) { ask_exactly(settings); };
     const auto by_substeps = [](Settings& settings) { settings.substeps = 16; };
     const Vec3 far(1e5, -2e5, 3e5);
     const Quat tilt = exponential(Vec3(0.3, -0.5, 0.7));
@@ -129,9 +128,6 @@ void case_closed_room(CaseBench& bench)
         if (bench.brief()) room.time = 2;
         fly(bench, room, bench.brief() ? 27 : 500);
     }
-    // The direct solver takes islands whole, which in a crowd costs a thousand times as much.
-    fly(bench,
-        {.setting = "27 spheres, direct", .kind = Kind::spheres, .time = 2, .choose = exactly}, 27);
 }
 
 }  // namespace throng

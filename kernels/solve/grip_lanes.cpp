@@ -253,7 +253,7 @@ template <class L>
     Strike<L> strike;
     find_strike(c, rows, rows.bounces[place], visit, strike);
     if (strike.lanes == 0) return false;
-    reflect(c, rows.bounces[place], strike);
+    reflect(c, rows.bounces[place], true, strike);
     const L zero = typename L::Number(0);
     settle_slip(c);
     if (visit.rolls)

@@ -92,7 +92,9 @@ void find_strike(Contacts<L, turns>& c,
         const L mass = select(elastic > zero, lane<L>(point.mass, c.at), zero);
         strike.mass[k] = select(speed < slow, select(then < zero, mass, zero), zero);
         strikes -= strike.mass[k];
-        lasts -= select(speed * deep < at_rest, strike.mass[k], zero);
+        // What never turns rigid has no such measure.
+        const L goes = select(deep > zero, speed * deep, at_rest + at_rest);
+        lasts -= select(goes < at_rest, strike.mass[k], zero);
     }
     Real at[L::kWidth];
     strikes.store(at);
@@ -100,9 +102,13 @@ void find_strike(Contacts<L, turns>& c,
     strike.lasts = any_below_zero(lasts);
 }
 
-// Stops what strikes, and throws it back.
+// Stops what strikes, and throws it back. Of a single point the spins are told only where someone
+// asks for them.
 template <class L, bool turns>
-void reflect(Contacts<L, turns>& c, const BounceRows<typename L::Number>& bounce, Strike<L>& strike)
+void reflect(Contacts<L, turns>& c,
+             const BounceRows<typename L::Number>& bounce,
+             bool spins,
+             Strike<L>& strike)
 {
     using Real = typename L::Number;
     const L zero = Real(0), one = Real(1);
@@ -120,7 +126,7 @@ void reflect(Contacts<L, turns>& c, const BounceRows<typename L::Number>& bounce
             strike.impulse[k] = total;
             c.rel.n += c.answer(response::nn) * more;
             if constexpr (turns) {
-                if (count == 1) continue;
+                if (!spins) continue;
                 const L u = lane<L>(c.points[k].lever[0], c.at);
                 const L w = lane<L>(c.points[k].lever[1], c.at);
                 const L n1 = c.spin_answer(0, 0), n2 = c.spin_answer(1, 0);
@@ -155,7 +161,7 @@ void reflect(Contacts<L, turns>& c, const BounceRows<typename L::Number>& bounce
     const auto back = [&](L from, L stopped) { return from + (stopped - from) * scale; };
     c.rel.n = back(before.n, c.rel.n);
     if constexpr (turns) {
-        if (count == 1) return;
+        if (!spins) return;
         c.rel.w1 = back(before.w1, c.rel.w1);
         c.rel.w2 = back(before.w2, c.rel.w2);
     }

@@ -137,10 +137,11 @@ template <class L, bool turns>
     Strike<L> strike;
     find_strike(c, rows, rows.bounces[place], visit, strike);
     if (strike.lanes == 0) return false;
-    reflect(c, rows.bounces[place], strike);
+    const bool spins = c.block.points > 1 || visit.rolls;
+    reflect(c, rows.bounces[place], spins, strike);
     if (visit.grips) {
         if constexpr (turns) {
-            if (c.block.points > 1 || visit.rolls)
+            if (spins)
                 slide_points(c, visit.rolls ? rows.rollings + place : nullptr, strike);
             else
                 slide_point(c, strike);

@@ -17,6 +17,21 @@ constexpr int kSweeps = 8;
 
 }  // namespace
 
+// kg, what a change of the speed of b against a takes: the mean over those that can move, as each
+// is changed by its share whatever it weighs.
+double WholeIsland::mass_of(const DirectPoint& point) const
+{
+    double sum = 0;
+    int movers = 0;
+    const auto [a, b] = shares_of(point);
+    for (const auto& [seat, share] : {std::pair(point.a, a), std::pair(point.b, b)}) {
+        if (!(share > 0)) continue;
+        sum += share / after_[static_cast<std::size_t>(seat)].inverse_mass;
+        ++movers;
+    }
+    return movers > 0 ? sum / movers : 0;
+}
+
 // How much of a push falls to each: half, or all of it where the other cannot move.
 std::pair<double, double> WholeIsland::shares_of(const DirectPoint& point) const
 {
@@ -29,7 +44,7 @@ std::pair<double, double> WholeIsland::shares_of(const DirectPoint& point) const
 
 void WholeIsland::stop_approach(std::size_t at)
 {
-    const DirectPoint& point = points_[at];
+    DirectPoint& point = points_[at];
     const double closing = -approach(at, after_);
     if (gaps_[at] > 0 || !(closing > 0)) return;
     const auto velocity = [&](std::int32_t seat) -> Vec3 {
@@ -40,6 +55,7 @@ void WholeIsland::stop_approach(std::size_t at)
     const double fast = std::sqrt(sliding.squaredNorm());
     Vec3 change = point.normal * closing;
     if (fast > 0) change -= sliding * std::min(1.0, point.friction * closing / fast);
+    point.impulse += change * mass_of(point);
     const auto [a, b] = shares_of(point);
     if (a > 0) after_[static_cast<std::size_t>(point.a)].velocity -= a * change;
     if (b > 0) after_[static_cast<std::size_t>(point.b)].velocity += b * change;

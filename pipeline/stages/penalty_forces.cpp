@@ -1,4 +1,5 @@
-// Penalty forces: each point that overlaps is a spring with a damper, and all act at once.
+// Penalty forces: each point that overlaps is a spring with a damper, and all act at once. What
+// strikes is thrown back first, by its restitution.
 //
 // Overlap under a load is the load over the stiffness. Friction is a damper across the normal that
 // gives way at Coulomb's limit, so that what should stick creeps: a box on four corners at eight
@@ -12,6 +13,11 @@
 namespace throng {
 
 namespace {
+
+// Rounds of impacts a part of a substep; springs stop what comes in after so many.
+constexpr int kImpactRounds = 16;
+// Slower than this, of the greatest speed, nobody closes.
+constexpr double kRounding = 1e-11;
 
 // Of auto: by how many radians it swings in a substep, and the share of critical damping where
 // nothing bounces; together half of what a semi-implicit step bears.
@@ -123,10 +129,67 @@ void WholeIsland::damp_turning(DirectPoint& point, double push, std::uint32_t sh
     apply_torque(point, torque, after_);
 }
 
+// Friction of an impact, up to what it bears of the impulse that threw the point back.
+void WholeIsland::rub(std::size_t at)
+{
+    DirectPoint& point = points_[at];
+    const Vec3 between = velocity_between(point, struck_);
+    const Vec3 sliding = between - point.normal * point.normal.dot(between);
+    const double fast = std::sqrt(sliding.squaredNorm());
+    if (fast > 0 && point.friction > 0) {
+        const double sticks = 1 / ease_along(point, sliding / fast, struck_);
+        const double most = point.friction * struck_impulse_[at] / fast;
+        const Vec3 impulse = sliding * -std::min(sticks, most);
+        point.impulse += impulse;
+        apply_impulse(point, impulse, struck_);
+    }
+    const Vec3 turning = spin_between(point, struck_);
+    const double turns = std::sqrt(turning.squaredNorm());
+    if (!(turns > 0 && point.rolling > 0)) return;
+    const double ease = ease_about(point, turning / turns, struck_);
+    if (!(ease > 0)) return;
+    const Vec3 torque = turning * -std::min(1 / ease, point.rolling * struck_impulse_[at] / turns);
+    point.torque += torque;
+    apply_torque(point, torque, struck_);
+}
+
+// What comes in faster than what rests may, and touches within that time, goes by the law of
+// impacts: a spring of auto, which a few parts of a substep turn round, gives back by its damper
+// and the step more or less than restitution has it. A spring that is asked for is what it is.
+void WholeIsland::throw_back(const Conditions& conditions, double time)
+{
+    const Settings& settings = conditions.settings;
+    if (settings.penalty_stiffness > 0 || settings.penalty_damping >= 0) return;
+    // Slower than what gravity gives in two steps is resting, not bouncing.
+    double greatest = 0;
+    for (std::size_t i = 0; i < touches_.size(); ++i)
+        greatest = std::max(greatest, -approach(i, after_));
+    const double least =
+        std::max(2 * conditions.gravity.norm() * settings.dt, kRounding * greatest);
+    if (!(greatest > least)) return;
+    struck_ = after_;
+    for (int round = 0; round < kImpactRounds; ++round) {
+        touching_.clear();
+        for (std::size_t i = 0; i < touches_.size(); ++i) {
+            const double speed = approach(i, struck_);
+            if (speed < -least && gaps_[i] + speed * time < 0) touching_.push_back(i);
+        }
+        if (touching_.empty()) break;
+        struck_impulse_.assign(touches_.size(), 0);
+        reflect_in_order(least);
+        for (const std::size_t at : touching_) {
+            points_[at].impulse += points_[at].normal * struck_impulse_[at];
+            if (struck_impulse_[at] > 0) rub(at);
+        }
+    }
+    after_ = struck_;
+}
+
 // All forces are of the velocities before, so that no order of touches has a say.
 void WholeIsland::push_by_forces(const Conditions& conditions, double time)
 {
     place_points();
+    throw_back(conditions, time);
     move_freely(conditions, time);
     count_touching(conditions, 0);
     // What is too stiff for the cut, with those who came to press in the middle of a substep, gives

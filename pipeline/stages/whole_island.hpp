@@ -95,6 +95,8 @@ private:
     void count_touching(const Conditions& conditions, double ahead);
     Give give_of(std::size_t at, const Settings& settings, double time) const;
     void find_unearned(const Conditions& conditions);
+    void throw_back(const Conditions& conditions, double time);
+    void rub(std::size_t at);
     void push_by_forces(const Conditions& conditions, double time);
     void damp_sliding(DirectPoint& point, double push, std::uint32_t share);
     void damp_turning(DirectPoint& point, double push, std::uint32_t share);
@@ -102,6 +104,7 @@ private:
     void stop_approach(std::size_t at);
     void push_apart(std::size_t at, double most);
     std::pair<double, double> shares_of(const DirectPoint& point) const;
+    double mass_of(const DirectPoint& point) const;
 
     bool part(const Conditions& conditions);
     void push_as_far_as_goes();

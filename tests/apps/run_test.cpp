@@ -37,10 +37,10 @@ TEST(RunStats, HoldTheFieldsOfTheContract)
         EXPECT_NE(node, JsonDocument::kRoot) << key;
         return node;
     };
-    for (const char* key :
-         {"realtime_factor", "pairs", "contacts", "islands", "colors", "max_overlap_m",
-          "mean_overlap_m", "kinetic_energy_j", "potential_energy_j", "energy_gained_j", "energy_net_j",
-          "bodies_awake", "bodies_quarantined", "contacts_dropped", "fallbacks", "peak_rss_mb"})
+    for (const char* key : {"realtime_factor", "pairs", "contacts", "islands", "colors",
+                            "max_overlap_m", "mean_overlap_m", "kinetic_energy_j",
+                            "potential_energy_j", "energy_gained_j", "energy_net_j", "bodies_awake",
+                            "bodies_quarantined", "contacts_dropped", "fallbacks", "peak_rss_mb"})
         EXPECT_EQ(stats.kind(at(key)), JsonKind::number) << key;
     EXPECT_EQ(stats.text(at("scene")), "pile:50");
     EXPECT_EQ(stats.number(at("bodies")), 55);

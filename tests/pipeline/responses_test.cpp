@@ -163,6 +163,50 @@ TEST(Responses, PenaltyLosesLittleOfAnElasticBounce)
     EXPECT_NEAR(world.velocity(last_of(world)).z(), 5, 0.05);
 }
 
+// By stiffness and damping of auto, at any step.
+TEST(Responses, PenaltyBouncesByTheCoefficient)
+{
+    for (const double restitution : {0.0, 0.5, 1.0})
+        for (const double dt : {1.0 / 60, 1e-3}) {
+            SceneOf made = on_a_floor(Response::penalty);
+            made.scene.gravity = Vec3::Zero();
+            made.scene.materials[0].restitution = restitution;
+            made.scene.materials[0].friction = 0;
+            made.scene.settings.dt = dt;
+            made.ball(0.5, Vec3(0, 0, 1)).velocity = Vec3(0, 0, -5);
+            made.ball(0.5, Vec3(5, 0, 3)).velocity = Vec3(2, 0, 0);
+            made.ball(0.5, Vec3(7, 0, 3)).mass = 1;
+            World world(made.scene);
+            world.step(static_cast<int>(0.8 / dt));
+            const std::vector<BodyId> ids = world.bodies();
+            EXPECT_NEAR(world.velocity(ids[1]).z(), 5 * restitution, 1e-6) << restitution;
+            EXPECT_NEAR((world.velocity(ids[3]) - world.velocity(ids[2])).x(), 2 * restitution,
+                        1e-6);
+        }
+}
+
+TEST(Responses, PenaltySlowsASlidingBounceByAllThatPressesIt)
+{
+    SceneOf made = on_a_floor(Response::penalty);
+    made.scene.gravity = Vec3::Zero();
+    made.scene.materials[0].restitution = 0.8;
+    made.scene.materials[0].friction = 0.2;
+    BodyDescription& ball = made.ball(0.5, Vec3(0, 0, 1));
+    ball.velocity = Vec3(10, 0, -4);
+    World world(made.scene);
+    world.step(30);
+    EXPECT_NEAR(world.velocity(last_of(world)).x(), 10 - 1.8 * 0.2 * 4, 1e-4);
+}
+
+TEST(Responses, KinematicTellsTheForceOfItsContacts)
+{
+    SceneOf made = on_a_floor(Response::kinematic);
+    made.ball(0.5, Vec3(0, 0, 0.5)).mass = 3;
+    World world(made.scene);
+    world.step(30);
+    EXPECT_NEAR(world.contact_force(last_of(world)).z(), 3 * kGravity, 0.01 * kGravity);
+}
+
 TEST(Responses, PenaltyBeyondTheLimitIsCutAndSaid)
 {
     SceneOf made = lone_box(Response::penalty, 0);

@@ -269,7 +269,9 @@ private:
             system(i, i) += std::max(at.leak, double{0.03f});
             right[i] = -keep * (speed_of(at) + at.bias) - at.leak * at.impulse;
         }
-        const Eigen::VectorXd more = system.fullPivLu().solve(right);
+        Eigen::VectorXd more = system.fullPivLu().solve(right);
+        for (Eigen::Index i = 0; i < count; ++i)
+            if (points[static_cast<std::size_t>(i)].left) more[i] = 0;
         for (Eigen::Index i = 0; i < count; ++i)
             if (points[static_cast<std::size_t>(i)].impulse + more[i] < 0) return;
         for (Eigen::Index i = 0; i < count; ++i) {

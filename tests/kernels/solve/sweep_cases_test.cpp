@@ -117,7 +117,7 @@ TEST(SweepCases, OnlyPushingStopsWhatIsAboutToBounce)
         Visit<double> visit = visit_of_impact<double>();
         visit.push = push;
         made.sweep(solve_kernels<double>(), visit);
-        EXPECT_NEAR(made.rows.bodies[1].motion[2], push ? 0 : -3, 0.02);
+        EXPECT_NEAR(made.rows.bodies[1].motion[2], push ? 0 : -3, 0.2);
     }
 }
 
