@@ -85,6 +85,13 @@ constexpr HardCase kCases[] = {
     {"H47", "bodies made inside one another part slowly, and come to rest", case_recovery,
      Fault::float_poses},
     {"H48", "a tower stands without a touch, and what that costs", case_no_overlap, Fault::overlap},
+    {"H71", "heaps of sticks, plates and slivers fall, and make no energy", case_sticks,
+     Fault::haste},
+    {"H75", "slender bars that only turn are stopped by what they swing down on", case_slender_bars,
+     Fault::float_poses},
+    {"H80", "hulls with finely rounded rims come to rest, and sink into nothing", case_round_rims,
+     Fault::float_poses},
+    {"H81", "floors of tiles take no speed, and steps do", case_tiles, Fault::friction},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };
@@ -144,6 +151,17 @@ void round_poses(World& world)
         Pose pose = world.pose(body);
         pose.position = rounded(pose.position);
         world.set_pose(body, pose);
+    }
+}
+
+constexpr double kHaste = 1.05;
+
+void hasten(World& world)
+{
+    for (const BodyId body : world.bodies()) {
+        if (world.motion(body) != Motion::dynamic) continue;
+        world.set_velocity(body, kHaste * world.velocity(body),
+                           kHaste * world.angular_velocity(body));
     }
 }
 
@@ -216,6 +234,7 @@ void CaseBench::run(const Scene& scene,
         step_ms_ += world.report().time_ms;
         ++steps_;
         if (fault_ == Fault::float_poses) round_poses(world);
+        if (fault_ == Fault::haste) hasten(world);
         stop_where_enough();
         if (!watch(world, step * dt)) break;
     }

@@ -49,6 +49,7 @@ enum class Fault : std::uint8_t {
     stiffness,    // springs 10 % too stiff
     late,         // times of impact a hundredth too late, and touches at the start not seen
     overlap,      // bodies that may overlap, whatever was asked
+    haste,        // bodies that go 5 % faster after every step
     shrink,       // meshes a tenth too small, and all that is asked for its shared volume
 };
 

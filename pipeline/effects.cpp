@@ -39,6 +39,7 @@ constexpr Known kKnown[] = {
     {"voxel contact", true},
     {"sphere contact", true},
     {"image contact", true},
+    {"seams", true},
     {"springs", true},
     {"attractors", true},
     {"wind", true},
@@ -183,8 +184,10 @@ private:
                 // Nobody is swept who is carried from touch to touch.
                 if (how != Effect::contact)
                     found_.on.remove(Effect::fast_motion);
-                else
+                else {
                     find_surfaces();
+                    find_seams();
+                }
                 return;
             }
     }
@@ -199,6 +202,22 @@ private:
             if (shape.kind == ShapeKind::solid)
                 call(effect_of(facts_.shapes.solids[shape.index].way),
                      name(facts_.colliders.body[i]));
+        }
+    }
+    // Two colliders of what is not pushed, which may lie flush, or two of one body; planes alone
+    // have no rims.
+    void find_seams()
+    {
+        std::uint32_t unpushed = 0, rimmed = kNobody;
+        for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
+            const std::uint32_t body = facts_.colliders.body[i];
+            if (body == kNobody) continue;
+            const bool dynamic = facts_.states.dynamic(body);
+            if (dynamic && facts_.colliders.count[body] < 2) continue;
+            unpushed += dynamic ? 2 : 1;
+            if (rimmed == kNobody && facts_.colliders.shape[i].kind != ShapeKind::plane)
+                rimmed = body;
+            if (unpushed > 1 && rimmed != kNobody) return call(Effect::seams, name(rimmed));
         }
     }
     static Effect effect_of(SolidWay way)

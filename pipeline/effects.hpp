@@ -32,6 +32,7 @@ enum class Effect : std::uint8_t {
     voxel_contact,
     sphere_contact,
     image_contact,
+    seams,  // between colliders that do not move against one another
     springs,
     attractors,
     wind,

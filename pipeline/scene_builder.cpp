@@ -34,6 +34,17 @@ bool uneven(const Sym3& inertia)
     return spread > 1e-9 * size;
 }
 
+// The axis about which an inertia is all but symmetric, or zero. Moments across it that differ by a
+// fifteenth count as alike: those of a needle never differ by more than the one along it.
+Vec3 symmetry_axis_of(const Sym3& inertia)
+{
+    constexpr double kAlike = 1.0 / 32;  // the difference, of their sum
+    const PrincipalInertia principal = principal_inertia(inertia);
+    const int axis = principal.axis_of_symmetry();
+    if (principal.asymmetry(axis) > kAlike) return Vec3::Zero();
+    return principal.axes.col(axis);
+}
+
 Sym3 scaled(const Sym3& m, double by)
 {
     return {m.xx * by, m.yy * by, m.zz * by, m.xy * by, m.xz * by, m.yz * by};
@@ -271,6 +282,7 @@ void SceneBuilder::weigh(std::uint32_t body,
     put(masses.inertia, body, Sym3{});
     put(masses.inverse_inertia, body, Sym3{});
     put(masses.spins_unevenly, body, std::uint8_t{0});
+    put(masses.symmetry_axis, body, Vec3(Vec3::Zero()));
     const Vec3 natural = shape == nullptr ? Vec3(Vec3::Zero()) : shape->mass.center;
     put(state_.center, body, stated.center.value_or(natural));
     if (stated.motion != Motion::dynamic) {
@@ -304,6 +316,7 @@ void SceneBuilder::weigh(std::uint32_t body,
     const Sym3& inertia = masses.inertia[body];
     const bool principal = inertia.xy == 0 && inertia.xz == 0 && inertia.yz == 0;
     masses.spins_unevenly[body] = !uneven(inertia) ? 0 : principal ? 1 : 2;
+    if (uneven(inertia)) masses.symmetry_axis[body] = symmetry_axis_of(inertia);
 }
 
 void SceneBuilder::note_requests(std::uint32_t body, const BodyDescription& stated)
@@ -404,9 +417,9 @@ void SceneBuilder::make_room(std::size_t bodies)
     Masses& m = state_.get<Masses>();
     BodyStates& s = state_.get<BodyStates>();
     reserve(bodies, p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass,
-            m.inertia, m.inverse_inertia, m.spins_unevenly, s.kind, s.awake, s.quarantined,
-            s.quiet_time, s.bed, s.radius, s.conveys, s.fast, s.movers.dynamic, state_.center,
-            state_.generation, state_.motion);
+            m.inertia, m.inverse_inertia, m.spins_unevenly, m.symmetry_axis, s.kind, s.awake,
+            s.quarantined, s.quiet_time, s.bed, s.radius, s.conveys, s.fast, s.movers.dynamic,
+            state_.center, state_.generation, state_.motion);
     // Most bodies have one collider.
     Colliders& c = state_.get<Colliders>();
     PairFilter& filter = state_.get<PairFilter>();

@@ -68,6 +68,18 @@ void wake_touched(const Pairs&,
                   BodyStates&,
                   Rest&);
 
+/// Contacts with edges and sides of colliders that lie flush with one that bears the body end here.
+template <class Real>
+void remove_ghost_contacts(const Pairs&,
+                           const Shapes&,
+                           const Colliders&,
+                           const Bounds&,
+                           const Poses&,
+                           const Velocities&,
+                           const BodyStates&,
+                           ConvexContacts<Real>&,
+                           MeshContacts<Real>&);
+
 /// All kinds of contact into one order: those that this step has to solve.
 template <class Real>
 void gather_contacts(const Pairs&,
@@ -172,6 +184,7 @@ void sweep_fast(const Conditions&,
                 const Bounds&,
                 const Pairs&,
                 const BodyStates&,
+                const Masses&,
                 const Rest&,
                 Poses&,
                 Velocities&,

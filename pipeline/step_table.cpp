@@ -18,6 +18,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, collide_solids<Real>> ("collide_solids",    kSolidContact),
     stage<Real, wake_touched<Real>>   ("wake_touched",      {sleeping}),
     stage<Real, collide_meshes<Real>> ("collide_meshes",    {mesh_contact}),
+    stage<Real, remove_ghost_contacts<Real>>("remove_ghost_contacts", {seams}),
     stage<Real, gather_contacts<Real>>("gather_contacts",   {contact}),
     stage<Real, split_islands>        ("split_islands",     {contact}),
     stage<Real, color_rows>           ("color_rows",        {contact}),

@@ -38,6 +38,8 @@ void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
 void case_recovery(CaseBench& bench);  // H47, recovery.cpp
 
+void case_sticks(CaseBench& bench);  // H71, sticks.cpp
+
 // Bodies that are never to overlap: no_overlap.cpp.
 void bounces(CaseBench& bench);             // H15 (a), (b)
 void case_pile_of_balls(CaseBench& bench);  // H16
@@ -68,6 +70,12 @@ void compare_pair_finders(CaseBench& bench);
 void case_through_hole(CaseBench& bench);  // H43, through_hole.cpp
 void case_solid_heap(CaseBench& bench);    // H44, solid_heap.cpp
 void case_convergence(CaseBench& bench);   // H45, convergence.cpp
+
+// Scenes a step beside those above: docs/accuracy.md.
+void case_slender_bars(CaseBench& bench);  // H75, slender_bars.cpp
+void case_round_rims(CaseBench& bench);    // H80, round_rims.cpp
+// Bodies on floors of many pieces.
+void case_tiles(CaseBench& bench);  // H81, tiles.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -55,6 +55,9 @@ struct Masses {
     // 1 where principal moments differ, so that the gyroscopic term acts; 2 where, besides, the
     // body's axes are not the principal ones.
     std::vector<std::uint8_t> spins_unevenly;
+    // Of those, body axes: the one about which the inertia is all but symmetric, as of rods, discs
+    // and needles of any kind; zero where there is none.
+    std::vector<Vec3> symmetry_axis;
 };
 
 /// Velocities that the user sets before every step.

@@ -16,7 +16,8 @@ inline constexpr int kBlock = 16;
 
 /// What the solver knows of one body, in four lines of eight numbers.
 ///
-///   motion   velocity, 0, angular velocity, 0
+///   motion   velocity, 0, angular velocity, 0; the latter of what has a SpinInertia in axes that
+///            go with it (see spin_frame), so that its inertia stays what it was
 ///   drift    how far it moved since the step began (3), 1 once it ran away (see begin_substep) and
 ///            else 0, and its turn as a quaternion x, y, z, w
 ///   inertia  inverse mass, inverse inertia in world axes as of the step's beginning xx, yy, zz,
@@ -30,11 +31,16 @@ struct SolverBody {
     Real free[8];
 };
 
-/// What turning a body takes, for the gyroscopic torque: inertia in world axes as of the step's
-/// beginning as a share of its trace, xx, yy, zz, xy, xz, yz; then 1 where the torque acts; 0.
+/// What turning a body takes, for the gyroscopic torque, in world axes as of the step's beginning.
+///
+///   share  inertia as a share of its trace, xx, yy, zz, xy, xz, yz; then 1 where the torque acts;
+///   0 axis   the axis that the inertia is symmetric about (3), the moment about it as a share of
+///   that
+///          across; zeros where there is none such
 template <class Real>
 struct SpinInertia {
-    alignas(32) Real share[8];
+    alignas(64) Real share[8];
+    Real axis[8];
 };
 
 /// What forces add to a body's motion, as SolverBody::motion has it, a second.

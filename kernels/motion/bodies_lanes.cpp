@@ -98,25 +98,57 @@ V3<L> after_explicit(const Inertia<L>& inertia, const V3<L>& w, L time)
     return w - V3<L>{dot(torque, yz), dot(torque, cross(z, x)), dot(torque, cross(x, y))} * inverse;
 }
 
-// In the axes of the step's beginning, in which the inertia stays what it was.
+// What a body that is symmetric about an axis does in axes that follow it (see spin_frame): its
+// spin across goes round the axis at the rate of its spin about it, times the moment about it over
+// that across. Exact but for the sine, which comes of a quotient: it gains nothing however fast.
 template <class L>
-V3<L> gyroscopic(const V3<L>& spin,
-                 const L (&drift)[8],
-                 const L (&share)[8],
-                 const Substep<typename L::Number>& substep)
+V3<L> after_precession(const V3<L>& axis, L share, const V3<L>& w, L time)
 {
     using Real = typename L::Number;
-    const V3<L> axis{drift[4], drift[5], drift[6]};
-    const Inertia<L> inertia{share[0], share[1], share[2], share[3], share[4], share[5]};
-    const V3<L> w = turned(axis * L(Real(-1)), drift[7], spin);
+    const L about = dot(axis, w), most = Real(2);
+    const V3<L> along = axis * about, across = w - along;
+    // tan(x) of half the angle as p / q, good to a thousandth up to a right angle.
+    const L x = max(min(share * about * time * L(Real(0.5)), most), -most);
+    const L p = x * (L(Real(15)) - x * x), q = L(Real(15)) - x * x * L(Real(6));
+    const L inverse = L(Real(1)) / (q * q + p * p);
+    const L cosine = (q * q - p * p) * inverse, sine = p * q * L(Real(2)) * inverse;
+    return along + across * cosine + cross(axis, across) * sine;
+}
+
+template <class Mask, class L>
+V3<L> chosen(Mask first, const V3<L>& a, const V3<L>& b)
+{
+    return {select(first, a.x, b.x), select(first, a.y, b.y), select(first, a.z, b.z)};
+}
+
+// The SpinInertia of W bodies.
+template <class L>
+struct Spinning {
+    L share[8], axis[8];
+
+    explicit Spinning(const SpinInertia<typename L::Number>* inertias)
+    {
+        gather_8(inertias->share, 16, kInOrder, share);
+        gather_8(inertias->axis, 16, kInOrder, axis);
+    }
+    auto acts() const { return share[6] > L(typename L::Number(0)); }
+    auto symmetric() const { return axis[3] > L(typename L::Number(0)); }
+    V3<L> own_axis() const { return {axis[0], axis[1], axis[2]}; }
+};
+
+// In axes that go with the body, in which the inertia stays what it was.
+template <class L>
+V3<L> gyroscopic(const Spinning<L>& of, const V3<L>& w, const Substep<typename L::Number>& substep)
+{
+    using Real = typename L::Number;
+    const Inertia<L> inertia{of.share[0], of.share[1], of.share[2],
+                             of.share[3], of.share[4], of.share[5]};
     const L time = substep.time;
-    const V3<L> after = substep.gyroscopic == Substep<Real>::Gyroscopic::implicit
-        ? after_implicit(inertia, w, time)
-        : after_explicit(inertia, w, time);
-    const V3<L> back = turned(axis, drift[7], after);
-    const auto acts = share[6] > L(Real(0));
-    return {select(acts, back.x, spin.x), select(acts, back.y, spin.y),
-            select(acts, back.z, spin.z)};
+    if (substep.gyroscopic != Substep<Real>::Gyroscopic::implicit)
+        return chosen(of.acts(), after_explicit(inertia, w, time), w);
+    const V3<L> after = chosen(of.symmetric(), after_precession(of.own_axis(), of.axis[3], w, time),
+                               after_implicit(inertia, w, time));
+    return chosen(of.acts(), after, w);
 }
 
 template <class Real>
@@ -156,10 +188,8 @@ template <class L>
     const L falls = select(inertia[0] > zero, L(Real(1)), zero);
     for (int k = 0; k < 3; ++k) motion[k] += falls * L(substep.gravity[k]);
     if (inertias != nullptr) {
-        L drift[8], share[8];
-        gather_bodies(bodies->drift, kInOrder, drift);
-        gather_8(inertias->share, 8, kInOrder, share);
-        const V3<L> spin = gyroscopic({motion[4], motion[5], motion[6]}, drift, share, substep);
+        const V3<L> spin =
+            gyroscopic(Spinning<L>(inertias), {motion[4], motion[5], motion[6]}, substep);
         motion[4] = spin.x;
         motion[5] = spin.y;
         motion[6] = spin.z;
@@ -188,8 +218,53 @@ void small_turn(const V3<L>& turn, L squared, V3<L>& axis, L& w)
     axis = turn * scale;
 }
 
+// A rotation of W bodies as a quaternion.
+template <class L>
+struct Turn {
+    V3<L> axis;
+    L w;
+
+    Turn operator*(const Turn& q) const
+    {
+        return {q.axis * w + axis * q.w + cross(axis, q.axis), w * q.w - dot(axis, q.axis)};
+    }
+};
+
+template <class L>
+Turn<L> small_turn(const V3<L>& turn)
+{
+    Turn<L> by;
+    small_turn(turn, dot(turn, turn), by.axis, by.w);
+    return by;
+}
+
+// The shortest turn that takes one unit vector to another, applied to a third.
+template <class L>
+V3<L> turned_shortest(const V3<L>& from, const V3<L>& to, const V3<L>& v)
+{
+    using Real = typename L::Number;
+    const V3<L> axis = cross(from, to);
+    const L half = max(L(Real(1)) + dot(from, to), L(Real(1e-6)));
+    const V3<L> across = cross(axis, v);
+    return v + across + cross(axis, across) * (L(Real(1)) / half);
+}
+
+// Turned on by a vector in the axes of spin_frame().
+template <class L>
+Turn<L> turned_along(const Spinning<L>& of, const Turn<L>& before, const V3<L>& turn)
+{
+    using Real = typename L::Number;
+    const V3<L> own = of.own_axis(), now = turned(before.axis, before.w, own);
+    const V3<L> about = own * dot(own, turn), none{L(Real(0)), L(Real(0)), L(Real(0))};
+    const V3<L> across = turned_shortest(own, now, turn - about);
+    const V3<L> first = chosen(of.acts(), chosen(of.symmetric(), across, none), turn);
+    const V3<L> last = chosen(of.acts(), chosen(of.symmetric(), about, turn), none);
+    return small_turn(first) * before * small_turn(last);
+}
+
 template <class L>
 [[gnu::flatten]] L advance_lanes(SolverBody<typename L::Number>* bodies,
+                                 const SpinInertia<typename L::Number>* inertias,
                                  unsigned writes,
                                  typename L::Number time,
                                  bool turns)
@@ -206,12 +281,10 @@ template <class L>
         const L squared = dot(turn, turn);
         const auto slow = squared < L(Real(kFastTurn * kFastTurn));
         fast = select(slow, zero, one);
-        V3<L> p;
-        L pw;
-        small_turn(turn, squared, p, pw);
-        const V3<L> q{drift[4], drift[5], drift[6]};
-        const V3<L> axis = q * pw + p * drift[7] + cross(p, q);
-        const L w = pw * drift[7] - dot(p, q);
+        const Turn<L> before{{drift[4], drift[5], drift[6]}, drift[7]};
+        const auto [axis, w] = inertias == nullptr
+            ? small_turn(turn) * before
+            : turned_along(Spinning<L>(inertias), before, turn);
         const L length = sqrt(dot(axis, axis) + w * w);
         const L shrink = one / length;
         // Who does not turn keeps its very bits.
@@ -260,17 +333,22 @@ void begin_substep(SolverBody<Real>* bodies,
 }
 
 template <class Real>
-std::size_t advance(SolverBody<Real>* bodies, std::size_t count, Real time, bool turns)
+std::size_t advance(SolverBody<Real>* bodies,
+                    const SpinInertia<Real>* inertias,
+                    std::size_t count,
+                    Real time,
+                    bool turns)
 {
     using L = Lanes<Real>;
     using One = Wide<Real, 1>;
     std::size_t fast = 0;
+    const auto at = [&](std::size_t i) { return inertias == nullptr ? nullptr : inertias + i; };
     const auto tally = [&](auto lanes) {
         for (int k = 0; k < decltype(lanes)::kWidth; ++k) fast += lanes.get(k) > 0 ? 1 : 0;
     };
     for_bodies<Real>(
-        count, [&](std::size_t i) { tally(advance_lanes<L>(bodies + i, ~0u, time, turns)); },
-        [&](std::size_t i) { tally(advance_lanes<One>(bodies + i, 1u, time, turns)); });
+        count, [&](std::size_t i) { tally(advance_lanes<L>(bodies + i, at(i), ~0u, time, turns)); },
+        [&](std::size_t i) { tally(advance_lanes<One>(bodies + i, at(i), 1u, time, turns)); });
     return fast;
 }
 
@@ -282,7 +360,9 @@ template void begin_substep<double>(SolverBody<double>*,
                                     const SpinInertia<double>*,
                                     std::size_t,
                                     const Substep<double>&);
-template std::size_t advance<float>(SolverBody<float>*, std::size_t, float, bool);
-template std::size_t advance<double>(SolverBody<double>*, std::size_t, double, bool);
+template std::size_t
+advance<float>(SolverBody<float>*, const SpinInertia<float>*, std::size_t, float, bool);
+template std::size_t
+advance<double>(SolverBody<double>*, const SpinInertia<double>*, std::size_t, double, bool);
 
 }  // namespace throng::THRONG_LANES

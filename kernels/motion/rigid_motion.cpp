@@ -3,8 +3,6 @@
 #include "kernels/math/numbers.hpp"
 #include "kernels/math/rotation.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 
@@ -36,22 +34,6 @@ Vec3 dragged(const Vec3& spin, const Vec3& gained, const Mat3& z)
     return spin + slowed.inverse() * Vec3((one + 0.5 * z) * towards);
 }
 
-// By how much the moments beside a principal axis differ, of their sum.
-double asymmetry(const Vec3& moments, int axis)
-{
-    const double a = moments[(axis + 1) % 3], b = moments[(axis + 2) % 3];
-    return std::abs(a - b) / (a + b);
-}
-
-// The principal axis that comes nearest to one of symmetry.
-int axis_of_symmetry(const Vec3& moments)
-{
-    int best = 0;
-    for (int k = 1; k < 3; ++k)
-        if (asymmetry(moments, k) < asymmetry(moments, best)) best = k;
-    return best;
-}
-
 }  // namespace
 
 RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) const
@@ -69,19 +51,13 @@ RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) c
         rule_.momentum_on_pivots && body.turns && id < hangs.size() && hangs[id] != 0;
     body.ease = masses.inverse_inertia[id].matrix();
     const Sym3& inertia = masses.inertia[id];
-    body.moments = Vec3(inertia.xx, inertia.yy, inertia.zz);
-    if (masses.spins_unevenly[id] == 2) {
-        const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia.matrix());
-        body.axes = solver.eigenvectors();
-        // A left-handed set would turn the wrong way round.
-        if (body.axes.determinant() < 0) body.axes.col(0) *= -1;
-        body.moments = solver.eigenvalues();
-    }
+    body.principal = principal_inertia(inertia);
     if (body.by_momentum && !adds_rates(rule_.rotation)) {
-        const int own = axis_of_symmetry(body.moments);
-        const double beside = body.moments[(own + 1) % 3] + body.moments[(own + 2) % 3];
-        body.own_axis = body.axes.col(own);
-        body.own_share = 1 / body.moments[own] - 2 / beside;
+        const int own = body.principal.axis_of_symmetry();
+        const double beside =
+            body.principal.moments[(own + 1) % 3] + body.principal.moments[(own + 2) % 3];
+        body.own_axis = body.principal.axes.col(own);
+        body.own_share = 1 / body.principal.moments[own] - 2 / beside;
     }
     const Vec3& spin = facts_.velocities.angular[id];
     if (id < flights.memory.size()) {
@@ -455,8 +431,8 @@ void RigidMotion::turn_freely(std::size_t i, double span, double* state)
     const Mat3 now = body.by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
     const Vec3 spin = body_spin(i, now, state);
     if (!body.precesses) return turn_by(span * spin);
-    const Mat3& axes = body.axes;
-    Vec3 momentum = body.moments.cwiseProduct(Vec3(axes.transpose() * spin));
+    const Mat3& axes = body.principal.axes;
+    Vec3 momentum = body.principal.moments.cwiseProduct(Vec3(axes.transpose() * spin));
     const auto turn_about = [&](int axis, double angle) {
         const SinCos turn = sin_cos(angle);
         const int next = (axis + 1) % 3, last = (axis + 2) % 3;
@@ -465,18 +441,18 @@ void RigidMotion::turn_freely(std::size_t i, double span, double* state)
         momentum[last] = turn.cos * y - turn.sin * x;
         turn_by(angle * Vec3(axes.col(axis)));
     };
-    const int axis = axis_of_symmetry(body.moments);
-    if (asymmetry(body.moments, axis) <= 1e-9) {
-        const double across = body.moments[(axis + 1) % 3];
+    const int axis = body.principal.axis_of_symmetry();
+    if (body.principal.asymmetry(axis) <= 1e-9) {
+        const double across = body.principal.moments[(axis + 1) % 3];
         turn_by(span / across * Vec3(axes * momentum));
-        turn_about(axis, span * momentum[axis] * (1 / body.moments[axis] - 1 / across));
+        turn_about(axis, span * momentum[axis] * (1 / body.principal.moments[axis] - 1 / across));
     } else {
         constexpr int kOrder[] = {0, 1, 2, 1, 0};
         for (const int k : kOrder)
-            turn_about(k, (k == 2 ? 1 : 0.5) * span * momentum[k] / body.moments[k]);
+            turn_about(k, (k == 2 ? 1 : 0.5) * span * momentum[k] / body.principal.moments[k]);
     }
     if (!body.by_momentum)
-        put(axes * Vec3(momentum.cwiseQuotient(body.moments)), state + speed_of(i) + 3);
+        put(axes * Vec3(momentum.cwiseQuotient(body.principal.moments)), state + speed_of(i) + 3);
 }
 
 void RigidMotion::coast(double span, double* state)

@@ -14,6 +14,7 @@
 
 #include "kernels/data/bodies.hpp"
 #include "kernels/data/forces.hpp"
+#include "kernels/geometry/mass.hpp"
 #include "kernels/motion/integrators.hpp"
 #include "kernels/motion/orientation.hpp"
 
@@ -87,9 +88,8 @@ private:
         std::uint32_t body = 0;
         bool turns = false, precesses = false, by_momentum = false;
         double inverse_mass = 0;
-        Mat3 ease = Mat3::Zero();        // inverse inertia
-        Mat3 axes = Mat3::Identity();    // principal ones, as columns
-        Vec3 moments = Vec3::Zero();     // about them
+        Mat3 ease = Mat3::Zero();  // inverse inertia
+        PrincipalInertia principal;
         Vec3 own_axis = Vec3::Zero();    // that of the angle, in body axes
         double own_share = 0;            // the angle's rate over momentum about it, 1 / (kg m2)
         Vec3 spin = Vec3::Zero();        // as taken up: the speeds it begins with

@@ -8,10 +8,25 @@
 
 namespace throng {
 
+/// The axes, as a turn since the step began, in which the solver has a body's angular velocity.
+///
+/// Contacts are solved with the inertia that bodies had when the step began. Of what turns equally
+/// easily about any axis that is always right. Of a needle it is not: a spin about its length that
+/// stayed behind as it tips over would become tumbling, with all the energy that its greater moment
+/// makes of it. So what has a SpinInertia has its spin in axes that go with it, in which its
+/// inertia stays the same: the body's own or, where that is symmetric about an axis, those that
+/// follow this axis on the shortest way and do not take part in the spin about it.
+///
+///   inertia  null: the body has none, and the axes are those of the world
+template <class Real>
+Quat spin_frame(const SolverBody<Real>& body, const SpinInertia<Real>* inertia);
+
 /// Turns the bodies that turn by kFastTurn and more in a time, and no other: the exponential map,
 /// exact for a constant angular velocity. The wide kernels turn the rest.
+///
+///   inertias  [bodies], or null
 template <class Real>
-void turn_fast(std::span<SolverBody<Real>> bodies, Real time);
+void turn_fast(std::span<SolverBody<Real>> bodies, const SpinInertia<Real>* inertias, Real time);
 
 /// True for a body that begin_substep() stopped because its velocity could not be held.
 template <class Real>

@@ -159,9 +159,27 @@ void fill_friction(ContactBlock<typename L::Number>& block, int at)
     mass.sliding_answer.store(block.sliding_answer.at + at);
 }
 
+// How a body gives way by turning to a push along the normal, and by how much of that counts: none
+// where the arm all but lies along the normal. Told by the arm alone: a needle, which turns so
+// easily about its own axis, has levers all the same.
+template <class L>
+struct Turning {
+    V3<L> torque;
+    L answer, by_lever;
+
+    Turning(const Mobility<L, true>& how, const V3<L>& arm, const V3<L>& normal)
+        : torque(cross(arm, normal)), answer(dot(torque, how.turned_by(torque)))
+    {
+        using Real = typename L::Number;
+        constexpr Real kLever = Real(1e-2);  // of the arm
+        const auto has_lever = dot(torque, torque) > dot(arm, arm) * L(kLever * kLever);
+        by_lever = select(has_lever, answer, L(Real(0)));
+    }
+};
+
 // The effective mass of a point along the normal. Where neither body can be moved, only turned, a
 // point next to below the center has no lever to speak of: pushed there, a body would spin without
-// end and part by nothing.
+// end and part by nothing. Half of what it gives way or more has to come by levers.
 template <class L, bool turns>
 L normal_mass(const Mobility<L, turns>& a,
               const Mobility<L, turns>& b,
@@ -171,15 +189,15 @@ L normal_mass(const Mobility<L, turns>& a,
 {
     using Real = typename L::Number;
     const L mass = a.inverse_mass + b.inverse_mass;
-    if constexpr (!turns) return inverse_or_zero(mass);
-    const V3<L> torque_a = cross(arm_a, normal), torque_b = cross(arm_b, normal);
-    const L answer =
-        mass + dot(torque_a, a.turned_by(torque_a)) + dot(torque_b, b.turned_by(torque_b));
-    constexpr Real kLever = Real(1e-2);  // of the arm
-    const L most =
-        (a.xx + a.yy + a.zz) * dot(arm_a, arm_a) + (b.xx + b.yy + b.zz) * dot(arm_b, arm_b);
-    const L least = select(mass > L(Real(0)), L(Real(0)), L(kLever * kLever) * most);
-    return select(answer > least, L(Real(1)) / answer, L(Real(0)));
+    if constexpr (!turns) {
+        return inverse_or_zero(mass);
+    } else {
+        const Turning<L> of_a(a, arm_a, normal), of_b(b, arm_b, normal);
+        const L answer = mass + of_a.answer + of_b.answer;
+        const L by_levers = of_a.by_lever + of_b.by_lever;
+        const L counts = select(mass > L(Real(0)), answer, by_levers + by_levers);
+        return inverse_or_zero(select(counts < answer, L(Real(0)), answer));
+    }
 }
 
 // The friction that carried over, within the cone of the impulses that did.

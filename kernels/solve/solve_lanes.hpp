@@ -19,7 +19,11 @@ void begin_substep(SolverBody<Real>* bodies,
                    const Substep<Real>& substep);
 
 template <class Real>
-std::size_t advance(SolverBody<Real>* bodies, std::size_t count, Real time, bool turns);
+std::size_t advance(SolverBody<Real>* bodies,
+                    const SpinInertia<Real>* inertias,
+                    std::size_t count,
+                    Real time,
+                    bool turns);
 
 template <class Real>
 void warm_start_grips(const RowsView<Real>& rows,

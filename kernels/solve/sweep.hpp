@@ -131,7 +131,11 @@ struct SolveKernels {
                           const SpinInertia<Real>* inertias,
                           std::size_t count,
                           const Substep<Real>& substep);
-    std::size_t (*advance)(SolverBody<Real>* bodies, std::size_t count, Real time, bool turns);
+    std::size_t (*advance)(SolverBody<Real>* bodies,
+                           const SpinInertia<Real>* inertias,
+                           std::size_t count,
+                           Real time,
+                           bool turns);
     void (*warm_start_grips)(const RowsView<Real>& rows,
                              std::size_t begin,
                              std::size_t end,

@@ -50,7 +50,7 @@ public:
             std::size_t at = active_.begin[block];
             Surfaces::Meeting meeting;
             for (std::size_t i = begin; i < end; ++i)
-                if (const Contact<Real>* contact = convex.at(i))
+                if (const Contact<Real>* contact = convex.at(i); contact && contact->count > 0)
                     at +=
                         take(i, *contact, convex.of_pair[i].contact, ContactList::convex, meetings,
                              active_.entries[at], kInAllDigits ? active_.meetings[at] : meeting)

@@ -45,6 +45,12 @@ void seat_inertia(std::uint32_t body,
     const double numbers[6] = {six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
     for (int k = 0; k < 6; ++k) seat.share[k] = static_cast<Real>(numbers[k] / trace);
     seat.share[6] = 1;
+    const Vec3& own = masses.symmetry_axis[body];
+    if (own.isZero(0)) return;
+    const Vec3 axis = poses.orientation[body] * own;
+    const double about = own.dot(Vec3(masses.inertia[body].matrix() * own));
+    for (int k = 0; k < 3; ++k) seat.axis[k] = static_cast<Real>(axis[k]);
+    seat.axis[3] = static_cast<Real>(2 * about / (trace - about));
 }
 
 template <class Real>

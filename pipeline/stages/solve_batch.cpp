@@ -270,11 +270,14 @@ private:
                 ? Substep<Real>::Gyroscopic::implicit
                 : Substep<Real>::Gyroscopic::direct;
         for_bodies(slice, shared, [&](std::size_t at, std::size_t count) {
-            kernels_.begin_substep(rows_.bodies.data() + at,
-                                   rows_.inertias.empty() ? nullptr : rows_.inertias.data() + at,
-                                   count, substep);
+            kernels_.begin_substep(rows_.bodies.data() + at, inertias_at(at), count, substep);
             if (!rows_.pulls.empty()) pull(at, count);
         });
+    }
+
+    const SpinInertia<Real>* inertias_at(std::size_t at) const
+    {
+        return rows_.inertias.empty() ? nullptr : rows_.inertias.data() + at;
     }
 
     // Forces move a body with contacts and without, so that what contacts gave stays what it was.
@@ -292,8 +295,9 @@ private:
     {
         for_bodies(slice, shared, [&](std::size_t at, std::size_t count) {
             const auto bodies = std::span(rows_.bodies).subspan(at, count);
-            if (kernels_.advance(bodies.data(), count, time_, visit_.turns) > 0)
-                turn_fast(bodies, time_);
+            const SpinInertia<Real>* const inertias = inertias_at(at);
+            if (kernels_.advance(bodies.data(), inertias, count, time_, visit_.turns) > 0)
+                turn_fast(bodies, inertias, time_);
         });
     }
 

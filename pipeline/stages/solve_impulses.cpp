@@ -78,13 +78,16 @@ constexpr InnerRow kKinematicTable[] = {
 // Gives one body its new state. False, and the body as it was, when that is not sound.
 template <class Real>
 bool take_back(const SolverBody<Real>& seat,
+               const SpinInertia<Real>* inertia,
                std::uint32_t body,
                Poses& poses,
                Velocities& velocities)
 {
     const Vec3 moved(double{seat.drift[0]}, double{seat.drift[1]}, double{seat.drift[2]});
     const Vec3 v(double{seat.motion[0]}, double{seat.motion[1]}, double{seat.motion[2]});
-    const Vec3 w(double{seat.motion[4]}, double{seat.motion[5]}, double{seat.motion[6]});
+    const Vec3 spin(double{seat.motion[4]}, double{seat.motion[5]}, double{seat.motion[6]});
+    const bool goes_along = inertia != nullptr && inertia->share[6] > 0;
+    const Vec3 w = goes_along ? spin_frame(seat, inertia) * spin : spin;
     const Vec3 position = poses.position[body] + moved;
     Quat orientation = turn_of(seat) * poses.orientation[body];
     const double length = std::sqrt(orientation.squaredNorm());
@@ -156,7 +159,10 @@ void solve_impulses(const Conditions& conditions,
             using Settled = typename Rows<Real>::Settled;
             const Settled settled = rows.settled.empty() ? Settled::no : rows.settled[slot];
             if (settled == Settled::yes) continue;
-            if (settled == Settled::lost || !take_back(rows.bodies[slot], body, poses, velocities))
+            const SpinInertia<Real>* const inertia =
+                rows.inertias.empty() ? nullptr : &rows.inertias[slot];
+            if (settled == Settled::lost
+                || !take_back(rows.bodies[slot], inertia, body, poses, velocities))
                 trouble.of_block[block].push_back(body);
         }
     });

@@ -38,6 +38,10 @@ constexpr double kNever = 2;             // later than the step
 // one in by more than a tenth.
 constexpr double kScales[] = {0.9, 0.6, 0.3, 0.1};
 
+// What a sliding one may meet with no more than this share of its smallest half extent, it is not
+// held by.
+constexpr double kSkin = 0.1;
+
 // The first of these scales for one that contacts look ahead of: they will have held it.
 constexpr std::size_t kHeldAhead = 1;
 
@@ -56,7 +60,8 @@ struct Way {
     std::uint32_t rides = kNobody;  // on this body
     double since = 0;               // 0 to 1, when it was held
     bool fast = false, held = false;
-    bool ahead = false;  // of contacts: those that it may come to were not looked for
+    bool ahead = false;   // of contacts: those that it may come to were not looked for
+    bool slides = false;  // it touches what does not yield to it
 };
 
 class FastSweep {
@@ -68,12 +73,13 @@ public:
               const Bounds& bounds,
               const Pairs& pairs,
               const BodyStates& states,
+              const Masses& masses,
               Poses& poses,
               Velocities& velocities,
               FastBodies& fast)
         : settings_(conditions.settings), gravity_(conditions.gravity), shapes_(shapes),
           colliders_(colliders), filter_(filter), bounds_(bounds), pairs_(pairs), states_(states),
-          poses_(poses), velocities_(velocities), fast_(fast)
+          masses_(masses), poses_(poses), velocities_(velocities), fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& awoken)
@@ -89,6 +95,10 @@ public:
         find_ways();
         for_each_block(candidates_.size(), kPairs, [&](auto begin, auto end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) ask(candidates_[i], 0);
+        });
+        note_sliding();
+        for_each_block(candidates_.size(), kPairs, [&](auto begin, auto end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) leave_to_contact(candidates_[i], 0);
         });
         hold_all();
     }
@@ -295,14 +305,19 @@ private:
         return inner;
     }
 
+    ImpactRule rule_of(PairKey key) const
+    {
+        const double size =
+            impact_size(shapes_, colliders_.shape[first_of(key)], colliders_.shape[second_of(key)]);
+        return impact_rule(settings_.toi_method, settings_.toi_tolerance * size);
+    }
+
     // When two meet next. Of those that touch already contact takes care.
     void ask(Candidate& candidate, double since)
     {
         candidate.time = kNever;
         const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
-        const ShapeRef shape_a = colliders_.shape[a], shape_b = colliders_.shape[b];
-        const ImpactRule rule = impact_rule(
-            settings_.toi_method, settings_.toi_tolerance * impact_size(shapes_, shape_a, shape_b));
+        const ImpactRule rule = rule_of(candidate.key);
         const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
         const bool ahead = way_a.ahead || way_b.ahead;
         Impact impact;
@@ -322,6 +337,39 @@ private:
         if (impact.meeting != Meeting::meet) return;
         candidate.time = impact.time;
         candidate.normal = impact.normal;
+    }
+
+    // Who touches from the start what is not dynamic.
+    void note_sliding()
+    {
+        for (const Candidate& candidate : candidates_) {
+            if (!candidate.pressed) continue;
+            Way& a = way_of(colliders_.body[first_of(candidate.key)]);
+            Way& b = way_of(colliders_.body[second_of(candidate.key)]);
+            a.slides = a.slides || !states_.dynamic(b.body);
+            b.slides = b.slides || !states_.dynamic(a.body);
+        }
+    }
+
+    // What slides is a little deep in what bears it, and all but its skin clears a rim that lies
+    // flush with that: not held there, but left to contact, which knows both.
+    void leave_to_contact(Candidate& candidate, double since)
+    {
+        if (candidate.time == kNever || candidate.pressed) return;
+        const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
+        const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
+        const bool of_a = way_a.slides && !states_.dynamic(way_b.body);
+        const bool of_b = way_b.slides && !states_.dynamic(way_a.body);
+        if (!of_a && !of_b) return;
+        const std::uint32_t at = of_a ? a : b, other = of_a ? b : a;
+        const ShapeKind kind = colliders_.shape[at].kind;
+        if (kind == ShapeKind::hull || kind == ShapeKind::solid || kind == ShapeKind::mesh) return;
+        const double skin =
+            kSkin * colliders_.inner_extent[at] / outer_radius(shapes_, colliders_.shape[at]);
+        const ImpactRule rule = rule_of(candidate.key);
+        const Impact impact =
+            impact_time(shapes_, smaller(at, 1 - skin), moving(other), since, 1, rule);
+        if (impact.meeting == Meeting::none) candidate.time = kNever;
     }
 
     static Pose pose_on(const Way& way, double time) { return way.sweep.at(time) * way.attached; }
@@ -462,6 +510,7 @@ private:
                     const std::uint32_t other = in_way_.candidates[k];
                     if (other == which) continue;
                     ask(candidates_[other], time);
+                    leave_to_contact(candidates_[other], time);
                     await(other);
                 }
             }
@@ -471,7 +520,11 @@ private:
             const Pose end = pose_on(way, 1);
             if (way.sweep.still()) take_back_fall(way.body, end.position);
             poses_.position[way.body] = end.position;
-            poses_.orientation[way.body] = end.orientation.normalized();
+            const Quat held = end.orientation.normalized();
+            if (masses_.spins_unevenly[way.body] != 0)
+                velocities_.angular[way.body] = held
+                    * (poses_.orientation[way.body].conjugate() * velocities_.angular[way.body]);
+            poses_.orientation[way.body] = held;
             fast_.held.push_back(way.body);
         }
     }
@@ -484,6 +537,7 @@ private:
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;
+    const Masses& masses_;
     Poses& poses_;
     Velocities& velocities_;
     FastBodies& fast_;
@@ -506,6 +560,7 @@ void sweep_fast(const Conditions& conditions,
                 const Bounds& bounds,
                 const Pairs& pairs,
                 const BodyStates& states,
+                const Masses& masses,
                 const Rest& rest,
                 Poses& poses,
                 Velocities& velocities,
@@ -513,7 +568,8 @@ void sweep_fast(const Conditions& conditions,
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, poses, velocities, fast)
+    FastSweep(conditions, shapes, colliders, filter, bounds, pairs, states, masses, poses,
+              velocities, fast)
         .run(rest.awoken);
 }
 

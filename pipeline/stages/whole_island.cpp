@@ -127,7 +127,12 @@ void WholeIsland::advance(double time)
     for (std::size_t i = 0; i < seats_.size(); ++i) {
         if (!seats_[i].advances) continue;
         seats_[i].moved += going_[i].velocity * time;
-        seats_[i].turned = exponential(going_[i].spin * time) * seats_[i].turned;
+        const Quat turn = exponential(going_[i].spin * time);
+        seats_[i].turned = turn * seats_[i].turned;
+        // Turned otherwise than it spins, it keeps the spin that it has in its own axes: of a
+        // needle whose spin stayed where it was a share would become tumbling.
+        if (seats_[i].precesses && after_[i].spin != going_[i].spin)
+            after_[i].spin = turn * after_[i].spin;
     }
 }
 

@@ -168,6 +168,69 @@ TEST(ConvexPlane, SunkenCardIsHeldAtAllFourCornersOfItsSide)
     }
 }
 
+// A drum whose rims are rounded in steps of a sixteenth of a quarter turn; its first ring is the
+// lower flat end's.
+Hull rounded_drum(double radius, double rim, std::size_t around)
+{
+    std::vector<Vec3> points;
+    constexpr int kSteps = 16;
+    for (const int end : {-1, 1})
+        for (int i = 0; i <= kSteps; ++i)
+            for (std::size_t k = 0; k < around; ++k) {
+                const double steep = std::acos(0.0) * i / kSteps;
+                const double at =
+                    4 * std::acos(0.0) * static_cast<double>(k) / static_cast<double>(around);
+                const double wide = radius - rim * (1 - std::sin(steep));
+                points.emplace_back(wide * std::cos(at), wide * std::sin(at),
+                                    end * (radius - rim * (1 - std::cos(steep))));
+            }
+    return build_hull(points).hull;
+}
+
+// However far it looks round, and however deep it has sunk: the many corners a hair above the
+// lowest do not take the place of those that bear it.
+TEST(ConvexPlane, FinelyRoundedDrumStandsOnItsFlatEnd)
+{
+    for (const double radius : {2.5e-3, 0.5, 25.0}) {
+        Shapes shapes = some_shapes();
+        shapes.hulls[0] = rounded_drum(radius, 0.1 * radius, 32);
+        for (const double reach : {0.02, 0.5, 3.0})
+            for (const double sunk : {-0.01, 1e-5, 0.01}) {
+                const Pose drum = {Vec3(1, 2, 0.25 + (1 - sunk) * radius),
+                                   turn_about(Vec3(0.6, 0.8, 0), 1e-6)};
+                PairCache cache;
+                LocalManifold<double> manifold;
+                collide<double>(shapes, kHull, kPlane, inverse_of(drum), reach * radius, cache,
+                                manifold);
+                ASSERT_EQ(manifold.count, 4) << radius << ' ' << reach << ' ' << sunk;
+                for (std::size_t i = 0; i < 4; ++i)
+                    EXPECT_NEAR(manifold.points[i].separation, -sunk * radius, 1e-5 * radius);
+                EXPECT_GT(area_of(manifold), 1.8 * std::pow(0.9 * radius, 2));
+            }
+    }
+}
+
+// It comes down on one side of its rim: the other is held as well, before it falls through.
+TEST(ConvexPlane, DrumThatTipsIsHeldOnEitherSideOfItsMiddle)
+{
+    Shapes shapes = some_shapes();
+    shapes.hulls[0] = rounded_drum(0.5, 0.05, 32);
+    for (const double tilt : {0.01, 0.03, 0.06}) {
+        const Pose drum = {Vec3(1, 2, 0.25 + 0.5 + 0.45 * tilt), turn_about(Vec3(0, 1, 0), tilt)};
+        PairCache cache;
+        LocalManifold<double> manifold;
+        collide<double>(shapes, kHull, kPlane, inverse_of(drum), 2 * tilt, cache, manifold);
+        double first = 0, last = 0;
+        for (int i = 0; i < manifold.count; ++i) {
+            const double x = manifold.points[static_cast<std::size_t>(i)].position.x();
+            first = std::min(first, x);
+            last = std::max(last, x);
+        }
+        EXPECT_LT(first, -0.4) << tilt;
+        EXPECT_GT(last, 0.4) << tilt;
+    }
+}
+
 TEST(SpherePairs, CenterInsideLeavesByTheNearestWay)
 {
     const LocalManifold<double> box = meet(kSphere, kBox, {Vec3(0.1, 0, -0.2), Quat::Identity()});

@@ -31,7 +31,8 @@ struct Top {
     {
         body.inertia[0] = 1;
         for (int k = 0; k < 4; ++k) body.drift[4 + k] = static_cast<Real>(turn.coeffs()[k]);
-        for (int k = 0; k < 3; ++k) body.motion[4 + k] = static_cast<Real>(w[k]);
+        const Vec3 along = turn.conjugate() * w;
+        for (int k = 0; k < 3; ++k) body.motion[4 + k] = static_cast<Real>(along[k]);
         const Sym3 six = in_world_axes(local, start);
         const double trace = six.xx + six.yy + six.zz;
         const double numbers[6] = {six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
@@ -43,7 +44,8 @@ struct Top {
     }
     Vec3 after() const
     {
-        return {double{body.motion[4]}, double{body.motion[5]}, double{body.motion[6]}};
+        return spin_frame(body, &inertia)
+            * Vec3(double{body.motion[4]}, double{body.motion[5]}, double{body.motion[6]});
     }
     double energy(const Vec3& w) const
     {

@@ -37,8 +37,8 @@ template <class Real>
 std::size_t advance(std::vector<SolverBody<Real>>& bodies, Real time, bool turns = true)
 {
     const std::size_t fast =
-        solve_kernels<Real>().advance(bodies.data(), bodies.size(), time, turns);
-    if (fast > 0) turn_fast<Real>(bodies, time);
+        solve_kernels<Real>().advance(bodies.data(), nullptr, bodies.size(), time, turns);
+    if (fast > 0) turn_fast<Real>(bodies, nullptr, time);
     return fast;
 }
 

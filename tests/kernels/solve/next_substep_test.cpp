@@ -24,7 +24,8 @@ struct Heap {
         for (std::size_t i = 0; i < count; ++i) {
             rows.bodies.push_back(given::random_body<Real>(random));
             positions.push_back(given::random_vector(random, 0.5));
-            inertias.push_back({{Real(0.3), Real(0.2), Real(0.5), 0, 0, 0, 1, 0}});
+            inertias.push_back({{Real(0.3), Real(0.2), Real(0.5), 0, 0, 0, 1, 0}, {}});
+            if (i % 2 == 0) inertias.back().axis[2] = inertias.back().axis[3] = 1;
         }
         // A still one and one that moves by itself.
         for (Real& number : rows.bodies[0].motion) number = 0;
@@ -102,7 +103,8 @@ struct Heap {
     }
     void advance(Real time)
     {
-        solve_kernels<Real>().advance(rows.bodies.data(), rows.bodies.size(), time, visit.turns);
+        solve_kernels<Real>().advance(rows.bodies.data(), inertias.data(), rows.bodies.size(), time,
+                                      visit.turns);
     }
 };
 

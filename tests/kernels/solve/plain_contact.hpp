@@ -202,14 +202,19 @@ private:
             - cross(arm_a) * a.inverse_inertia * cross(arm_a)
             - cross(arm_b) * b.inverse_inertia * cross(arm_b);
     }
-    // None where neither body can be moved and the point has no lever to turn one by.
+    // None where neither body can be moved and the point has no lever to turn one by: at least half
+    // of what it gives way has to come by arms that lie a hundredth aside of the normal.
     double mass_of(const Point& point) const
     {
         const double answer = normal.dot(response(point.arm_a, point.arm_b) * normal);
-        const double reach = a.inverse_inertia.trace() * point.arm_a.squaredNorm()
-            + b.inverse_inertia.trace() * point.arm_b.squaredNorm();
-        if (a.inverse_mass + b.inverse_mass == 0 && answer <= 1e-4 * reach) return 0;
-        return 1 / answer;
+        if (a.inverse_mass + b.inverse_mass > 0) return 1 / answer;
+        double by_levers = 0;
+        for (const auto& [body, arm] : {std::pair(&a, point.arm_a), std::pair(&b, point.arm_b)}) {
+            const Vec3 torque = arm.cross(normal);
+            if (torque.norm() > 1e-2 * arm.norm())
+                by_levers += torque.dot(body->inverse_inertia * torque);
+        }
+        return 2 * by_levers < answer || answer == 0 ? 0 : 1 / answer;
     }
     void aim(Point& point, const PlainVisit& visit, int overlapping) const
     {

@@ -1,0 +1,169 @@
+// Floors of tiles: H81.
+//
+// Answers: a smooth floor takes no speed, whatever it is laid of; with friction a box slides
+// v^2 / (2 mu g), as on one piece. A tile that stands out is a step: it is met.
+#include "cost/hard_cases/hard_cases.hpp"
+#include "kernels/math/rotation.hpp"
+#include "pipeline/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr double kSpeed = 8;
+const Vec3 kTile(0.5, 0.5, 0.25);  // half extents
+
+enum class Floor { boxes, hulls, meshes, compound };
+
+// How a floor is laid, and where.
+struct Laid {
+    Floor of = Floor::boxes;
+    double gap = 0, step = 0;  // m, between tiles; that those from the fourth on stand higher by
+    Pose at;
+    bool backwards = false;  // the slider is made first, and the far tiles before the near ones
+};
+
+HullShape tile_hull()
+{
+    HullShape hull;
+    for (const double x : {-1.0, 1.0})
+        for (const double y : {-1.0, 1.0})
+            for (const double z : {-1.0, 1.0})
+                hull.points.push_back(kTile.cwiseProduct(Vec3(x, y, z)));
+    return hull;
+}
+
+// Its top alone.
+MeshShape tile_mesh()
+{
+    MeshShape mesh;
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+        mesh.vertices.push_back(kTile.cwiseProduct(Vec3(x, y, 1)));
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+std::vector<Pose> places_of(const Laid& laid, int tiles)
+{
+    std::vector<Pose> places;
+    for (int i = -2; i < tiles; ++i)
+        for (int j = -1; j <= 1; ++j) {
+            Pose place;
+            const double high = i < 4 ? 0 : laid.step;
+            place.position = Vec3(i * (1 + laid.gap), j * (1 + laid.gap), high - kTile.z());
+            places.push_back(place);
+        }
+    if (laid.backwards) std::reverse(places.begin(), places.end());
+    return places;
+}
+
+void lay_floor(Scene& scene, const Laid& laid, int tiles)
+{
+    const auto shape = [&](auto kind) {
+        scene.shapes.push_back({"tile" + std::to_string(scene.shapes.size()), std::move(kind)});
+        return static_cast<std::uint32_t>(scene.shapes.size() - 1);
+    };
+    BodyDescription body;
+    body.motion = Motion::static_;
+    body.material = 0;
+    body.shape = laid.of == Floor::hulls ? shape(tile_hull())
+        : laid.of == Floor::meshes       ? shape(tile_mesh())
+                                         : shape(BoxShape{kTile});
+    const std::vector<Pose> places = places_of(laid, tiles);
+    if (laid.of == Floor::compound) {
+        CompoundShape whole;
+        for (const Pose& place : places) whole.parts.push_back({body.shape, place});
+        body.shape = shape(std::move(whole));
+    }
+    for (const Pose& place : laid.of == Floor::compound ? std::vector<Pose>{Pose{}} : places) {
+        const Pose placed = laid.at * place;
+        body.position = placed.position;
+        body.orientation = placed.orientation;
+        scene.bodies.push_back(body);
+    }
+}
+
+Scene tiled(const CaseBench& bench, const Laid& laid, bool ball, double friction, int tiles)
+{
+    SceneParts parts(bench.scene());
+    const std::uint32_t material = parts.material(friction);
+    if (!laid.backwards) lay_floor(parts.scene(), laid, tiles);
+    const Pose at = laid.at * Pose{Vec3(0, 0.13, ball ? 0.5 : 0.25), Quat::Identity()};
+    const std::uint32_t slider = ball ? parts.ball(material, 1, 0.5, at.position)
+                                      : parts.box(material, 1, Vec3::Constant(0.25), at);
+    parts.body(slider).velocity = laid.at.orientation * Vec3(kSpeed, 0, 0);
+    if (laid.backwards) lay_floor(parts.scene(), laid, tiles);
+    parts.scene().gravity = laid.at.orientation * Vec3(0, 0, -kGravity);
+    parts.scene().settings.sleep = false;
+    return parts.scene();
+}
+
+// Where the slider is on the floor, and how fast along it, after a time.
+struct Slid {
+    double way = 0, speed = 0;
+};
+
+Slid slide(CaseBench& bench, const Scene& scene, const Laid& laid, double seconds)
+{
+    Slid seen;
+    bench.run(scene, seconds, [&](World& world, double) {
+        const BodyId id = laid.backwards ? world.bodies().front() : world.bodies().back();
+        seen.way = laid.at.to_local(world.pose(id).position).x();
+        seen.speed = (laid.at.orientation.conjugate() * world.velocity(id)).x();
+        return true;
+    });
+    return seen;
+}
+
+void keeps_speed(CaseBench& bench,
+                 const std::string& name,
+                 const Laid& laid,
+                 const std::function<void(Settings&)>& set)
+{
+    const double seconds = bench.brief() ? 1 : 4;
+    for (const bool ball : {true, false}) {
+        Scene scene = tiled(bench, laid, ball, 0, static_cast<int>(kSpeed * seconds) + 3);
+        set(scene.settings);
+        const Slid seen = slide(bench, scene, laid, seconds);
+        bench.report(name + (ball ? ", ball" : ", box"), "speed lost or gained",
+                     std::abs(seen.speed / kSpeed - 1), 0.01, "1");
+        bench.report(name + (ball ? ", ball" : ", box"), "error of the way",
+                     std::abs(seen.way / (kSpeed * seconds) - 1), 0.01, "1");
+    }
+}
+
+}  // namespace
+
+void case_tiles(CaseBench& bench)
+{
+    const auto by_default = [](Settings&) {};
+    const Quat turned = exponential(Vec3(0.3, -0.5, 0.7));
+    keeps_speed(bench, "boxes", {}, by_default);
+    keeps_speed(bench, "hulls", {.of = Floor::hulls}, by_default);
+    keeps_speed(bench, "meshes", {.of = Floor::meshes}, by_default);
+    keeps_speed(bench, "a compound", {.of = Floor::compound}, by_default);
+    keeps_speed(bench, "boxes 1 mm apart", {.gap = 1e-3}, by_default);
+    keeps_speed(bench, "boxes, turned", {.at = {Vec3::Zero(), turned}}, by_default);
+    keeps_speed(bench, "boxes, far off", {.at = {Vec3(1e5, -2e5, 1e4), turned}}, by_default);
+    keeps_speed(bench, "boxes, made last", {.backwards = true}, by_default);
+    for (const auto& [dt, name] : {std::pair{1.0 / 240, "dt 1/240"}, {1e-3, "dt 1e-3"}})
+        keeps_speed(bench, std::string("boxes, ") + name, {},
+                    [dt = dt](Settings& settings) { settings.dt = dt; });
+    keeps_speed(bench, "boxes, direct", {}, ask_exactly);
+
+    const double friction = 0.3, way = kSpeed * kSpeed / (2 * friction * kGravity);
+    for (const Floor of : {Floor::boxes, Floor::meshes}) {
+        const std::string name = of == Floor::boxes ? "boxes, mu 0.3, box" : "meshes, mu 0.3, box";
+        const Slid seen = slide(bench, tiled(bench, {.of = of}, false, friction, 15), {}, 4);
+        bench.report(name, "error of the way to rest", std::abs(seen.way / way - 1), 0.01, "1");
+    }
+    const Laid stepped{.step = 0.005};
+    const Slid seen = slide(bench, tiled(bench, stepped, false, 0, 15), stepped, 1);
+    bench.report("boxes, one 5 mm higher, box", "not met: wrong outcomes",
+                 seen.speed < 0.9 * kSpeed ? 0 : 1, 0, "1");
+}
+
+}  // namespace throng

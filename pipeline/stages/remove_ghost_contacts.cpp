@@ -1,0 +1,278 @@
+// Remove ghost contacts: where colliders that do not move against one another lie flush, the edge
+// or the side of the next one is no bump.
+//
+// A body that a face bears cannot come below that face's plane. So what another collider beside it
+// shows no higher than that plane is out of its reach as long as the face bears it; pairs are
+// collided one by one, and cannot know. A contact is taken for such a ghost where
+//
+// - another of the same shape is along a face of its partner, pushes another way, and comes first,
+// - all its points lie in the plane of that face, or below,
+// - its own partner does not rise above that plane, neither there nor a little beyond.
+//
+// A face that leans towards the body bears it itself and is never dropped; so of two contacts one
+// is left.
+#include "kernels/geometry/mesh.hpp"
+#include "kernels/geometry/nearest_point.hpp"
+#include "kernels/parallel/blocks.hpp"
+#include "pipeline/stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kGrain = 2048;  // pairs a block
+// Cosine beyond which two directions are one: a hundredth of a radian, over which a slide loses
+// 1e-4 of its speed.
+constexpr double kAlike = 0.99995;
+// Cosine below which a face is the side of something and not a slope.
+constexpr double kSide = 0.1;
+// Shares of the shape's smallest half extent: what is level, and how far a rise is looked for. A
+// slope of one by the other is still seen as a rise.
+constexpr double kLevel = 2e-3, kBeyond = 0.1;
+
+// A contact of a shape that can be pushed, seen from it.
+template <class Real>
+struct Seen {
+    std::uint32_t mover = 0, other = 0;  // colliders
+    std::uint32_t part = 0;              // triangle of a mesh
+    Contact<Real>* contact = nullptr;
+    bool mover_first = false;
+    bool face = false;           // the other pushes along one of its faces
+    bool hidden = false;         // it is a ghost
+    Vec3 normal = Vec3::Zero();  // from the other to the mover
+    std::array<Vec3, 4> at{};    // world, on the other's surface
+    double nearest = 0;          // m, separation of the nearest point
+};
+
+template <class Real>
+class GhostSearch {
+public:
+    GhostSearch(const Pairs& pairs,
+                const Shapes& shapes,
+                const Colliders& colliders,
+                const Bounds& bounds,
+                const Poses& poses,
+                const Velocities& velocities,
+                const BodyStates& states)
+        : pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds), poses_(poses),
+          velocities_(velocities), states_(states)
+    { }
+
+    void gather(ConvexContacts<Real>& convex)
+    {
+        BlockLists<Seen<Real>> lists;
+        lists.start(block_count(convex.of_pair.size(), kGrain));
+        for_each_block(convex.of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (const std::uint32_t place = convex.of_pair[i].contact;
+                    place != PairState::kApart)
+                    note(pairs_.keys[i], 0, convex.contacts[place], lists[block]);
+        });
+        lists.append_to(seen_);
+    }
+
+    void gather(ManyContacts<Real>& contacts)
+    {
+        for (auto& entry : contacts.entries)
+            if (entry.contact.count > 0)
+                note(pairs_.keys[entry.pair], entry.part, entry.contact, seen_);
+    }
+
+    // Shape by shape: those of one come together.
+    void remove()
+    {
+        const auto before = [](const Seen<Real>& a, const Seen<Real>& b) {
+            return a.mover < b.mover;
+        };
+        std::stable_sort(seen_.begin(), seen_.end(), before);
+        const std::span all(seen_);
+        for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+            while (end < all.size() && all[end].mover == all[begin].mover) ++end;
+            if (end - begin > 1) remove_from(all.subspan(begin, end - begin));
+        }
+    }
+
+private:
+    // Those of shapes that may have a flush neighbor, once for each side that can be pushed.
+    void note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& list) const
+    {
+        const std::uint32_t a = first_of(key), b = second_of(key);
+        for (const bool first : {true, false}) {
+            const std::uint32_t mover = first ? a : b, other = first ? b : a;
+            const std::uint32_t on = colliders_.body[other];
+            if (!states_.movable(colliders_.body[mover])) continue;
+            if (states_.dynamic(on) && colliders_.count[on] < 2) continue;
+            list.push_back({mover, other, part, &contact, first});
+        }
+    }
+
+    // Whether two colliders go on as they are to one another.
+    bool together(std::uint32_t a, std::uint32_t b) const
+    {
+        if (a == b) return true;
+        const auto moves = [&](std::uint32_t body) {
+            return states_.kind[body] != BodyKind::still
+                && !(velocities_.linear[body].isZero(0) && velocities_.angular[body].isZero(0));
+        };
+        if (states_.dynamic(a) || states_.dynamic(b)) return false;
+        if (!moves(a) && !moves(b)) return true;
+        return velocities_.linear[a] == velocities_.linear[b] && velocities_.angular[a].isZero(0)
+            && velocities_.angular[b].isZero(0) && moves(a) == moves(b);
+    }
+
+    void look_at(Seen<Real>& seen) const
+    {
+        const Contact<Real>& contact = *seen.contact;
+        const Vec3& center = poses_.position[colliders_.body[seen.mover]];
+        const Vec3 normal = contact.normal.template cast<double>().normalized();
+        seen.normal = seen.mover_first ? Vec3(-normal) : normal;
+        seen.nearest = contact.points[0].separation;
+        for (int k = 0; k < contact.count; ++k) {
+            const double separation = contact.points[static_cast<std::size_t>(k)].separation;
+            const Vec3 on_mover =
+                (seen.mover_first ? contact.points[static_cast<std::size_t>(k)].from_a
+                                  : contact.from_b(k))
+                    .template cast<double>();
+            seen.at[static_cast<std::size_t>(k)] = center + on_mover - seen.normal * separation;
+            seen.nearest = std::min(seen.nearest, separation);
+        }
+        seen.face = is_face(seen);
+    }
+
+    bool is_face(const Seen<Real>& seen) const
+    {
+        const ShapeRef shape = colliders_.shape[seen.other];
+        const Vec3 local = bounds_.placed[seen.other].orientation.conjugate() * seen.normal;
+        switch (shape.kind) {
+        case ShapeKind::plane:
+            return true;
+        case ShapeKind::box:
+            return local.cwiseAbs().maxCoeff() > kAlike;
+        case ShapeKind::cylinder:
+            return std::abs(local.z()) > kAlike;
+        case ShapeKind::hull: {
+            const auto& normals = shapes_.hulls[shape.index].normals;
+            return std::any_of(normals.begin(), normals.end(),
+                               [&](const Vec3& normal) { return normal.dot(local) > kAlike; });
+        }
+        case ShapeKind::mesh:
+            return shapes_.meshes[shape.index].normals[seen.part].dot(local) > kAlike;
+        default:
+            return false;
+        }
+    }
+
+    // Triangles of one mesh know their neighbors; where one has none there may be a flush rim.
+    bool may_be_flush(const Seen<Real>& ghost, const Seen<Real>& face) const
+    {
+        if (ghost.other != face.other) return true;
+        const ShapeRef shape = colliders_.shape[ghost.other];
+        if (shape.kind != ShapeKind::mesh || ghost.face) return false;
+        const auto& beyond = shapes_.meshes[shape.index].beyond[ghost.part];
+        return std::any_of(beyond.begin(), beyond.end(), [](std::int32_t t) { return t < 0; });
+    }
+
+    // Whether the ghost's partner comes above the face's plane at a point of that plane, or a
+    // little further that way.
+    bool rises(const Seen<Real>& ghost, const Seen<Real>& face, const Vec3& at, double size) const
+    {
+        const double beyond = kBeyond * size, least = beyond - kLevel * size;
+        Vec3 away = face.normal * face.normal.dot(ghost.normal) - ghost.normal;
+        away /= away.norm();
+        const Pose& placed = bounds_.placed[ghost.other];
+        const auto is_near = [&](const Vec3& point) {
+            return nearest_point(shapes_, colliders_.shape[ghost.other], placed.to_local(point),
+                                 least)
+                       .distance
+                < least;
+        };
+        const Vec3 above = at + beyond * face.normal;
+        return is_near(above) || is_near(above + beyond * away);
+    }
+
+    // Of a point of the ghost's partner over the face's plane, m. Manifolds may tell of a point
+    // that is further along the mover's side than the partner reaches.
+    double
+    height_over(const Seen<Real>& face, const Seen<Real>& ghost, const Vec3& at, double level) const
+    {
+        const double height = face.normal.dot(at - face.at[0]);
+        if (height <= level) return height;
+        const Pose& placed = bounds_.placed[ghost.other];
+        const NearestPoint nearest =
+            nearest_point(shapes_, colliders_.shape[ghost.other], placed.to_local(at), 2 * height);
+        if (!(nearest.distance <= 2 * height)) return height;
+        return face.normal.dot(placed * nearest.point - face.at[0]);
+    }
+
+    bool hides(const Seen<Real>& face, const Seen<Real>& ghost) const
+    {
+        const double size = colliders_.inner_extent[ghost.mover], level = kLevel * size;
+        const double along = face.normal.dot(ghost.normal);
+        if (!face.face || along > kAlike) return false;
+        if (face.nearest > std::max(level, std::min(ghost.nearest, kBeyond * size))) return false;
+        if ((ghost.face && along > kSide) || !may_be_flush(ghost, face)) return false;
+        if (!together(colliders_.body[face.other], colliders_.body[ghost.other])) return false;
+        const auto count = static_cast<std::size_t>(ghost.contact->count);
+        for (std::size_t k = 0; k < count; ++k)
+            if (height_over(face, ghost, ghost.at[k], level) > level) return false;
+        for (std::size_t k = 0; k < count; ++k) {
+            const double height = face.normal.dot(ghost.at[k] - face.at[0]);
+            if (rises(ghost, face, ghost.at[k] - height * face.normal, size)) return false;
+        }
+        return true;
+    }
+
+    // All are judged before any goes.
+    void remove_from(std::span<Seen<Real>> of_shape) const
+    {
+        for (Seen<Real>& seen : of_shape) look_at(seen);
+        for (Seen<Real>& ghost : of_shape)
+            ghost.hidden = std::any_of(of_shape.begin(), of_shape.end(), [&](const auto& face) {
+                return &face != &ghost && hides(face, ghost);
+            });
+        for (const Seen<Real>& ghost : of_shape)
+            if (ghost.hidden) ghost.contact->count = 0;
+    }
+
+    const Pairs& pairs_;
+    const Shapes& shapes_;
+    const Colliders& colliders_;
+    const Bounds& bounds_;
+    const Poses& poses_;
+    const Velocities& velocities_;
+    const BodyStates& states_;
+    std::vector<Seen<Real>> seen_;
+};
+
+}  // namespace
+
+template <class Real>
+void remove_ghost_contacts(const Pairs& pairs,
+                           const Shapes& shapes,
+                           const Colliders& colliders,
+                           const Bounds& bounds,
+                           const Poses& poses,
+                           const Velocities& velocities,
+                           const BodyStates& states,
+                           ConvexContacts<Real>& convex,
+                           MeshContacts<Real>& meshes)
+{
+    GhostSearch<Real> search(pairs, shapes, colliders, bounds, poses, velocities, states);
+    search.gather(convex);
+    search.gather(meshes);
+    search.remove();
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void remove_ghost_contacts<Real>(                                                     \
+        const Pairs&, const Shapes&, const Colliders&, const Bounds&, const Poses&,                \
+        const Velocities&, const BodyStates&, ConvexContacts<Real>&, MeshContacts<Real>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng
