@@ -86,6 +86,8 @@ constexpr HardCase kCases[] = {
      Fault::float_poses},
     {"H48", "a tower stands without a touch, and what that costs", case_no_overlap, Fault::overlap},
     {"H81", "floors of tiles take no speed, and steps do", case_tiles, Fault::friction},
+    {"H82", "an open mesh holds from both sides, a closed one keeps out", case_both_sides,
+     Fault::shrink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

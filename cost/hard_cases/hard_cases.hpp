@@ -69,8 +69,9 @@ void case_through_hole(CaseBench& bench);  // H43, through_hole.cpp
 void case_solid_heap(CaseBench& bench);    // H44, solid_heap.cpp
 void case_convergence(CaseBench& bench);   // H45, convergence.cpp
 
-// Bodies on floors of many pieces.
-void case_tiles(CaseBench& bench);  // H81, tiles.cpp
+// Bodies on floors of many pieces, and on meshes from either side.
+void case_tiles(CaseBench& bench);       // H81, tiles.cpp
+void case_both_sides(CaseBench& bench);  // H82, both_sides.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);
