@@ -174,8 +174,7 @@ void collide_triangles(const Shapes& shapes,
                        const auto& take)
 {
     const Mesh& surface = *mesh_of(shapes, mesh);
-    const MeshSides sides(surface, near, held, center_of(shapes, b, pose),
-                          outer_radius(shapes, b) / 2);
+    const MeshSides sides(surface, near, held, center_of(shapes, b, pose), inner_extent(shapes, b));
     const bool sided = mesh.kind == ShapeKind::mesh;
     LocalManifold<double> found;
     for (const std::uint32_t index : near) {
