@@ -2,6 +2,7 @@
 #include "narrowphase/mesh_sides.hpp"
 
 #include "kernels/geometry/hull.hpp"
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_health.hpp"
 
 #include <gtest/gtest.h>
