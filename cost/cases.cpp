@@ -100,6 +100,8 @@ constexpr HardCase kCases[] = {
      case_sliding_bounce, Fault::friction},
     {"H72", "springs on bodies in contact keep their swing and make no energy, however stiff",
      case_springs_in_contact, Fault::stiffness},
+    {"H82", "an open mesh holds from both sides, a closed one keeps out", case_both_sides,
+     Fault::shrink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -7,9 +7,10 @@
 #include "kernels/check.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
-#include "narrowphase/narrowphase.hpp"
+#include "narrowphase/mesh_sides.hpp"
 #include "narrowphase/triangle_contacts.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace throng {
@@ -115,31 +116,75 @@ void touch(const Shapes& shapes,
            const MeshTriangle& triangle,
            const Pose& pose,
            double reach,
+           bool through,
            LocalManifold<double>& out)
 {
     out.count = 0;
     switch (shape.kind) {
     case ShapeKind::sphere:
-        touch_ball(triangle, pose.position, shapes.spheres[shape.index].radius, reach, out);
+        touch_ball(triangle, pose.position, shapes.spheres[shape.index].radius, reach, out,
+                   through);
         return;
     case ShapeKind::capsule: {
         const Capsule& capsule = shapes.capsules[shape.index];
         const Vec3 half(0, 0, capsule.half_length);
-        touch_rod(triangle, pose * Vec3(-half), pose * half, capsule.radius, reach, out);
+        touch_rod(triangle, pose * Vec3(-half), pose * half, capsule.radius, reach, out, through);
         return;
     }
     case ShapeKind::cylinder: {
         const Vec3 towards = pose.orientation.conjugate() * -triangle.normal;
         const Prism prism(shapes.cylinders[shape.index], towards);
-        touch_polytope(triangle, prism.view(), pose, reach, out);
+        touch_polytope(triangle, prism.view(), pose, reach, out, through);
         return;
     }
     case ShapeKind::box:
     case ShapeKind::hull:
-        touch_polytope(triangle, PolytopeShape(shapes, shape).view(), pose, reach, out);
+        touch_polytope(triangle, PolytopeShape(shapes, shape).view(), pose, reach, out, through);
         return;
     default:
         THRONG_CHECK(false, "a mesh collides with convex shapes of some volume");
+    }
+}
+
+// What the side of a shape is told by.
+Vec3 center_of(const Shapes& shapes, ShapeRef shape, const Pose& pose)
+{
+    if (shape.kind != ShapeKind::hull) return pose.position;
+    return pose * shapes.hulls[shape.index].center;
+}
+
+// The point of a manifold that is nearest or deepest, on the triangle.
+Vec3 nearest_of(const LocalManifold<double>& found)
+{
+    const auto* const end = found.points.data() + found.count;
+    const auto* const least =
+        std::min_element(found.points.data(), end,
+                         [](const auto& x, const auto& y) { return x.separation < y.separation; });
+    return least->position - found.normal * (least->separation / 2);
+}
+
+// A solid tells inside from outside by other means: its triangles have their fronts alone.
+void collide_triangles(const Shapes& shapes,
+                       ShapeRef mesh,
+                       ShapeRef b,
+                       const Pose& pose,
+                       double reach,
+                       std::span<const std::uint32_t> near,
+                       std::span<const std::uint32_t> held,
+                       const auto& take)
+{
+    const Mesh& surface = *mesh_of(shapes, mesh);
+    const MeshSides sides(surface, near, held, center_of(shapes, b, pose), inner_extent(shapes, b));
+    const bool sided = mesh.kind == ShapeKind::mesh;
+    LocalManifold<double> found;
+    for (const std::uint32_t index : near) {
+        const MeshSides::Approach from = sided ? sides.approach(index) : MeshSides::Approach{};
+        if (!from.any) continue;
+        touch(shapes, b, MeshTriangle(surface, index, from.behind), pose, reach, from.through,
+              found);
+        if (found.count == 0) continue;
+        if (from.behind && !from.known && sides.is_hidden(nearest_of(found), index)) continue;
+        take(from.behind ? index | kBehind : index, found);
     }
 }
 
@@ -151,36 +196,42 @@ void collide_mesh(const Shapes& shapes,
                   ShapeRef b,
                   const PoseT<Real>& b_in_a,
                   Real reach,
+                  std::span<const std::uint32_t> held,
                   std::vector<TriangleManifold<Real>>& out)
 {
     thread_local std::vector<std::uint32_t> near;
-    const Mesh& surface = *mesh_of(shapes, mesh);
     const Pose pose{b_in_a.position.template cast<double>(),
                     b_in_a.orientation.template cast<double>().normalized()};
     Box3 box = shape_bounds(shapes, b, pose);
     box.lower.array() -= double{reach};
     box.upper.array() += double{reach};
     near.clear();
-    find_triangles(surface, box, near);
-
-    LocalManifold<double> found;
-    for (const std::uint32_t index : near) {
-        touch(shapes, b, MeshTriangle(surface, index), pose, double{reach}, found);
-        if (found.count > 0) out.push_back({index, found.cast<Real>()});
-    }
+    find_triangles(*mesh_of(shapes, mesh), box, near);
+    collide_triangles(shapes, mesh, b, pose, double{reach}, near, held,
+                      [&](std::uint32_t triangle, const LocalManifold<double>& found) {
+                          out.push_back({triangle, found.cast<Real>()});
+                      });
 }
 
-template void collide_mesh<float>(const Shapes&,
-                                  ShapeRef,
-                                  ShapeRef,
-                                  const PoseT<float>&,
-                                  float,
-                                  std::vector<TriangleManifold<float>>&);
-template void collide_mesh<double>(const Shapes&,
-                                   ShapeRef,
-                                   ShapeRef,
-                                   const PoseT<double>&,
-                                   double,
-                                   std::vector<TriangleManifold<double>>&);
+template <class Real>
+void collide_mesh(const Shapes& shapes,
+                  ShapeRef mesh,
+                  ShapeRef b,
+                  const PoseT<Real>& b_in_a,
+                  Real reach,
+                  std::vector<TriangleManifold<Real>>& out)
+{
+    collide_mesh(shapes, mesh, b, b_in_a, reach, {}, out);
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void collide_mesh<Real>(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real,  \
+                                     std::vector<TriangleManifold<Real>>&);                        \
+    template void collide_mesh<Real>(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real,  \
+                                     std::span<const std::uint32_t>,                               \
+                                     std::vector<TriangleManifold<Real>>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
 
 }  // namespace throng

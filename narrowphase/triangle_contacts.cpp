@@ -128,16 +128,18 @@ void lay_rod(const MeshTriangle& triangle,
 
 }  // namespace
 
-MeshTriangle::MeshTriangle(const Mesh& of, std::uint32_t triangle)
-    : mesh(of), index(triangle), normal(of.normals[triangle])
+MeshTriangle::MeshTriangle(const Mesh& of, std::uint32_t triangle, bool from_behind)
+    : mesh(of), index(triangle), behind(from_behind), normal(of.normals[triangle])
 {
-    for (std::size_t i = 0; i < 3; ++i) corners[i] = of.vertices[of.triangles[triangle][i]];
+    if (behind) normal = -normal;
+    for (std::size_t i = 0; i < 3; ++i)
+        corners[i] = of.vertices[of.triangles[triangle][own_corner(i)]];
 }
 
 bool corner_sticks_out(const MeshTriangle& triangle, std::size_t corner, const Vec3& direction)
 {
     const Mesh& mesh = triangle.mesh;
-    const std::uint32_t vertex = mesh.triangles[triangle.index][corner];
+    const std::uint32_t vertex = mesh.triangles[triangle.index][triangle.own_corner(corner)];
     const Vec3& here = mesh.vertices[vertex];
     bool risen = false;
     const auto look = [&](std::uint32_t other, std::size_t at) {
@@ -153,8 +155,8 @@ bool corner_sticks_out(const MeshTriangle& triangle, std::size_t corner, const V
 bool edge_sticks_out(const MeshTriangle& triangle, std::size_t edge, const Vec3& direction)
 {
     const Mesh& mesh = triangle.mesh;
-    if ((mesh.convex_edges[triangle.index] >> edge & 1) == 0) return false;
-    const std::int32_t next = mesh.beyond[triangle.index][edge];
+    if (!triangle.is_convex(edge)) return false;
+    const std::int32_t next = triangle.beyond(edge);
     if (next < 0) return direction.dot(triangle.normal) >= 0;
     const auto& ids = mesh.triangles[static_cast<std::size_t>(next)];
     const Vec3& here = triangle.corners[edge];
@@ -167,18 +169,19 @@ void touch_ball(const MeshTriangle& triangle,
                 const Vec3& center,
                 double radius,
                 double reach,
-                LocalManifold<double>& out)
+                LocalManifold<double>& out,
+                bool through)
 {
     out.count = 0;
     const double height = triangle.height(center);
-    if (height < 0 || height - radius > reach) return;
+    if ((height < 0 && !through) || height - radius > reach) return;
     const auto& corners = triangle.corners;
     const auto closest = closest_on_triangle<double>(center, corners[0], corners[1], corners[2]);
     const Vec3 apart = center - closest.point;
     const Vec3 past = apart - triangle.normal * height;
     double distance = height;
     Vec3 direction = triangle.normal;
-    if (past.norm() > kSeam * radius) {
+    if (height >= 0 && past.norm() > kSeam * radius) {
         distance = apart.norm();
         direction = apart / distance;
         if (distance - radius > reach) return;
@@ -194,12 +197,15 @@ void touch_rod(const MeshTriangle& triangle,
                const Vec3& to,
                double radius,
                double reach,
-               LocalManifold<double>& out)
+               LocalManifold<double>& out,
+               bool through)
 {
     out.count = 0;
     const double height_from = triangle.height(from), height_to = triangle.height(to);
-    if (height_from + height_to < 0 || std::min(height_from, height_to) - radius > reach) return;
+    const bool before = height_from + height_to >= 0;
+    if ((!before && !through) || std::min(height_from, height_to) - radius > reach) return;
     const Segment<double> rod{from, to};
+    if (!before) return lay_rod(triangle, rod, radius, reach, out);
     const RodTouch touch = closest_on_rod(triangle, rod);
     const double limit = reach + radius;
     if (touch.distance2 > limit * limit) return;

@@ -117,11 +117,10 @@ void lay_face(const MeshTriangle& triangle,
 // deep inside.
 bool yields(const MeshTriangle& triangle, const PolytopePair& pair, double most)
 {
-    const Mesh& mesh = triangle.mesh;
     for (std::size_t e = 0; e < 3; ++e) {
-        const std::int32_t next = mesh.beyond[triangle.index][e];
-        if (next < 0 || (mesh.convex_edges[triangle.index] >> e & 1) == 0) continue;
-        const Vec3& normal = mesh.normals[static_cast<std::size_t>(next)];
+        const std::int32_t next = triangle.beyond(e);
+        if (next < 0 || !triangle.is_convex(e)) continue;
+        const Vec3 normal = triangle.normal_of(next);
         const Vec3& corner = triangle.corners[e];
         // Nothing pushes from behind.
         if (normal.dot(pair.offset + pair.a.center - corner) < 0) continue;
@@ -136,8 +135,8 @@ bool yields(const MeshTriangle& triangle, const PolytopePair& pair, double most)
 // further, so that directions straight out of it are well inside.
 Vec3 far_normal(const MeshTriangle& triangle, std::size_t edge, const Vec3& rim)
 {
-    const std::int32_t next = triangle.mesh.beyond[triangle.index][edge];
-    if (next >= 0) return triangle.mesh.normals[static_cast<std::size_t>(next)];
+    const std::int32_t next = triangle.beyond(edge);
+    if (next >= 0) return triangle.normal_of(next);
     return (rim - 0.05 * triangle.normal).normalized();
 }
 
@@ -148,7 +147,7 @@ struct OutwardEdges {
     {
         std::size_t count = 0;
         for (std::size_t e = 0; e < 3; ++e) {
-            if ((triangle.mesh.convex_edges[triangle.index] >> e & 1) == 0) continue;
+            if (!triangle.is_convex(e)) continue;
             normals[2 + e] = far_normal(triangle, e, flat.normals[2 + e]);
             offsets[2 + e] = normals[2 + e].dot(triangle.corners[e]);
             edges[count++] = of.a.edges[2 * e];
@@ -172,13 +171,14 @@ void touch_polytope(const MeshTriangle& triangle,
                     const PolytopeView& shape,
                     const Pose& pose,
                     double reach,
-                    LocalManifold<double>& out)
+                    LocalManifold<double>& out,
+                    bool through)
 {
     out.count = 0;
     const auto& corners = triangle.corners;
     const TrianglePolytope flat(corners[0], corners[1], corners[2], triangle.normal);
     const PolytopePair pair(flat.view(), shape, pose);
-    if (triangle.normal.dot(pair.offset) < 0) return;
+    if (triangle.normal.dot(pair.offset) < 0 && !through) return;
     const FaceAxis front = face_axis(pair, 0);
     if (front.separation > reach) return;
 

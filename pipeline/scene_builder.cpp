@@ -1,6 +1,6 @@
 // Scene builder: what a user states, made into the arrays that the step works on.
 #include "kernels/geometry/hull.hpp"
-#include "kernels/geometry/mesh.hpp"
+#include "kernels/geometry/mesh_health.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "pipeline/force_builder.hpp"
 #include "pipeline/scene_rules.hpp"
@@ -156,8 +156,10 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
         }
         PlacedShape operator()(const MeshShape& s) const
         {
-            MeshResult result = build_mesh(s.vertices, s.triangles);
+            MendedMesh result = mend_still(s.vertices, s.triangles);
             if (!result.trouble.empty()) throw std::invalid_argument("mesh: " + result.trouble);
+            for (const std::string& remark : result.remarks)
+                builder.state_.remarks.push_back("shape " + name + ": " + remark);
             return single(append(shapes.meshes, ShapeKind::mesh, std::move(result.mesh)));
         }
         PlacedShape operator()(const VoxelsShape& s) const { return builder.add_solid(name, s); }

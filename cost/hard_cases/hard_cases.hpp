@@ -81,6 +81,9 @@ void case_slender_bars(CaseBench& bench);  // H75, slender_bars.cpp
 void case_round_rims(CaseBench& bench);    // H80, round_rims.cpp
 // Bodies on floors of many pieces.
 void case_tiles(CaseBench& bench);  // H81, tiles.cpp
+// Bodies on floors of many pieces, and on meshes from either side.
+void case_tiles(CaseBench& bench);       // H81, tiles.cpp
+void case_both_sides(CaseBench& bench);  // H82, both_sides.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

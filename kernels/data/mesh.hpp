@@ -8,8 +8,8 @@
 
 namespace throng {
 
-/// Triangles, solid on neither side but one-sided in contact: pushes come out along the
-/// face normals (counter-clockwise seen from outside).
+/// Triangles (counter-clockwise seen from outside): what they enclose is solid, and pieces with a
+/// rim have two sides.
 ///
 /// beyond/convex_edges say of each edge (0: v0-v1, 1: v1-v2, 2: v2-v0) what lies over it, so that
 /// contacts on internal edges take the normal of the surface and not of the triangle's rim.

@@ -118,11 +118,15 @@ void join_neighbors(Mesh& mesh)
     }
 }
 
-// Whether the neighbor over an edge folds away below the triangle's plane.
-bool sticks_out(const Mesh& mesh, std::size_t triangle, std::size_t edge)
+// Whether the neighbor over an edge folds away below the triangle's plane, and whether it rises
+// above it: what sticks out as seen from behind.
+struct Fold {
+    bool below = true, above = true;
+};
+Fold fold_at(const Mesh& mesh, std::size_t triangle, std::size_t edge)
 {
     const std::int32_t other = mesh.beyond[triangle][edge];
-    if (other < 0) return true;
+    if (other < 0) return {};
     const std::uint32_t from = mesh.triangles[triangle][edge];
     const std::uint32_t to = mesh.triangles[triangle][(edge + 1) % 3];
     std::uint32_t tip = from;
@@ -136,16 +140,35 @@ bool sticks_out(const Mesh& mesh, std::size_t triangle, std::size_t edge)
     const double rise = mesh.normals[triangle].dot(across);
     const bool folded_flat =
         mesh.normals[triangle].dot(mesh.normals[static_cast<std::size_t>(other)]) < -1 + 1e-6;
-    return rise < -kSharp * across.norm() || folded_flat;
+    const double least = kSharp * across.norm();
+    return {rise < -least || folded_flat, rise > least && !folded_flat};
 }
 
 void mark_convex_edges(Mesh& mesh)
 {
     mesh.convex_edges.assign(mesh.triangles.size(), 0);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        for (std::size_t e = 0; e < 3; ++e)
-            if (sticks_out(mesh, t, e))
-                mesh.convex_edges[t] = static_cast<std::uint8_t>(mesh.convex_edges[t] | 1U << e);
+        for (std::size_t e = 0; e < 3; ++e) {
+            const Fold fold = fold_at(mesh, t, e);
+            const unsigned bits = (fold.below ? 1U << e : 0U) | (fold.above ? 8U << e : 0U);
+            mesh.convex_edges[t] = static_cast<std::uint8_t>(mesh.convex_edges[t] | bits);
+        }
+}
+
+// Triangles from which a rim can be reached over edges: those of pieces that enclose nothing.
+void mark_open_pieces(Mesh& mesh)
+{
+    std::vector<std::uint32_t> reached;
+    const auto reach = [&](std::uint32_t t) {
+        if ((mesh.convex_edges[t] & kOpenPiece) != 0) return;
+        mesh.convex_edges[t] = static_cast<std::uint8_t>(mesh.convex_edges[t] | kOpenPiece);
+        reached.push_back(t);
+    };
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        if (*std::min_element(mesh.beyond[t].begin(), mesh.beyond[t].end()) < 0) reach(t);
+    for (std::size_t i = 0; i < reached.size(); ++i)
+        for (const std::int32_t next : mesh.beyond[reached[i]])
+            if (next >= 0) reach(static_cast<std::uint32_t>(next));
 }
 
 double surface(const Box3& box)
@@ -241,6 +264,7 @@ MeshResult build_mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangle
     }
     join_neighbors(result.mesh);
     mark_convex_edges(result.mesh);
+    mark_open_pieces(result.mesh);
     TreeBuilder{result.mesh};
     return result;
 }

@@ -19,9 +19,13 @@ struct MeshResult {
 ///   beyond        the other triangle at an edge that exactly two share, run through in opposite
 ///                 directions; else -1
 ///   convex_edges  an edge that sticks out by more than a thousandth of a radian, or has no
-///                 triangle beyond it
+///                 triangle beyond it; bit 3 + e, the same as seen from behind; kOpenPiece
 MeshResult build_mesh(std::vector<Vec3> vertices,
                       std::vector<std::array<std::uint32_t, 3>> triangles);
+
+/// In convex_edges, of a triangle from which a rim can be reached: it has two sides. What has none
+/// encloses a volume, behind its triangles.
+inline constexpr std::uint8_t kOpenPiece = 64;
 
 /// Whether every edge has a triangle beyond it, so that the mesh encloses a volume.
 bool is_closed(const Mesh& mesh);

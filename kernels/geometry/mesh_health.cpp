@@ -309,6 +309,36 @@ std::size_t count_cuts(const Mesh& mesh, std::size_t most_pairs, bool& cut_short
     return cuts;
 }
 
+MendedMesh mend_still(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
+{
+    MendedMesh result;
+    MeshResult welded = build_mesh(std::move(vertices), std::move(triangles));
+    result.trouble = welded.trouble;
+    if (!result.trouble.empty()) return result;
+    MeshHealth& health = result.health;
+    std::vector<Triangle> kept = welded.mesh.triangles;
+    health.duplicates = drop_duplicates(kept);
+    std::vector<Piece> pieces = find_agreeing_pieces(kept, health);
+    for (Piece& piece : pieces) measure(piece, welded.mesh.vertices, kept);
+    turn_outward(pieces, welded.mesh.vertices, kept, health);
+    MeshHealth told;
+    told.duplicates = health.duplicates;
+    told.turned = health.turned;
+    result.remarks = remarks_on(told);
+    if (health.inside_out > 0)
+        result.remarks.push_back(
+            counted(health.inside_out,
+                    "piece is closed and inside out: turned over, so that it is "
+                    "solid; for a room leave it open somewhere, or put it "
+                    "within a shell",
+                    "pieces are closed and inside out: turned over, so that they are solid; for a "
+                    "room leave them open somewhere, or put them within a shell"));
+    result.mesh = std::move(welded.mesh);
+    if (kept != result.mesh.triangles)
+        result.mesh = build_mesh(std::move(result.mesh.vertices), std::move(kept)).mesh;
+    return result;
+}
+
 MendedMesh mend(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
 {
     MendedMesh result;

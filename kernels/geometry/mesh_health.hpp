@@ -46,6 +46,12 @@ struct MendedMesh {
 /// the piece that they are in, and turns over what is inside out. Wider holes stay holes.
 MendedMesh mend(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles);
 
+/// The same of a mesh that is not to move, which may well be open: holes stay as they are, and no
+/// vertex normals. What is closed is solid, turned over where it is inside out but for hollows;
+/// what is open has two sides. A mesh with nothing wrong comes back as build_mesh() makes it.
+MendedMesh mend_still(std::vector<Vec3> vertices,
+                      std::vector<std::array<std::uint32_t, 3>> triangles);
+
 /// How many pairs of triangles that share no corner cross one another; those that lie in one plane
 /// do not count. Looks at no more than `most_pairs` of those whose boxes overlap, and says so.
 std::size_t count_cuts(const Mesh& mesh, std::size_t most_pairs, bool& cut_short);

@@ -1,6 +1,6 @@
 // Collide meshes: convex shapes against static triangle meshes, a contact for each triangle
 // touched.
-#include "narrowphase/narrowphase.hpp"
+#include "narrowphase/mesh_sides.hpp"
 #include "pipeline/stages/many_contacts.hpp"
 
 namespace throng {
@@ -29,16 +29,19 @@ void collide_meshes(const Conditions& conditions,
         const bool mesh_first = colliders.shape[pair.a].kind == ShapeKind::mesh;
         const std::uint32_t mesh = mesh_first ? pair.a : pair.b;
         const std::uint32_t other = mesh_first ? pair.b : pair.a;
+        static thread_local std::vector<std::uint32_t> held;
         found.clear();
         double reach = pair.reach;
         if (!bounds.fast.empty() && !old.empty()) {
             reach = kept_reach(pair, bounds);
             if (reach > pair.reach) contacts.followed_of_block[block].push_back(i);
         }
+        held.clear();
+        for (const auto& before : old) held.push_back(before.part);
         collide_mesh(shapes, colliders.shape[mesh], colliders.shape[other],
                      rounded<Real>(pose_seen_from_a(shapes, colliders.shape[other],
                                                     bounds.placed[mesh], bounds.placed[other])),
-                     static_cast<Real>(reach), found);
+                     static_cast<Real>(reach), held, found);
         for (const TriangleManifold<Real>& touch : found) {
             auto& entry = out.emplace_back();
             entry.part = touch.triangle;

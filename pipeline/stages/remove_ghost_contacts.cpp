@@ -11,9 +11,9 @@
 //
 // A face that leans towards the body bears it itself and is never dropped; so of two contacts one
 // is left.
-#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/nearest_point.hpp"
 #include "kernels/parallel/blocks.hpp"
+#include "narrowphase/mesh_sides.hpp"
 #include "pipeline/stages.hpp"
 
 #include <algorithm>
@@ -160,7 +160,8 @@ private:
                                [&](const Vec3& normal) { return normal.dot(local) > kAlike; });
         }
         case ShapeKind::mesh:
-            return shapes_.meshes[shape.index].normals[seen.part].dot(local) > kAlike;
+            return std::abs(shapes_.meshes[shape.index].normals[seen.part & ~kBehind].dot(local))
+                > kAlike;
         default:
             return false;
         }
@@ -172,7 +173,7 @@ private:
         if (ghost.other != face.other) return true;
         const ShapeRef shape = colliders_.shape[ghost.other];
         if (shape.kind != ShapeKind::mesh || ghost.face) return false;
-        const auto& beyond = shapes_.meshes[shape.index].beyond[ghost.part];
+        const auto& beyond = shapes_.meshes[shape.index].beyond[ghost.part & ~kBehind];
         return std::any_of(beyond.begin(), beyond.end(), [](std::int32_t t) { return t < 0; });
     }
 

@@ -142,13 +142,15 @@ TEST(MeshPairs, DeepestPointOnAFloorIsTheLowestPoint)
     }
 }
 
-TEST(MeshPairs, NothingPushesFromBehind)
+TEST(MeshPairs, FromBehindAnOpenMeshPushesTheOtherWay)
 {
     Shapes shapes;
     shapes.meshes = {floor_of(4)};
     for (const Slider& slider : sliders(shapes)) {
         const Pose below{{0.3, 0.2, -0.3}, slider.turn};
-        EXPECT_TRUE(touch_mesh<double>(shapes, slider.shape, below, 0.01).empty()) << slider.name;
+        const auto found = touch_mesh<double>(shapes, slider.shape, below, 0.01);
+        EXPECT_FALSE(found.empty()) << slider.name;
+        for (const auto& one : found) EXPECT_LT(one.manifold.normal.z(), -0.99) << slider.name;
     }
 }
 

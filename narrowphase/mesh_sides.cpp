@@ -1,0 +1,129 @@
+#include "narrowphase/mesh_sides.hpp"
+
+#include "kernels/geometry/closest_points.hpp"
+#include "kernels/geometry/mesh.hpp"
+#include "narrowphase/triangle_contacts.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace throng {
+
+namespace {
+
+// What is hidden is looked for along this share of the way to it: not where it is itself.
+constexpr double kNearly = 0.999;
+
+TrianglePoint<double> nearest_to(const Vec3& point, const MeshTriangle& triangle)
+{
+    const auto& [a, b, c] = triangle.corners;
+    return closest_on_triangle<double>(point, a, b, c);
+}
+
+bool crosses(const Vec3& from, const Vec3& way, const MeshTriangle& triangle)
+{
+    const double first = triangle.height(from), last = triangle.height(from + way);
+    if ((first > 0) == (last > 0)) return false;
+    const Vec3 at = from + way * (first / (first - last));
+    for (std::size_t e = 0; e < 3; ++e) {
+        const Vec3 along = triangle.corners[(e + 1) % 3] - triangle.corners[e];
+        if (along.cross(at - triangle.corners[e]).dot(triangle.normal) < 0) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+MeshSides::MeshSides(const Mesh& mesh,
+                     std::span<const std::uint32_t> near,
+                     std::span<const std::uint32_t> held,
+                     const Vec3& center,
+                     double through)
+    : mesh_(mesh), near_(near), held_(held), center_(center), through_(through)
+{ }
+
+double MeshSides::height(std::uint32_t triangle) const
+{
+    return mesh_.normals[triangle].dot(center_ - mesh_.vertices[mesh_.triangles[triangle][0]]);
+}
+
+// 0 in front, 1 behind; of the triangle itself, else of one over an edge; -1 of none.
+int MeshSides::side_held(std::uint32_t triangle) const
+{
+    int side = -1;
+    for (const std::uint32_t held : held_) {
+        const std::uint32_t other = held & ~kBehind;
+        const int of_other = (held & kBehind) != 0 ? 1 : 0;
+        if (other == triangle) return of_other;
+        for (const std::int32_t next : mesh_.beyond[triangle])
+            if (next == static_cast<std::int32_t>(other)) side = of_other;
+    }
+    return side;
+}
+
+// One that was on a side of a triangle and has its center on the other now: come through it, or
+// gone round.
+MeshSides::Approach MeshSides::crossed(std::uint32_t triangle, bool behind) const
+{
+    const MeshTriangle seen(mesh_, triangle, behind);
+    const Approach went_round{.behind = !behind}, through{true, behind, true, true};
+    if (-seen.height(center_) > through_) return went_round;
+    const auto region = static_cast<std::size_t>(nearest_to(center_, seen).region);
+    if (region == 0) return through;
+    // At a corner both its edges count.
+    const std::size_t first = region > 3 ? (region - 2) % 3 : region - 1;
+    const std::size_t last = region > 3 ? region - 4 : first;
+    if (seen.beyond(first) < 0 || seen.beyond(last) < 0) return went_round;
+    if (seen.is_convex(first) || seen.is_convex(last)) return {.any = false};
+    return through;
+}
+
+// Whether the center is within the volume that a closed piece encloses, with this triangle the
+// nearest that is near.
+bool MeshSides::is_inside_of(std::uint32_t triangle) const
+{
+    double least = std::numeric_limits<double>::infinity();
+    std::uint32_t nearest = triangle;
+    std::size_t region = 0;
+    for (const std::uint32_t other : near_) {
+        const auto found = nearest_to(center_, MeshTriangle(mesh_, other));
+        const double distance2 = (found.point - center_).squaredNorm();
+        if (!(distance2 < least)) continue;
+        least = distance2;
+        nearest = other;
+        region = static_cast<std::size_t>(found.region);
+    }
+    if (nearest != triangle || region > 3) return false;
+    if (region == 0) return true;
+    const std::int32_t next = mesh_.beyond[triangle][region - 1];
+    return next >= 0 && height(static_cast<std::uint32_t>(next)) < 0;
+}
+
+MeshSides::Approach MeshSides::approach(std::uint32_t triangle) const
+{
+    const bool behind = height(triangle) < 0;
+    const bool open = (mesh_.convex_edges[triangle] & kOpenPiece) != 0;
+    const int held = held_.empty() ? -1 : side_held(triangle);
+    if (open) {
+        const bool known = held == (behind ? 1 : 0);
+        if (known || held < 0) return {.behind = behind, .known = known};
+        return crossed(triangle, held == 1);
+    }
+    if (!behind) return {};
+    if (held == 0) {
+        const Approach came = crossed(triangle, false);
+        return came.through ? came : Approach{.any = false};
+    }
+    const bool inside = held_.empty() && is_inside_of(triangle);
+    return {.any = inside, .through = inside};
+}
+
+bool MeshSides::is_hidden(const Vec3& point, std::uint32_t triangle) const
+{
+    const Vec3 way = kNearly * (point - center_);
+    return std::any_of(near_.begin(), near_.end(), [&](std::uint32_t other) {
+        return other != triangle && crosses(center_, way, MeshTriangle(mesh_, other));
+    });
+}
+
+}  // namespace throng
