@@ -85,6 +85,8 @@ constexpr HardCase kCases[] = {
     {"H47", "bodies made inside one another part slowly, and come to rest", case_recovery,
      Fault::float_poses},
     {"H48", "a tower stands without a touch, and what that costs", case_no_overlap, Fault::overlap},
+    {"H76", "heavy boxes on light ones, dice, cylinders and cards stand by the default dials",
+     case_heavy_on_light, Fault::mass},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -82,9 +82,13 @@ void gather_contacts(const Pairs&,
 /// Contacts into islands.
 void split_islands(const ActiveContacts&, const BodyStates&, IslandFinder&, Islands&);
 
+/// Stubborn islands by how stubborn they are: who gets more substeps, who the direct solver.
+void escalate_islands(const Conditions&, const Islands&, Stubborn&);
+
 /// Islands into batches, slices, colors and blocks.
 void color_rows(const Conditions&,
                 const Islands&,
+                const Stubborn&,
                 const ActiveContacts&,
                 const BodyStates&,
                 const Poses&,
@@ -117,6 +121,7 @@ void prepare_rows(const Conditions&,
 /// solve_table().
 template <class Real>
 void solve_impulses(const Conditions&,
+                    const Islands&,
                     const Layout&,
                     const ActiveContacts&,
                     const Masses&,
@@ -128,6 +133,7 @@ void solve_impulses(const Conditions&,
                     Poses&,
                     Velocities&,
                     Parting&,
+                    Stubborn&,
                     Trouble&);
 
 /// Dynamic bodies in place of all stages of contact, each with those that it may meet in this step:

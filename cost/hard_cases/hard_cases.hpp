@@ -36,7 +36,8 @@ void motion_without_friction(CaseBench& bench);
 void case_turntable(CaseBench& bench);  // H24, turntable.cpp
 void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
-void case_recovery(CaseBench& bench);  // H47, recovery.cpp
+void case_recovery(CaseBench& bench);       // H47, recovery.cpp
+void case_heavy_on_light(CaseBench& bench);  // H76, heavy_on_light.cpp
 
 // Bodies that are never to overlap: no_overlap.cpp.
 void bounces(CaseBench& bench);             // H15 (a), (b)
@@ -71,6 +72,9 @@ void case_convergence(CaseBench& bench);   // H45, convergence.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);
+
+/// A house of cards: level by level, tents and the flat cards between them. The ground comes first.
+Scene card_house(const CaseBench& bench, int levels, double friction);
 
 /// A scene under construction: shapes, materials and bodies by value, ids in order.
 class SceneParts {

@@ -100,6 +100,15 @@ void store_impulses(const RowsView<Real>& rows,
 }
 
 template <class Real>
+void scale_impulses(Real scale, Contact<Real>& contact)
+{
+    for (auto& point : contact.points) point.impulse *= scale;
+    contact.friction *= scale;
+    contact.twist *= scale;
+    contact.rolling *= scale;
+}
+
+template <class Real>
 void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& contact)
 {
     bool any = false;
@@ -130,6 +139,7 @@ void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& cont
     template void loosen_nothing<Real>(int, LooseBlock<Real>&);                                    \
     template void hold_uncut<Real>(const Contact<Real>&, int, ContactBlock<Real>&);                \
     template void store_impulses<Real>(const RowsView<Real>&, std::size_t, int, Contact<Real>&);   \
+    template void scale_impulses<Real>(Real, Contact<Real>&);                                      \
     template void carry_impulses<Real>(const Contact<Real>&, Real, Contact<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

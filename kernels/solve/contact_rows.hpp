@@ -56,6 +56,10 @@ void store_impulses(const RowsView<Real>& rows,
                     int lane,
                     Contact<Real>& contact);
 
+/// Makes all that a contact holds this times as much.
+template <class Real>
+void scale_impulses(Real scale, Contact<Real>& contact);
+
 /// Carries impulses over from the contact of the same pair in the last step: point by point where
 /// the same features touch, friction turned into the new tangent plane. What of it lies beyond the
 /// cone is cut when rows are made.
