@@ -6,8 +6,8 @@
 #include "kernels/math/rotation.hpp"
 #include "narrowphase/narrowphase.hpp"
 #include "narrowphase/solids/solid_pairs.hpp"
-#include "pipeline/stages/escalation.hpp"
 #include "pipeline/force_builder.hpp"
+#include "pipeline/stages/escalation.hpp"
 #include "pipeline/stages/recycled_manifolds.hpp"
 #include "pipeline/world_state.hpp"
 

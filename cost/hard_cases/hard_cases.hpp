@@ -36,7 +36,7 @@ void motion_without_friction(CaseBench& bench);
 void case_turntable(CaseBench& bench);  // H24, turntable.cpp
 void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
-void case_recovery(CaseBench& bench);       // H47, recovery.cpp
+void case_recovery(CaseBench& bench);        // H47, recovery.cpp
 void case_heavy_on_light(CaseBench& bench);  // H76, heavy_on_light.cpp
 
 // Bodies that are never to overlap: no_overlap.cpp.

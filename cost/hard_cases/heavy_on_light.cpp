@@ -85,8 +85,8 @@ std::vector<Stand> stands(const CaseBench& bench)
     all.push_back(column(bench, "1:1000", heavy));
     all.push_back(column(bench, "1:1000, made from above, turned, far off", heavy, {1, 0}, kAway));
     all.push_back(column(bench, "uneven, 1:10000", uneven));
-    all.push_back(column(bench, "uneven, 1:10000, made in another order", uneven,
-                         {3, 0, 5, 1, 4, 2}, kAway));
+    all.push_back(
+        column(bench, "uneven, 1:10000, made in another order", uneven, {3, 0, 5, 1, 4, 2}, kAway));
     all.push_back(column(bench, "a half, then twice as wide up to 4 m",
                          {{0.5, 125}, {1, 1000}, {2, 8000}, {4, 64000}}));
     all.push_back(dice(bench, "ten dice of 5 cm", 0.05));
@@ -146,8 +146,7 @@ void judge_thrown(CaseBench& bench, Stand stand, double time)
     for (const BodyDescription& body : stand.scene.bodies)
         highest = std::max(highest, body.position.z());
     bench.run(stand.scene, time, [&](World& world, double) {
-        for (const BodyId body : world.bodies())
-            top = std::max(top, world.pose(body).position.z());
+        for (const BodyId body : world.bodies()) top = std::max(top, world.pose(body).position.z());
         return true;
     });
     bench.report(stand.name + ", pgs", "rise above the top over its height",

@@ -9,9 +9,10 @@ namespace throng {
 
 namespace {
 
-// Strain that a quarter of the substep brings well below kStrained, and a sixteenth to it. Finer ones are lost in
-// the digits of float: what is yet more stubborn is solved exactly, where that is small.
-constexpr double kByFour = 12 * kStrained, kBySixteen = 256 * kStrained;
+// Strain that a quarter of the substep brings down to kStrained; a sixteenth does up to
+// kExactStrain. Finer ones are lost in the digits of float: what is yet more stubborn is solved
+// exactly, where that is small.
+constexpr double kByFour = 16 * kStrained;
 constexpr std::size_t kExactContacts = 48;
 constexpr double kFinestSubstep = 5e-5;  // s
 
@@ -24,7 +25,7 @@ constexpr std::size_t kBudget = 1 << 15, kExactCost = 128;
 Effort effort_for(double strain)
 {
     if (!(strain > 0)) return {};
-    return strain <= kByFour ? Effort{4} : strain <= kBySixteen ? Effort{16} : Effort{16, true};
+    return strain <= kByFour ? Effort{4} : strain <= kExactStrain ? Effort{16} : Effort{16, true};
 }
 
 void escalate_islands(const Conditions& conditions, const Islands& islands, Stubborn& stubborn)
@@ -36,7 +37,8 @@ void escalate_islands(const Conditions& conditions, const Islands& islands, Stub
     for (std::size_t island = 0; island < islands.size(); ++island) {
         double strain = 0;
         bool exactly = false;
-        for (std::uint32_t k = islands.body_begin[island]; k < islands.body_begin[island + 1]; ++k) {
+        for (std::uint32_t k = islands.body_begin[island]; k < islands.body_begin[island + 1];
+             ++k) {
             const double of_body = stubborn.of(islands.bodies[k]);
             if (!is_stubborn(of_body)) continue;
             strain = std::max(strain, std::abs(of_body));

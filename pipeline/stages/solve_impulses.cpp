@@ -133,7 +133,7 @@ void solve_impulses(const Conditions& conditions,
         && conditions.settings.response == Response::impulse)
         exactly.settings.iterations = kExactSteps;
     const DirectScene<Real> direct{exactly, layout, active, masses,
-                                   pulls,      maker,  poses,  velocities};
+                                   pulls,   maker,  poses,  velocities};
     start_direct(layout, rows, trouble);
     start_parting(layout, parting);
     const auto solve_finer = [&](const Batch& batch) {

@@ -16,10 +16,11 @@ constexpr std::size_t kIslands = 8;  // a block
 constexpr double kShare = 0.25;
 // Steps in which gravity makes what still counts as rest: no impact, no walk.
 constexpr double kResting = 4;
-// Of a strain that has passed, each step: loads that tremble do not change how they are borne.
-constexpr double kFading = 0.98;
-// Overlap from which an island is not left to finer substeps, as a share of what its load makes with
-// the usual ones.
+// A strain is let go once it is this much less: loads that tremble, and an impact as something was
+// set down, do not change from step to step how they are borne.
+constexpr double kLasting = 3;
+// Overlap from which an island is not left to finer substeps, as a share of what its load makes
+// with the usual ones.
 constexpr double kDeep = 0.5;
 constexpr double kTurn = 2 * 3.14159265358979323846;
 
@@ -32,9 +33,8 @@ bool helps(const Settings& settings)
 
 // N s, of all points; and times the ease with which the lesser mass gives way: m/s.
 template <class Real>
-double speed_borne(const ActiveContacts::Entry& entry,
-                   const Contact<Real>& contact,
-                   const Masses& masses)
+double
+speed_borne(const ActiveContacts::Entry& entry, const Contact<Real>& contact, const Masses& masses)
 {
     double impulse = 0;
     for (std::size_t k = 0; k < entry.points; ++k) impulse += double{contact.points[k].impulse};
@@ -53,8 +53,7 @@ public:
           const RowMaker<Real>& maker,
           Stubborn& stubborn)
         : islands_(islands), layout_(layout), active_(active), masses_(masses),
-          velocities_(velocities), maker_(maker),
-          stubborn_(stubborn),
+          velocities_(velocities), maker_(maker), stubborn_(stubborn),
           resting_(kResting * conditions.gravity.norm() * conditions.settings.dt)
     {
         for (int points = 1; points <= 4; ++points) {
@@ -78,7 +77,8 @@ public:
         const bool rests = is_resting(island);
         if (!(before > 1)) return rests ? begun(strain, before) : 0;
         if (!(strain > kRelieved)) return 0;
-        const double lasting = std::max(strain, kFading * before);
+        const double lasting =
+            std::max(strain, std::min({before, kLasting * strain, kExactStrain}));
         return rests && is_deep(contacts) ? -lasting : lasting;
     }
 
@@ -108,8 +108,8 @@ private:
     {
         const ActiveContacts::Entry& entry = active_.entries[place];
         if (!(entry.extent > 0)) return 0;
-        return speed_borne(entry, maker_.contact_of(entry), masses_)
-            * per_speed_[entry.points - 1u] / double{entry.extent};
+        return speed_borne(entry, maker_.contact_of(entry), masses_) * per_speed_[entry.points - 1u]
+            / double{entry.extent};
     }
 
     // By mass, as a light body between heavy ones may tremble.
@@ -181,7 +181,7 @@ private:
     const Velocities& velocities_;
     const RowMaker<Real>& maker_;
     Stubborn& stubborn_;
-    double resting_;  // m/s
+    double resting_;       // m/s
     double per_speed_[4];  // s, by points, less one: overlap over the rigid share of the extent
 };
 
