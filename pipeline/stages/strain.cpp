@@ -14,8 +14,8 @@ constexpr std::size_t kIslands = 8;  // a block
 // How much of what a step shows counts: a strain of twice what is too great is believed after three
 // steps, one of four times at once.
 constexpr double kShare = 0.25;
-// Steps in which gravity makes what still counts as rest: no impact, no walk.
-constexpr double kResting = 4;
+// s, in which gravity makes what still counts as rest: no impact, no walk.
+constexpr double kResting = 1.0 / 15;
 // A strain is let go once it is this much less: loads that tremble, and an impact as something was
 // set down, do not change from step to step how they are borne.
 constexpr double kLasting = 3;
@@ -54,7 +54,7 @@ public:
           Stubborn& stubborn)
         : islands_(islands), layout_(layout), active_(active), masses_(masses),
           velocities_(velocities), maker_(maker), stubborn_(stubborn),
-          resting_(kResting * conditions.gravity.norm() * conditions.settings.dt)
+          resting_(kResting * conditions.gravity.norm())
     {
         for (int points = 1; points <= 4; ++points) {
             const double omega = kTurn * contact_rate(conditions, points);
