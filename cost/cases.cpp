@@ -102,6 +102,8 @@ constexpr HardCase kCases[] = {
      case_springs_in_contact, Fault::stiffness},
     {"H82", "an open mesh holds from both sides, a closed one keeps out", case_both_sides,
      Fault::shrink},
+    {"H76", "heavy boxes on light ones, dice, cylinders and cards stand by the default dials",
+     case_heavy_on_light, Fault::mass},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

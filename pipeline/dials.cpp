@@ -31,6 +31,7 @@ constexpr Choice kBoundsFilter[] = {{"none"},    {"sphere"},   {"k_dop:14"},
 constexpr Choice kNonconvex[] = {{"voxels"}, {"parts"}, {"spheres"}, {"depth_image"}, {"hull"}};
 constexpr Choice kResponse[] = {{"impulse"}, {"penalty"}, {"kinematic"}};
 constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct"}};
+constexpr Choice kEscalation[] = {{"auto"}, {"off"}};
 constexpr Choice kFrictionCone[] = {{"cone"}, {"pyramid"}};
 constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous"}};
 constexpr Choice kOverlap[] = {{"allow"}, {"back_up"}, {"subdivide"}};
@@ -347,6 +348,8 @@ std::vector<Dial> make_dials()
             "soft_step converges best for its time; pgs is the classic; direct is exact and slow"),
         number_dial("direct_limit", "a whole number: greatest island that solver direct takes", "bodies, or contacts", set_direct_limit, get_direct_limit,
             "greater islands solved exactly, for time that grows with the cube"),
+        choice_dial<&S::escalation, kEscalation>("escalation",
+            "auto gives more substeps, or the direct solver, to islands whose load is too much for their contacts; off leaves them to fall"),
         number_dial("penalty_stiffness", "auto (from mass and dt, within the stability limit), or a number", "N/m",
             set_amount<&S::penalty_stiffness, kLeastStiffness>, get_amount<&S::penalty_stiffness>,
             "stiffer leaves less overlap and needs a shorter step"),

@@ -48,6 +48,7 @@ constexpr Known kKnown[] = {
     {"joints", false},
     {"motors", false},
     {"sleeping", true},
+    {"escalation", true},
     {"sensors", false},
     {"events", false},
     {"agents", false},

@@ -41,6 +41,7 @@ enum class Effect : std::uint8_t {
     joints,
     motors,
     sleeping,
+    escalation,
     sensors,
     events,
     agents,

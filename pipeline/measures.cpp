@@ -7,6 +7,7 @@
 #include "narrowphase/narrowphase.hpp"
 #include "narrowphase/solids/solid_pairs.hpp"
 #include "pipeline/force_builder.hpp"
+#include "pipeline/stages/escalation.hpp"
 #include "pipeline/stages/recycled_manifolds.hpp"
 #include "pipeline/world_state.hpp"
 
@@ -139,6 +140,12 @@ std::string World::state_hash() const
         add3(velocities.angular[body]);
         hash.add(std::uint64_t{states.awake[body]});
         hash.add(states.quiet_time[body]);
+    }
+    const Stubborn& stubborn = state_->get<Stubborn>();
+    for (const std::uint32_t body : stubborn.strained) {
+        if (!is_stubborn(stubborn.of(body))) continue;
+        hash.add(std::uint64_t{body});
+        hash.add(stubborn.of(body));
     }
     const auto add_contact = [&](std::uint64_t key, const auto& contact) {
         if (contact.count == 0) return;

@@ -20,6 +20,9 @@ struct StepReport {
     std::size_t bodies_quarantined = 0;  // since the beginning
     std::uint64_t contacts_dropped = 0;  // since the beginning
     std::uint64_t fallbacks = 0;         // answers that one method took from another, likewise
+    // Islands that were given more substeps or solved exactly, over all steps so far; and those of
+    // them that needed more than they were given.
+    std::uint64_t islands_escalated = 0, escalation_missed = 0;
     // Of solver direct: by how much contacts missed their law at worst, as a share of the greatest
     // speed they had to stop (see DirectAnswer), likewise.
     double direct_residual = 0;

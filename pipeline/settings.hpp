@@ -24,6 +24,7 @@ enum class Solver : std::uint8_t { soft_step, pgs, direct };
 enum class Overlap : std::uint8_t { allow, back_up, subdivide };
 enum class ImpactLaw : std::uint8_t { sequential, simultaneous };
 enum class FrictionAt : std::uint8_t { manifold, points };
+enum class Escalation : std::uint8_t { auto_, off };
 enum class FrictionCone : std::uint8_t { cone, pyramid };
 
 struct Settings {
@@ -59,6 +60,7 @@ struct Settings {
     double penalty_damping = -1;    // N s/m
     Solver solver = Solver::soft_step;
     int direct_limit = 500;  // contacts or bodies of the greatest island that is solved directly
+    Escalation escalation = Escalation::auto_;  // of islands too stubborn for the solver
     ImpactLaw impact_law = ImpactLaw::sequential;
     FrictionAt friction_at = FrictionAt::manifold;
     FrictionCone friction_cone = FrictionCone::cone;

@@ -95,9 +95,13 @@ void gather_contacts(const Pairs&,
 void split_islands(
     const ActiveContacts&, const BodyStates&, const Forces&, IslandFinder&, Islands&);
 
+/// Stubborn islands by how stubborn they are: who gets more substeps, who the direct solver.
+void escalate_islands(const Conditions&, const Islands&, Stubborn&);
+
 /// Islands into batches, slices, colors and blocks.
 void color_rows(const Conditions&,
                 const Islands&,
+                const Stubborn&,
                 const ActiveContacts&,
                 const BodyStates&,
                 const Poses&,
@@ -131,6 +135,7 @@ void prepare_rows(const Conditions&,
 /// solve_table().
 template <class Real>
 void solve_impulses(const Conditions&,
+                    const Islands&,
                     const Layout&,
                     const ActiveContacts&,
                     const Masses&,
@@ -143,6 +148,7 @@ void solve_impulses(const Conditions&,
                     Poses&,
                     Velocities&,
                     Parting&,
+                    Stubborn&,
                     Trouble&);
 
 /// Dynamic bodies in place of all stages of contact, each with those that it may meet in this step:

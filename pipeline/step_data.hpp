@@ -58,6 +58,27 @@ struct Parting {
     }
 };
 
+/// Islands whose loads are too much for the solver (see stages/escalation.hpp), from step to step.
+///
+///   strain    [bodies] that of a stubborn island in the last step, else 0; may be shorter
+///   strained  bodies whose strain may be above 0
+///   efforts   [islands] of this step; empty while nobody is stubborn
+///   escalated, missed  islands of this step that were, and that the budget did not reach
+struct Stubborn {
+    std::vector<float> strain;
+    std::vector<std::uint32_t> strained;
+    std::vector<Effort> efforts;
+    std::size_t escalated = 0, missed = 0;
+    std::vector<float> of_island;       // scratch: [islands] strain
+    std::vector<std::uint16_t> height;  // scratch: [solver bodies] above what stands still
+
+    float of(std::uint32_t body) const { return body < strain.size() ? strain[body] : 0; }
+    void forget(std::uint32_t body)
+    {
+        if (body < strain.size()) strain[body] = 0;
+    }
+};
+
 /// Who awoke and who fell asleep in this step.
 struct Rest {
     std::vector<std::uint32_t> awoken, rested;
@@ -113,6 +134,7 @@ using StepData = std::tuple<Conditions,
                             ActiveContacts,
                             IslandFinder,
                             Islands,
+                            Stubborn,
                             Painter,
                             Layout,
                             Rows<Real>,

@@ -21,6 +21,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, remove_ghost_contacts<Real>>("remove_ghost_contacts", {seams}),
     stage<Real, gather_contacts<Real>>("gather_contacts",   {contact}),
     stage<Real, split_islands>        ("split_islands",     {contact}),
+    stage<Real, escalate_islands>     ("escalate_islands",  {escalation}),
     stage<Real, color_rows>           ("color_rows",        {contact}),
     stage<Real, apply_forces>         ("apply_forces",      kForces),
     stage<Real, prepare_rows<Real>>   ("prepare_rows",      {contact}),
@@ -42,7 +43,7 @@ template <class Real>
 consteval bool reads_follow_writes()
 {
     DataSet ready = data_sets<Real, Conditions, Shapes, Surfaces, PairFilter, Drives, Forces, Poses,
-                              Velocities, Masses, BodyStates, Colliders, Rest>;
+                              Velocities, Masses, BodyStates, Colliders, Rest, Stubborn>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;

@@ -88,7 +88,7 @@ std::string why_carrying_leaves(const Scene& scene, std::string_view name)
     if (scene.settings.overlap == Overlap::allow || !why.empty()) return {};
     for (const std::string_view unused :
          {"solver", "contact_rate", "direct_limit", "narrowphase", "method_start", "bounds_filter",
-          "broadphase", "friction_cone", "friction_at", "sleep"})
+          "broadphase", "friction_cone", "friction_at", "sleep", "escalation"})
         if (name == unused) return "overlap " + overlap + " solves contacts in its own way";
     return {};
 }
@@ -104,7 +104,7 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
 
     if (settings.response != Response::impulse
         && is_one_of({"solver", "iterations", "contact_rate", "push_limit", "direct_limit",
-                      "friction_cone", "friction_at", "impact_law"}))
+                      "friction_cone", "friction_at", "impact_law", "escalation"}))
         return "response " + response + " solves no rows";
     if (settings.solver != Solver::soft_step && name == "contact_rate")
         return "solver " + solver + " has no soft contacts";
@@ -121,6 +121,8 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
     if (settings.solver != Solver::direct && settings.overlap == Overlap::allow
         && name == "impact_law")
         return "solver " + solver + " passes an impact along one pair at a time";
+    if (settings.solver == Solver::direct && name == "escalation")
+        return "solver " + solver + " is what islands are escalated to";
     if (settings.solver == Solver::direct && name == "friction_at")
         return "solver " + solver + " has friction at every point";
     if (settings.solver == Solver::direct && name == "friction_cone")

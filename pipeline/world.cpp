@@ -6,6 +6,7 @@
 #include "pipeline/force_builder.hpp"
 #include "pipeline/names.hpp"
 #include "pipeline/scene_check.hpp"
+#include "pipeline/stages/escalation.hpp"
 #include "pipeline/step_table.hpp"
 #include "pipeline/world_state.hpp"
 
@@ -117,8 +118,32 @@ bool World::State::nothing_to_do() const
         && conditions.last_substep == conditions.substep();
 }
 
+void World::State::follow_stubborn()
+{
+    Stubborn& stubborn = get<Stubborn>();
+    report.islands_escalated += stubborn.escalated;
+    report.escalation_missed += stubborn.missed;
+    stubborn.escalated = stubborn.missed = 0;
+    for (const std::uint32_t body : get<Rest>().rested) stubborn.forget(body);
+    std::uint32_t first = kNobody;
+    for (const std::uint32_t body : stubborn.strained)
+        if (is_stubborn(stubborn.of(body))) first = std::min(first, body);
+    const bool any = first != kNobody;
+    if (any == effects.on.has(Effect::escalation)) return;
+    requests.first[static_cast<std::size_t>(Effect::escalation)].clear();
+    if (any) requests.ask(Effect::escalation, called(first));
+    effects_stale = true;
+}
+
+std::string World::State::called(std::uint32_t body) const
+{
+    const bool named = body < names.size() && !names[body].empty();
+    return "body " + std::to_string(body) + (named ? " " + names[body] : "");
+}
+
 void World::State::follow_step()
 {
+    follow_stubborn();
     Trouble& trouble = get<Trouble>();
     Rest& rest = get<Rest>();
     if (!trouble.quarantined.empty() || !rest.awoken.empty() || !rest.rested.empty())
@@ -128,9 +153,7 @@ void World::State::follow_step()
     // A body that has become fast calls for what looks after it from the next step on.
     if (const std::uint32_t hurried = get<Bounds>().hurried;
         hurried != kNobody && !effects.on.has(Effect::fast_motion)) {
-        const bool named = hurried < names.size() && !names[hurried].empty();
-        requests.ask(Effect::fast_motion,
-                     "body " + std::to_string(hurried) + (named ? " " + names[hurried] : ""));
+        requests.ask(Effect::fast_motion, called(hurried));
         effects_stale = true;
     }
     if (trouble.quarantined.empty()) return;

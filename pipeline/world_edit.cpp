@@ -37,6 +37,7 @@ void World::State::touch(std::uint32_t body)
     for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
         bounds.touched.push_back(colliders.begin[body] + i);
     get<Parting>().place(body);
+    get<Stubborn>().forget(body);
 }
 
 void World::State::wake_neighbors(const std::vector<std::uint8_t>& of)
@@ -130,6 +131,7 @@ void World::State::empty_unused()
     const Set<Effect> on = effects.on;
     if (!on.has(Effect::sleeping))
         for (std::uint32_t body = 0; body < generation.size(); ++body) wake(body);
+    if (!on.has(Effect::escalation)) get<Stubborn>().efforts.clear();
     if (!on.meets(kCarried)) {
         Trouble& trouble = get<Trouble>();
         trouble.held_groups = trouble.deep_pieces = 0;

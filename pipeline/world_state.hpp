@@ -72,6 +72,9 @@ struct World::State {
     Vec3 velocity(std::uint32_t body) const;
     Vec3 arm(std::uint32_t body) const;  // from its position there, world axes
 
+    /// A body by its number and name, for what is told of it.
+    std::string called(std::uint32_t body) const;
+
     /// Wakes a body with all that sleeps with it.
     void wake(std::uint32_t body);
     /// The broad phase has to look at a body's colliders again, and it may lie deep in others.
@@ -91,6 +94,8 @@ struct World::State {
     bool nothing_to_do() const;
     /// After a step: who fell asleep, who awoke, who was quarantined.
     void follow_step();
+    /// Whether anybody awake is stubborn, and so calls for escalation.
+    void follow_stubborn();
     /// The report on the state that the last step left.
     void report_state();
     /// Empties what no stage writes any more, and wakes all where nobody may sleep.

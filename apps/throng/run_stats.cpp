@@ -129,6 +129,8 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("bodies_quarantined", std::uint64_t{stats.bodies_quarantined});
     json.add("contacts_dropped", stats.last.contacts_dropped);
     json.add("fallbacks", stats.last.fallbacks);
+    json.add("islands_escalated", stats.last.islands_escalated);
+    json.add("escalation_missed", stats.last.escalation_missed);
     if (stats.settings.solver == Solver::direct)
         json.add("direct_residual", stats.last.direct_residual);
     if (stats.settings.overlap == Overlap::subdivide) json.add("deepest_m", stats.last.deepest);

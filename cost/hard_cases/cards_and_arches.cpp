@@ -61,34 +61,6 @@ Drift watch(CaseBench& bench, const Scene& scene, double time)
     return drift;
 }
 
-// Cards from the corner of a table up: level by level, tents and the flat cards between them.
-Scene card_house(const CaseBench& bench, int levels, double friction)
-{
-    const double lean = 25 * kPi / 180, gap = 0.0004;
-    const Vec3 half(0.2, 0.1, 0.001);
-    SceneParts parts(bench.scene());
-    const std::uint32_t material = parts.material(friction);
-    parts.plane(material, Vec3::UnitZ(), 0);
-    const double sideways = half.x() * std::sin(lean) + half.z() * std::cos(lean);
-    const double upwards = half.x() * std::cos(lean) + half.z() * std::sin(lean);
-    const double pitch = 2 * half.x() + gap;
-    double floor = 0;
-    for (int tents = levels; tents >= 1; --tents) {
-        for (int i = 0; i < tents; ++i)
-            for (const double side : {-1.0, 1.0})
-                parts.box(
-                    material, 0.01, half,
-                    {Vec3((i - (tents - 1) / 2.0) * pitch + side * sideways, 0, floor + upwards),
-                     exponential(Vec3(0, -side * lean - kPi / 2, 0))});
-        const double roof = floor + 2 * upwards + half.z();
-        for (int i = 0; i + 1 < tents; ++i)
-            parts.box(material, 0.01, half,
-                      {Vec3((i + 0.5 - (tents - 1) / 2.0) * pitch, 0, roof), Quat::Identity()});
-        floor = roof + half.z();
-    }
-    return parts.scene();
-}
-
 // Stones of a kilogram and a meter along a hanging chain turned upside down, its feet level with
 // the floor.
 Scene arch(const CaseBench& bench, int stones)
@@ -130,6 +102,33 @@ void compare(CaseBench& bench, const std::string& name, const std::string& quant
 }
 
 }  // namespace
+
+Scene card_house(const CaseBench& bench, int levels, double friction)
+{
+    const double lean = 25 * kPi / 180, gap = 0.0004;
+    const Vec3 half(0.2, 0.1, 0.001);
+    SceneParts parts(bench.scene());
+    const std::uint32_t material = parts.material(friction);
+    parts.plane(material, Vec3::UnitZ(), 0);
+    const double sideways = half.x() * std::sin(lean) + half.z() * std::cos(lean);
+    const double upwards = half.x() * std::cos(lean) + half.z() * std::sin(lean);
+    const double pitch = 2 * half.x() + gap;
+    double floor = 0;
+    for (int tents = levels; tents >= 1; --tents) {
+        for (int i = 0; i < tents; ++i)
+            for (const double side : {-1.0, 1.0})
+                parts.box(
+                    material, 0.01, half,
+                    {Vec3((i - (tents - 1) / 2.0) * pitch + side * sideways, 0, floor + upwards),
+                     exponential(Vec3(0, -side * lean - kPi / 2, 0))});
+        const double roof = floor + 2 * upwards + half.z();
+        for (int i = 0; i + 1 < tents; ++i)
+            parts.box(material, 0.01, half,
+                      {Vec3((i + 0.5 - (tents - 1) / 2.0) * pitch, 0, roof), Quat::Identity()});
+        floor = roof + half.z();
+    }
+    return parts.scene();
+}
 
 void case_cards(CaseBench& bench)
 {

@@ -37,7 +37,8 @@ void motion_without_friction(CaseBench& bench);
 void case_turntable(CaseBench& bench);  // H24, turntable.cpp
 void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
-void case_recovery(CaseBench& bench);  // H47, recovery.cpp
+void case_recovery(CaseBench& bench);        // H47, recovery.cpp
+void case_heavy_on_light(CaseBench& bench);  // H76, heavy_on_light.cpp
 
 void case_sticks(CaseBench& bench);  // H71, sticks.cpp
 // What bounces, by default and by every solver.
@@ -87,6 +88,9 @@ void case_both_sides(CaseBench& bench);  // H82, both_sides.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);
+
+/// A house of cards: level by level, tents and the flat cards between them. The ground comes first.
+Scene card_house(const CaseBench& bench, int levels, double friction);
 
 /// A scene under construction: shapes, materials and bodies by value, ids in order.
 class SceneParts {

@@ -138,12 +138,21 @@ struct Slice {
     std::uint32_t first_contact = 0, contacts = 0;  // in Layout::contacts
 };
 
+/// What an island is solved with: so many times the substeps that the settings say, or exactly.
+struct Effort {
+    std::uint8_t times = 1;
+    bool direct = false;
+
+    bool operator==(const Effort&) const = default;
+};
+
 /// What is solved together: some small islands, or one big one.
 struct Batch {
     std::uint32_t first_slice = 0, slices = 0;
     std::uint32_t contacts = 0, on_faces = 0;  // how many, and how many of three points or four
     bool wide = false;                         // big: all threads share it
     bool direct = false;                       // one island, for the direct solver
+    std::uint8_t times = 1;                    // as many substeps as the settings say
 };
 
 /// Which contact goes into which lane, and which body is which solver body: first the still one,

@@ -71,15 +71,21 @@ void Painter::gather_slices(const Islands& islands,
         return islands.contact_begin[island + 1] - islands.contact_begin[island] <= direct_limit
             && islands.body_begin[island + 1] - islands.body_begin[island] <= direct_limit;
     };
+    const auto effort_of = [&](std::size_t island) {
+        return efforts.empty() ? Effort{} : efforts[island];
+    };
     for (std::size_t first = 0, last = 0; first < islands.size(); first = last) {
         const std::uint32_t begin = islands.contact_begin[first];
         const auto contacts_until = [&](std::size_t island) {
             return islands.contact_begin[island] - begin;
         };
         Batch batch;
-        batch.direct = is_direct(first);
-        for (last = first + 1; direct_limit == 0 && last < islands.size(); ++last)
-            if (contacts_until(last + 1) > kBatchContacts) break;
+        const Effort effort = effort_of(first);
+        batch.direct = effort.direct || is_direct(first);
+        batch.times = effort.times;
+        const bool alone = effort.direct || direct_limit > 0;
+        for (last = first + 1; !alone && last < islands.size(); ++last)
+            if (contacts_until(last + 1) > kBatchContacts || effort_of(last) != effort) break;
 
         batch.first_slice = static_cast<std::uint32_t>(layout.slices.size());
         batch.contacts = contacts_until(last);

@@ -21,6 +21,7 @@ public:
     // Greatest island, in contacts and in bodies, that goes to the direct solver; above 0 each
     // island is a batch of its own.
     std::size_t direct_limit = 0;
+    std::span<const Effort> efforts;  // [islands]; empty where all are solved alike
 
     void lay_out(const Islands& islands,
                  const ActiveContacts& active,

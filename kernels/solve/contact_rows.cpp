@@ -110,6 +110,15 @@ Vec3T<Real> impact_impulse(const Rows<Real>& rows, std::size_t place, int lane_a
 }
 
 template <class Real>
+void scale_impulses(Real scale, Contact<Real>& contact)
+{
+    for (auto& point : contact.points) point.impulse *= scale;
+    contact.friction *= scale;
+    contact.twist *= scale;
+    contact.rolling *= scale;
+}
+
+template <class Real>
 void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& contact)
 {
     bool any = false;
@@ -141,6 +150,7 @@ void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& cont
     template void hold_uncut<Real>(const Contact<Real>&, int, ContactBlock<Real>&);                \
     template void store_impulses<Real>(const RowsView<Real>&, std::size_t, int, Contact<Real>&);   \
     template Vec3T<Real> impact_impulse<Real>(const Rows<Real>&, std::size_t, int);                \
+    template void scale_impulses<Real>(Real, Contact<Real>&);                                      \
     template void carry_impulses<Real>(const Contact<Real>&, Real, Contact<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

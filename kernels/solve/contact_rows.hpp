@@ -60,6 +60,10 @@ void store_impulses(const RowsView<Real>& rows,
 template <class Real>
 Vec3T<Real> impact_impulse(const Rows<Real>& rows, std::size_t place, int lane);
 
+/// Makes all that a contact holds this times as much.
+template <class Real>
+void scale_impulses(Real scale, Contact<Real>& contact);
+
 /// Carries impulses over from the contact of the same pair in the last step: point by point where
 /// the same features touch, friction turned into the new tangent plane. What of it lies beyond the
 /// cone is cut when rows are made.

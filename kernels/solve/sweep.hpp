@@ -14,6 +14,9 @@ namespace throng {
 /// From this turn (rad) on, advance() leaves turning to turn_fast().
 inline constexpr double kFastTurn = 0.25;
 
+/// How much deeper a contact may be that three or four points carry before it turns rigid.
+inline constexpr int kSharedDeep = 3;
+
 /// What is asked of a visit.
 template <class Real>
 struct Visit {

@@ -41,9 +41,6 @@ struct Contacts {
     }
 };
 
-// How much deeper a contact may be that three or four points carry before it turns rigid.
-constexpr int kShared = 3;
-
 // What a point of a visit aims at, and what an impulse on it does to vn, w1, w2.
 template <class L>
 struct Aim {
@@ -105,7 +102,8 @@ void take_aim(const Contacts<L, turns>& c,
     }
     // Three points or four share a load well; one or two may be a corner that carries everything.
     L eased = one;
-    if constexpr (most > 1) eased = select(loaded > L(Real(2.5)), L(Real(1) / Real(kShared)), one);
+    if constexpr (most > 1)
+        eased = select(loaded > L(Real(2.5)), L(Real(1) / Real(kSharedDeep)), one);
     for (int k = 0; k < count; ++k) {
         const PointRows<Real>& point = c.points[k];
         Aim<L>& aim = aims[k];

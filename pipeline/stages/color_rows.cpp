@@ -7,6 +7,7 @@ namespace throng {
 
 void color_rows(const Conditions& conditions,
                 const Islands& islands,
+                const Stubborn& stubborn,
                 const ActiveContacts& contacts,
                 const BodyStates& states,
                 const Poses& poses,
@@ -19,6 +20,7 @@ void color_rows(const Conditions& conditions,
         ? std::numeric_limits<std::size_t>::max()
         : settings.solver == Solver::direct ? static_cast<std::size_t>(settings.direct_limit)
                                             : 0;
+    painter.efforts = stubborn.efforts;
     painter.lay_out(islands, contacts, states, poses.position, layout);
 }
 

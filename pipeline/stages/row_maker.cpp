@@ -21,8 +21,7 @@ std::array<Softness<Real>, 4> softness_of(const Conditions& conditions)
     const double h = conditions.substep();
     std::array<Softness<Real>, 4> terms;
     for (std::size_t points = 0; points < terms.size(); ++points) {
-        const double share = settings.contact_rate > 0 ? settings.contact_rate : kRate[points];
-        const double rate = settings.contact_hertz > 0 ? settings.contact_hertz : share / h;
+        const double rate = contact_rate(conditions, static_cast<int>(points) + 1);
         terms[points] = settings.solver == Solver::pgs
             ? Softness<Real>{static_cast<Real>(kBaumgarte / h), Real(0)}
             : softness<Real>(rate, kDampingRatio, h);
@@ -31,6 +30,26 @@ std::array<Softness<Real>, 4> softness_of(const Conditions& conditions)
 }
 
 }  // namespace
+
+double contact_rate(const Conditions& conditions, int points)
+{
+    const Settings& settings = conditions.settings;
+    if (settings.contact_hertz > 0) return settings.contact_hertz;
+    const double share =
+        settings.contact_rate > 0 ? settings.contact_rate : kRate[std::size_t(points) - 1];
+    return share / conditions.substep();
+}
+
+double push_rate(const Conditions& conditions, int points)
+{
+    const double h = conditions.substep();
+    return softness<double>(contact_rate(conditions, points), kDampingRatio, h).bias_rate;
+}
+
+double rigid_overlap(double extent, int points)
+{
+    return kDeep * extent * (points > 2 ? kSharedDeep : 1);
+}
 
 template <class Real>
 RowMaker<Real>::RowMaker(const Conditions& conditions,
@@ -114,6 +133,13 @@ void RowMaker<Real>::store(std::size_t begin, std::size_t end) const
         store_impulses(view_, lane / kBlock, static_cast<int>(lane % kBlock),
                        contact_of(active_.entries[layout_.contacts[i]]));
     }
+}
+
+template <class Real>
+void RowMaker<Real>::scale_impulses(const Slice& slice, Real scale) const
+{
+    for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i)
+        throng::scale_impulses(scale, contact_of(active_.entries[layout_.contacts[i]]));
 }
 
 template class RowMaker<float>;

@@ -9,6 +9,15 @@
 
 namespace throng {
 
+/// Hz, of the spring that a contact of so many points is.
+double contact_rate(const Conditions& conditions, int points);
+/// 1/s, the share of its overlap that it pushes apart.
+double push_rate(const Conditions& conditions, int points);
+/// m, overlap under a load that so many points share, from which they begin to turn rigid.
+///
+///   extent  m, the lesser of the smallest half extents of the two shapes
+double rigid_overlap(double extent, int points);
+
 template <class Real>
 class RowMaker {
 public:
@@ -26,6 +35,9 @@ public:
     /// Gives their impulses back to the contacts of these places in Layout::contacts: in the order
     /// in which they lie in memory, as there are more of them than of the rows that they lie in.
     void store(std::size_t begin, std::size_t end) const;
+
+    /// Makes what the contacts of a slice hold this times as much, for substeps of another length.
+    void scale_impulses(const Slice& slice, Real scale) const;
 
     Contact<Real>& contact_of(const ActiveContacts::Entry& source) const;
 

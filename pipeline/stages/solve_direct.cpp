@@ -36,13 +36,14 @@ void finish_direct(const Conditions& conditions, const Layout& layout, Trouble& 
 {
     trouble.direct_residual = 0;
     trouble.direct_left = 0;
-    for (const double residual : trouble.residual_of)
-        trouble.direct_residual = std::max(trouble.direct_residual, residual);
     trouble.penalty_cuts = 1;
     for (const int cuts : trouble.cuts_of)
         trouble.penalty_cuts = std::max(trouble.penalty_cuts, cuts);
     const Settings& settings = conditions.settings;
+    // Of islands that are escalated nothing is promised but that they stand.
     if (settings.solver != Solver::direct || settings.response != Response::impulse) return;
+    for (const double residual : trouble.residual_of)
+        trouble.direct_residual = std::max(trouble.direct_residual, residual);
     for (const Batch& batch : layout.batches) trouble.direct_left += batch.direct ? 0 : 1;
 }
 

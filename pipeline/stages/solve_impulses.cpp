@@ -2,6 +2,7 @@
 #include "kernels/motion/solver_bodies.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
+#include "pipeline/stages/escalation.hpp"
 #include "pipeline/stages/parting.hpp"
 #include "pipeline/stages/solve_batch.hpp"
 #include "pipeline/stages/solve_direct.hpp"
@@ -120,6 +121,7 @@ std::span<const InnerRow> solve_table(const Settings& settings)
 
 template <class Real>
 void solve_impulses(const Conditions& conditions,
+                    const Islands& islands,
                     const Layout& layout,
                     const ActiveContacts& active,
                     const Masses& masses,
@@ -132,18 +134,35 @@ void solve_impulses(const Conditions& conditions,
                     Poses& poses,
                     Velocities& velocities,
                     Parting& parting,
+                    Stubborn& stubborn,
                     Trouble& trouble)
 {
     trouble.quarantined.clear();
     const RowMaker<Real> maker(conditions, layout, active, convex, meshes, solids, rows);
     const RigidFacts facts{forces, masses, poses, velocities};
-    const DirectScene<Real> direct{conditions, layout, active, facts,
-                                   pulls,      maker,  poses,  velocities};
+    Conditions exactly = conditions;
+    if (conditions.settings.solver != Solver::direct
+        && conditions.settings.response == Response::impulse)
+        exactly.settings.iterations = kExactSteps;
+    const DirectScene<Real> direct{exactly, layout, active, facts,
+                                   pulls,   maker,  poses,  velocities};
     start_direct(layout, rows, trouble);
     start_parting(layout, parting);
+    const auto solve_finer = [&](const Batch& batch) {
+        Conditions finer = conditions;
+        finer.settings.substeps *= batch.times;
+        const RowMaker<Real> with(finer, layout, active, convex, meshes, solids, rows);
+        const Slice& slice = layout.slices[batch.first_slice];
+        // Impulses are kept as of the substep that the settings say.
+        with.scale_impulses(slice, Real(1) / Real(batch.times));
+        solve_batch(finer, facts, layout, batch, with, rows, parting);
+        with.scale_impulses(slice, Real(batch.times));
+    };
     const auto solve = [&](const Batch& batch) {
         if (batch.direct)
             solve_direct(direct, batch, rows, trouble);
+        else if (batch.times > 1)
+            solve_finer(batch);
         else
             solve_batch(conditions, facts, layout, batch, maker, rows, parting);
     };
@@ -156,6 +175,7 @@ void solve_impulses(const Conditions& conditions,
     });
 
     finish_direct(conditions, layout, trouble);
+    note_strain(conditions, islands, layout, active, masses, velocities, maker, stubborn);
     follow_parting(parting);
 
     // In order of bodies, of which many arrays are written.
@@ -180,9 +200,9 @@ void solve_impulses(const Conditions& conditions,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(                                                            \
-        const Conditions&, const Layout&, const ActiveContacts&, const Masses&, const Forces&,     \
-        const Pulls&, Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,                     \
-        SolidContacts<Real>&, Poses&, Velocities&, Parting&, Trouble&);
+        const Conditions&, const Islands&, const Layout&, const ActiveContacts&, const Masses&,    \
+        const Forces&, const Pulls&, Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,      \
+        SolidContacts<Real>&, Poses&, Velocities&, Parting&, Stubborn&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -1,0 +1,67 @@
+// Escalation: what the solver would let fall is found, held, and let go again.
+#include "tests/pipeline/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+// A box on a box, so many times as heavy.
+Scene heavy_on_light(double ratio)
+{
+    given::SceneOf made;
+    made.floor();
+    for (const int i : {0, 1}) {
+        BodyDescription& box = made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.5 + i));
+        box.mass = i == 0 ? 1 : ratio;
+        box.name = i == 0 ? "light" : "heavy";
+    }
+    made.scene.settings.sleep = false;
+    return made.scene;
+}
+
+double height_of_top(const World& world) { return world.pose(world.bodies().back()).position.z(); }
+
+TEST(Escalation, HoldsAHeavyBoxOnALightOneThatFallsWithoutIt)
+{
+    Scene scene = heavy_on_light(1000);
+    World held(scene);
+    scene.settings.escalation = Escalation::off;
+    World left(scene);
+    held.step(180);
+    left.step(180);
+    EXPECT_NEAR(height_of_top(held), 1.5, 0.02);
+    EXPECT_LT(height_of_top(left), 1);
+    EXPECT_GT(held.report().islands_escalated, 100u);
+    EXPECT_EQ(left.report().islands_escalated, 0u);
+}
+
+TEST(Escalation, IsCalledForByWhoIsStubbornAndByNobodyElse)
+{
+    World equal(heavy_on_light(1));
+    equal.step(30);
+    EXPECT_FALSE(equal.effects().on.has(Effect::escalation));
+    World world(heavy_on_light(1000));
+    EXPECT_FALSE(world.effects().on.has(Effect::escalation));
+    world.step(30);
+    EXPECT_TRUE(world.effects().on.has(Effect::escalation));
+    EXPECT_EQ(world.effects().cause_of(Effect::escalation), "body 1 light");
+    // Taken apart it is stubborn no more.
+    world.set_pose(world.bodies().back(), {Vec3(5, 0, 0.5), Quat::Identity()});
+    world.step(30);
+    EXPECT_FALSE(world.effects().on.has(Effect::escalation));
+}
+
+TEST(Escalation, GivesTheSameBitsOnAnyNumberOfThreads)
+{
+    const auto hash_of = [](int threads) {
+        World world(heavy_on_light(1000), threads);
+        world.step(30);
+        return world.state_hash();
+    };
+    EXPECT_EQ(hash_of(1), hash_of(2));
+    EXPECT_EQ(hash_of(1), hash_of(3));
+}
+
+}  // namespace
+}  // namespace throng
