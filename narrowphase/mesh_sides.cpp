@@ -14,6 +14,9 @@ namespace {
 // What is hidden is looked for along this share of the way to it: not where it is itself.
 constexpr double kNearly = 0.999;
 
+// Over a seam, by this share of the shape's size, a center is over both triangles.
+constexpr double kSeam = 1e-4;
+
 TrianglePoint<double> nearest_to(const Vec3& point, const MeshTriangle& triangle)
 {
     const auto& [a, b, c] = triangle.corners;
@@ -40,7 +43,13 @@ MeshSides::MeshSides(const Mesh& mesh,
                      const Vec3& center,
                      double through)
     : mesh_(mesh), near_(near), held_(held), center_(center), through_(through)
-{ }
+{
+    for (const std::uint32_t one : held_) {
+        const std::uint32_t triangle = one & ~kBehind;
+        const bool behind = (one & kBehind) != 0;
+        if ((height(triangle) < 0) != behind && crossed(triangle, behind).through) came_ = true;
+    }
+}
 
 double MeshSides::height(std::uint32_t triangle) const
 {
@@ -68,14 +77,17 @@ MeshSides::Approach MeshSides::crossed(std::uint32_t triangle, bool behind) cons
     const MeshTriangle seen(mesh_, triangle, behind);
     const Approach went_round{.behind = !behind}, through{true, behind, true, true};
     if (-seen.height(center_) > through_) return went_round;
-    const auto region = static_cast<std::size_t>(nearest_to(center_, seen).region);
-    if (region == 0) return through;
+    const auto nearest = nearest_to(center_, seen);
+    const Vec3 apart = center_ - nearest.point;
+    const Vec3 past = apart - seen.normal * seen.normal.dot(apart);
+    if (past.norm() <= kSeam * through_) return through;
+    const auto region = static_cast<std::size_t>(nearest.region);
     // At a corner both its edges count.
     const std::size_t first = region > 3 ? (region - 2) % 3 : region - 1;
     const std::size_t last = region > 3 ? region - 4 : first;
     if (seen.beyond(first) < 0 || seen.beyond(last) < 0) return went_round;
-    if (seen.is_convex(first) || seen.is_convex(last)) return {.any = false};
-    return through;
+    // Over an edge within: the triangle that the center is over pushes.
+    return {.any = false};
 }
 
 // Whether the center is within the volume that a closed piece encloses, with this triangle the
@@ -106,6 +118,8 @@ MeshSides::Approach MeshSides::approach(std::uint32_t triangle) const
     const int held = held_.empty() ? -1 : side_held(triangle);
     if (open) {
         const bool known = held == (behind ? 1 : 0);
+        // Of those that it has come through, the one that it is over pushes for all.
+        if (held < 0 && came_) return {.any = false};
         if (known || held < 0) return {.behind = behind, .known = known};
         return crossed(triangle, held == 1);
     }

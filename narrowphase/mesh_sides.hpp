@@ -49,6 +49,7 @@ private:
     std::span<const std::uint32_t> near_, held_;
     Vec3 center_;
     double through_;
+    bool came_ = false;  // through one of those that it touched
 };
 
 /// The same as collide_mesh() of narrowphase.hpp for a shape that touched these triangles in the
