@@ -95,7 +95,7 @@ TEST(Islands, HoldTheSameBodiesWhateverTheOrderOfContacts)
 TEST(Islands, OfNothingAreNone)
 {
     Islands islands;
-    IslandFinder().find({}, {}, islands);
+    IslandFinder().find({}, {}, {}, islands);
     EXPECT_EQ(islands.size(), 0u);
     EXPECT_TRUE(islands.lone.empty());
 }
