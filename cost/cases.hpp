@@ -22,7 +22,8 @@ namespace throng {
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kGravity = 9.81;  // m/s2, where a case does not say another
 
-enum class Verdict : std::uint8_t { pass, fail, skipped };
+/// missed: the default misses a bound that a named setting of the same case meets.
+enum class Verdict : std::uint8_t { pass, fail, skipped, missed };
 
 /// One line of a case's answer. A figure passes when it is at most its bound.
 struct CaseResult {
@@ -124,6 +125,15 @@ public:
     /// Adds a line. Time is counted from the last line, or from the start.
     void report(
         std::string setting, std::string quantity, double figure, double bound, std::string unit);
+
+    /// Adds a line about the default where `setting`, which the case runs as well, is what meets
+    /// the bound: missed where the default does not.
+    void report_default(std::string setting,
+                        std::string quantity,
+                        double figure,
+                        double bound,
+                        std::string unit,
+                        const std::string& met_by);
 
     /// Adds a line of how long something took, ns: it is shown, and held to nothing.
     void report_time(std::string setting, std::string quantity, double ns);

@@ -62,6 +62,8 @@ std::string_view text_of(Verdict verdict)
         return "pass";
     case Verdict::fail:
         return "fail";
+    case Verdict::missed:
+        return "missed";
     default:
         return "skipped";
     }
@@ -145,7 +147,7 @@ int run_cases(const Options& options)
     OutputFile json("--json", options.text("--json"));
     note_interrupts();
 
-    std::size_t passed = 0, failed = 0, skipped = 0;
+    std::size_t passed = 0, failed = 0, skipped = 0, missed = 0;
     std::string lines;
     MethodTable methods;
     const auto take_line = [&](const CaseResult& result) {
@@ -155,6 +157,7 @@ int run_cases(const Options& options)
         passed += result.verdict == Verdict::pass ? 1 : 0;
         failed += result.verdict == Verdict::fail ? 1 : 0;
         skipped += result.verdict == Verdict::skipped ? 1 : 0;
+        missed += result.verdict == Verdict::missed ? 1 : 0;
     };
     // Nobody reads on: there is nothing left to run for.
     const auto ended = [&] { return interrupted() || (!std::cout && !json.asked_for()); };
@@ -170,6 +173,7 @@ int run_cases(const Options& options)
     methods.print(std::cout);
     std::cout << passed << " passed, " << failed << " failed";
     if (skipped > 0) std::cout << ", " << skipped << " skipped";
+    if (missed > 0) std::cout << ", " << missed << " missed by default";
     std::cout << std::endl;
     if (interrupted()) return kInterrupted;
     return failed == 0 ? kDone : kCaseFailed;

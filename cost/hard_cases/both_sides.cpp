@@ -96,7 +96,7 @@ void rest_there(CaseBench& bench,
         Scene scene = met(bench, mesh, guest, from);
         set(scene.settings);
         double height = 0;
-        bench.run(scene, bench.brief() ? 0.4 : 2, [&](World& world, double) {
+        bench.run(scene, bench.brief() ? 1.0 : 2.0, [&](World& world, double) {
             const auto ids = world.bodies();
             const Pose now = world.pose(from.mesh_last ? ids.front() : ids.back());
             height = from.side * from.at.to_local(now.position).z();

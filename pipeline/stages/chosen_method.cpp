@@ -83,15 +83,17 @@ ChosenMethod::ChosenMethod(const Conditions& conditions,
 
 bool ChosenMethod::parts(const PairPlace& pair) const
 {
+    // In float the two may seem nearer by so much than they are.
+    constexpr double kRounding = 1e-6;
+    const double outer = colliders_.outer_radius[pair.a] + colliders_.outer_radius[pair.b];
+    const double apart = pair.reach + kRounding * outer;
     if (filter_ == BoundsFilter::sphere) {
         const Vec3 between = bounds_.placed[pair.b].position - bounds_.placed[pair.a].position;
-        const double reach =
-            colliders_.outer_radius[pair.a] + colliders_.outer_radius[pair.b] + pair.reach;
-        return between.squaredNorm() > reach * reach * (1 + 1e-12);
+        return between.squaredNorm() > (outer + apart) * (outer + apart);
     }
     if (slabs_ == 0) return false;
     const Slabs slabs = throng::slabs_of(slabs_);
-    return parting_slab(memories_.bounds[pair.a], memories_.bounds[pair.b], slabs, pair.reach)
+    return parting_slab(memories_.bounds[pair.a], memories_.bounds[pair.b], slabs, apart)
         != slabs.end;
 }
 

@@ -405,8 +405,11 @@ private:
         const std::uint32_t at = of_a ? a : b, other = of_a ? b : a;
         const ShapeKind kind = colliders_.shape[at].kind;
         if (kind == ShapeKind::hull || kind == ShapeKind::solid || kind == ShapeKind::mesh) return;
-        const double skin =
-            kSkin * colliders_.inner_extent[at] / outer_radius(shapes_, colliders_.shape[at]);
+        const double thick = kSkin * colliders_.inner_extent[at];
+        // What comes no further than through its skin, it would be held by too late.
+        const double closing = candidate.normal.dot(way_a.sweep.shift - way_b.sweep.shift);
+        if (closing * (1 - candidate.time) <= thick) return;
+        const double skin = thick / outer_radius(shapes_, colliders_.shape[at]);
         const ImpactRule rule = rule_of(candidate.key);
         const Impact impact =
             impact_time(shapes_, smaller(at, 1 - skin), moving(other), since, 1, rule);

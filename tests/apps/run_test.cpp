@@ -64,9 +64,9 @@ TEST(RunStats, HoldTheFieldsOfTheContract)
     for (auto node = stats.first(at("effects")); effects.size() < stats.size(at("effects"));
          node = stats.next(node))
         effects.emplace_back(stats.text(node));
-    EXPECT_EQ(
-        effects,
-        (Names{"motion", "gravity", "rotation", "gyroscopic", "contact", "friction", "sleeping"}));
+    EXPECT_EQ(effects,
+              (Names{"motion", "gravity", "rotation", "gyroscopic", "contact", "friction", "seams",
+                     "sleeping"}));
     const auto stage = stats.first(at("stages"));
     EXPECT_EQ(stats.text(stats.find(stage, "name")), "update_bounds");
     EXPECT_EQ(stats.kind(stats.find(stage, "ms_mean")), JsonKind::number);

@@ -32,6 +32,21 @@ TEST(CaseBench, NoLinePassesThatARunWithAQuarantinedBodyIsIn)
     EXPECT_EQ(results[1].verdict, Verdict::pass);
 }
 
+TEST(CaseBench, WhatTheDefaultMissesIsNoFailureWhereASettingMeetsIt)
+{
+    const auto results = run_case(case_that([](CaseBench& bench) {
+        bench.report_default("default", "error", 2, 1, "1", "solver=direct");
+        bench.report_default("default", "error", 1, 1, "1", "solver=direct");
+        bench.run(falling_ball(bench, 1e15), 20, [](World&, double) { return true; });
+        bench.report_default("loses a body", "error", 2, 1, "1", "solver=direct");
+    }));
+    ASSERT_EQ(results.size(), 3U);
+    EXPECT_EQ(results[0].verdict, Verdict::missed);
+    EXPECT_EQ(results[0].why, "met by solver=direct");
+    EXPECT_EQ(results[1].verdict, Verdict::pass);
+    EXPECT_EQ(results[2].verdict, Verdict::fail);
+}
+
 // Ten steps, of which a line each is told.
 void tell_ten_steps(CaseBench& bench)
 {
