@@ -61,7 +61,7 @@ MeshShape inward_block()
 
 struct Arrival {
     double side = 1, speed = 0, above = 0.05;  // 1 in front, -1 behind; m/s, m from the surface
-    Pose at;
+    Pose at = {};
     bool mesh_last = false;
 };
 

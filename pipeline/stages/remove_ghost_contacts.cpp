@@ -34,13 +34,20 @@ constexpr double kSide = 0.1;
 // slope of one by the other is still seen as a rise.
 constexpr double kLevel = 2e-3, kBeyond = 0.1;
 
-// A contact of a shape that can be pushed, seen from it.
+// A contact of a shape that can be pushed with what may have a flush neighbor.
 template <class Real>
-struct Seen {
+struct Borne {
     std::uint32_t mover = 0, other = 0;  // colliders
     std::uint32_t part = 0;              // triangle of a mesh
-    Contact<Real>* contact = nullptr;
     bool mover_first = false;
+    Contact<Real>* contact = nullptr;
+};
+
+// The same, seen from the mover.
+template <class Real>
+struct Seen : Borne<Real> {
+    explicit Seen(const Borne<Real>& borne) : Borne<Real>(borne) { }
+
     bool face = false;           // the other pushes along one of its faces
     bool hidden = false;         // it is a ghost
     Vec3 normal = Vec3::Zero();  // from the other to the mover
@@ -64,7 +71,7 @@ public:
 
     void gather(ConvexContacts<Real>& convex)
     {
-        BlockLists<Seen<Real>> lists;
+        BlockLists<Borne<Real>> lists;
         lists.start(block_count(convex.of_pair.size(), kGrain));
         for_each_block(convex.of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
             for (std::size_t i = begin; i < end; ++i)
@@ -72,19 +79,20 @@ public:
                     place != PairState::kApart)
                     note(pairs_.keys[i], 0, convex.contacts[place], lists[block]);
         });
-        lists.append_to(seen_);
+        lists.append_to(borne_);
     }
 
     void gather(ManyContacts<Real>& contacts)
     {
         for (auto& entry : contacts.entries)
             if (entry.contact.count > 0)
-                note(pairs_.keys[entry.pair], entry.part, entry.contact, seen_);
+                note(pairs_.keys[entry.pair], entry.part, entry.contact, borne_);
     }
 
     // Shape by shape: those of one come together.
     void remove()
     {
+        look_at_several();
         const auto before = [](const Seen<Real>& a, const Seen<Real>& b) {
             return a.mover < b.mover;
         };
@@ -97,6 +105,19 @@ public:
     }
 
 private:
+    // Of shapes that have more than one, and most have not.
+    void look_at_several()
+    {
+        static thread_local std::vector<std::uint8_t> several;  // by collider; zero between calls
+        constexpr std::uint8_t kOne = 1, kMore = 2;
+        several.resize(std::max(several.size(), colliders_.size()), 0);
+        for (const Borne<Real>& borne : borne_)
+            several[borne.mover] = several[borne.mover] == 0 ? kOne : kMore;
+        for (const Borne<Real>& borne : borne_)
+            if (several[borne.mover] == kMore) seen_.emplace_back(borne);
+        for (const Borne<Real>& borne : borne_) several[borne.mover] = 0;
+    }
+
     // Those of shapes that may have a flush neighbor, once for each side that can be pushed.
     void note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& list) const
     {
@@ -106,7 +127,7 @@ private:
             const std::uint32_t on = colliders_.body[other];
             if (!states_.movable(colliders_.body[mover])) continue;
             if (states_.dynamic(on) && colliders_.count[on] < 2) continue;
-            list.push_back({mover, other, part, &contact, first});
+            list.push_back({mover, other, part, first, &contact});
         }
     }
 
@@ -246,6 +267,7 @@ private:
     const Poses& poses_;
     const Velocities& velocities_;
     const BodyStates& states_;
+    std::vector<Borne<Real>> borne_;
     std::vector<Seen<Real>> seen_;
 };
 
