@@ -22,7 +22,7 @@ enum class Floor { boxes, hulls, meshes, compound };
 struct Laid {
     Floor of = Floor::boxes;
     double gap = 0, step = 0;  // m, between tiles; that those from the fourth on stand higher by
-    Pose at;
+    Pose at = {};
     bool backwards = false;  // the slider is made first, and the far tiles before the near ones
 };
 
