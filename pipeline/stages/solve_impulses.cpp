@@ -144,8 +144,7 @@ void solve_impulses(const Conditions& conditions,
     if (conditions.settings.solver != Solver::direct
         && conditions.settings.response == Response::impulse)
         exactly.settings.iterations = kExactSteps;
-    const DirectScene<Real> direct{exactly, layout, active, facts,
-                                   pulls,   maker,  poses,  velocities};
+    const DirectScene<Real> direct{exactly, layout, active, facts, pulls, maker, poses, velocities};
     start_direct(layout, rows, trouble);
     start_parting(layout, parting);
     const auto solve_finer = [&](const Batch& batch) {
