@@ -23,8 +23,6 @@ constexpr int kMostStrikes = 1000;  // of a pair in a step
 constexpr double kRounding = 1e-11;
 // The share of what is missing to the gap at rest that a span gives back.
 constexpr double kPartShare = 0.5;
-// Who misses no more than this share of it rests, and takes no solve of his own to be moved.
-constexpr double kMissed = 1e-3;
 // As far as this, in tolerances, at the end of a span, bodies are not held.
 constexpr double kClear = 2;
 // Deeper than this, in tolerances, two are moved apart.
@@ -288,7 +286,7 @@ void GroupFlight::part(double span, const Motions& solved)
         points.push_back(touch.point);
         points.back().friction = points.back().rolling = 0;
         points.back().least = -std::max(touch.gap - touch.rest_gap, 0.0) / span;
-        if (!(touch.gap < touch.rest_gap * (1 - kMissed))) continue;
+        if (!(touch.gap < touch.rest_gap * (1 - kRounding))) continue;
         any = true;
         points.back().least = std::min((touch.rest_gap - touch.gap) * kPartShare / span,
                                        scene_.conditions.settings.push_limit);
