@@ -15,7 +15,7 @@ std::optional<TriangleSoup> shared_mesh(const std::string& file)
     if (path.empty()) return std::nullopt;
     std::stringstream text;
     text << std::ifstream(path).rdbuf();
-    MeshFile read = read_mesh_text(text.str(), file);
+    MeshFile read = read_mesh_file(text.str(), file);
     MendedMesh mended = mend(std::move(read.vertices), std::move(read.triangles));
     return TriangleSoup{std::move(mended.mesh.vertices), std::move(mended.mesh.triangles)};
 }

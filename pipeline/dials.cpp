@@ -16,8 +16,8 @@ namespace {
 constexpr bool kNotYet = false;
 constexpr Choice kFrictionAt[] = {{"manifold"}, {"points"}};
 constexpr Choice kPrecision[] = {{"float"}, {"double"}};
-constexpr Choice kIntegrator[] = {
-    {"semi_implicit"}, {"euler"}, {"midpoint"}, {"splitting"}, {"rk4"}};
+constexpr Choice kIntegrator[] = {{"auto"},     {"semi_implicit"}, {"euler"},
+                                  {"midpoint"}, {"splitting"},     {"rk4"}};
 constexpr Choice kRotation[] = {{"quaternion"},   {"rotation_vector"},
                                 {"matrix"},       {"quaternion_euler"},
                                 {"matrix_euler"}, {"matrix_euler_repaired"}};
@@ -118,20 +118,6 @@ std::string set_substeps(Settings& settings, std::string_view text)
 
 std::string get_substeps(const Settings& settings) { return std::to_string(settings.substeps); }
 
-std::string set_iterations(Settings& settings, std::string_view text)
-{
-    const int count = parse_whole(text, 100000);
-    if (count == 0 && text != "auto")
-        return wanted("auto or a whole number from 1 to 100000", text);
-    settings.iterations = count;
-    return {};
-}
-
-std::string get_iterations(const Settings& settings)
-{
-    return settings.iterations == 0 ? "auto" : std::to_string(settings.iterations);
-}
-
 std::string set_direct_limit(Settings& settings, std::string_view text)
 {
     const int count = parse_whole(text, 100000);
@@ -175,16 +161,16 @@ std::string set_push_limit(Settings& settings, std::string_view text)
 
 std::string get_push_limit(const Settings& settings) { return number_text(settings.push_limit); }
 
-// Below the spacing of float next to 1 a step that works in float cannot tell what it is; above
-// this a contact is not looked for as far out as a body was held.
-constexpr double kLeastToiTolerance = 0x1p-23, kMostToiTolerance = 0.02;
+// Below this the rounding of places a few meters away hides it, in double too; above that a contact
+// is not looked for as far out as a body was held.
+constexpr double kLeastToiTolerance = 1e-12, kMostToiTolerance = 0.02;
 
 std::string set_toi_tolerance(Settings& settings, std::string_view text)
 {
     const double share = parse_number(text);
     if (!(share >= kLeastToiTolerance && share <= kMostToiTolerance))
-        return wanted("a share of the shape's size from " + number_text(kLeastToiTolerance)
-                          + ", what float resolves, to " + number_text(kMostToiTolerance),
+        return wanted("a share of the shape's size from 1e-12 (by precision=float 1.2e-7) to "
+                          + number_text(kMostToiTolerance),
                       text);
     settings.toi_tolerance = share;
     return {};
@@ -303,12 +289,13 @@ std::vector<Dial> make_dials()
     // clang-format off
     return {
         number_dial("dt", "a number or a fraction, 1/60", "s", set_dt, get_dt,
-            "a shorter step is more exact in everything and costs a whole step each"),
+            "a shorter step is more exact in everything and costs a whole step each; in float down to substeps of 1e-5 s"),
         number_dial("substeps", "a whole number from 1 to 1000", "", set_substeps, get_substeps,
             "more substeps make contacts stiffer and motion finer, and cost a solve each"),
-        number_dial("iterations", "auto, or a whole number: visits a substep (soft_step 1, pgs 20, factorisations of direct at most 200)",
-            "", set_iterations, get_iterations,
-            "more visits leave less error in the velocities, and cost a sweep of all rows each"),
+        whole_dial<&S::iterations, 1, 100000>("iterations", "auto, or a whole number: visits a substep (soft_step 1, pgs 20, factorisations of direct at most 200)",
+            "", "more visits leave less error in the velocities, and cost a sweep of all rows each"),
+        whole_dial<&S::relax_iterations, 1, 100>("relax_iterations", "auto (2 where most contacts have three points or four, as in towers and walls, else 1), or a whole number: visits a substep after bodies have moved",
+            "", "a second visit leaves towers a hundredth of their energy, and heaps no less; each is a sweep of all rows"),
         number_dial("contact_rate", "auto (0.25 a substep for manifolds, 0.5 for one point), a number, fixed:HERTZ",
             "a substep", set_contact_rate, get_contact_rate,
             "a higher rate leaves less overlap and rests less quietly"),
@@ -319,7 +306,7 @@ std::vector<Dial> make_dials()
         choice_dial<&S::precision, kPrecision>("precision",
             "double resolves far finer motion and overlap, and takes about twice the memory and time"),
         choice_dial<&S::integrator, kIntegrator>("integrator",
-            "higher orders follow smooth forces more closely, and evaluate them more often; what touches something goes by semi_implicit"),
+            "higher orders follow smooth forces more closely, and evaluate them more often; auto takes splitting for what forces and pivots act on, and falls by semi_implicit with free turning by splitting; what touches something goes by semi_implicit"),
         choice_dial<&S::rotation, kRotation>("rotation",
             "the exponential map keeps turns exact; the textbook updates drift and save a root"),
         choice_dial<&S::gyroscopic, kGyroscopic>("gyroscopic",
@@ -366,7 +353,7 @@ std::vector<Dial> make_dials()
             "overlap subdivide: each halves the overlap that is left where bodies meet fast, for two more tries a meeting"),
         choice_dial<&S::toi_method, kToiMethod>("toi_method",
             "time alone: none is ever late; newton asks least, bisection a bit at a time, conservative often where two graze"),
-        number_dial("toi_tolerance", "a number from 1.2e-7 to 0.02", "of the smallest half extent", set_toi_tolerance, get_toi_tolerance,
+        number_dial("toi_tolerance", "a number from 1e-12 (float: 1.2e-7) to 0.02", "of the smallest half extent", set_toi_tolerance, get_toi_tolerance,
             "a smaller tolerance finds the moment of touch more exactly, for more evaluations"),
         named_dial("sleep", kSleep, set_sleep, get_sleep,
             "bodies at rest cost nothing while asleep; off follows the slowest creep"),

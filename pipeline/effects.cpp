@@ -113,13 +113,22 @@ private:
     }
     bool carries() const { return facts_.conditions.settings.response == Response::impulse; }
 
+    // Who hangs on a pivot falls about it, unless it is held by its center.
+    bool can_fall(std::size_t body) const
+    {
+        if (!movable(body)) return false;
+        if (facts_.masses.inverse_mass[body] > 0) return true;
+        const Forces& forces = facts_.forces;
+        return body < forces.hangs.size() && forces.hangs[body] != 0 && !forces.hang[body].isZero(0)
+            && facts_.masses.inverse_inertia[body] != Sym3{};
+    }
+
     void find_motion()
     {
         const auto mover = first_body([&](std::size_t body) { return movable(body); });
         if (mover == kNobody) return;
         call(Effect::motion, name(mover));
-        const auto falls = first_body(
-            [&](std::size_t b) { return movable(b) && facts_.masses.inverse_mass[b] > 0; });
+        const auto falls = first_body([&](std::size_t body) { return can_fall(body); });
         if (!facts_.conditions.gravity.isZero(0) && falls != kNobody)
             call(Effect::gravity, "gravity of the scene");
         if (!facts_.drives.body.empty()) call(Effect::drive, name(facts_.drives.body.front()));

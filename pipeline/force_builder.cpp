@@ -76,12 +76,11 @@ void sort_springs(const BodyStates& states, Forces& forces)
 
 std::string spring_warning(std::size_t i, double limit, const Settings& settings)
 {
-    const std::string_view integrator =
-        integrators()[static_cast<std::size_t>(settings.integrator)].name;
+    const std::string_view integrator = chosen(settings.integrator, true).name;
     const std::string who = "spring " + std::to_string(i) + ": ";
     if (limit <= 0)
         return who + std::string(integrator)
-            + " makes it swing wider at any dt; take integrator=semi_implicit";
+            + " makes it swing wider at any dt; take integrator=auto";
     const double span = settings.dt / settings.substeps;
     return who + "a substep of " + number_text(span) + " s is beyond " + number_text(limit)
         + " s, the longest at which " + std::string(integrator)
@@ -155,10 +154,9 @@ std::vector<std::string>
 unstable_springs(const Forces& forces, const Masses& masses, const Settings& settings)
 {
     // Then they go by a rule that bears any step: see stages/following_forces.hpp.
-    if (settings.integrator == Integrator::semi_implicit && settings.response != Response::penalty
-        && settings.overlap == Overlap::allow)
+    if (bears_stiff_springs(settings.integrator) && settings.response != Response::penalty)
         return {};
-    const IntegratorRow& integrator = integrators()[static_cast<std::size_t>(settings.integrator)];
+    const IntegratorRow& integrator = chosen(settings.integrator, true);
     const double span = settings.dt / settings.substeps;
     std::map<double, double> limits;  // by damping ratio: springs are mostly alike
     std::vector<std::string> warnings;
@@ -197,6 +195,15 @@ attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, st
         if (masses.mass[body] > 0 && distance > 0)
             energy -= masses.mass[body] * attractor.strength / distance;
     }
+    return energy;
+}
+
+double springs_energy_of(std::uint32_t body, const Forces& forces, const Poses& poses)
+{
+    double energy = 0;
+    if (!forces.has_springs(body)) return energy;
+    for (std::uint32_t k = forces.first_spring[body]; k < forces.first_spring[body + 1]; ++k)
+        energy += spring_energy(forces.springs[forces.spring_of[k]], forces, poses);
     return energy;
 }
 

@@ -43,6 +43,9 @@ double spring_energy(const SpringForce& spring, const Forces& forces, const Pose
 double
 attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, std::uint32_t body);
 
+/// J that the springs of a body hold.
+double springs_energy_of(std::uint32_t body, const Forces& forces, const Poses& poses);
+
 /// J of a dynamic body.
 double kinetic_energy_of(std::uint32_t body,
                          const Masses& masses,

@@ -1,11 +1,9 @@
 #include "pipeline/moving_mesh.hpp"
 
 #include "kernels/math/hash.hpp"
+#include "pipeline/kept_answers.hpp"
 
-#include <algorithm>
-#include <deque>
 #include <limits>
-#include <mutex>
 
 namespace throng {
 namespace {
@@ -48,57 +46,9 @@ std::uint64_t key_of(const MeshShape& stated)
     return hash.value();
 }
 
-// What is kept, the oldest first.
-class KeptMeshes {
-public:
-    std::shared_ptr<const MovingMesh> find(std::uint64_t key)
-    {
-        const std::lock_guard lock(guard_);
-        const auto at = place_of(key);
-        return at == kept_.end() ? nullptr : at->mesh;
-    }
-
-    void keep(std::uint64_t key, std::size_t triangles, std::shared_ptr<const MovingMesh> mesh)
-    {
-        const std::lock_guard lock(guard_);
-        if (triangles > kMostTriangles || place_of(key) != kept_.end()) return;
-        kept_.push_back({key, triangles, std::move(mesh)});
-        triangles_ += triangles;
-        while (triangles_ > kMostTriangles) erase(kept_.begin());
-    }
-
-    void forget(std::uint64_t key)
-    {
-        const std::lock_guard lock(guard_);
-        if (const auto at = place_of(key); at != kept_.end()) erase(at);
-    }
-
-private:
-    struct Kept {
-        std::uint64_t key;
-        std::size_t triangles;
-        std::shared_ptr<const MovingMesh> mesh;
-    };
-
-    std::deque<Kept>::iterator place_of(std::uint64_t key)
-    {
-        return std::find_if(kept_.begin(), kept_.end(),
-                            [&](const Kept& one) { return one.key == key; });
-    }
-    void erase(std::deque<Kept>::iterator at)
-    {
-        triangles_ -= at->triangles;
-        kept_.erase(at);
-    }
-
-    std::mutex guard_;
-    std::deque<Kept> kept_;
-    std::size_t triangles_ = 0;
-};
-
-KeptMeshes& kept_meshes()
+KeptAnswers<MovingMesh>& kept_meshes()
 {
-    static KeptMeshes kept;
+    static KeptAnswers<MovingMesh> kept(kMostTriangles);
     return kept;
 }
 
@@ -106,11 +56,7 @@ KeptMeshes& kept_meshes()
 
 std::shared_ptr<const MovingMesh> moving_mesh(const MeshShape& stated)
 {
-    const std::uint64_t key = key_of(stated);
-    if (auto known = kept_meshes().find(key)) return known;
-    std::shared_ptr<const MovingMesh> made = make(stated);
-    kept_meshes().keep(key, stated.triangles.size(), made);
-    return made;
+    return kept_meshes().get(key_of(stated), stated.triangles.size(), [&] { return make(stated); });
 }
 
 void forget_moving_mesh(const MeshShape& stated) { kept_meshes().forget(key_of(stated)); }

@@ -4,9 +4,15 @@
 #include "pipeline/dials.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fcntl.h>
+#include <filesystem>
 #include <hdf5.h>
+#include <optional>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <utility>
 
 namespace throng {
@@ -237,8 +243,13 @@ public:
         checked(H5Pset_shuffle(how), name);
         // Higher levels gain some percent on such numbers and take several times as long.
         checked(H5Pset_deflate(how, 1), name);
-        set_ = {H5Dcreate2(owner, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose,
-                name};
+        // Chunks come whole or in turn, so that one in the cache is enough; there has to be room on
+        // the disk for all that it holds.
+        const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, name);
+        std::size_t bytes = H5Tget_size(type);
+        for (const hsize_t side : chunk) bytes *= side;
+        checked(H5Pset_chunk_cache(access, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, bytes, 1), name);
+        set_ = {H5Dcreate2(owner, name, type, space, H5P_DEFAULT, how, access), H5Dclose, name};
         add_text(set_, "unit", unit);
     }
 
@@ -342,6 +353,58 @@ struct Frames {
     hsize_t written = 0;
 };
 
+/// Room on the disk behind what a file holds. Asked for before HDF5 writes anything: what it has once
+/// failed to write it forgets, and chunks that were whole with it.
+class Room {
+public:
+    explicit Room(const std::string& path)
+    {
+        if (std::filesystem::is_regular_file(path)) file_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    }
+    ~Room()
+    {
+        if (file_ >= 0) ::close(file_);
+    }
+    Room(const Room&) = delete;
+    Room& operator=(const Room&) = delete;
+
+    /// Throws RunFileError where so many bytes cannot be added to so many that there are. Where the
+    /// file system cannot keep room there is no promise.
+    void keep(std::size_t bytes, std::size_t more) const
+    {
+        if (file_ < 0) return;
+        struct rlimit limit = {};
+        if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && bytes + more > limit.rlim_cur) fail(EFBIG);
+        const bool kept = ::fallocate(file_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(bytes),
+                                      static_cast<off_t>(more)) == 0;
+        if (!kept && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)) fail(errno);
+    }
+    /// Gives back what is behind so many bytes.
+    void give_back(std::size_t bytes) const
+    {
+        // Where it does not, the file is only larger on the disk than it says.
+        if (file_ >= 0 && ::ftruncate(file_, static_cast<off_t>(bytes)) != 0) return;
+    }
+
+private:
+    [[noreturn]] static void fail(int error)
+    {
+        throw RunFileError(std::string("cannot write the frames: ") + std::strerror(error));
+    }
+
+    int file_ = -1;
+};
+
+// What writing frames may add to the file at the most: a chunk of each track, old ones that come
+// out of the cache, and HDF5's own tables.
+std::size_t most_bytes(const Cut& cut, std::size_t bodies)
+{
+    constexpr std::size_t kTables = 512 << 10;
+    const std::size_t chunks = (bodies + cut.bodies - 1) / cut.bodies;
+    const auto numbers = static_cast<double>(chunks * cut.bodies * cut.frames);
+    return kTables + 2 * static_cast<std::size_t>(numbers * RunFile::kBytesPerBody);
+}
+
 Handle create_file(const std::string& path)
 {
     return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, "the file"};
@@ -351,12 +414,26 @@ Handle create_file(const std::string& path)
 
 struct RunFile::Inside {
     Inside(const std::string& path, const Scene& scene, const World& world, const RunFacts& facts)
-        : file(create_file(path)), bodies(world.bodies())
+        : file(create_file(path)), room(path), bodies(world.bodies())
     {
         write_facts(file, world, facts);
         write_bodies(file, scene, world);
         frames = std::make_unique<Frames>(new_group(file, "frames"), bodies.size());
         flush();
+    }
+
+    void add(const World& world)
+    {
+        frames->add(world, bodies);
+        const bool stale = Clock::now() - flushed > std::chrono::seconds(1);
+        if (frames->chunk_is_full() || stale) write();
+        if (stale) flush();
+    }
+
+    void write()
+    {
+        room.keep(size(), most_bytes(frames->cut, bodies.size()));
+        frames->write();
     }
 
     void flush()
@@ -365,10 +442,19 @@ struct RunFile::Inside {
         flushed = Clock::now();
     }
 
+    std::size_t size() const
+    {
+        hsize_t bytes = 0;
+        checked(H5Fget_filesize(file, &bytes), "the file");
+        return bytes;
+    }
+
     Handle file;
+    Room room;
     std::vector<BodyId> bodies;
     std::unique_ptr<Frames> frames;  // closed before the file
     Clock::time_point flushed;
+    bool failed = false;
 };
 
 RunFile::RunFile(const std::string& path,
@@ -393,24 +479,39 @@ RunFile& RunFile::operator=(RunFile&&) noexcept = default;
 
 void RunFile::write_frame(const World& world)
 {
-    if (!inside_) throw RunFileError("cannot write a frame: the file is closed");
+    if (!inside_ || inside_->failed) throw RunFileError("cannot write a frame: the file is closed");
     const Silence silence;
-    Frames& frames = *inside_->frames;
-    frames.add(world, inside_->bodies);
-    const bool stale = Clock::now() - inside_->flushed > std::chrono::seconds(1);
-    if (frames.chunk_is_full() || stale) frames.write();
-    if (stale) inside_->flush();
+    try {
+        inside_->add(world);
+    } catch (const RunFileError&) {
+        inside_->failed = true;
+        throw;
+    }
 }
 
 void RunFile::close()
 {
     if (!inside_) return;
     const Silence silence;
-    if (inside_->frames->waiting() > 0) inside_->frames->write();
+    std::optional<RunFileError> trouble;
+    try {
+        if (!inside_->failed && inside_->frames->waiting() > 0) inside_->write();
+    } catch (const RunFileError& error) {
+        trouble = error;
+    }
     inside_->flush();
+    whole_frames_ = inside_->frames->written;
     inside_->frames.reset();
+    const std::size_t bytes = inside_->size();
     checked(inside_->file.close(), "the file");
+    inside_->room.give_back(bytes);
     inside_.reset();
+    if (trouble) throw *trouble;
+}
+
+std::size_t RunFile::whole_frames() const
+{
+    return inside_ ? inside_->frames->written : whole_frames_;
 }
 
 }  // namespace throng

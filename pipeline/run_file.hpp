@@ -18,8 +18,10 @@
 //   /frames/angular_velocity  [F, N, 3] float
 //
 // `time` grows last, so its length is the number of frames that are whole. What was written is
-// flushed every second or so: after a crash all but the last moments can be read. A program that
-// uses HDF5 itself closes its own files: with a run file about, HDF5 no longer does so at exit.
+// flushed every second or so: after a crash all but the last moments can be read. Room on the disk is
+// made sure of before anything is written, so that what was written before the disk was full can be
+// read, too. A program that uses HDF5 itself closes its own files: with a run file about, HDF5 no
+// longer does so at exit.
 #pragma once
 
 #include "pipeline/world.hpp"
@@ -55,14 +57,19 @@ public:
     RunFile(RunFile&&) noexcept;
     RunFile& operator=(RunFile&&) noexcept;
 
-    /// Adds the world as it is now.
+    /// Adds the world as it is now. After this has failed there are no more frames.
     void write_frame(const World& world);
-    /// Writes what is left and closes the file.
+    /// Writes what is left and closes the file; where a frame has failed, closes it with those that
+    /// are whole.
     void close();
+    bool closed() const { return !inside_; }
+    /// How many there are that are whole; the others wait to be written.
+    std::size_t whole_frames() const;
 
 private:
     struct Inside;
     std::unique_ptr<Inside> inside_;
+    std::size_t whole_frames_ = 0;  // once it is closed
 };
 
 }  // namespace throng

@@ -1,10 +1,11 @@
 // Scene builder: what a user states, made into the arrays that the step works on.
-#include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh_health.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "pipeline/force_builder.hpp"
+#include "pipeline/scene_check.hpp"
 #include "pipeline/scene_rules.hpp"
 #include "pipeline/solid_maker.hpp"
+#include "pipeline/stated_hull.hpp"
 #include "pipeline/world_state.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -22,6 +23,13 @@ ShapeRef append(std::vector<Shape>& shapes, ShapeKind kind, Shape shape)
 {
     shapes.push_back(std::move(shape));
     return {kind, static_cast<std::uint32_t>(shapes.size() - 1)};
+}
+
+// What nobody finds before the shape is made.
+[[noreturn]] void refuse_mesh(const std::string& name, const std::string& trouble)
+{
+    throw SceneRefused({{"shapes", name, "mesh", "file"},
+                        "wanted a mesh that can be made into what collides; " + trouble});
 }
 
 // Principal moments that differ by more than rounding.
@@ -150,14 +158,15 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
         }
         PlacedShape operator()(const HullShape& s) const
         {
-            HullResult result = build_hull(s.points);
-            if (!result.trouble.empty()) throw std::invalid_argument("hull: " + result.trouble);
-            return single(append(shapes.hulls, ShapeKind::hull, std::move(result.hull)));
+            const std::shared_ptr<const HullResult> built = stated_hull(s);
+            // Its way into the world ends here.
+            forget_stated_hull(s);
+            return single(append(shapes.hulls, ShapeKind::hull, built->hull));
         }
         PlacedShape operator()(const MeshShape& s) const
         {
             MendedMesh result = mend_still(s.vertices, s.triangles);
-            if (!result.trouble.empty()) throw std::invalid_argument("mesh: " + result.trouble);
+            if (!result.trouble.empty()) refuse_mesh(name, result.trouble);
             for (const std::string& remark : result.remarks)
                 builder.state_.remarks.push_back("shape " + name + ": " + remark);
             return single(append(shapes.meshes, ShapeKind::mesh, std::move(result.mesh)));
@@ -203,7 +212,7 @@ PlacedShape SceneBuilder::add_solid(const std::string& name, const VoxelsShape& 
 PlacedShape SceneBuilder::add_made(const std::string& name, MadeSolid made)
 {
     const std::string who = "shape " + name + ": ";
-    if (!made.trouble.empty()) throw std::invalid_argument(who + made.trouble);
+    if (!made.trouble.empty()) refuse_mesh(name, made.trouble);
     for (const std::string& remark : made.remarks) state_.remarks.push_back(who + remark);
     state_.solids.push_back(name + ": " + made.summary);
     PlacedShape placed;
@@ -432,15 +441,13 @@ void SceneBuilder::make_room(std::size_t bodies)
 void SceneBuilder::add_forces(const Scene& scene, std::span<const BodyId> ids)
 {
     Forces& forces = state_.get<Forces>();
+    std::vector<std::uint32_t> places;
+    for (const BodyId id : ids) places.push_back(id.index);
     if (!scene.springs.empty()) {
-        std::vector<std::uint32_t> places;
-        for (const BodyId id : ids) places.push_back(id.index);
         join_springs(scene.springs, places, state_.center, state_.get<BodyStates>(), forces);
-        state_.warn_of_springs();
     }
-    for (const Attractor& attractor : scene.attractors)
-        forces.attractors.push_back({attractor.position, attractor.strength});
-    if (!scene.wind.isZero(0)) forces.wind = scene.wind;
+    state_.warn_of_substeps();
+    if (state_.fields.add(scene, places, forces)) state_.wake_all();
 }
 
 std::vector<BodyId> SceneBuilder::add(const Scene& scene)

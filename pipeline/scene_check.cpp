@@ -4,6 +4,7 @@
 #include "pipeline/dials.hpp"
 #include "pipeline/names.hpp"
 #include "pipeline/scene_rules.hpp"
+#include "pipeline/unused_dials.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,8 @@ void check_settings(const Settings& settings)
         const std::string trouble = dial.set(scratch, dial.get(settings));
         checker.need(trouble.empty(), trouble);
     }
+    const std::string clash = clashing_dials(settings);
+    part.need(clash.empty(), clash);
 }
 
 void check_material(const Material& material, const SceneChecker& checker)

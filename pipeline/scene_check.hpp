@@ -7,6 +7,7 @@
 #include "pipeline/scene_path.hpp"
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 namespace throng {
@@ -15,6 +16,19 @@ namespace throng {
 struct SceneTrouble {
     ScenePath path;
     std::string wanted;
+};
+
+/// A scene that cannot become a world: what() reads `scene: bodies[3].mass: wanted ...`.
+class SceneRefused : public std::invalid_argument {
+public:
+    explicit SceneRefused(SceneTrouble trouble)
+        : std::invalid_argument("scene: " + path_text(trouble.path) + ": " + trouble.wanted),
+          trouble_(std::move(trouble))
+    { }
+    const SceneTrouble& trouble() const { return trouble_; }
+
+private:
+    SceneTrouble trouble_;
 };
 
 /// The first trouble in the order shapes, materials, bodies, instances, the rest.

@@ -32,6 +32,9 @@ struct Settings {
     int substeps = 4;      // they divide dt
     int iterations = 0;    // solver visits a substep; 0: the solver's own default
 
+    // Relaxing visits a substep of soft_step, after bodies have moved. 0: auto, see relax_visits().
+    int relax_iterations = 0;
+
     // Stiffness of contacts. 0: auto, 0.25 of the substep's rate for manifolds of four points,
     // more for fewer, 0.5 for one (stiffer does not come to rest). contact_rate > 0: that factor
     // for all. contact_hertz > 0: a fixed rate in Hz, whatever the substep.
@@ -40,7 +43,7 @@ struct Settings {
     double push_limit = 3;  // m/s, fastest that overlap is pushed apart
 
     Precision precision = Precision::float_;
-    Integrator integrator = Integrator::semi_implicit;
+    Integrator integrator = Integrator::auto_;
     Rotation rotation = Rotation::quaternion;
     Gyroscopic gyroscopic = Gyroscopic::implicit;
     BroadPhase broadphase = BroadPhase::auto_;

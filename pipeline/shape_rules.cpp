@@ -1,11 +1,11 @@
 // Shape rules: what a shape of a scene must be, and what it then weighs.
-#include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "pipeline/dials.hpp"
 #include "pipeline/level_set.hpp"
 #include "pipeline/moving_mesh.hpp"
 #include "pipeline/names.hpp"
 #include "pipeline/scene_rules.hpp"
+#include "pipeline/stated_hull.hpp"
 
 #include <cmath>
 #include <set>
@@ -89,9 +89,9 @@ struct ShapeChecker {
         const SceneChecker here = checker.at("hull"), points = here.at("points");
         for (std::size_t i = 0; i < hull.points.size(); ++i)
             points.at(i).need_place(hull.points[i]);
-        const HullResult built = build_hull(hull.points);
-        points.need(built.trouble.empty(), "wanted a hull; " + built.trouble);
-        return mass_of(built.hull);
+        const std::shared_ptr<const HullResult> built = stated_hull(hull);
+        points.need(built->trouble.empty(), "wanted a hull; " + built->trouble);
+        return mass_of(built->hull);
     }
     MassProperties operator()(const PlaneShape& plane)
     {

@@ -35,9 +35,34 @@ std::string summary_of(const Solid& solid)
         + std::to_string(solid.points.size()) + " surface points";
 }
 
+// Share of the longest side or of the volume by which a mesh may be off and nobody is warned: what
+// the ways are off by unasked, half a voxel of 48 along the side, a pixel of 32, parts of 2.5 %, is
+// less.
+constexpr double kNotable = 0.05;
+
+std::string percent(double share) { return short_text(100 * share) + " %"; }
+
 std::string error_text(const Solid& solid)
 {
     return ", depths within " + short_text(solid.error) + " m";
+}
+
+// What would be nearer to a mesh than what it was taken by.
+std::string_view nearer_than(NonConvex way)
+{
+    switch (way) {
+    case NonConvex::voxels:
+        return "a smaller voxel_size is nearer";
+    case NonConvex::parts:
+        return "more max_parts are nearer, or nonconvex=voxels";
+    case NonConvex::spheres:
+        return "more sphere_levels are nearer, or nonconvex=voxels";
+    case NonConvex::depth_image:
+        return "a greater image_resolution is nearer";
+    case NonConvex::hull:
+        break;
+    }
+    return "nonconvex=voxels or parts keep them";
 }
 
 // One call of make_solid for a mesh.
@@ -113,10 +138,21 @@ private:
         MeshResult surface = field_surface(field_.bricks);
         made_.trouble = surface.trouble;
         if (!surface.trouble.empty()) return false;
+        const double stated = std::abs(mass_as_if_closed(mesh_).volume);
         mesh_ = std::move(surface.mesh);
         made_.remarks.push_back("taken as the surface of its level set, with voxels of "
-                                + short_text(field_.bricks.voxel) + " m");
+                                + short_text(field_.bricks.voxel) + " m"
+                                + volume_text(mass_of(mesh_).volume / stated - 1));
         return true;
+    }
+
+    // By how much the volume, and with it the mass, is another than that of the triangles.
+    static std::string volume_text(double grown)
+    {
+        if (!(std::abs(grown) > kNotable)) return {};
+        return ": its volume, and so its mass, is " + percent(std::abs(grown))
+            + (grown > 0 ? " more" : " less")
+            + " than that of its triangles, closed over their rims";
     }
 
     bool take_sheet()
@@ -168,10 +204,20 @@ private:
     MadeSolid finished(Solid solid)
     {
         made_.summary += error_text(solid);
+        warn_of_loss(solid.error);
         solid.mesh = std::move(mesh_);
         if (solid.way == SolidWay::depth_image) solid.layers = layers_of(solid);
         made_.shape = std::move(solid);
         return std::move(made_);
+    }
+
+    void warn_of_loss(double error)
+    {
+        const double share = error / longest_side(mesh_);
+        if (share > kNotable)
+            made_.remarks.push_back("off by " + short_text(error) + " m somewhere, "
+                                    + percent(share) + " of its longest side; "
+                                    + std::string(nearer_than(settings_.nonconvex)));
     }
 
     MadeSolid as_parts()
@@ -188,6 +234,12 @@ private:
         made_.summary = one ? "one hull" : std::to_string(parts.hulls.size()) + " convex parts";
         made_.summary += ", within " + short_text(parts.error) + " m of the mesh";
         for (const std::string& remark : parts.remarks) made_.summary += "; " + remark;
+        if (settings_.nonconvex == NonConvex::parts)
+            warn_of_loss(parts.error);
+        else if (parts.volume_error > kNotable)
+            made_.remarks.push_back("taken as one hull: holes and hollows are filled, "
+                                    + percent(parts.volume_error) + " more than the mesh; "
+                                    + std::string(nearer_than(settings_.nonconvex)));
         made_.shape = std::move(parts.hulls);
         return std::move(made_);
     }

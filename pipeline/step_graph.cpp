@@ -26,6 +26,7 @@ std::vector<std::pair<std::size_t, std::size_t>> waits(const std::vector<Stage<R
 template <class Real>
 void StepGraph<Real>::run_stage(std::size_t place)
 {
+    const WorkCountScope counted(count_);
     if (watch_ == nullptr)
         time_stage(place);
     else

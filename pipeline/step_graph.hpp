@@ -4,6 +4,7 @@
 // changes and not each step; running the rows top to bottom leaves the same bits.
 #pragma once
 
+#include "kernels/parallel/work_count.hpp"
 #include "pipeline/stage.hpp"
 
 #include <functional>
@@ -45,6 +46,8 @@ public:
 
     /// From now on somebody watches; null for nobody.
     void watch(StepWatch* watch) { watch_ = watch; }
+    /// From now on the threads that work are counted; null for nobody.
+    void count(WorkCount* count) { count_ = count; }
 
     /// Nothing was run: no stage took any time.
     void rest() { times_.assign(times_.size(), 0.0); }
@@ -61,6 +64,7 @@ private:
     StepData<Real>* data_;
     StageTimes times_;
     StepWatch* watch_ = nullptr;
+    WorkCount* count_ = nullptr;
     std::unique_ptr<Nodes> nodes_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "pipeline/dials.hpp"
 #include "pipeline/moving_mesh.hpp"
+#include "pipeline/names.hpp"
 #include "pipeline/scene_rules.hpp"
 #include "pipeline/solid_maker.hpp"
 
@@ -87,8 +88,9 @@ std::string why_carrying_leaves(const Scene& scene, std::string_view name)
     if (name == "halvings") return why;
     if (scene.settings.overlap == Overlap::allow || !why.empty()) return {};
     for (const std::string_view unused :
-         {"solver", "contact_rate", "direct_limit", "narrowphase", "method_start", "bounds_filter",
-          "broadphase", "friction_cone", "friction_at", "sleep", "escalation"})
+         {"solver", "contact_rate", "relax_iterations", "direct_limit", "narrowphase",
+          "method_start", "bounds_filter", "broadphase", "friction_cone", "friction_at", "sleep",
+          "escalation"})
         if (name == unused) return "overlap " + overlap + " solves contacts in its own way";
     return {};
 }
@@ -103,10 +105,11 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
     const std::string response = dial_value(settings, "response");
 
     if (settings.response != Response::impulse
-        && is_one_of({"solver", "iterations", "contact_rate", "push_limit", "direct_limit",
-                      "friction_cone", "friction_at", "impact_law", "escalation"}))
+        && is_one_of({"solver", "iterations", "relax_iterations", "contact_rate", "push_limit",
+                      "direct_limit", "friction_cone", "friction_at", "impact_law", "escalation"}))
         return "response " + response + " solves no rows";
-    if (settings.solver != Solver::soft_step && name == "contact_rate")
+    if (settings.solver != Solver::soft_step
+        && (name == "contact_rate" || name == "relax_iterations"))
         return "solver " + solver + " has no soft contacts";
     if (settings.solver == Solver::pgs && name == "push_limit")
         return "solver " + solver + " has no soft contacts";
@@ -115,7 +118,8 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
     if (settings.solver != Solver::direct && name == "direct_limit")
         return "solver " + solver + " takes islands of any size";
     if (name == "gyroscopic" && settings.gyroscopic == Gyroscopic::explicit_
-        && settings.integrator != Integrator::semi_implicit)
+        && settings.integrator != Integrator::semi_implicit
+        && settings.integrator != Integrator::auto_)
         return "integrator " + dial_value(settings, "integrator")
             + " takes the torque as it does all others";
     if (settings.solver != Solver::direct && settings.overlap == Overlap::allow
@@ -145,6 +149,17 @@ std::vector<std::string> unused_dials(const Scene& scene)
         if (!why.empty()) unused.push_back(name + ": unused, " + why);
     }
     return unused;
+}
+
+std::string clashing_dials(const Settings& settings)
+{
+    // The spacing of float next to 1: less a step that works in float cannot tell.
+    constexpr double kLeastInFloat = 0x1p-23;
+    if (settings.precision == Precision::double_ || settings.toi_tolerance >= kLeastInFloat)
+        return {};
+    return "toi_tolerance: wanted " + number_text(kLeastInFloat)
+        + " or more, what float resolves, not " + number_text(settings.toi_tolerance)
+        + "; precision=double takes less";
 }
 
 }  // namespace throng

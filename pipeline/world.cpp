@@ -7,6 +7,7 @@
 #include "pipeline/names.hpp"
 #include "pipeline/scene_check.hpp"
 #include "pipeline/stages/escalation.hpp"
+#include "pipeline/stages/solve_batch.hpp"
 #include "pipeline/step_table.hpp"
 #include "pipeline/world_state.hpp"
 
@@ -174,6 +175,10 @@ void World::State::report_state()
     report.colors = 0;
     for (const Slice& slice : get<Layout>().slices)
         report.colors = std::max<std::size_t>(report.colors, slice.colors);
+    const Settings& settings = get<Conditions>().settings;
+    const bool relaxes =
+        settings.solver == Solver::soft_step && settings.response == Response::impulse;
+    report.relax_visits = relaxes ? mean_relax_visits(settings, get<Layout>()) : 0;
     report.bodies_awake = get<BodyStates>().movers.dynamic.size();
     if (!effects.on.meets(kCarried)) return;
     const CarriedContacts& carried = get<CarriedContacts>();
@@ -221,10 +226,18 @@ Vec3 World::State::velocity(std::uint32_t body) const
     return velocities.linear[body] + velocities.angular[body].cross(arm(body));
 }
 
-void World::State::warn_of_springs()
+void World::State::warn_of_substeps()
 {
-    for (std::string& warning :
-         unstable_springs(get<Forces>(), get<Masses>(), get<Conditions>().settings))
+    const Settings& settings = get<Conditions>().settings;
+    std::vector<std::string> warnings = unstable_springs(get<Forces>(), get<Masses>(), settings);
+    // What weight adds in one has few digits left beside a speed of some m/s.
+    constexpr double kShortest = 1e-5;
+    if (settings.precision == Precision::float_ && settings.dt / settings.substeps < kShortest)
+        warnings.push_back("a substep of " + number_text(settings.dt / settings.substeps)
+                           + " s is too short for float, which takes 1e-05 s and more: what weight"
+                             " adds in it is lost in the digits of a speed; take"
+                             " precision=double");
+    for (std::string& warning : warnings)
         if (std::find(remarks.begin(), remarks.end(), warning) == remarks.end())
             remarks.push_back(std::move(warning));
 }
@@ -270,8 +283,8 @@ World& World::operator=(World&&) noexcept = default;
 
 std::vector<BodyId> World::add(const Scene& scene)
 {
-    if (const std::string trouble = check_scene(scene); !trouble.empty())
-        throw std::invalid_argument("scene: " + trouble);
+    if (std::optional<SceneTrouble> trouble = find_trouble(scene))
+        throw SceneRefused(std::move(*trouble));
     return SceneBuilder(*state_).add(scene);
 }
 
@@ -291,6 +304,7 @@ void World::step(int steps)
                 std::visit(
                     [&](auto& chosen) {
                         chosen.graph->watch(state.watch);
+                        chosen.graph->count(&state.work);
                         if (state.in_order)
                             chosen.graph->run_in_order();
                         else
@@ -335,7 +349,7 @@ void World::set_settings(const Settings& settings)
     state_->get<Flights>() = {};  // numbers of another rotation, or of another law
     state_->get<Conditions>().settings = settings;
     state_->effects_stale = true;
-    state_->warn_of_springs();
+    state_->warn_of_substeps();
 }
 
 Vec3 World::gravity() const { return state_->get<Conditions>().gravity; }
@@ -345,7 +359,7 @@ void World::set_gravity(const Vec3& gravity)
     if (!gravity.allFinite()) throw std::invalid_argument("set_gravity: give finite numbers, m/s2");
     state_->get<Conditions>().gravity = gravity;
     state_->effects_stale = true;
-    for (std::uint32_t body = 0; body < state_->generation.size(); ++body) state_->wake(body);
+    state_->wake_all();
 }
 
 std::size_t World::body_count() const { return state_->alive; }
@@ -509,6 +523,7 @@ std::vector<World::StageInfo> World::step_stages()
 
 int World::threads() const { return state_->pool.threads(); }
 int World::threads_met() const { return state_->pool.threads_met(); }
+int World::threads_used() const { return state_->work.threads(); }
 void World::run_in_order(bool in_order) { state_->in_order = in_order; }
 
 }  // namespace throng

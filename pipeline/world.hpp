@@ -38,6 +38,8 @@ public:
     /// Adds all that a scene holds to this world; its settings and gravity are not taken. Ids come
     /// in the scene's order: bodies, then instances.
     std::vector<BodyId> add(const Scene& scene);
+    /// Springs go with either of their bodies, a scene's attractors and wind with the last of its
+    /// bodies.
     void remove(std::span<const BodyId> bodies);
 
     /// Advances by `steps` times settings().dt.
@@ -105,7 +107,8 @@ public:
     std::vector<StageInfo> step_stages();
 
     int threads() const;
-    int threads_met() const;  // that really run
+    int threads_met() const;   // that really run
+    int threads_used() const;  // that had a share in any step so far
     std::size_t memory_bytes() const;
 
     /// Runs the stages top to bottom on the calling thread from now on: the reference for the

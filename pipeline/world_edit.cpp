@@ -100,6 +100,11 @@ void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
         step);
 }
 
+void World::State::wake_all()
+{
+    for (std::uint32_t body = 0; body < generation.size(); ++body) wake(body);
+}
+
 void World::State::quarantine(std::uint32_t body)
 {
     Trouble trouble;
@@ -129,8 +134,7 @@ void World::State::set_motion(std::uint32_t body, const Vec3& linear, const Vec3
 void World::State::empty_unused()
 {
     const Set<Effect> on = effects.on;
-    if (!on.has(Effect::sleeping))
-        for (std::uint32_t body = 0; body < generation.size(); ++body) wake(body);
+    if (!on.has(Effect::sleeping)) wake_all();
     if (!on.has(Effect::escalation)) get<Stubborn>().efforts.clear();
     if (!on.meets(kCarried)) {
         Trouble& trouble = get<Trouble>();
@@ -190,6 +194,7 @@ void World::remove(std::span<const BodyId> bodies)
     }
     std::sort(state.free_bodies.rbegin(), state.free_bodies.rend());
     drop_forces(going, states, state.get<Forces>());
+    if (state.fields.remove(going, state.get<Forces>())) state.wake_all();
     state.effects_stale = true;
 }
 
@@ -197,7 +202,7 @@ void World::set_force_field(ForceField field)
 {
     State& state = *state_;
     state.get<Forces>().field = std::move(field);
-    for (std::uint32_t body = 0; body < state.generation.size(); ++body) state.wake(body);
+    state.wake_all();
     state.effects_stale = true;
 }
 

@@ -3,6 +3,7 @@
 
 #include "kernels/geometry/mass.hpp"
 #include "kernels/parallel/blocks.hpp"
+#include "pipeline/scene_fields.hpp"
 #include "pipeline/step_graph.hpp"
 #include "pipeline/world.hpp"
 
@@ -30,6 +31,7 @@ struct World::State {
     explicit State(const Settings& settings, int thread_count);
 
     ThreadPool pool;
+    WorkCount work;  // of all steps
     std::variant<Step<float>, Step<double>> step;
     Effects effects;
     Requests requests;
@@ -48,6 +50,8 @@ struct World::State {
     std::vector<std::uint32_t> free_bodies;  // descending, so the least goes first
     std::map<std::uint32_t, std::vector<std::uint32_t>> free_colliders;  // by how many in a row
     std::size_t alive = 0;
+
+    SceneFields fields;
 
     std::vector<std::string> material_names;
     std::vector<std::string> remarks, solids;  // see World
@@ -77,6 +81,7 @@ struct World::State {
 
     /// Wakes a body with all that sleeps with it.
     void wake(std::uint32_t body);
+    void wake_all();
     /// The broad phase has to look at a body's colliders again, and it may lie deep in others.
     void touch(std::uint32_t body);
     /// Wakes whoever is in a pair with one of some bodies (by body: 1 for those).
@@ -101,9 +106,9 @@ struct World::State {
     /// Empties what no stage writes any more, and wakes all where nobody may sleep.
     void empty_unused();
     void choose_broad_phase();
-    /// Remarks on springs that the settings make unstable, and on penalty forces that had a
-    /// substep cut.
-    void warn_of_springs();
+    /// Remarks on substeps that are too long for springs or too short for float, and on penalty
+    /// forces that had a substep cut.
+    void warn_of_substeps();
     void warn_of_cuts(int cuts);
 };
 

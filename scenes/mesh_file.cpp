@@ -4,6 +4,7 @@
 #include "pipeline/names.hpp"
 #include "scenes/polygon_cut.hpp"
 #include "scenes/scene_error.hpp"
+#include "scenes/stl_file.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -146,7 +147,36 @@ private:
     std::size_t greatest_at_ = 0;
 };
 
+// How files of meshes begin that are not read.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kOthers = {{
+    {"ply\n", "PLY"},
+    {"ply\r\n", "PLY"},
+    {"OFF", "OFF"},
+    {"glTF", "glTF"},
+    {"Kaydara FBX", "FBX"},
+    {"PK\x03\x04", "zip, as 3MF,"},
+    {"<?xml", "XML, as COLLADA,"},
+}};
+
+bool named_stl(std::string_view file)
+{
+    std::string tail(file.substr(file.size() - std::min<std::size_t>(file.size(), 4)));
+    for (char& c : tail) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return tail == ".stl";
+}
+
 }  // namespace
+
+MeshFile read_mesh_file(std::string_view bytes, std::string_view file)
+{
+    if (is_stl(bytes)) return read_stl(bytes, file);
+    for (const auto& [beginning, name] : kOthers)
+        if (bytes.starts_with(beginning))
+            throw scene_error(file, bytes, 0, "mesh",
+                              "wanted a Wavefront OBJ or an STL file, not a " + std::string(name)
+                                  + " file");
+    return named_stl(file) ? read_stl(bytes, file) : read_mesh_text(bytes, file);
+}
 
 MeshFile read_mesh_text(std::string_view text, std::string_view file)
 {

@@ -1,7 +1,7 @@
-// Mesh file: triangles from a Wavefront OBJ text, and back.
+// Mesh file: triangles from a Wavefront OBJ text, and back; or from an STL file (stl_file.hpp).
 //
-// Vertices and faces are read, polygons cut into triangles (polygon_cut.hpp says how); what else a
-// file may say (normals, textures, groups, materials) is passed over.
+// Of an OBJ text vertices and faces are read, polygons cut into triangles (polygon_cut.hpp says
+// how); what else a file may say (normals, textures, groups, materials) is passed over.
 #pragma once
 
 #include "kernels/math/types.hpp"
@@ -20,6 +20,10 @@ struct MeshFile {
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
+
+/// A mesh by what the bytes are, OBJ or STL; those of other formats are refused by their name.
+/// Throws SceneError. The answer may be empty.
+MeshFile read_mesh_file(std::string_view bytes, std::string_view file);
 
 /// Throws SceneError, in which the path is the keyword of the line: `cow.obj:7:3: error: f: wanted
 /// ...`. The answer may be empty.

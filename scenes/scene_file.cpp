@@ -1,7 +1,6 @@
 // Scene file: reading from the disk, and the checks that need the whole scene.
 #include "scenes/scene_file.hpp"
 
-#include "pipeline/scene_check.hpp"
 #include "scenes/scene_reader.hpp"
 
 #include <algorithm>
@@ -108,6 +107,17 @@ Scene read_scene(const std::string& path)
     Scene scene = read_scene_text(std::move(content.bytes), path, place.parent_path().string());
     scene.name = place.stem().string();
     return scene;
+}
+
+SceneError error_in_scene(const std::string& path, const SceneTrouble& trouble)
+{
+    try {
+        const JsonDocument json(read_file(path, ~std::uint64_t{0}).bytes, path);
+        return json.error(json.resolve(trouble.path), trouble.path, trouble.wanted);
+    } catch (const SceneError&) {
+        // What cannot be read a second time, as a pipe, has no places any more.
+        return SceneError(path + ": error: " + path_text(trouble.path) + ": " + trouble.wanted);
+    }
 }
 
 }  // namespace throng

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pipeline/scene.hpp"
+#include "pipeline/scene_check.hpp"
 #include "scenes/scene_error.hpp"
 
 #include <cstdint>
@@ -36,6 +37,10 @@ Scene read_scene_text(std::string text,
                       const std::string& file,
                       const std::string& folder,
                       const FileReader& reader = read_file);
+
+/// The error for a part of a scene that was read from a file and cannot become a world, with its
+/// place there.
+SceneError error_in_scene(const std::string& path, const SceneTrouble& trouble);
 
 /// Writes a scene that reads back to the same values, bit for bit, save for Scene::name.
 ///

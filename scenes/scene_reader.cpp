@@ -230,7 +230,7 @@ private:
     MeshShape read_mesh(Node node)
     {
         need_keys(node, kMeshKeys);
-        const Node file = required(node, "file", "the name of an OBJ file");
+        const Node file = required(node, "file", "the name of an OBJ or STL file");
         MeshShape mesh;
         mesh.file = text(file);
         if (const Node at = find(node, "scale")) mesh.scale = number(at);
@@ -249,7 +249,7 @@ private:
         mesh.max_parts = own.max_parts;
         const FileContent content = read_named(file, kGreatestMeshFile);
         if (content.size > kGreatestMeshFile) refuse(file, "wanted a mesh file of at most 4 GiB");
-        MeshFile read = read_mesh_text(content.bytes, mesh.file);
+        MeshFile read = read_mesh_file(content.bytes, mesh.file);
         for (Vec3& vertex : read.vertices) vertex *= mesh.scale;
         mesh.vertices = std::move(read.vertices);
         mesh.triangles = std::move(read.triangles);

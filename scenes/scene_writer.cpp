@@ -249,7 +249,7 @@ private:
             read_file((path_.parent_path() / mesh.file).string(), ~std::uint64_t{0});
         if (!content.trouble.empty()) return false;
         try {
-            MeshFile read = read_mesh_text(content.bytes, mesh.file);
+            MeshFile read = read_mesh_file(content.bytes, mesh.file);
             for (Vec3& vertex : read.vertices) vertex *= mesh.scale;
             return read.triangles == mesh.triangles
                 && std::equal(read.vertices.begin(), read.vertices.end(), mesh.vertices.begin(),

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Check: what a change goes through before it is pushed.
 #   tools/check.sh         format, include direction, dev build, fast tests, clang-tidy on what changed
-#   tools/check.sh all     clang-tidy on everything, and the other presets too; fuzzes a little
+#   tools/check.sh all     clang-tidy on everything, and the other presets too; fuzzes a little; then
+#                          every case whole, whose time it tells, and the fixed random scenes
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 cd "$root"
@@ -39,5 +40,11 @@ if [[ ${1:-} == all ]]; then
         "$fuzzer" -max_total_time=30 -entropic=0 -artifact_prefix="build/fuzz/found/$name-" \
             "build/fuzz/found/$name" "tests/fuzz/corpus/$name"
     done
+
+    start=$SECONDS verdict=0
+    ./throng cases || verdict=1
+    say "every case, whole: $((SECONDS - start)) s"
+    tools/random_scenes --fixed || verdict=1
+    ((verdict == 0)) || exit 1
 fi
 say "all is well"

@@ -64,10 +64,15 @@ def step_of(scene):
 
 
 def trivial_energy(made, stats):
-    """J: a hundredth of what falling for one step gives all bodies."""
+    """J: a hundredth of what falling for one step gives all bodies; and who is made touching where
+    none may overlap is lifted to where he rests, within the tolerance of a touch."""
     dt, gravity = stats.get("dt", 1 / 60), 9.81
-    mass = made.mass
-    return 0.01 * mass * (gravity * dt) ** 2 / 2
+    settings = made.scene["settings"]
+    lifted = 0.0
+    if settings.get("overlap", "allow") != "allow":
+        inner = max((p.inner for p in made.pieces if p is not None), default=0)
+        lifted = float(settings.get("toi_tolerance", 1e-4)) * inner
+    return made.mass * (0.01 * (gravity * dt) ** 2 / 2 + gravity * lifted)
 
 
 def ending(run):

@@ -175,6 +175,11 @@ int explain(const Options& options)
         std::snprintf(text, sizeof text, "%.4g", times.steps().mean());
         std::cout << "steps: " << times.steps().count() << "\nthreads: " << world.threads_met()
                   << "\nms_per_step: " << text << '\n';
+        if (const double visits = world.report().relax_visits; visits > 0) {
+            std::snprintf(text, sizeof text, "%.3g", visits);
+            std::cout << "relax_visits: " << text
+                      << " a contact and substep (dial relax_iterations)\n";
+        }
     }
     print_effects(effects);
     print_stages(stages, inner, stage_ms);

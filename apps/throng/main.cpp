@@ -140,6 +140,8 @@ int main(int count, char** words)
     using namespace throng;
     // A reader that left early is seen when stdout is flushed, and files are still finished.
     std::signal(SIGPIPE, SIG_IGN);
+    // A file that may grow no further is seen as a full disk is.
+    std::signal(SIGXFSZ, SIG_IGN);
     int code = kDone;
     try {
         const std::vector<std::string_view> arguments(words + (count > 0 ? 1 : 0), words + count);

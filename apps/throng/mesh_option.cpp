@@ -23,7 +23,8 @@ void check_size(const std::string& file, const TriangleSoup& mesh)
             greatest = std::max(greatest, vertex.cwiseAbs().maxCoeff());
             extent = std::max(extent, (vertex - first).cwiseAbs().maxCoeff());
         }
-    if (mesh.triangles.empty()) throw BadInput("--mesh: " + file + ": has no faces");
+    if (mesh.triangles.empty())
+        throw BadInput("--mesh: " + file + ": has no faces; give an OBJ or STL file that has some");
     if (!(extent >= kLeastExtent && greatest <= kGreatestExtent))
         throw BadInput("--mesh: " + file + ": wanted a mesh of some size, within 1e100 m");
 }
@@ -37,7 +38,7 @@ MeshOption::MeshOption(const Options& options) : file_(options.text("--mesh"))
     if (!content.trouble.empty()) throw BadInput("--mesh: " + file_ + ": " + content.trouble);
     if (content.size > kGreatestMeshFile)
         throw BadInput("--mesh: " + file_ + ": wanted a mesh file of at most 4 GiB");
-    MeshFile read = read_mesh_text(content.bytes, file_);
+    MeshFile read = read_mesh_file(content.bytes, file_);
     mesh_ = {std::move(read.vertices), std::move(read.triangles)};
     check_size(file_, mesh_);
 }

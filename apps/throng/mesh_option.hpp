@@ -7,9 +7,9 @@
 namespace throng {
 
 inline constexpr Option kMeshOption = {
-    "--mesh", "FILE.obj",
-    "a mesh in place of those that throng makes, brought to their size; of scenes of the catalogue "
-    "that have some to replace"};
+    "--mesh", "FILE",
+    "a mesh, OBJ or STL, in place of those that throng makes, brought to their size; of scenes of "
+    "the catalogue that have some to replace"};
 
 /// The mesh that was asked for, if any.
 class MeshOption {

@@ -76,19 +76,24 @@ bool OutputFile::is_stdout() const
         && ours.st_ino == standard.st_ino;
 }
 
-void OutputFile::keep()
+std::string OutputFile::try_keep()
 {
-    if (path_.empty()) return;
+    if (path_.empty()) return {};
+    const std::string failed = option_ + ": " + path_ + ": cannot be written";
     errno = 0;
     stream_.close();
-    const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
-    if (!stream_) throw BadInput(option_ + ": " + path_ + ": cannot be written" + why);
-    if (kept_) return;
+    if (!stream_) return failed + (errno != 0 ? std::string(": ") + std::strerror(errno) : "");
+    if (kept_) return {};
     std::error_code trouble;
     fs::rename(growing_, path_, trouble);
-    if (trouble)
-        throw BadInput(option_ + ": " + path_ + ": cannot be written: " + trouble.message());
+    if (trouble) return failed + ": " + trouble.message();
     kept_ = true;
+    return {};
+}
+
+void OutputFile::keep()
+{
+    if (const std::string trouble = try_keep(); !trouble.empty()) throw BadInput(trouble);
 }
 
 void refuse_same_file(const OutputFile& output, const std::string& other, std::string_view what)

@@ -30,7 +30,9 @@ public:
     bool is_stdout() const;
 
     std::ostream& stream() { return stream_; }
-    /// Completes the file. Throws BadInput when something could not be written.
+    /// Completes the file. Answers what could not be written, with its option, or nothing.
+    std::string try_keep();
+    /// The same. Throws BadInput when something could not be written.
     void keep();
 
 private:

@@ -3,6 +3,7 @@
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/output_file.hpp"
 #include "apps/throng/progress.hpp"
+#include "apps/throng/run_frames.hpp"
 #include "apps/throng/run_stats.hpp"
 #include "apps/throng/scene_argument.hpp"
 #include "apps/throng/trace_option.hpp"
@@ -66,42 +67,10 @@ void warn(const SceneArgument& argument, World& world)
     std::cerr.flush();
 }
 
-/// The frames of a run, when they are asked for.
-class Frames {
-public:
-    Frames(const OutputFile& file,
-           const SceneArgument& argument,
-           const World& world,
-           std::int64_t every)
-        : world_(world), every_(every)
-    {
-        if (file.asked_for())
-            writer_.emplace(file.growing_path(), argument.scene, world,
-                            RunFacts{argument.label, THRONG_VERSION, argument.seed, every});
-    }
-    /// After a step; the last one is a frame whatever its number.
-    void step_done(std::int64_t step, bool last)
-    {
-        const bool wanted = last ? step != written_ : step % every_ == 0;
-        if (!writer_ || !wanted) return;
-        writer_->write_frame(world_);
-        written_ = step;
-    }
-    void close()
-    {
-        if (writer_) writer_->close();
-    }
-
-private:
-    const World& world_;
-    std::int64_t every_ = 1, written_ = -1;
-    std::optional<RunFile> writer_;
-};
-
 // The ledger looks on before and after each step, where there is one; no time is taken of that.
 StepTimes run_steps(World& world,
                     std::int64_t steps,
-                    Frames& frames,
+                    RunFrames& frames,
                     TraceOption& trace,
                     std::optional<EnergyLedger>& ledger,
                     bool quiet)
@@ -124,7 +93,6 @@ StepTimes run_steps(World& world,
         progress.show(done, world.report().bodies_awake);
     }
     frames.step_done(done, true);
-    frames.close();
     return times;
 }
 
@@ -157,6 +125,62 @@ void name_quarantined(const World& world)
               << (count > kMostNamed ? ", ..." : "") << std::endl;
 }
 
+/// What a run writes, but for its frames.
+struct Outputs {
+    explicit Outputs(const Options& options)
+        : stats("--stats", options.text("--stats")), final("--final", options.text("--final")),
+          frames("--out", options.text("--out")), trace(options)
+    { }
+
+    void refuse_same_files(const SceneArgument& argument) const
+    {
+        for (const OutputFile* file : {&stats, &final, &frames, &trace.file()}) {
+            refuse_same_file(*file, argument.file, "the scene");
+            refuse_same_file(*file, argument.mesh, "--mesh");
+        }
+        refuse_same_file(final, stats.path(), "--stats");
+        refuse_same_file(frames, stats.path(), "--stats");
+        refuse_same_file(frames, final.path(), "--final");
+        refuse_same_file(trace.file(), stats.path(), "--stats");
+        refuse_same_file(trace.file(), final.path(), "--final");
+        refuse_same_file(trace.file(), frames.path(), "--out");
+    }
+    // Whoever has a file sent to the standard output reads it from there.
+    bool leave_stdout_free() const
+    {
+        return !stats.is_stdout() && !final.is_stdout() && !trace.file().is_stdout();
+    }
+
+    OutputFile stats, final, frames;
+    TraceOption trace;
+};
+
+/// Writes what comes at the end of a run, stats last: they tell what of the others could not be
+/// written. Answers what could not be.
+std::vector<std::string>
+write_outputs(World& world, RunStats& stats, RunFrames& frames, Outputs& outputs)
+{
+    std::vector<std::string> troubles;
+    const auto note = [&](std::string trouble) {
+        if (!trouble.empty()) troubles.push_back(std::move(trouble));
+    };
+    note(frames.close());
+    if (outputs.final.asked_for()) write_final_csv(world, outputs.final.stream());
+    note(outputs.final.try_keep());
+    note(outputs.trace.write(world, stats.scene));
+    stats.warnings.insert(stats.warnings.end(), troubles.begin(), troubles.end());
+    if (outputs.stats.asked_for()) write_stats_json(stats, outputs.stats.stream());
+    note(outputs.stats.try_keep());
+    return troubles;
+}
+
+int exit_code(const RunStats& stats, const std::vector<std::string>& troubles)
+{
+    if (!troubles.empty()) return kBadInput;
+    if (interrupted()) return kInterrupted;
+    return stats.bodies_quarantined > 0 ? kCaseFailed : kDone;
+}
+
 int run(const Options& options)
 {
     const std::int64_t steps = options.whole("--steps", kStandardSteps, 0, kMostSteps);
@@ -167,40 +191,21 @@ int run(const Options& options)
     const bool quiet = options.has("--quiet");
 
     const SceneArgument argument = read_scene_argument(options);
-    World world = make_world(argument, threads);
+    World world = make_world(argument, threads, quiet);
 
     note_interrupts();
-    OutputFile stats_file("--stats", options.text("--stats"));
-    OutputFile final_file("--final", options.text("--final"));
-    OutputFile run_file("--out", options.text("--out"));
-    TraceOption trace(options);
-    const OutputFile* const outputs[] = {&stats_file, &final_file, &run_file, &trace.file()};
-    for (const OutputFile* file : outputs) {
-        refuse_same_file(*file, argument.file, "the scene");
-        refuse_same_file(*file, argument.mesh, "--mesh");
-    }
-    refuse_same_file(final_file, stats_file.path(), "--stats");
-    refuse_same_file(run_file, stats_file.path(), "--stats");
-    refuse_same_file(run_file, final_file.path(), "--final");
-    refuse_same_file(trace.file(), stats_file.path(), "--stats");
-    refuse_same_file(trace.file(), final_file.path(), "--final");
-    refuse_same_file(trace.file(), run_file.path(), "--out");
-    trace.watch(world);
+    Outputs outputs(options);
+    outputs.refuse_same_files(argument);
+    outputs.trace.watch(world);
     if (!quiet) warn(argument, world);
 
     const std::int64_t every =
         every_asked > 0 ? every_asked : standard_every(steps, world.body_count());
     std::optional<EnergyLedger> ledger;
     // Who sees neither stats nor warnings spends nothing on them.
-    if (stats_file.asked_for() || !quiet) ledger.emplace();
-    StepTimes times = [&] {
-        try {
-            Frames frames(run_file, argument, world, every);
-            return run_steps(world, steps, frames, trace, ledger, quiet);
-        } catch (const RunFileError& error) {
-            throw BadInput("--out: " + run_file.path() + ": " + error.what());
-        }
-    }();
+    if (outputs.stats.asked_for() || !quiet) ledger.emplace();
+    RunFrames frames(outputs.frames, argument, world, every);
+    StepTimes times = run_steps(world, steps, frames, outputs.trace, ledger, quiet);
 
     RunStats stats = collect_stats(world, std::move(times));
     stats.scene = argument.label;
@@ -212,16 +217,11 @@ int run(const Options& options)
         if (!quiet && !warning.empty()) std::cerr << "warning: " << warning << '\n';
         if (!warning.empty()) stats.warnings.push_back(warning);
     }
-    if (stats_file.asked_for()) write_stats_json(stats, stats_file.stream());
-    if (final_file.asked_for()) write_final_csv(world, final_file.stream());
-    for (OutputFile* file : {&stats_file, &final_file, &run_file}) file->keep();
-    trace.write(world, argument.label);
-    // Whoever has a file sent to the standard output reads it from there.
-    if (!quiet && !stats_file.is_stdout() && !final_file.is_stdout() && !trace.file().is_stdout())
-        write_summary(stats, std::cout);
+    const std::vector<std::string> troubles = write_outputs(world, stats, frames, outputs);
+    for (const std::string& trouble : troubles) std::cerr << "error: " << trouble << '\n';
+    if (!quiet && outputs.leave_stdout_free()) write_summary(stats, std::cout);
     if (stats.bodies_quarantined > 0) name_quarantined(world);
-    if (interrupted()) return kInterrupted;
-    return stats.bodies_quarantined > 0 ? kCaseFailed : kDone;
+    return exit_code(stats, troubles);
 }
 
 }  // namespace

@@ -65,6 +65,7 @@ RunStats collect_stats(World& world, StepTimes times)
     stats.settings = world.settings();
     stats.threads = world.threads();
     stats.threads_met = world.threads_met();
+    stats.threads_used = world.threads_used();
     for (const BodyId body : world.bodies()) {
         ++stats.bodies;
         stats.bodies_dynamic += world.motion(body) == Motion::dynamic ? 1 : 0;
@@ -96,7 +97,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("steps", stats.last.step);
     json.add("dt", stats.settings.dt);
     json.add("threads", static_cast<std::uint64_t>(stats.threads));
-    json.add("threads_used", static_cast<std::uint64_t>(stats.threads_met));
+    json.add("threads_used", static_cast<std::uint64_t>(stats.threads_used));
     json.add("dials", dials_json(stats.settings));
     json.add("effects", '[' + joined(stats.effects, ", ", json_string) + ']');
     json.add("ms_per_step",
@@ -111,6 +112,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("manifolds", std::uint64_t{stats.last.manifolds});
     json.add("islands", std::uint64_t{stats.last.islands});
     json.add("colors", std::uint64_t{stats.last.colors});
+    json.add("relax_visits", stats.last.relax_visits);
     json.add("max_overlap_m", stats.measures.greatest_overlap);
     json.add("mean_overlap_m", stats.measures.mean_overlap);
     json.add("overlapping_pairs", std::uint64_t{stats.measures.overlapping_pairs});

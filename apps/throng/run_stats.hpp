@@ -14,7 +14,7 @@ struct RunStats {
     std::string scene;
     std::uint64_t seed = 0;
     Settings settings;
-    int threads = 0, threads_met = 0;
+    int threads = 0, threads_met = 0, threads_used = 0;
     std::size_t bodies = 0, bodies_dynamic = 0, bodies_quarantined = 0, memory_bytes = 0;
     std::vector<std::string_view> effects;
     StepTimes times;

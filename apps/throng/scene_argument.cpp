@@ -76,13 +76,17 @@ void set_dials(Scene& scene, const Options& options)
     if (options.has("--dt")) set_from_line(scene, "--dt", "dt", options.text("--dt"));
 }
 
-World make_world(const SceneArgument& argument, int threads)
+World make_world(const SceneArgument& argument, int threads, bool quiet)
 {
     try {
         World world(argument.scene, threads);
+        if (quiet) return world;
         for (const std::string& remark : world.remarks())
             std::cerr << "warning: " << remark << '\n';
         return world;
+    } catch (const SceneRefused& refused) {
+        if (argument.file.empty()) throw BadInput(argument.label + ": " + refused.what());
+        throw error_in_scene(argument.file, refused.trouble());
     } catch (const std::invalid_argument& error) {
         throw BadInput(argument.label + ": " + error.what());
     }

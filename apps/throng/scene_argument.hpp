@@ -43,8 +43,9 @@ void set_from_line(Scene& scene,
 /// Sets the dials that --set and --dt of the line name. Throws BadInput.
 void set_dials(Scene& scene, const Options& options);
 
-/// The world of the scene. Throws BadInput when it is impossible.
-World make_world(const SceneArgument& argument, int threads);
+/// The world of the scene; what it lost on the way goes to stderr, unless quiet. Throws BadInput
+/// when it is impossible.
+World make_world(const SceneArgument& argument, int threads, bool quiet = false);
 
 /// Number of threads asked for; 0 for all cores.
 int threads_asked(const Options& options);

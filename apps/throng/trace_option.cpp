@@ -29,16 +29,16 @@ void TraceOption::end_step()
     if (trace_) trace_->end_step();
 }
 
-void TraceOption::write(World& world, std::string_view label)
+std::string TraceOption::write(World& world, std::string_view label)
 {
-    if (!trace_) return;
+    if (!trace_) return {};
     const std::vector<World::StageInfo> stages = world.step_stages();
     std::vector<Trace::Wait> waits;
     for (const World::StageInfo& stage : stages)
         for (const std::size_t earlier : stage.waits_for)
             waits.push_back({stages[earlier].name, stage.name});
     trace_->write(label, waits, file_.stream());
-    file_.keep();
+    return file_.try_keep();
 }
 
 }  // namespace throng

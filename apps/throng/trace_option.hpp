@@ -30,8 +30,9 @@ public:
     /// Around a step of it.
     void begin_step(std::uint64_t number);
     void end_step();
-    /// Writes and completes the file. `label` says what was run. Throws BadInput.
-    void write(World& world, std::string_view label);
+    /// Writes and completes the file. `label` says what was run. Answers what could not be written,
+    /// or nothing.
+    std::string write(World& world, std::string_view label);
 
 private:
     OutputFile file_;

@@ -90,8 +90,8 @@ void case_ballistic(CaseBench& bench)
     const Throw simple{"simple", 0, Vec3(-0.9, 0.4, 0.1), Vec3(0.5, 0, 0), 5.001041625};
     const Throw complex{"complex", 9.8, Vec3(-2, 2, 8), Vec3(0.1, 5, 0.1), 368.5464125};
     for (const Throw& box : {simple, complex})
-        for (std::size_t row = 0; row < integrators().size(); ++row) {
-            const auto integrator = static_cast<Integrator>(row);
+        for (const IntegratorRow& row : integrators()) {
+            const Integrator integrator = row.which;
             fly(bench, box, integrator, 1e-3, 1);
             if (!bench.brief()) fly(bench, box, integrator, 1e-4, 1);
         }

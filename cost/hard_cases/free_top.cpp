@@ -54,6 +54,10 @@ constexpr KnownErrors kKnown[] = {
     {2, Integrator::midpoint, {1.1e-2, 3.9e-3, 3.8e-5, 3.8e-7}},
     {2, Integrator::splitting, {3.0e-3, 1.1e-3, 1.1e-5, 1.1e-7}},
     {2, Integrator::rk4, {1.4e-6, 1.7e-7, 1.5e-11, 1.4e-13}},
+    // By default it goes as by splitting.
+    {0, Integrator::auto_, {6.4e-2, 2.3e-2, 2.3e-4, 2.3e-6}},
+    {1, Integrator::auto_, {3.4e-3, 1.2e-3, 1.2e-5, 1.2e-7}},
+    {2, Integrator::auto_, {3.0e-3, 1.1e-3, 1.1e-5, 1.1e-7}},
 };
 
 // Orders are fitted where errors are as small as theory has them and greater than rounding.
@@ -117,7 +121,7 @@ void hold_to_known(CaseBench& bench, const KnownErrors& known, Rotation rotation
 
 void fit_order(CaseBench& bench, const Top& top, Integrator integrator, Rotation rotation)
 {
-    const int order = integrators()[static_cast<std::size_t>(integrator)].order;
+    const int order = chosen(integrator, true).order;
     if (order == 1 && &top == &tops()[1]) return;  // far off at every step that can be afforded
     const std::vector<double> steps = steps_to_fit(order);
     std::vector<double> errors;
@@ -305,11 +309,10 @@ void case_free_top(CaseBench& bench)
     miss_without_torque(bench);
     if (bench.brief()) return;
     for (std::size_t rotation = 0; rotation < 6; ++rotation)
-        for (std::size_t row = 0; row < integrators().size(); ++row) {
-            const auto integrator = static_cast<Integrator>(row);
+        for (const IntegratorRow& row : integrators()) {
             for (const Top& top : tops())
-                fit_order(bench, top, integrator, static_cast<Rotation>(rotation));
-            time_step(bench, integrator, static_cast<Rotation>(rotation));
+                fit_order(bench, top, row.which, static_cast<Rotation>(rotation));
+            time_step(bench, row.which, static_cast<Rotation>(rotation));
         }
 }
 
@@ -318,6 +321,8 @@ void case_long_flight(CaseBench& bench)
     // Twice what a plain program of each was off by; to kick and to swerve loses energy only.
     flip_for_long(bench, Integrator::rk4, 1e-2, 8.6e-6, 0);
     flip_for_long(bench, Integrator::splitting, 1e-2, 1.38e-4, 1e-12);
+    // The wide kernel tells spins in world axes from step to step.
+    flip_for_long(bench, Integrator::auto_, 1e-2, 1.38e-4, 1e-11);
     only_loses(bench, 1.0 / 60, "1/60", 0.34);
     if (bench.brief()) return;
     flip_for_long(bench, Integrator::rk4, 1e-3, 9.8e-11, 0);
@@ -331,10 +336,9 @@ void case_high_spin(CaseBench& bench)
         for (std::size_t rotation = 0; rotation < 6; ++rotation)
             turn_once(bench, static_cast<Rotation>(rotation), turn);
     for (const Rotation rotation : kExponentialRotations)
-        for (std::size_t row = 0; row < integrators().size(); ++row)
-            spin_fast(bench, static_cast<Integrator>(row), rotation);
-    for (std::size_t row = 0; row < integrators().size(); ++row)
-        spin_off_axis(bench, static_cast<Integrator>(row));
+        for (const IntegratorRow& row : integrators()) spin_fast(bench, row.which, rotation);
+    for (const IntegratorRow& row : integrators()) spin_off_axis(bench, row.which);
+    spin_off_axis(bench, Integrator::auto_);
 }
 
 void case_rotation_drift(CaseBench& bench)

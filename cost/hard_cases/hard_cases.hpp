@@ -16,6 +16,7 @@ void case_ballistic(CaseBench& bench);       // H7, ballistic.cpp
 void case_spring_limit(CaseBench& bench);    // H46, spring_limit.cpp, and penalty_limit.cpp
 void penalty_limit(CaseBench& bench);
 void case_springs_in_contact(CaseBench& bench);  // H72, springs_in_contact.cpp
+void case_fast_arms(CaseBench& bench);           // H78, fast_arms.cpp
 
 // Every dial beside every other.
 void case_dial_pairs(CaseBench& bench);  // pairs, dial_pairs.cpp
@@ -37,13 +38,15 @@ void motion_without_friction(CaseBench& bench);
 void case_turntable(CaseBench& bench);  // H24, turntable.cpp
 void case_planks(CaseBench& bench);     // H25, turntable.cpp
 
-void case_recovery(CaseBench& bench);        // H47, recovery.cpp
-void case_heavy_on_light(CaseBench& bench);  // H76, heavy_on_light.cpp
+void case_recovery(CaseBench& bench);  // H47, recovery.cpp
+void case_heavy_on_light(CaseBench& bench);
+void case_tall_walls(CaseBench& bench);  // H85, tall_walls.cpp
 
 void case_sticks(CaseBench& bench);  // H71, sticks.cpp
 // What bounces, by default and by every solver.
 void case_closed_room(CaseBench& bench);     // H73, closed_room.cpp
 void case_sliding_bounce(CaseBench& bench);  // H77, sliding_bounce.cpp
+void case_hits_and_rest(CaseBench& bench);   // H83, hits_and_rest.cpp
 
 // Bodies that are never to overlap: no_overlap.cpp.
 void bounces(CaseBench& bench);             // H15 (a), (b)
@@ -77,9 +80,10 @@ void case_solid_heap(CaseBench& bench);    // H44, solid_heap.cpp
 void case_convergence(CaseBench& bench);   // H45, convergence.cpp
 
 // Scenes a step beside those above: docs/accuracy.md.
-void case_thin_falls(CaseBench& bench);    // H74, thin_falls.cpp
-void case_slender_bars(CaseBench& bench);  // H75, slender_bars.cpp
-void case_round_rims(CaseBench& bench);    // H80, round_rims.cpp
+void case_thin_falls(CaseBench& bench);     // H74, thin_falls.cpp
+void case_slender_bars(CaseBench& bench);   // H75, slender_bars.cpp
+void case_round_rims(CaseBench& bench);     // H80, round_rims.cpp
+void case_carried_round(CaseBench& bench);  // H84, carried_round.cpp
 // Bodies on floors of many pieces.
 void case_tiles(CaseBench& bench);  // H81, tiles.cpp
 // Bodies on floors of many pieces, and on meshes from either side.

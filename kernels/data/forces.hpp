@@ -81,6 +81,13 @@ struct Forces {
         return field || !attractors.empty() || has_springs(body)
             || (body < hangs.size() && hangs[body] != 0);
     }
+    /// Whether anything but gravity acts on a body.
+    bool act_on(std::uint32_t body) const
+    {
+        return follow(body)
+            || (body < force.size() && !(force[body].isZero(0) && torque[body].isZero(0)))
+            || (body < linear_drag.size() && (linear_drag[body] != 0 || angular_drag[body] != 0));
+    }
     /// From where a body's position is to its center of mass, m, body axes.
     Vec3 hang_of(std::uint32_t body) const
     {

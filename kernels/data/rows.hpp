@@ -118,6 +118,19 @@ struct GripRows {
     Lane16<Real> impulse[2];  // N s on b, along tangent, other tangent
 };
 
+/// What surfaces that turn do to the sliding of 16 contacts within the step. Rows see arms as the
+/// step began, by which a body that a plate carries leaves it along the tangent.
+///
+///   by_a, by_b  whose material the place of the contact goes with, as shares; zeros where nothing
+///               that turns carries anything
+///   speed       m/s, along tangent, other tangent: of b against a where the contact is in the
+///               middle of the substep, less what the arms as the step began have it
+template <class Real>
+struct CarryRows {
+    Lane16<Real> by_a, by_b;
+    Lane16<Real> speed[2];
+};
+
 /// Where a lane came from, to give its impulses back.
 struct LaneSource {
     std::uint32_t entry = 0xffffffffu;  // place in ActiveContacts; none for an idle lane
@@ -184,6 +197,7 @@ struct Layout {
 ///   first_point  [blocks] place of the first among the points
 ///   bounces      [blocks] while restitution acts
 ///   rollings     [blocks] while rolling friction acts
+///   carries      [blocks] while something turns that carries what lies on it
 ///   grips        [points] while friction acts at points or within a pyramid
 ///   inertias     [bodies] while the gyroscopic torque acts
 ///   pulls        [bodies] while forces act
@@ -196,6 +210,7 @@ struct Rows {
     std::vector<PointRows<Real>> points;
     std::vector<BounceRows<Real>> bounces;
     std::vector<RollingRows<Real>> rollings;
+    std::vector<CarryRows<Real>> carries;
     std::vector<GripRows<Real>> grips;
     std::vector<SolverBody<Real>> bodies;
     std::vector<SpinInertia<Real>> inertias;

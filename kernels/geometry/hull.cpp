@@ -24,27 +24,41 @@ constexpr double kStricter = 1.0 / 16;
 constexpr int kTries = 5;
 constexpr std::size_t kMostIndices = 65535;
 
+// Corners by how often each is named: those that are named `least` times or more, in order.
+class CornerCount {
+public:
+    void add(std::span<const std::uint32_t> corners)
+    {
+        for (const std::uint32_t corner : corners) {
+            if (corner >= times_.size()) times_.resize(corner + std::size_t{1}, 0);
+            ++times_[corner];
+        }
+    }
+    std::vector<std::uint32_t> named(std::uint32_t least) const
+    {
+        std::vector<std::uint32_t> corners;
+        for (std::uint32_t i = 0; i < times_.size(); ++i)
+            if (times_[i] >= least) corners.push_back(i);
+        return corners;
+    }
+
+private:
+    std::vector<std::uint32_t> times_;
+};
+
 std::vector<std::uint32_t> corners_of(const TriangleHull& hull)
 {
-    std::vector<std::uint32_t> corners;
-    for (const auto& triangle : hull.triangles)
-        corners.insert(corners.end(), triangle.begin(), triangle.end());
-    std::sort(corners.begin(), corners.end());
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-    return corners;
+    CornerCount count;
+    for (const auto& triangle : hull.triangles) count.add(triangle);
+    return count.named(1);
 }
 
 // The corners that three faces or more share, in order.
 std::vector<std::uint32_t> true_corners(const std::vector<HullFace>& faces)
 {
-    std::vector<std::uint32_t> all, shared;
-    for (const HullFace& face : faces)
-        all.insert(all.end(), face.corners.begin(), face.corners.end());
-    std::sort(all.begin(), all.end());
-    for (std::size_t i = 0; i + 2 < all.size(); ++i)
-        if (all[i] == all[i + 2] && (shared.empty() || shared.back() != all[i]))
-            shared.push_back(all[i]);
-    return shared;
+    CornerCount count;
+    for (const HullFace& face : faces) count.add(face.corners);
+    return count.named(3);
 }
 
 // Four of the chosen that enclose a volume go first, for exact_hull() to start from.

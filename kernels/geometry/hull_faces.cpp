@@ -1,5 +1,7 @@
 #include "kernels/geometry/hull_faces.hpp"
 
+#include "kernels/geometry/hull_rings.hpp"
+
 #include <algorithm>
 #include <numeric>
 
@@ -22,15 +24,12 @@ struct Candidate {
 class Merger {
 public:
     Merger(std::span<const Vec3> points, const TriangleHull& hull, double tolerance)
-        : points_(points), hull_(hull), tolerance_(tolerance), next_(points.size(), kNone),
-          triangle_at_(points.size(), kNone), seen_(points.size(), 0),
-          taken_(hull.triangles.size(), 0), visit_(hull.triangles.size(), 0)
+        : points_(points), hull_(hull), tolerance_(tolerance), rings_(points, hull),
+          next_(points.size(), kNone), seen_(points.size(), 0), taken_(hull.triangles.size(), 0),
+          visit_(hull.triangles.size(), 0)
     {
-        for (std::uint32_t t = 0; t < hull.triangles.size(); ++t) {
-            const auto& [a, b, c] = hull.triangles[t];
+        for (const auto& [a, b, c] : hull.triangles)
             areas_.push_back((points[b] - points[a]).cross(points[c] - points[a]));
-            for (const std::uint32_t corner : hull.triangles[t]) triangle_at_[corner] = t;
-        }
     }
 
     std::vector<HullFace> merge()
@@ -52,16 +51,23 @@ private:
         double tolerance = tolerance_;
         for (int i = 0; i < kTries && tolerance > 0; ++i, tolerance *= kStricter) {
             const Candidate candidate = best_region(seed, tolerance);
-            if (candidate.triangles.size() < 2) break;
+            if (candidate.triangles.size() < 2) {
+                taken_[seed] = 1;
+                return triangle_face(seed, candidate.highest);
+            }
             std::vector<std::uint32_t> corners = rim(candidate.triangles);
             if (corners.empty() || !is_convex(corners, candidate.normal, tolerance)) continue;
             for (const std::uint32_t triangle : candidate.triangles) taken_[triangle] = 1;
             return {std::move(corners), candidate.normal, candidate.highest};
         }
         taken_[seed] = 1;
-        const Vec3 normal = areas_[seed].normalized();
-        const auto& [a, b, c] = hull_.triangles[seed];
-        return {{a, b, c}, normal, highest(normal, a)};
+        return triangle_face(seed, highest(areas_[seed].normalized(), hull_.triangles[seed][0]));
+    }
+
+    HullFace triangle_face(std::uint32_t triangle, std::uint32_t top) const
+    {
+        const auto& [a, b, c] = hull_.triangles[triangle];
+        return {{a, b, c}, areas_[triangle].normalized(), top};
     }
 
     // The region in the seed's plane, then in the plane that fits that region best, while it grows.
@@ -110,20 +116,6 @@ private:
         return facing >= 0 || facing * facing <= tolerance * tolerance * longest;
     }
 
-    // Calls visit(corner) for the corners that share an edge with the one named.
-    template <class Visit>
-    void visit_round(std::uint32_t corner, Visit visit) const
-    {
-        const std::uint32_t first = triangle_at_[corner];
-        std::uint32_t triangle = first;
-        do {
-            const auto& corners = hull_.triangles[triangle];
-            const std::size_t k = corners[0] == corner ? 0 : corners[1] == corner ? 1 : 2;
-            visit(corners[(k + 1) % 3]);
-            triangle = hull_.beyond[triangle][k];
-        } while (triangle != first);
-    }
-
     // The corner of the hull farthest along the direction: uphill from corner to corner, which on
     // a convex hull leads to the top, or, as points were rounded to a grid before they had a hull,
     // to corners nearly as high that hang together with it.
@@ -131,22 +123,26 @@ private:
     {
         const auto height = [&](std::uint32_t corner) { return direction.dot(points_[corner]); };
         std::uint32_t best = start;
+        double top = height(best);
+        const auto take = [&](std::uint32_t corner, double own) {
+            if (own > top) best = corner, top = own;
+        };
         for (std::uint32_t from = kNone; from != best;) {
             from = best;
-            visit_round(from, [&](std::uint32_t other) {
-                if (height(other) > height(best)) best = other;
-            });
+            rings_.visit_high(from, direction, top,
+                              [&](std::uint32_t other) { take(other, height(other)); });
         }
-        const double level = height(best) - kGrid;
+        const double level = top - kGrid;
         ++climbs_;
         seen_[best] = climbs_;
         high_.assign(1, best);
         for (std::size_t i = 0; i < high_.size(); ++i)
-            visit_round(high_[i], [&](std::uint32_t other) {
-                if (seen_[other] == climbs_ || height(other) < level) return;
+            rings_.visit_high(high_[i], direction, level, [&](std::uint32_t other) {
+                const double own = height(other);
+                if (seen_[other] == climbs_ || own < level) return;
                 seen_[other] = climbs_;
                 high_.push_back(other);
-                if (height(other) > height(best)) best = other;
+                take(other, own);
             });
         return best;
     }
@@ -194,13 +190,13 @@ private:
     std::span<const Vec3> points_;
     const TriangleHull& hull_;
     double tolerance_;
-    std::vector<Vec3> areas_;                 // [triangles] normal, twice the area long
-    std::vector<std::uint32_t> next_;         // [points] along the rim at hand
-    std::vector<std::uint32_t> triangle_at_;  // [points] one that has the point for a corner
-    std::vector<std::uint32_t> seen_;         // [points] the last climb it was high in
-    std::vector<std::uint32_t> high_;         // corners as high as the last climb's, about
-    std::vector<std::uint8_t> taken_;         // [triangles] by a face already
-    std::vector<std::uint32_t> visit_;        // [triangles] the last region it was in
+    HullRings rings_;
+    std::vector<Vec3> areas_;           // [triangles] normal, twice the area long
+    std::vector<std::uint32_t> next_;   // [points] along the rim at hand
+    std::vector<std::uint32_t> seen_;   // [points] the last climb it was high in
+    std::vector<std::uint32_t> high_;   // corners as high as the last climb's, about
+    std::vector<std::uint8_t> taken_;   // [triangles] by a face already
+    std::vector<std::uint32_t> visit_;  // [triangles] the last region it was in
     std::uint32_t visits_ = 0;
     std::uint32_t climbs_ = 0;
 };

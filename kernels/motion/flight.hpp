@@ -14,7 +14,9 @@ struct FlightRule {
     int substeps = 1;
     double gravity[3] = {0, 0, 0};  // m/s2, of those with mass
     bool turns = false;             // bodies may turn at all
-    bool gyroscopic = false;        // implicit Euler, see after_gyroscopic_torque()
+    // How uneven spins go: they stay; by implicit Euler, see after_gyroscopic_torque(); in exact
+    // parts, see free_rotation.hpp.
+    enum class Precession : std::uint8_t { none, implicit, split } precession = Precession::none;
 };
 
 /// The arrays of all bodies, as plain numbers.
@@ -35,8 +37,9 @@ struct FlightArrays {
 };
 
 /// Takes some bodies (ids, ascending) through one step. Those that spin too fast for the kernel's
-/// series, whose inertia has products or that would leave what a step can hold are left as they
-/// are; their ids go to `left`, which has room for all. Returns how many they are.
+/// series or for parts as long as a substep, whose inertia has products or that would leave what a
+/// step can hold are left as they are; their ids go to `left`, which has room for all. Returns how
+/// many they are.
 ///
 /// Linear motion is summed up in closed form; turning goes substep by substep in body axes, about
 /// which an angular velocity stays as it is while the body turns about it. A body's result depends

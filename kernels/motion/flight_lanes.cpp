@@ -9,6 +9,8 @@ namespace {
 using L = Lanes<double>;
 constexpr int kWidth = L::kWidth;
 
+// Twice this much of a nodding in a substep wants more parts; its square. See free_rotation.cpp.
+constexpr double kNodSquared = 0.01;
 // Turns of a quarter radian and more in a substep want more terms than the series below have.
 constexpr double kFastest = 0.0625;
 // Less than the squares of any speed that can be told from nothing.
@@ -28,6 +30,25 @@ void turn(const L (&q)[4], double back, const L (&v)[3], L (&out)[3])
     out[0] = v[0] + q[3] * tx + (y * tz - z * ty);
     out[1] = v[1] + q[3] * ty + (z * tx - x * tz);
     out[2] = v[2] + q[3] * tz + (x * ty - y * tx);
+}
+
+// Sine and cosine of an angle as series of its square that are exact to double up to half a turn of
+// kFastest; the sine is over the angle.
+void series(L squared, L& sine, L& cosine)
+{
+    const L one = 1.0;
+    sine = one
+        + squared
+            * (L(-1.0 / 6)
+               + squared * (L(1.0 / 120) + squared * (L(-1.0 / 5040) + squared * L(1.0 / 362880))));
+    cosine = one
+        + squared
+            * (L(-1.0 / 2)
+               + squared
+                   * (L(1.0 / 24)
+                      + squared
+                          * (L(-1.0 / 720)
+                             + squared * (L(1.0 / 40320) - squared * L(1.0 / 3628800)))));
 }
 
 // Angular velocity of W bodies in their own axes, which are principal ones.
@@ -104,15 +125,8 @@ struct Spin {
     {
         const L squared = (squares[0] + squares[1] + squares[2]) * L(h * h);
         fastest = max(squared, fastest);
-        const L z = squared * L(0.25), one = 1.0;
-        const L sine = one
-            + z * (L(-1.0 / 6) + z * (L(1.0 / 120) + z * (L(-1.0 / 5040) + z * L(1.0 / 362880))));
-        const L cosine = one
-            + z
-                * (L(-1.0 / 2)
-                   + z
-                       * (L(1.0 / 24)
-                          + z * (L(-1.0 / 720) + z * (L(1.0 / 40320) - z * L(1.0 / 3628800)))));
+        L sine, cosine;
+        series(squared * L(0.25), sine, cosine);
         const L scale = sine * L(0.5 * h);
         const L x = w[0] * scale, y = w[1] * scale, s = w[2] * scale;
         const L before[4] = {q[0], q[1], q[2], q[3]};
@@ -120,6 +134,66 @@ struct Spin {
         q[1] = before[3] * y + before[1] * cosine + (before[2] * x - before[0] * s);
         q[2] = before[3] * s + before[2] * cosine + (before[0] * y - before[1] * x);
         q[3] = before[3] * cosine - (before[0] * x + before[1] * y + before[2] * s);
+    }
+};
+
+// The axes of W bodies told anew, so that the one of the middle moment comes last.
+struct AxisOrder {
+    L first, second;  // above 0: its moment is not the middle one
+
+    explicit AxisOrder(const L (&moment)[3])
+        : first((moment[0] - moment[1]) * (moment[0] - moment[2])),
+          second((moment[1] - moment[2]) * (moment[1] - moment[0]))
+    { }
+    L pick(L a, L b, L c) const { return select(first > L(0.0), select(second > L(0.0), c, b), a); }
+    void tell(const L* from, L* to) const
+    {
+        to[0] = pick(from[1], from[2], from[0]);
+        to[1] = pick(from[2], from[0], from[1]);
+        to[2] = pick(from[0], from[1], from[2]);
+    }
+    void tell_back(const L* from, L* to) const
+    {
+        to[0] = pick(from[2], from[1], from[0]);
+        to[1] = pick(from[0], from[2], from[1]);
+        to[2] = pick(from[1], from[0], from[2]);
+    }
+};
+
+// Angular momentum of W bodies that turn freely, about their principal axes as AxisOrder tells
+// them, and how they stand.
+struct FreeTurns {
+    L momentum[3], q[4];
+    L ease[2];       // half a substep times what 1 / moment is greater by about the first two axes
+    L fastest{0.0};  // greatest square of a turn of a part
+
+    // share: of a whole part, or of half
+    void turn_about(int axis, double share)
+    {
+        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+        const L half = ease[axis] * L(share) * momentum[axis], squared = half * half;
+        fastest = max(L(4.0) * squared, fastest);
+        L sine, cosine;
+        series(squared, sine, cosine);
+        sine = sine * half;
+        const L sine_2 = L(2.0) * sine * cosine, cosine_2 = L(1.0) - L(2.0) * sine * sine;
+        const L x = momentum[next], y = momentum[last];
+        momentum[next] = cosine_2 * x + sine_2 * y;
+        momentum[last] = cosine_2 * y - sine_2 * x;
+        const L before[4] = {q[axis], q[next], q[last], q[3]};
+        q[axis] = before[0] * cosine + before[3] * sine;
+        q[next] = before[1] * cosine + before[2] * sine;
+        q[last] = before[2] * cosine - before[1] * sine;
+        q[3] = before[3] * cosine - before[0] * sine;
+    }
+
+    void go(int parts)
+    {
+        turn_about(0, 0.5);
+        for (int i = 0; i < parts; ++i) {
+            turn_about(1, 1);
+            turn_about(0, i + 1 < parts ? 1 : 0.5);
+        }
     }
 };
 
@@ -142,26 +216,97 @@ void fall(const FlightRule& rule, L falls, Bodies& body)
 
 L trouble_where(auto fine) { return select(fine, L(0.0), L(1.0)); }
 
+// Rounding alone has made its length stray: one term of the series for its inverse will do.
+void keep_unit(L (&q)[4])
+{
+    L length = 0.0;
+    for (const L part : q) length += part * part;
+    const L shrink = L(1.5) - L(0.5) * length;
+    for (L& part : q) part = part * shrink;
+}
+
+// What is left of free rotation when bodies have turned about their momentum as it stands in space;
+// see free_rotation.hpp. Of those that spin evenly nothing is.
+//
+//   told      their moments in that order
+//   momentum  about their axes, as the step began
+void nod(const FlightRule& rule,
+         const AxisOrder& order,
+         const L (&told)[3],
+         const L (&momentum)[3],
+         Spin& spin,
+         Bodies& body)
+{
+    const L uneven = spin.uneven;
+    FreeTurns turns;
+    for (int k = 0; k < 2; ++k)
+        turns.ease[k] = L(0.5 * rule.substep) * (L(1.0) / told[k] - L(1.0) / told[2]);
+    order.tell(momentum, turns.momentum);
+    order.tell(body.orientation, turns.q);
+    turns.q[3] = body.orientation[3];
+    turns.go(rule.substeps);
+    L length = 0.0;
+    for (const L part : momentum) length += part * part;
+    const L nodding = L(4.0) * length * absolute(turns.ease[0] * turns.ease[1]);
+    body.trouble += select(uneven > L(0.0), trouble_where(nodding < L(kNodSquared)), L(0.0));
+    spin.fastest = max(select(uneven > L(0.0), turns.fastest, L(0.0)), spin.fastest);
+
+    L q[3], w[3];
+    order.tell_back(turns.q, q);
+    for (int k = 0; k < 3; ++k) turns.momentum[k] = turns.momentum[k] / told[k];
+    order.tell_back(turns.momentum, w);
+    // Nothing at all for those that spin evenly, not even a zero of another sign.
+    for (int k = 0; k < 3; ++k) {
+        body.orientation[k] = select(uneven > L(0.0), q[k], body.orientation[k]);
+        spin.w[k] = w[k];
+    }
+    body.orientation[3] = select(uneven > L(0.0), turns.q[3], body.orientation[3]);
+}
+
+// Those that spin unevenly, in exact parts. Those that spin evenly keep their velocity, and turn as
+// they do among their like.
+void turn_freely(const FlightRule& rule, Spin& spin, Bodies& body)
+{
+    const AxisOrder order(spin.moment);
+    L momentum[3], told[3];
+    order.tell(spin.moment, told);
+    const L share = L(1.0) / told[2];
+    for (int k = 0; k < 3; ++k) {
+        momentum[k] = spin.moment[k] * spin.w[k];
+        spin.w[k] = select(spin.uneven > L(0.0), share * momentum[k], spin.w[k]);
+    }
+    spin.square();
+    for (int step = 0; step < rule.substeps; ++step) spin.turn_on(rule.substep, body.orientation);
+    nod(rule, order, told, momentum, spin, body);
+}
+
+// By implicit Euler, substep by substep.
+void turn_by_steps(const FlightRule& rule, Spin& spin, Bodies& body)
+{
+    for (int step = 0; step < rule.substeps; ++step) {
+        if (body.precesses) spin.precess();
+        spin.turn_on(rule.substep, body.orientation);
+    }
+}
+
 void spin(const FlightRule& rule, const FlightArrays& arrays, const RowIds& ids, Bodies& body)
 {
+    using Precession = FlightRule::Precession;
     Spin spin;
     double uneven[kWidth] = {};
-    for (int i = 0; rule.gyroscopic && i < kWidth; ++i) {
+    for (int i = 0; rule.precession != Precession::none && i < kWidth; ++i) {
         uneven[i] = arrays.spins[ids.at[i]];
         body.precesses |= uneven[i] != 0;
     }
     turn(body.orientation, -1, body.angular, spin.w);
     if (body.precesses) load_3_of_6(arrays.inertia, ids, spin.moment);
-    spin.start(L::load(uneven), rule.substep, body.precesses);
-    for (int step = 0; step < rule.substeps; ++step) {
-        if (body.precesses) spin.precess();
-        spin.turn_on(rule.substep, body.orientation);
-    }
-    // Rounding alone has made its length stray: one term of the series for its inverse will do.
-    L length = 0.0;
-    for (const L part : body.orientation) length += part * part;
-    const L shrink = L(1.5) - L(0.5) * length;
-    for (L& part : body.orientation) part = part * shrink;
+    const bool split = body.precesses && rule.precession == Precession::split;
+    spin.start(L::load(uneven), rule.substep, body.precesses && !split);
+    if (split)
+        turn_freely(rule, spin, body);
+    else
+        turn_by_steps(rule, spin, body);
+    keep_unit(body.orientation);
     body.trouble += trouble_where(spin.fastest < L(kFastest));
     if (!body.precesses) return;
     body.trouble += trouble_where(L::load(uneven) < L(1.5));  // its axes are principal ones

@@ -61,6 +61,13 @@ void splitting(MotionLaw& law, double time, double span, IntegratorRoom&, double
     law.kick(time + span, 0.5 * span, state);
 }
 
+// What only falls.
+void fall(MotionLaw& law, double time, double span, IntegratorRoom&, double* state)
+{
+    law.kick(time, span, state);
+    law.coast(span, state);
+}
+
 void rk4(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state)
 {
     const std::size_t n = numbers_of(law);
@@ -119,13 +126,24 @@ bool bounded(const IntegratorRow& integrator, double ratio, double span)
 }
 
 constexpr IntegratorRow kIntegrators[] = {
-    {"semi_implicit", 1, semi_implicit}, {"euler", 1, euler}, {"midpoint", 2, midpoint},
-    {"splitting", 2, splitting},         {"rk4", 4, rk4},
+    {Integrator::semi_implicit, "semi_implicit", 1, semi_implicit},
+    {Integrator::euler, "euler", 1, euler},
+    {Integrator::midpoint, "midpoint", 2, midpoint},
+    {Integrator::splitting, "splitting", 2, splitting},
+    {Integrator::rk4, "rk4", 4, rk4},
 };
+constexpr IntegratorRow kFall = {Integrator::auto_, "auto", 1, fall};
 
 }  // namespace
 
 std::span<const IntegratorRow> integrators() { return kIntegrators; }
+
+const IntegratorRow& chosen(Integrator integrator, bool acted_on)
+{
+    if (integrator == Integrator::auto_ && !acted_on) return kFall;
+    if (integrator == Integrator::auto_) integrator = Integrator::splitting;
+    return kIntegrators[static_cast<std::size_t>(integrator) - 1];
+}
 
 double stable_span(const IntegratorRow& integrator, double ratio)
 {

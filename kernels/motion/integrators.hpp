@@ -13,7 +13,8 @@
 
 namespace throng {
 
-enum class Integrator : std::uint8_t { semi_implicit, euler, midpoint, splitting, rk4 };
+/// auto_: splitting for what forces act on, something cheaper for what only falls; see chosen().
+enum class Integrator : std::uint8_t { auto_, semi_implicit, euler, midpoint, splitting, rk4 };
 
 /// The law by which a state moves.
 ///
@@ -46,16 +47,30 @@ using IntegratorRoom = std::vector<double>;
 
 /// A row of the table.
 struct IntegratorRow {
+    Integrator which;
     std::string_view name;
     int order;  // of the error after a fixed time
     /// Carries the state from `time` on for a span, both in s.
     void (*advance)(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state);
 };
 
-/// All integrators, in the order of the enumeration.
+/// All integrators, in the order of the enumeration; auto_, which is one or another, is none.
 ///
 /// Source: Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1 and II.5.
 std::span<const IntegratorRow> integrators();
+
+/// What carries a body: of auto_, splitting where something acts on it. What only falls is kicked
+/// once, as the solver does it, and turns as by splitting: exactly but for its nodding.
+///
+///   acted_on  something other than gravity acts on the body
+const IntegratorRow& chosen(Integrator integrator, bool acted_on);
+
+/// Whether springs that a substep is too long for go by a rule that bears any: with the
+/// integrators that nobody asks for an order.
+inline bool bears_stiff_springs(Integrator integrator)
+{
+    return integrator == Integrator::auto_ || integrator == Integrator::semi_implicit;
+}
 
 /// The longest span, as a share of 1 / (angular frequency), at which an oscillation damped by
 /// `ratio` of critical does not grow; 0 where it grows at any. Found by trying: the integrator

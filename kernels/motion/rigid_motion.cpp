@@ -2,6 +2,7 @@
 
 #include "kernels/math/numbers.hpp"
 #include "kernels/math/rotation.hpp"
+#include "kernels/motion/free_rotation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,8 +48,9 @@ RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) c
     body.precesses = body.turns && masses.spins_unevenly[id] != 0
         && rule_.gyroscopic != RigidRule::Gyroscopic::off;
     const std::vector<std::uint8_t>& hangs = facts_.forces.hangs;
-    body.by_momentum =
-        rule_.momentum_on_pivots && body.turns && id < hangs.size() && hangs[id] != 0;
+    body.by_momentum = rule_.momentum_on_pivots && body.turns && id < hangs.size() && hangs[id] != 0
+        && of(facts_.forces.linear_drag, id, 0.0) == 0
+        && of(facts_.forces.angular_drag, id, 0.0) == 0;
     body.ease = masses.inverse_inertia[id].matrix();
     const Sym3& inertia = masses.inertia[id];
     body.principal = principal_inertia(inertia);
@@ -306,9 +308,21 @@ RigidMotion::Pull RigidMotion::pull_over(std::size_t i, double span)
 RigidMotion::Going RigidMotion::going(std::size_t i) const
 {
     const double* const state = state_.data();
+    const Body& body = bodies_[i];
     const Mat3 turn = turn_at(i, state);
-    return {vector_at(state + place_of(i)), turn, vector_at(state + speed_of(i)),
-            turn * body_spin(i, turn, state), Mat3(turn * bodies_[i].ease) * turn.transpose()};
+    Going going{vector_at(state + place_of(i)),
+                turn,
+                vector_at(state + speed_of(i)),
+                turn * body_spin(i, turn, state),
+                Mat3(turn * body.ease) * turn.transpose(),
+                Vec3::UnitZ(),
+                1};
+    if (precesses_evenly(body)) {
+        const int axis = body.principal.axis_of_symmetry();
+        going.axis = turn * Vec3(body.principal.axes.col(axis));
+        going.carries = body.principal.moments[axis] / body.principal.moments[(axis + 1) % 3];
+    }
+    return going;
 }
 
 void RigidMotion::add_speed(std::size_t i, const Vec3& velocity, const Vec3& spin)
@@ -430,48 +444,71 @@ void RigidMotion::swerve(double span, double* state)
     }
 }
 
-// A body with an axis of symmetry turns about its momentum and about that axis, both exactly. Any
-// other goes about one principal axis after another and back: each turn is exact and leaves the
-// length of the momentum alone.
-//
-// Source: McLachlan, Explicit Lie-Poisson integration and the Euler equations (1993); Dullweber,
-//         Leimkuhler & McLachlan (1997); for the first, Touma & Wisdom (1994).
-void RigidMotion::turn_freely(std::size_t i, double span, double* state)
+void RigidMotion::coast_turning(std::size_t i, double span, double* state)
 {
-    Body& body = bodies_[i];
+    const auto turn = [&](const Vec3& by) { turn_by(i, by, state); };
+    if (bodies_[i].precesses) return turn_momentum(i, span, 1, state, turn);
+    const Mat3 now = bodies_[i].by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
+    turn(span * body_spin(i, now, state));
+}
+
+void RigidMotion::turn_by(std::size_t i, const Vec3& turn, double* state)
+{
+    if (!adds_rates(rule_.rotation))
+        return turn_on(rule_.rotation, turn, bodies_[i].orientation.data());
     double* const numbers = state + place_of(i) + 3;
-    const auto turn_by = [&](const Vec3& turn) {
-        if (!adds_rates(rule_.rotation))
-            return turn_on(rule_.rotation, turn, body.orientation.data());
-        double rates[9];
-        rates_of(rule_.rotation, numbers, turn, rates);
-        for (int k = 0; k < numbers_of(rule_.rotation); ++k) numbers[k] += rates[k];
-    };
+    double rates[9];
+    rates_of(rule_.rotation, numbers, turn, rates);
+    for (int k = 0; k < numbers_of(rule_.rotation); ++k) numbers[k] += rates[k];
+}
+
+bool RigidMotion::precesses_evenly(const Body& body) const
+{
+    return body.precesses && body.principal.asymmetry(body.principal.axis_of_symmetry()) <= 1e-9;
+}
+
+// Calls back with the turns of a body that has its momentum, which turns likewise.
+template <class Turn>
+void RigidMotion::turn_momentum(std::size_t i, double span, int parts, double* state, Turn turn_by)
+{
+    const Body& body = bodies_[i];
     const Mat3 now = body.by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
     const Vec3 spin = body_spin(i, now, state);
-    if (!body.precesses) return turn_by(span * spin);
     const Mat3& axes = body.principal.axes;
-    Vec3 momentum = body.principal.moments.cwiseProduct(Vec3(axes.transpose() * spin));
-    const auto turn_about = [&](int axis, double angle) {
-        const SinCos turn = sin_cos(angle);
-        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-        const double x = momentum[next], y = momentum[last];
-        momentum[next] = turn.cos * x + turn.sin * y;
-        momentum[last] = turn.cos * y - turn.sin * x;
-        turn_by(angle * Vec3(axes.col(axis)));
-    };
-    const int axis = body.principal.axis_of_symmetry();
-    if (body.principal.asymmetry(axis) <= 1e-9) {
-        const double across = body.principal.moments[(axis + 1) % 3];
-        turn_by(span / across * Vec3(axes * momentum));
-        turn_about(axis, span * momentum[axis] * (1 / body.principal.moments[axis] - 1 / across));
-    } else {
-        constexpr int kOrder[] = {0, 1, 2, 1, 0};
-        for (const int k : kOrder)
-            turn_about(k, (k == 2 ? 1 : 0.5) * span * momentum[k] / body.principal.moments[k]);
-    }
+    const Vec3& moments = body.principal.moments;
+    Vec3 momentum = moments.cwiseProduct(Vec3(axes.transpose() * spin));
+    turn_freely(free_rotation(moments), span, parts, momentum,
+                [&](const Vec3& turn) { turn_by(Vec3(axes * turn)); });
     if (!body.by_momentum)
-        put(axes * Vec3(momentum.cwiseQuotient(body.principal.moments)), state + speed_of(i) + 3);
+        put(axes * Vec3(momentum.cwiseQuotient(moments)), state + speed_of(i) + 3);
+}
+
+void RigidMotion::go(double span)
+{
+    double* const state = state_.data();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        double* const place = state + place_of(i);
+        put(vector_at(place) + span * vector_at(state + speed_of(i)), place);
+        if (!bodies_[i].turns) continue;
+        if (precesses_evenly(bodies_[i]))
+            coast_turning(i, span, state);
+        else
+            turn_by(i, span * vector_at(state + speed_of(i) + 3), state);
+    }
+}
+
+void RigidMotion::precess(double span)
+{
+    constexpr int kMostParts = 64;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const Body& body = bodies_[i];
+        if (!body.precesses || precesses_evenly(body)) continue;
+        const Vec3 spin = vector_at(state_.data() + speed_of(i) + 3);
+        const Vec3 momentum = facts_.masses.inertia[body.body].matrix() * spin;
+        const int parts = parts_of(free_rotation(body.principal.moments),
+                                   std::sqrt(momentum.squaredNorm()), span, kMostParts);
+        turn_momentum(i, span, parts > 0 ? parts : kMostParts, state_.data(), [](const Vec3&) {});
+    }
 }
 
 void RigidMotion::coast(double span, double* state)
@@ -479,7 +516,7 @@ void RigidMotion::coast(double span, double* state)
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         double* const place = state + place_of(i);
         put(vector_at(place) + span * vector_at(state + speed_of(i)), place);
-        if (bodies_[i].turns) turn_freely(i, span, state);
+        if (bodies_[i].turns) coast_turning(i, span, state);
     }
 }
 

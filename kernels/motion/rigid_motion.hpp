@@ -89,10 +89,16 @@ public:
         Mat3 turn;
         Vec3 velocity, spin;
         Mat3 inverse_inertia;
+        Vec3 axis;  // how go() turns it: see BodyTurn
+        double carries;
     };
     Going going(std::size_t i) const;
     /// Adds to that. Not for bodies that have a momentum in place of a spin.
     void add_speed(std::size_t i, const Vec3& velocity, const Vec3& spin);
+    /// coast() in two, for what acts as bodies go: places, and the precession of what is symmetric
+    /// about an axis; and the precession of the others, whose spin turns them as it is meanwhile.
+    void go(double span);
+    void precess(double span);
 
     std::size_t places() const override { return bodies_.size() * place_numbers(); }
     std::size_t speeds() const override { return bodies_.size() * 6; }
@@ -143,7 +149,11 @@ private:
         return body.inverse_mass > 0 ? rule_.gravity : Vec3(Vec3::Zero());
     }
     void add_momentum(std::size_t i, double span, double* momentum) const;
-    void turn_freely(std::size_t i, double span, double* state);
+    bool precesses_evenly(const Body& body) const;
+    void coast_turning(std::size_t i, double span, double* state);
+    template <class Turn>
+    void turn_momentum(std::size_t i, double span, int parts, double* state, Turn turn_by);
+    void turn_by(std::size_t i, const Vec3& turn, double* state);
 
     const RigidRule& rule_;
     RigidFacts facts_;

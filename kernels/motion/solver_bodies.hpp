@@ -3,6 +3,7 @@
 
 #include "kernels/data/rows.hpp"
 #include "kernels/math/types.hpp"
+#include "kernels/solve/carried_points.hpp"
 
 #include <span>
 
@@ -33,6 +34,22 @@ template <class Real>
 bool ran_away(const SolverBody<Real>& body)
 {
     return body.drift[3] != 0;
+}
+
+template <class Real>
+Ease ease_of(const SolverBody<Real>& body)
+{
+    const Real* const inertia = body.inertia;
+    return {double{inertia[0]}, double{inertia[1]} + double{inertia[2]} + double{inertia[3]}};
+}
+
+/// Whether a body takes another along as it turns, in steps of dt: see carried_points.hpp.
+template <class Real>
+bool carries(const SolverBody<Real>& carrier, const Ease& carried, double dt)
+{
+    const Real* const motion = carrier.motion;
+    return carries(Vec3(double{motion[4]}, double{motion[5]}, double{motion[6]}), ease_of(carrier),
+                   carried, dt);
 }
 
 /// How far a body has turned since the step began.

@@ -8,11 +8,14 @@ namespace throng {
 
 namespace {
 
-// How easily a body gives way at a point of it, in whatever direction is easiest, 1/kg.
+// How easily a body gives way at a point of it, in whatever direction is easiest, 1/kg: at most the
+// sum of what turning makes of it in all. About the arm itself nothing turns the point.
 double ease_at(const Masses& masses, std::uint32_t body, const Vec3& lever)
 {
     const Sym3& turning = masses.inverse_inertia[body];
-    return masses.inverse_mass[body] + (turning.xx + turning.yy + turning.zz) * lever.squaredNorm();
+    const double all = (turning.xx + turning.yy + turning.zz) * lever.squaredNorm();
+    const double about = lever.dot(Vec3(turning.matrix() * lever));
+    return masses.inverse_mass[body] + std::max(0.0, all - about);
 }
 
 }  // namespace

@@ -16,11 +16,11 @@ constexpr int kNewtonSteps = 30, kHalvings = 6;
 // was each of Newton's steps brings it.
 constexpr double kFound = 1e-18, kSolved = 1e-8;
 // Shares of what a spring would give that goes on as it began, tried where Newton's steps fail.
-constexpr double kShares[] = {1, 0.5, 0.25, 0.125};
+constexpr double kShares[] = {1, 0.5, 0.25, 0.125, 0};
 // By how much where an end is may be off, of how far out it is.
 constexpr double kRounding = 0x1p-50;
 // How many times what its bodies resist with one holds that cannot be followed.
-constexpr double kHeld = 1000;
+constexpr double kHeld = 1e6;
 // Steps of conjugate gradients a body and besides: as many as there are numbers would do but for
 // rounding.
 constexpr std::size_t kStepsOfBody = 12, kStepsBeside = 60;
@@ -44,17 +44,6 @@ void add(double share, std::span<const Six> from, std::span<Six> to)
     }
 }
 
-// The arm at which a force has just the power to take its end where the body's turn takes it: the
-// mean of both, and a little longer, as the way there is along a chord.
-Vec3 working_arm(const Vec3& arm, const Vec3& after, const Vec3& turn)
-{
-    constexpr double kLongest = 4;  // times; next to half a turn none is long enough
-    const Vec3 mean = 0.5 * (arm + after), way = after - arm;
-    const double length = way.squaredNorm(), along = way.dot(turn.cross(mean));
-    if (!(along > 0) || !(length > 0)) return mean;
-    return std::min(kLongest, length / along) * mean;
-}
-
 }  // namespace
 
 StiffSprings::StiffSprings(const Forces& forces,
@@ -69,6 +58,7 @@ StiffSprings::StiffSprings(const Forces& forces,
         bodies_.back().body = body;
         bodies_.back().inverse_mass = masses.inverse_mass[body];
     }
+    turns_.reserve(bodies_.size());
     for (auto* const list : {&without_, &going_, &impulse_, &given_, &before_, &missing_, &step_,
                              &step_momentum_, &answer_, &change_})
         list->resize(bodies_.size());
@@ -111,16 +101,17 @@ StiffSprings::Row StiffSprings::row_of(const SpringForce& spring, double time) c
 // What a spring gives if the bodies go on as they do.
 void StiffSprings::stretch(Row& row) const
 {
-    const auto moved = [&](std::int32_t place, const Vec3& arm, Vec3& middle) -> Vec3 {
-        if (place < 0) return middle = Vec3::Zero();
-        const Six& speed = going_[static_cast<std::size_t>(place)];
-        const Vec3 turn = span_ * speed.angular, after = exponential(turn) * arm;
-        middle = working_arm(arm, after, turn);
-        return span_ * speed.linear + (after - arm);
+    const auto moved = [&](std::int32_t place, const Vec3& arm, Vec3& end, Mat3& lever) -> Vec3 {
+        if (place < 0) return Vec3::Zero();
+        const auto i = static_cast<std::size_t>(place);
+        end = turns_[i].after(arm);
+        lever = turns_[i].lever(arm);
+        return span_ * going_[i].linear + (end - arm);
     };
-    const Vec3 by_a = moved(row.a, row.arm_a, row.mid_a);
-    const Vec3 by_b = moved(row.b, row.arm_b, row.mid_b);
-    const Vec3 to = row.from + row.outer + (by_b - by_a), both = row.from + to;
+    const Vec3 by_a = moved(row.a, row.arm_a, row.end_a, row.lever_a);
+    const Vec3 by_b = moved(row.b, row.arm_b, row.end_b, row.lever_b);
+    row.to = row.from + row.outer + (by_b - by_a);
+    const Vec3 &to = row.to, both = row.from + to;
     const double first = std::sqrt(row.from.squaredNorm()), last = std::sqrt(to.squaredNorm());
     const double mean = 0.5 * (first + last), half = 0.5 * span_, length = row.spring->length;
     row.elastic = row.damping = Vec3::Zero();
@@ -133,44 +124,61 @@ void StiffSprings::stretch(Row& row) const
     }
     const Vec3 along = both / (2 * mean);
     row.elastic = half * row.spring->stiffness * (mean - length) * along;
-    row.damping = row.spring->damping * (last - first) * along;
+    row.damping = 0.5 * row.spring->damping * (last - first) * along;
     // Across itself a spring holds by as much as it is drawn out; one that is pressed in gives way,
     // which is left out: it only tells Newton's step how far to go.
     const double across = std::max(0.0, 1 - length / mean), square = both.squaredNorm();
     const double k = half * half * row.spring->stiffness;
     row.stiffness = k * across * Mat3::Identity();
     if (square > 0)
-        row.stiffness += (k * (1 - across) + span_ * row.spring->damping)
+        row.stiffness += (k * (1 - across) + half * row.spring->damping)
             * Mat3(both * both.transpose()) / square;
 }
 
 Vec3 StiffSprings::speed_between(const Row& row, std::span<const Six> speeds) const
 {
-    const auto speed = [&](std::int32_t place, const Vec3& arm) -> Vec3 {
+    const auto speed = [&](std::int32_t place, const Mat3& lever) -> Vec3 {
         if (place < 0) return Vec3::Zero();
         const Six& of = speeds[static_cast<std::size_t>(place)];
-        return of.linear + of.angular.cross(arm);
+        return of.linear + lever.transpose() * of.angular;
     };
-    return speed(row.b, row.mid_b) - speed(row.a, row.mid_a);
+    return speed(row.b, row.lever_b) - speed(row.a, row.lever_a);
 }
 
 // An impulse on a, and its opposite on b.
 void StiffSprings::push(const Row& row, const Vec3& impulse, std::span<Six> on) const
 {
-    const auto give = [&](std::int32_t place, const Vec3& arm, double sign) {
+    const auto give = [&](std::int32_t place, const Mat3& lever, double sign) {
         if (place < 0) return;
         Six& to = on[static_cast<std::size_t>(place)];
         to.linear += sign * impulse;
-        to.angular += sign * arm.cross(impulse);
+        to.angular += sign * Vec3(lever * impulse);
     };
-    give(row.a, row.mid_a, 1);
-    give(row.b, row.mid_b, -1);
+    give(row.a, row.lever_a, 1);
+    give(row.b, row.lever_b, -1);
 }
 
 // What an impulse does to the velocities of a body.
 Six StiffSprings::eased(std::size_t i, const Six& impulse) const
 {
     return {bodies_[i].inverse_mass * impulse.linear, bodies_[i].inverse_inertia * impulse.angular};
+}
+
+// How easily an end of a spring gives way, summed over three directions, 1/kg.
+double StiffSprings::ease_at(std::int32_t place, const Mat3& lever) const
+{
+    if (place < 0) return 0;
+    const SpringBody& body = bodies_[static_cast<std::size_t>(place)];
+    return 3 * body.inverse_mass + (lever.transpose() * Mat3(body.inverse_inertia * lever)).trace();
+}
+
+// What springs give if the bodies go on as they do.
+void StiffSprings::stretch_all()
+{
+    turns_.clear();
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        turns_.emplace_back(going_[i].angular, bodies_[i].axis, bodies_[i].carries, span_);
+    for (Row& row : rows_) stretch(row);
 }
 
 // The velocities that the impulses come to, and what springs give then.
@@ -180,7 +188,7 @@ void StiffSprings::follow()
         const Six gained = eased(i, impulse_[i]);
         going_[i] = {without_[i].linear + gained.linear, without_[i].angular + gained.angular};
     }
-    for (Row& row : rows_) stretch(row);
+    stretch_all();
 }
 
 // Impulses that springs would give and have not. Returns the energy of it; none where it is hardly
@@ -199,8 +207,7 @@ double StiffSprings::find_missing()
             const SpringBody& body = bodies_[static_cast<std::size_t>(place)];
             const double off = kRounding * row.spring->stiffness * span_
                 * std::sqrt(body.position.squaredNorm() + row.from.squaredNorm());
-            const double arm = (place == row.a ? row.arm_a : row.arm_b).squaredNorm();
-            rounding += off * off * (body.inverse_mass + body.inverse_inertia.trace() * arm);
+            rounding += off * off * ease_at(place, place == row.a ? row.lever_a : row.lever_b);
         }
     }
     double lacking = 0;
@@ -255,8 +262,8 @@ void StiffSprings::foresee()
         missing_[i] = {-impulse_[i].linear, -impulse_[i].angular};
     }
     std::fill(going_.begin(), going_.end(), Six{});
+    stretch_all();
     for (Row& row : rows_) {
-        stretch(row);
         const Vec3 ahead = row.stiffness * speed_between(row, change_);
         push(row, row.elastic + row.damping + ahead, missing_);
     }
@@ -317,21 +324,16 @@ bool StiffSprings::guess()
     return false;
 }
 
-// What cannot be followed is held for the step: ends that hardly move to one another can only lose.
+// What cannot be followed is held for the step: ends that hardly move to one another take up
+// little.
 void StiffSprings::hold()
 {
     std::fill(impulse_.begin(), impulse_.end(), Six{});
     std::fill(going_.begin(), going_.end(), Six{});
     std::fill(missing_.begin(), missing_.end(), Six{});
+    stretch_all();
     for (Row& row : rows_) {
-        stretch(row);
-        double ease = 0;
-        for (const std::int32_t place : {row.a, row.b}) {
-            if (place < 0) continue;
-            const SpringBody& body = bodies_[static_cast<std::size_t>(place)];
-            const double arm = (place == row.a ? row.arm_a : row.arm_b).squaredNorm();
-            ease += body.inverse_mass + body.inverse_inertia.trace() * arm;
-        }
+        const double ease = ease_at(row.a, row.lever_a) + ease_at(row.b, row.lever_b);
         row.stiffness = (ease > 0 ? kHeld / ease : 0) * Mat3::Identity();
         push(row, row.stiffness * speed_between(row, without_), missing_);
     }
@@ -339,9 +341,52 @@ void StiffSprings::hold()
     const auto sound = [](const Six& six) {
         return six.linear.allFinite() && six.angular.allFinite();
     };
-    if (std::all_of(impulse_.begin(), impulse_.end(), sound)) return;
-    // Somebody is about to be lost: the others are not drawn along.
-    std::fill(impulse_.begin(), impulse_.end(), Six{});
+    // Else somebody is about to be lost: the others are not drawn along.
+    if (!std::all_of(impulse_.begin(), impulse_.end(), sound))
+        std::fill(impulse_.begin(), impulse_.end(), Six{});
+    slow_down();
+}
+
+// How bodies go on together that nothing outside holds.
+Vec3 StiffSprings::common_velocity() const
+{
+    Vec3 momentum = Vec3::Zero();
+    double mass = 0;
+    const auto held = [](const Row& row) { return row.a < 0 || row.b < 0; };
+    if (std::any_of(rows_.begin(), rows_.end(), held)) return momentum;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (!(bodies_[i].inverse_mass > 0)) return Vec3::Zero();
+        mass += 1 / bodies_[i].inverse_mass;
+        momentum += without_[i].linear / bodies_[i].inverse_mass;
+    }
+    return momentum / mass;
+}
+
+// What bodies turn by takes ends on all the same. So all of them go the slower the more of what
+// springs would take up nobody has to give, down to standing still beside one another.
+void StiffSprings::slow_down()
+{
+    before_ = impulse_;
+    const Vec3 common = common_velocity();
+    for (const double share : kShares) {
+        for (std::size_t i = 0; i < impulse_.size(); ++i) {
+            const Six stop = stopping(i, common);
+            impulse_[i] = {share * before_[i].linear + (1 - share) * stop.linear,
+                           share * before_[i].angular + (1 - share) * stop.angular};
+        }
+        follow();
+        if (gained_energy() <= 0) return;
+    }
+}
+
+// What it takes to stop a body but for the motion it has in common with others.
+Six StiffSprings::stopping(std::size_t i, const Vec3& common) const
+{
+    const SpringBody& body = bodies_[i];
+    const Vec3 spin = body.turn.transpose() * without_[i].angular;
+    const Vec3 momentum = masses_.inertia[body.body].matrix() * spin;
+    const double mass = body.inverse_mass > 0 ? 1 / body.inverse_mass : 0;
+    return {mass * (common - without_[i].linear), -Vec3(body.turn * momentum)};
 }
 
 void StiffSprings::find()
@@ -399,12 +444,55 @@ std::span<const Six> StiffSprings::again()
     return changes(missing_);
 }
 
+// What dampers take after places changed, of what bodies have then: implicit too.
+void StiffSprings::damp_end()
+{
+    bool any = false;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        without_[i] = {bodies_[i].velocity, bodies_[i].spin};
+    std::fill(impulse_.begin(), impulse_.end(), Six{});
+    for (Row& row : rows_) {
+        const double square = row.to.squaredNorm(), c = 0.5 * span_ * row.spring->damping;
+        any = any || c > 0;
+        row.stiffness.setZero();
+        if (square > 0) row.stiffness = c / square * Mat3(row.to * row.to.transpose());
+        row.lever_a = still_lever(row.end_a);
+        row.lever_b = still_lever(row.end_b);
+        push(row, row.stiffness * speed_between(row, without_), missing_);
+    }
+    if (any)
+        conjugate_gradients();
+    else
+        impulse_ = missing_;
+}
+
+double StiffSprings::furthest_turn() const
+{
+    double furthest = 0;
+    for (const Row& row : rows_) {
+        if (row.a >= 0)
+            furthest =
+                std::max(furthest, turns_[static_cast<std::size_t>(row.a)].angle_of(row.arm_a));
+        if (row.b >= 0)
+            furthest =
+                std::max(furthest, turns_[static_cast<std::size_t>(row.b)].angle_of(row.arm_b));
+    }
+    return furthest;
+}
+
 std::span<const Six> StiffSprings::end()
 {
     std::fill(missing_.begin(), missing_.end(), Six{});
-    if (found_)
-        for (const Row& row : rows_) push(row, row.elastic, missing_);
-    return changes(missing_);
+    if (!found_) return changes(missing_);
+    for (const Row& row : rows_) push(row, row.elastic, missing_);
+    // In axes that are carried along they turn a body after it moved as they did before.
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        missing_[i].angular = turns_[i].carried() * missing_[i].angular;
+        Mat3& ease = bodies_[i].inverse_inertia;
+        ease = turns_[i].carried() * Mat3(ease * turns_[i].carried().transpose());
+    }
+    damp_end();
+    return changes(impulse_);
 }
 
 }  // namespace throng

@@ -4,6 +4,7 @@
 // asked for, so the constructor holds a rendezvous: no task of it ends before all have begun.
 #include "kernels/parallel/block_watch.hpp"
 #include "kernels/parallel/blocks.hpp"
+#include "kernels/parallel/work_count.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
@@ -35,9 +36,11 @@ void for_each_block(std::size_t count, std::size_t grain, BlockBody body)
         for (std::size_t block = 0; block < blocks; ++block) run(block);
         return;
     }
+    WorkCount* const count_of_work = work_count();
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, blocks, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
+            const WorkCountScope counted(count_of_work);
             for (std::size_t block = range.begin(); block < range.end(); ++block) run(block);
         },
         tbb::simple_partitioner());

@@ -3,6 +3,7 @@
 // A pool of std::thread takes blocks from a counter under one mutex. Simple rather than fast.
 #include "kernels/parallel/block_watch.hpp"
 #include "kernels/parallel/blocks.hpp"
+#include "kernels/parallel/work_count.hpp"
 
 #include <algorithm>
 #include <condition_variable>
@@ -90,7 +91,9 @@ void for_each_block(std::size_t count, std::size_t grain, BlockBody body)
 {
     if (run_watched(count, grain, body)) return;
     const std::size_t blocks = block_count(count, grain);
+    WorkCount* const count_of_work = work_count();
     const auto run = [&](std::size_t block, std::size_t, std::size_t) {
+        const WorkCountScope counted(count_of_work);
         body(block * grain, std::min(count, (block + 1) * grain), block);
     };
     if (blocks <= 1 || current_crew == nullptr) {

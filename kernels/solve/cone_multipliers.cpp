@@ -11,7 +11,7 @@ namespace {
 constexpr double kFirst = 100, kSoftest = 1, kStiffest = 1e7;
 constexpr double kStiffer = 10, kSofter = 0.1;
 // Sweeps before a try: at most after it went well, and as it went badly.
-constexpr int kSweeps = 100, kMostSweeps = 3200;
+constexpr int kSweeps = 25, kMostSweeps = 3200;
 constexpr int kMostDue = 8;
 constexpr int kTries = 60;
 constexpr int kNewtonSteps = 8;  // of one try

@@ -10,8 +10,9 @@ namespace throng {
 
 namespace {
 
-// A table of so many rows takes 10 MB, and a second or two.
-constexpr std::size_t kMostRows = 1100;
+// A table of so many rows takes 5 MB, and up to half a second. Greater ones took seconds, and left
+// hardly an answer nearer.
+constexpr std::size_t kMostRows = 800;
 constexpr std::size_t kMostSides = 8, kFewestSides = 4;
 constexpr std::size_t kPivotsPerRow = 10;  // most take one or two
 // Rows are set off by so much, each by its own: no two then reach 0 at once, and none comes back.

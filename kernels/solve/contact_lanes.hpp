@@ -148,6 +148,13 @@ struct Drift {
         axis = {d[4], d[5], d[6]};
         w = d[7];
     }
+    /// By how much an arm has changed that turned along.
+    V3<L> change_of(const V3<L>& arm) const
+    {
+        const V3<L> t = cross(axis, arm);
+        const V3<L> twice = t + t;
+        return twice * w + cross(axis, twice);
+    }
     /// By how much a direction, turned back by the drift, differs from itself.
     V3<L> turned_back(const V3<L>& direction) const
     {

@@ -23,8 +23,6 @@ constexpr int kPatience = 5;
 constexpr int kSweeps[] = {100, 200, 400};
 // By how much closer sides stand about the way of the friction found before, try by try.
 constexpr int kCloser[] = {1, 2, 3, 4};
-// Factorisations spent on springs that start from a guess, before the path is tried.
-constexpr int kSpringSteps = 40;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -53,7 +51,6 @@ struct DirectSolver::Work {
     std::vector<BodySix> scratch;
     DirectAnswer answer;
     int left = 0;          // steps
-    bool guessed = false;  // whether any point came with an impulse
     bool solvable = true;  // for certain, as no point is asked to part
 
     bool keep_if_better(double residual);
@@ -92,8 +89,8 @@ bool DirectSolver::Work::start_from_guess()
 {
     if (keep_if_better(island.residual(scratch))) return true;
     matrix.lay_out(island.columns(), island.ties());
-    guessed = std::any_of(island.cones.begin(), island.cones.end(),
-                          [](const ContactCone& cone) { return cone.impulse[0] > 0; });
+    const bool guessed = std::any_of(island.cones.begin(), island.cones.end(),
+                                     [](const ContactCone& cone) { return cone.impulse[0] > 0; });
     return guessed && hold_from_here();
 }
 
@@ -174,13 +171,11 @@ bool DirectSolver::Work::take_springs(int most)
     return keep_if_better(residual) || answer.residual < kGood;
 }
 
-// Springs go on from a guess at little cost; the path, which needs none, leads to the middle of all
-// answers. Where it stalls each way is surer than the one before, and slower.
+// The path leads to the middle of all answers, whatever it starts from. Where it stalls each way is
+// surer than the one before, and slower.
 void DirectSolver::Work::find()
 {
     if (start_from_guess()) return;
-    go_back_to_best();
-    if (guessed && take_springs(kSpringSteps)) return;
     if (follow_path()) return;
     go_back_to_best();
     if (sweep_and_hold()) return;

@@ -3,6 +3,8 @@
 
 #include "kernels/solve/direct.hpp"
 
+#include <algorithm>
+
 namespace throng {
 
 /// Velocity of b against a at a point, m/s.
@@ -33,6 +35,13 @@ ease_along(const DirectPoint& point, const Vec3& along, std::span<const DirectBo
         return body.inverse_mass + turn.dot(Vec3(body.inverse_inertia.matrix() * turn));
     };
     return of(point.a, point.arm_a) + of(point.b, point.arm_b);
+}
+
+/// At least what any direction across the normal comes to of that.
+inline double widest_ease(const DirectPoint& point, std::span<const DirectBody> bodies)
+{
+    const Vec3 along = point.normal.unitOrthogonal(), other = point.normal.cross(along);
+    return ease_along(point, along, bodies) + ease_along(point, other, bodies);
 }
 
 /// Gives an impulse, N s, to b, and its opposite to a.
@@ -81,6 +90,43 @@ inline void apply_torque(const DirectPoint& point, const Vec3& torque, std::span
     };
     turn(point.a, -1);
     turn(point.b, 1);
+}
+
+/// J, what the impulses of points did to the bodies, as seen from those that move by themselves.
+inline double work_of(std::span<const DirectPoint> points,
+                      std::span<const DirectBody> before,
+                      std::span<const DirectBody> after)
+{
+    double work = 0;
+    for (const DirectPoint& point : points) {
+        const Vec3 passed = velocity_between(point, before) + velocity_between(point, after);
+        const Vec3 turned = spin_between(point, before) + spin_between(point, after);
+        work += 0.5 * (point.impulse.dot(passed) + point.torque.dot(turned));
+    }
+    return work;
+}
+
+/// Friction of an impact at a point, and what resists rolling, up to what they bear of the impulse
+/// that threw it back, N s. Adds to the point's impulse and torque, and never to the energy.
+inline void rub(double load, DirectPoint& point, std::span<DirectBody> bodies)
+{
+    const Vec3 between = velocity_between(point, bodies);
+    const Vec3 sliding = between - point.normal * point.normal.dot(between);
+    const double fast = sliding.norm();
+    if (fast > 0 && point.friction > 0) {
+        const double sticks = 1 / ease_along(point, sliding / fast, bodies);
+        const Vec3 impulse = sliding * -std::min(sticks, point.friction * load / fast);
+        point.impulse += impulse;
+        apply_impulse(point, impulse, bodies);
+    }
+    const Vec3 turning = spin_between(point, bodies);
+    const double turns = turning.norm();
+    if (!(turns > 0 && point.rolling > 0)) return;
+    const double ease = ease_about(point, turning / turns, bodies);
+    if (!(ease > 0)) return;
+    const Vec3 torque = turning * -std::min(1 / ease, point.rolling * load / turns);
+    point.torque += torque;
+    apply_torque(point, torque, bodies);
 }
 
 /// The restitution of points that are struck together: the mean over the work that stopping each

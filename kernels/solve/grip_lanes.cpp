@@ -199,6 +199,7 @@ template <class L>
     Contacts<L, true> c(rows, place, at);
     Aim<L> aims[4];
     take_aim(c, rows.bodies, visit, aims);
+    if (rows.carries != nullptr) slide_along(c, rows.carries[place]);
     if (rows.bounces != nullptr && !visit.push)
         leave_to_impact(c, rows.bounces[place], visit, aims);
     push_together(c, aims);

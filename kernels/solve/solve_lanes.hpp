@@ -26,6 +26,9 @@ std::size_t advance(SolverBody<Real>* bodies,
                     bool turns);
 
 template <class Real>
+void carry(const RowsView<Real>& rows, std::size_t begin, std::size_t end, Real half);
+
+template <class Real>
 void warm_start_grips(const RowsView<Real>& rows,
                       std::size_t begin,
                       std::size_t end,

@@ -60,6 +60,7 @@ struct RowsView {
     RollingRows<Real>* rollings = nullptr;
     SolverBody<Real>* bodies = nullptr;
     GripRows<Real>* grips = nullptr;
+    CarryRows<Real>* carries = nullptr;
 
     static RowsView of(Rows<Real>& rows)
     {
@@ -68,7 +69,8 @@ struct RowsView {
                 rows.bounces.empty() ? nullptr : rows.bounces.data(),
                 rows.rollings.empty() ? nullptr : rows.rollings.data(),
                 rows.bodies.data(),
-                rows.grips.empty() ? nullptr : rows.grips.data()};
+                rows.grips.empty() ? nullptr : rows.grips.data(),
+                rows.carries.empty() ? nullptr : rows.carries.data()};
     }
 };
 
@@ -94,6 +96,8 @@ inline constexpr double kAtRest = 1e-4;
 ///   prepare        fills the block at `place` (whose lanes have their bodies, points and
 ///                  first_point already) from contacts as they are kept
 ///   warm_start     gives the bodies the impulses that the contacts hold
+///   carry          tells CarryRows::speed, half a substep ahead of where the bodies are. Needs
+///                  RowsView::carries
 ///   sweep          moves every point towards its wanted normal speed, never pulling; then
 ///                  friction, a round cone of the contact's normal impulse; then the points again
 ///   bounce         impacts, one contact after another: points that come in faster than `slow` and
@@ -129,6 +133,7 @@ struct SolveKernels {
                        std::size_t begin,
                        std::size_t end,
                        const Visit<Real>& visit);
+    void (*carry)(const RowsView<Real>& rows, std::size_t begin, std::size_t end, Real half);
     void (*sweep)(const RowsView<Real>& rows,
                   std::size_t begin,
                   std::size_t end,

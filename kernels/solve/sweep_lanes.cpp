@@ -56,6 +56,7 @@ template <class L, bool turns, int most>
     Contacts<L, turns> c(rows, place, at);
     Aim<L> aims[most];
     take_aim(c, rows.bodies, visit, aims);
+    if (rows.carries != nullptr) slide_along(c, rows.carries[place]);
     if (rows.bounces != nullptr && !visit.push)
         leave_to_impact(c, rows.bounces[place], visit, aims);
     if constexpr (turns && most > 1) push_together(c, aims);
@@ -222,10 +223,10 @@ bool bounce(const RowsView<Real>& rows,
 template <class Real>
 constexpr SolveKernels<Real> table()
 {
-    return {THRONG_LANES_NAME,   Lanes<Real>::kWidth, prepare<Real>,
-            warm_start<Real>,    sweep<Real>,         bounce<Real>,
-            begin_substep<Real>, advance<Real>,       warm_start_grips<Real>,
-            sweep_grips<Real>,   bounce_grips<Real>};
+    return {THRONG_LANES_NAME,      Lanes<Real>::kWidth, prepare<Real>,
+            warm_start<Real>,       carry<Real>,         sweep<Real>,
+            bounce<Real>,           begin_substep<Real>, advance<Real>,
+            warm_start_grips<Real>, sweep_grips<Real>,   bounce_grips<Real>};
 }
 
 }  // namespace

@@ -139,6 +139,14 @@ void take_aim(const Contacts<L, turns>& c,
     }
 }
 
+// What slides is told where the contact is by now.
+template <class L, bool turns>
+void slide_along(Contacts<L, turns>& c, const CarryRows<typename L::Number>& carried)
+{
+    c.rel.v1 += lane<L>(carried.speed[0], c.at);
+    c.rel.v2 += lane<L>(carried.speed[1], c.at);
+}
+
 // What comes in fast is left to its impact, which the next substep begins with.
 template <class L, bool turns, int most>
 void leave_to_impact(const Contacts<L, turns>& c,

@@ -55,6 +55,9 @@ bool seal_file(const std::filesystem::path& path)
 
 std::string bytes_of_file(const std::filesystem::path& path)
 {
+    // A pipe would be waited for, and a folder has no end that could be told.
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return {};
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) return {};
     const std::streamoff size = file.tellg();

@@ -19,7 +19,7 @@ Seal seal_of(std::string_view bytes);
 /// Puts a seal behind a file that has none. False where it cannot be read or written.
 bool seal_file(const std::filesystem::path& path);
 
-/// All of a file; nothing where it cannot be read.
+/// All of a file; nothing where it cannot be read or is none, as a folder or a pipe.
 std::string bytes_of_file(const std::filesystem::path& path);
 
 }  // namespace throng

@@ -684,7 +684,8 @@ write_vdb(const std::filesystem::path& path, const VoxelBricks& bricks, const Fi
 VdbFile read_vdb(const std::filesystem::path& path, VdbWants wants)
 {
     VdbFile result;
-    if (!std::filesystem::is_regular_file(path)) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) {
         result.trouble =
             path.string() + ": there is no such file; wanted a .vdb file with a float level set";
         return result;

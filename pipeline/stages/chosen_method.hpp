@@ -47,7 +47,11 @@ public:
     bool has_method() const { return method_ != nullptr; }
 
 private:
-    static bool ends(ShapeKind kind) { return kind != ShapeKind::plane && kind != ShapeKind::mesh; }
+    // Solids and meshes collide in stages of their own, and have no core.
+    static bool ends(ShapeKind kind)
+    {
+        return kind != ShapeKind::plane && kind != ShapeKind::mesh && kind != ShapeKind::solid;
+    }
     bool filters() const { return filter_ != BoundsFilter::none; }
 
     const Shapes& shapes_;

@@ -49,18 +49,38 @@ inline double kept_reach(const PairPlace& pair, const Bounds& bounds)
         + std::max(bounds.reach[pair.b], bounds.kept[pair.b]);
 }
 
-/// The pose of a pair's second shape as its first sees it; the two are told apart like that.
+/// The axes of one of a pair as it is looked at. A sphere has none of its own and takes the
+/// other's: seen along axes that turn, what is far away would tremble.
+inline const Quat& axes_of(std::uint32_t collider,
+                           std::uint32_t other,
+                           const Colliders& colliders,
+                           const Bounds& bounds)
+{
+    const bool round = colliders.shape[collider].kind == ShapeKind::sphere;
+    return bounds.placed[round ? other : collider].orientation;
+}
+
+/// The frame that a pair is looked at in: its first's.
+inline Pose frame_of(std::uint32_t first,
+                     std::uint32_t second,
+                     const Colliders& colliders,
+                     const Bounds& bounds)
+{
+    return {bounds.placed[first].position, axes_of(first, second, colliders, bounds)};
+}
+
+/// The pose of a pair's second shape in its frame; the two are told apart like that.
 inline Pose seen_from_first(std::uint32_t first,
                             std::uint32_t second,
                             const Shapes& shapes,
                             const Colliders& colliders,
                             const Bounds& bounds)
 {
-    const Pose &from = bounds.placed[first], &to = bounds.placed[second];
-    const ShapeRef shape = colliders.shape[second];
-    if (from.position != to.position) return pose_seen_from_a(shapes, shape, from, to);
-    const Vec3 beside = from.position + between_centers(first, second, colliders, bounds);
-    return pose_seen_from_a(shapes, shape, from, {beside, to.orientation});
+    const Pose from = frame_of(first, second, colliders, bounds);
+    Pose to = {bounds.placed[second].position, axes_of(second, first, colliders, bounds)};
+    if (from.position == to.position)
+        to.position = from.position + between_centers(first, second, colliders, bounds);
+    return pose_seen_from_a(shapes, colliders.shape[second], from, to);
 }
 
 /// True when somebody in the pair can be pushed and somebody is awake.

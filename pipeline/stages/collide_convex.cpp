@@ -245,12 +245,12 @@ private:
         if (manifold.count == 0) return part(i, block);
         const std::uint32_t first = turned ? pair.b : pair.a, second = turned ? pair.a : pair.b;
         const std::uint32_t body_1 = colliders_.body[first], body_2 = colliders_.body[second];
-        const Pose& placed = bounds_.placed[first];
         Contact<Real> contact;
-        make_contact(manifold, placed, anchor_origin(body_1, body_2, states_, poses_),
+        make_contact(manifold, frame_of(first, second, colliders_, bounds_),
+                     anchor_origin(body_1, body_2, states_, poses_),
                      anchor_origin(body_2, body_1, states_, poses_), contact);
-        note_round_sides(shapes_, colliders_.shape[first], colliders_.shape[second], placed,
-                         bounds_.placed[second], contact);
+        note_round_sides(shapes_, colliders_.shape[first], colliders_.shape[second],
+                         bounds_.placed[first], bounds_.placed[second], contact);
         if (turned) turn_round(contact);
         keep(i, contact);
     }

@@ -13,7 +13,6 @@ namespace {
 // kExactStrain. Finer ones are lost in the digits of float: what is yet more stubborn is solved
 // exactly, where that is small.
 constexpr double kByFour = 16 * kStrained;
-constexpr std::size_t kExactContacts = 48;
 constexpr double kFinestSubstep = 5e-5;  // s
 
 // Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 8 ms

@@ -23,6 +23,8 @@ inline constexpr double kExactStrain = 256 * kStrained;
 /// What an island of that strain needs. Strain goes with the square of the substep.
 Effort effort_for(double strain);
 
+/// Contacts up to which an island may be solved exactly.
+inline constexpr std::size_t kExactContacts = 48;
 /// Factorisations that an island which is escalated may take a solve.
 inline constexpr int kExactSteps = 24;
 

@@ -2,9 +2,11 @@
 
 #include "kernels/math/rotation.hpp"
 #include "kernels/motion/spring_limit.hpp"
+#include "pipeline/force_builder.hpp"
 #include "pipeline/stages/rigid_law.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -12,29 +14,63 @@ namespace throng {
 
 namespace {
 
-// Of the longest step of the semi-implicit rule: next to it a swing would be wider than it was
-// begun, by a seventh at half of it.
-constexpr double kWithin = 0.5;
+// Of the longest step of the semi-implicit rule: beyond that share the energy of a swing would be
+// seen to go up and down by more than a hundredth, halves before and after taken together.
+constexpr double kWithin = 0.1;
+
+// rad, of an arm in a substep: one that goes further would be seen at so few places of its round
+// that what its spring gives there and takes here need not be the same.
+constexpr double kTurn = 0.3;
+
+// J, of a body in motion, and of its springs.
+double energy_at_hand(const RigidFacts& facts, std::uint32_t body)
+{
+    return kinetic_energy_of(body, facts.masses, facts.poses, facts.velocities)
+        + springs_energy_of(body, facts.forces, facts.poses);
+}
+
+// rad/s, the fastest that an arm of their springs could go round by what there is of energy: who
+// strikes something may turn by all of it in the middle of a step.
+double fastest_arm(const RigidFacts& facts, std::span<const std::uint32_t> group)
+{
+    const Forces& forces = facts.forces;
+    double fastest = 0;
+    for (const std::uint32_t body : group) {
+        const Mat3 ease = facts.masses.inverse_inertia[body].matrix();
+        double greatest = 0;  // of an arm, 1/(kg m2): how easily it goes round
+        for (std::uint32_t k = forces.first_spring[body]; k < forces.first_spring[body + 1]; ++k) {
+            const SpringForce& spring = forces.springs[forces.spring_of[k]];
+            const Vec3 arm = forces.hang_of(body) + (spring.a == body ? spring.at_a : spring.at_b);
+            const double square = arm.squaredNorm();
+            if (square > 0)
+                greatest = std::max(greatest, ease.trace() - arm.dot(Vec3(ease * arm)) / square);
+        }
+        // Two directions across the arm share what that is.
+        if (greatest > 0)
+            fastest = std::max(fastest, std::sqrt(greatest * energy_at_hand(facts, body)));
+    }
+    return fastest;
+}
 
 }  // namespace
 
 bool too_stiff(const Conditions& conditions,
-               const Forces& forces,
-               const Masses& masses,
+               const RigidFacts& facts,
                std::span<const std::uint32_t> group)
 {
     // Penalty forces are taken as they are, in parts of a substep that bear them.
+    const double span = conditions.substep();
     return conditions.settings.response != Response::penalty
-        && conditions.substep() > kWithin * longest_step(forces, masses, group);
+        && (span > kWithin * longest_step(facts.forces, facts.masses, group)
+            || span * fastest_arm(facts, group) > kTurn);
 }
 
 bool by_stiff_springs(const Conditions& conditions,
-                      const Forces& forces,
-                      const Masses& masses,
+                      const RigidFacts& facts,
                       std::span<const std::uint32_t> group)
 {
-    return conditions.settings.integrator == Integrator::semi_implicit
-        && too_stiff(conditions, forces, masses, group);
+    return bears_stiff_springs(conditions.settings.integrator)
+        && too_stiff(conditions, facts, group);
 }
 
 FollowingForces::FollowingForces(const Conditions& conditions,
@@ -45,7 +81,8 @@ FollowingForces::FollowingForces(const Conditions& conditions,
       longest_(std::numeric_limits<double>::infinity())
 {
     list(bodies);
-    const bool halves = conditions.settings.integrator != Integrator::semi_implicit
+    const bool halves =
+        chosen(conditions.settings.integrator, true).which != Integrator::semi_implicit
         && conditions.settings.response != Response::penalty;
     std::vector<std::uint32_t> soft, stiff;
     for (Follower& follower : followers_) {
@@ -87,7 +124,7 @@ void FollowingForces::list(std::span<const std::uint32_t> bodies)
             ids.push_back(followers_[joined[last].second].body);
         }
         longest_ = std::min(longest_, throng::longest_step(forces, facts_.masses, ids));
-        if (!too_stiff(conditions_, forces, facts_.masses, ids)) continue;
+        if (!too_stiff(conditions_, facts_, ids)) continue;
         for (const std::uint32_t i : members) followers_[i].stiff = true;
         stiff_.emplace_back(forces, facts_.masses, facts_.poses, facts_.velocities, ids);
         members_.push_back(members);
@@ -137,14 +174,8 @@ void FollowingForces::begin(double time, double span)
 void FollowingForces::again()
 {
     clear();
-    for (std::size_t i = 0; i < stiff_.size(); ++i) {
-        for (std::size_t k = 0; k < members_[i].size(); ++k) {
-            const Follower& follower = followers_[members_[i][k]];
-            stiff_[i].bodies()[k].velocity = follower.velocity;
-            stiff_[i].bodies()[k].spin = follower.spin;
-        }
-        give_stiff(i, stiff_[i].again());
-    }
+    look_stiff_speeds();
+    for (std::size_t i = 0; i < stiff_.size(); ++i) give_stiff(i, stiff_[i].again());
 }
 
 void FollowingForces::end()
@@ -157,6 +188,7 @@ void FollowingForces::end()
         follower.gained = 0.5 * (span_ * pull.linear + fall_of(follower));
         follower.gained_spin = 0.5 * span_ * pull.angular;
     }
+    look_stiff_speeds();
     for (std::size_t i = 0; i < stiff_.size(); ++i) give_stiff(i, stiff_[i].end());
 }
 
@@ -169,13 +201,25 @@ void FollowingForces::look_stiff()
             SpringBody& body = stiff_[i].bodies()[k];
             body.position = follower.pose.position;
             body.turn = follower.pose.orientation.toRotationMatrix();
-            body.velocity = follower.velocity + follower.gained;
-            body.spin = follower.spin + follower.gained_spin;
+            body.axis = follower.axis;
+            body.carries = follower.carries;
             body.inverse_inertia = Mat3::Zero();
             if (conditions_.has(Effect::rotation))
                 body.inverse_inertia = in_world_axes(facts_.masses.inverse_inertia[follower.body],
                                                      follower.pose.orientation)
                                            .matrix();
+        }
+    look_stiff_speeds();
+}
+
+void FollowingForces::look_stiff_speeds()
+{
+    for (std::size_t i = 0; i < stiff_.size(); ++i)
+        for (std::size_t k = 0; k < members_[i].size(); ++k) {
+            const Follower& follower = followers_[members_[i][k]];
+            SpringBody& body = stiff_[i].bodies()[k];
+            body.velocity = follower.velocity + follower.gained;
+            body.spin = follower.spin + follower.gained_spin;
         }
 }
 

@@ -21,28 +21,31 @@
 namespace throng {
 
 /// Whether springs of bodies that they join go by the rule for stiff ones, where nobody of them
-/// flies by an integrator that they asked for.
+/// flies by an integrator that they asked for: a substep is too long for them, or turns their arms
+/// too far.
 bool too_stiff(const Conditions& conditions,
-               const Forces& forces,
-               const Masses& masses,
+               const RigidFacts& facts,
                std::span<const std::uint32_t> group);
 /// The same where they all fly.
 bool by_stiff_springs(const Conditions& conditions,
-                      const Forces& forces,
-                      const Masses& masses,
+                      const RigidFacts& facts,
                       std::span<const std::uint32_t> group);
 
 /// A body that such forces act on.
 ///
 ///   at                     where whoever asks has it
 ///   pose, velocity, spin   in: as they are now; of the point that its inertia is about
+///   axis, carries          in: how its spin turns it (see BodyTurn)
 ///   gained, gained_spin    out: to be added to the velocities
 struct Follower {
     std::uint32_t body = kNobody, at = 0;
     Pose pose;
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+    Vec3 axis = Vec3::UnitZ();
+    double carries = 1;
     Vec3 gained = Vec3::Zero(), gained_spin = Vec3::Zero();
-    bool late = false;  // half of what acts on it, gravity too, acts after it moved
+    Vec3 carried_spin = Vec3::Zero();  // kept by who asks: as of after it moved
+    bool late = false;                 // half of what acts on it, gravity too, acts after it moved
     bool stiff = false;
     std::uint32_t place = 0;  // in its law
 };
@@ -77,6 +80,7 @@ private:
     void list(std::span<const std::uint32_t> bodies);
     void find_pulls(double time, bool fallen);
     void look_stiff();
+    void look_stiff_speeds();
     void give_stiff(std::size_t group, std::span<const StiffSprings::Six> change);
     void clear();
     Vec3 fall_of(const Follower& follower) const;

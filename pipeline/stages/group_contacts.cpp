@@ -8,6 +8,8 @@
 //
 // Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
 #include "kernels/math/rotation.hpp"
+#include "kernels/solve/carried_points.hpp"
+#include "pipeline/stages/collide.hpp"
 #include "pipeline/stages/group_flight.hpp"
 
 #include <algorithm>
@@ -92,6 +94,14 @@ void GroupFlight::add_touches(const LocalManifold<double>& found,
 {
     DirectPoint& point = touch.point;
     point.normal = (met_.at_first.orientation * found.normal).normalized();
+    const auto round = [&](std::uint32_t collider, std::uint32_t body) {
+        const Colliders& colliders = scene_.colliders;
+        const Quat turn = scene_.poses.orientation[body] * colliders.local[collider].orientation;
+        return round_radius(scene_.shapes, colliders.shape[collider], {Vec3::Zero(), turn},
+                            point.normal);
+    };
+    touch.round_a = round(met_.first, touch.body_a);
+    touch.round_b = round(met_.second, touch.body_b);
     for (int k = 0; k < found.count; ++k) {
         const auto& at = found.points[static_cast<std::size_t>(k)];
         const Vec3 middle = met_.at_first * at.position, half = point.normal * (at.separation / 2);
@@ -164,7 +174,27 @@ bool GroupFlight::reflect_in_order(Motions& bodies)
     return any;
 }
 
-// The same impacts with friction: every struck point leaves with the speed that it has now.
+// The impacts of reflected bodies with friction, where every struck point leaves with the speed
+// that it has now. False, and nothing done, where that takes energy that nobody gave.
+bool GroupFlight::leave_as_reflected(std::vector<DirectPoint>& points, Motions& bodies)
+{
+    const Motions before = motions(false);
+    const double work = work_of(points, before, bodies);
+    double size = 0;
+    for (const DirectPoint& point : points)
+        size += point.impulse.norm() * velocity_between(point, before).norm();
+    std::vector<DirectPoint> held = points;
+    for (DirectPoint& point : held) point.impulse.setZero();
+    Motions after = before;
+    solve(after, held);
+    if (work_of(held, before, after) > work + kRounding * size) return false;
+    bodies = std::move(after);
+    points = std::move(held);
+    return true;
+}
+
+// Friction of impacts. Where points that leave as they are reflected would win energy, friction
+// bears its share of what struck instead, and they leave as they come.
 void GroupFlight::grip(Motions& bodies)
 {
     std::vector<DirectPoint> points;
@@ -178,11 +208,8 @@ void GroupFlight::grip(Motions& bodies)
         points.back().least = std::max(0.0, speed_apart(points.back(), bodies));
         grips = grips || points.back().friction > 0 || points.back().rolling > 0;
     }
-    if (grips) {
-        bodies = motions(false);
-        for (DirectPoint& point : points) point.impulse.setZero();
-        solve(bodies, points);
-    }
+    if (grips && !leave_as_reflected(points, bodies))
+        for (DirectPoint& point : points) rub(point.normal.dot(point.impulse), point, bodies);
     for (std::size_t k = 0; k < struck.size(); ++k)
         note_push(touches_[struck[k]], points[k].impulse);
 }
@@ -243,6 +270,29 @@ void GroupFlight::guess(double span, std::vector<DirectPoint>& points) const
     }
 }
 
+// Who is carried by what turns meets it where the middle of the way ahead finds the two.
+void GroupFlight::carry(const Touch& touch,
+                        const Motions& bodies,
+                        double half,
+                        DirectPoint& point) const
+{
+    const auto body = [&](std::int32_t seat) {
+        return seat < 0 ? DirectBody{} : bodies[static_cast<std::size_t>(seat)];
+    };
+    const DirectBody a = body(point.a), b = body(point.b);
+    const auto carried_by = [&](const DirectBody& carrier, const DirectBody& carried) {
+        return carries(carrier.spin, ease_of(carrier), ease_of(carried),
+                       scene_.conditions.settings.dt);
+    };
+    const bool by_a = carried_by(a, b);
+    if (!by_a && !carried_by(b, a)) return;
+    const Vec3 core_a = point.arm_a - point.normal * touch.round_a;
+    const Vec3 core_b = point.arm_b + point.normal * touch.round_b;
+    carry_arms(carried_side(Vec3::Zero(), Quat::Identity(), a, core_a, half),
+               carried_side(Vec3::Zero(), Quat::Identity(), b, core_b, half),
+               goes_with_b(touch.round_a, touch.round_b, by_a), point);
+}
+
 // Holds those that would be too near at the end of the way ahead. False if there are none.
 bool GroupFlight::rest(double span)
 {
@@ -262,6 +312,7 @@ bool GroupFlight::rest(double span)
         resting_.push_back(i);
         points.push_back(touch.point);
         points.back().least = -std::max(touch.gap - touch.rest_gap, 0.0) / span;
+        carry(touch, now, span / 2, points.back());
     }
     if (resting_.empty()) return false;
     guess(span, points);

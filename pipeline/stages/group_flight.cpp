@@ -2,6 +2,8 @@
 
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/math/rotation.hpp"
+#include "kernels/motion/stiff_flight.hpp"
+#include "pipeline/stages/following_forces.hpp"
 #include "pipeline/stages/rigid_law.hpp"
 
 #include <algorithm>
@@ -63,14 +65,27 @@ double GroupFlight::tolerance_of(PairKey key) const
 // Where the bodies will be when nothing meets them. False where a step cannot hold that.
 bool GroupFlight::fly(double begin, double span)
 {
-    const auto& integrator =
-        integrators()[static_cast<std::size_t>(scene_.conditions.settings.integrator)];
+    const bool acted_on = std::any_of(bodies_.begin(), bodies_.end(), [&](std::uint32_t body) {
+        return scene_.forces.act_on(body);
+    });
     spend(bodies_.size());
+    const RigidFacts facts{scene_.forces, scene_.masses, scene_.poses, scene_.velocities};
+    if (!scene_.forces.springs.empty() && by_stiff_springs(scene_.conditions, facts, bodies_)) {
+        StiffFlight flight(rule_, facts, bodies_, scene_.flights);
+        flight.carry(begin, span);
+        return note_ends(flight.law());
+    }
     law_.take(bodies_, scene_.flights);
-    integrator.advance(law_, begin, span, room_, law_.state());
+    integrator_of(scene_.conditions.settings, acted_on)
+        .advance(law_, begin, span, room_, law_.state());
     law_.settle();
+    return note_ends(law_);
+}
+
+bool GroupFlight::note_ends(const RigidMotion& law)
+{
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const RigidMotion::Outcome now = law_.outcome(i);
+        const RigidMotion::Outcome now = law.outcome(i);
         ends_[i] = {
             {now.position, now.orientation}, now.velocity, now.angular_velocity, now.memory, true};
         if (!holdable(now.position, now.orientation, now.velocity, now.angular_velocity))

@@ -89,6 +89,7 @@ private:
         std::uint32_t body_a = 0, body_b = 0;
         DirectPoint point;
         double gap = 0, rest_gap = 0, tolerance = 0;  // m
+        double round_a = 0, round_b = 0;              // m, of sides that do not turn
         double restitution = 0;
         double least_speed = 0;  // m/s, slower ones do not bounce
     };
@@ -112,6 +113,7 @@ private:
 
     void commit();
     bool fly(double begin, double span);
+    bool note_ends(const RigidMotion& law);
     void find_pairs(double begin, double span);
     void add_pair(std::uint32_t a, std::uint32_t b);
     FirstImpact look_ahead(std::span<const PairKey> asked, double begin, double span);
@@ -136,6 +138,10 @@ private:
 
     // Pieces of a step: see subdivide.cpp.
     bool carry_piece(double begin, double span, bool shortest);
+    void go_along(PairKey key, double time);
+    double time_to_touch(PairKey key, double time);
+    bool may_go(std::uint32_t collider, std::map<std::uint32_t, int>& touches) const;
+    bool go_to_touch(const std::map<PairKey, double>& touched, double time);
     double depth_of(PairKey key, double end);
     bool may_pass(PairKey key, double begin, double span) const;
     double least_piece(std::uint32_t collider) const;
@@ -152,10 +158,12 @@ private:
     void settle_impacts();
     bool reflect(std::size_t begin, std::size_t end, Motions& bodies);
     bool reflect_in_order(Motions& bodies);
+    bool leave_as_reflected(std::vector<DirectPoint>& points, Motions& bodies);
     void grip(Motions& bodies);
     double restitution_of(const Touch& touch) const;
     void note_push(const Touch& touch, const Vec3& impulse);
     void guess(double span, std::vector<DirectPoint>& points) const;
+    void carry(const Touch& touch, const Motions& bodies, double half, DirectPoint& point) const;
     bool rest(double span);
     void part(double span, const Motions& solved);
     void end_with(const Motions& speeds, const Motions& ways, double span);

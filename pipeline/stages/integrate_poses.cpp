@@ -3,8 +3,8 @@
 // In double throughout: free flight is exact where the integrator is.
 #include "kernels/math/rotation.hpp"
 #include "kernels/motion/flight.hpp"
-#include "kernels/motion/spring_limit.hpp"
-#include "kernels/motion/stiff_springs.hpp"
+#include "kernels/motion/free_rotation.hpp"
+#include "kernels/motion/stiff_flight.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
 #include "pipeline/stages/following_forces.hpp"
@@ -26,8 +26,12 @@ FlightRule rule_of(const Conditions& conditions)
     for (int axis = 0; axis < 3; ++axis)
         rule.gravity[axis] = conditions.has(Effect::gravity) ? conditions.gravity[axis] : 0;
     rule.turns = conditions.has(Effect::rotation);
-    rule.gyroscopic = conditions.has(Effect::gyroscopic)
-        && conditions.settings.gyroscopic == Gyroscopic::implicit;
+    using Precession = FlightRule::Precession;
+    if (conditions.has(Effect::gyroscopic)
+        && conditions.settings.gyroscopic == Gyroscopic::implicit)
+        rule.precession = conditions.settings.integrator == Integrator::auto_
+            ? Precession::split
+            : Precession::implicit;
     return rule;
 }
 
@@ -40,9 +44,51 @@ FlightArrays arrays_of(const Masses& masses, Poses& poses, Velocities& velocitie
             masses.spins_unevenly.data()};
 }
 
+// A body turned through the step by what its angular momentum does, in as many parts as it takes.
+// False where that are too many: it is left as it was.
+bool turn_in_parts(const FlightRule& rule, const Sym3& inertia, Quat& orientation, Vec3& angular)
+{
+    constexpr int kMostParts = 256;  // some 20 microseconds
+    const PrincipalInertia principal = principal_inertia(inertia);
+    const FreeRotation rotation = free_rotation(principal.moments);
+    const double span = rule.substep * rule.substeps;
+    const Vec3 spin = principal.axes.transpose() * (orientation.conjugate() * angular);
+    Vec3 momentum = principal.moments.cwiseProduct(spin);
+    const int parts = parts_of(rotation, momentum.norm(), span, kMostParts);
+    if (parts == 0) return false;
+    turn_freely(rotation, span, std::max(parts, rule.substeps), momentum, [&](const Vec3& turn) {
+        orientation = orientation * exponential(Vec3(principal.axes * turn));
+    });
+    orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
+    angular = orientation * Vec3(principal.axes * momentum.cwiseQuotient(principal.moments));
+    return true;
+}
+
+// The same by as many substeps.
+void turn_by_steps(const Conditions& conditions,
+                   const Masses& masses,
+                   std::uint32_t body,
+                   Quat& orientation,
+                   Vec3& angular)
+{
+    // In body axes: about them the angular velocity stays as it is while the body turns by it.
+    const bool precesses = conditions.has(Effect::gyroscopic) && masses.spins_unevenly[body] != 0;
+    const auto torque = conditions.settings.gyroscopic == Gyroscopic::implicit
+        ? after_gyroscopic_torque_local
+        : after_explicit_gyroscopic_torque_local;
+    Vec3 w = orientation.conjugate() * angular;
+    for (int step = 0; step < conditions.settings.substeps; ++step) {
+        if (precesses) w = torque(w, masses.inertia[body], conditions.substep());
+        orientation = orientation * exponential(conditions.substep() * w);
+    }
+    orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
+    if (precesses) angular = orientation * w;
+}
+
 // What the wide kernel leaves: any inertia, any speed. False, and the body as it was, where it
 // would become what a step cannot hold.
 bool fly_one(const Conditions& conditions,
+             const FlightRule& rule,
              const Masses& masses,
              std::uint32_t body,
              Poses& poses,
@@ -57,19 +103,10 @@ bool fly_one(const Conditions& conditions,
     Quat orientation = poses.orientation[body];
     Vec3 angular = velocities.angular[body];
     if (conditions.has(Effect::rotation)) {
-        // In body axes: about them the angular velocity stays as it is while the body turns by it.
-        const bool precesses =
-            conditions.has(Effect::gyroscopic) && masses.spins_unevenly[body] != 0;
-        const auto torque = conditions.settings.gyroscopic == Gyroscopic::implicit
-            ? after_gyroscopic_torque_local
-            : after_explicit_gyroscopic_torque_local;
-        Vec3 w = orientation.conjugate() * angular;
-        for (int step = 0; step < conditions.settings.substeps; ++step) {
-            if (precesses) w = torque(w, masses.inertia[body], h);
-            orientation = orientation * exponential(h * w);
-        }
-        orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
-        if (precesses) angular = orientation * w;
+        const bool split =
+            rule.precession == FlightRule::Precession::split && masses.spins_unevenly[body] != 0;
+        if (!split || !turn_in_parts(rule, masses.inertia[body], orientation, angular))
+            turn_by_steps(conditions, masses, body, orientation, angular);
     }
     if (!holdable(position, orientation, linear, angular)) return false;
     poses.position[body] = position;
@@ -87,9 +124,8 @@ public:
               Poses& poses,
               Velocities& velocities,
               Flights& flights)
-        : conditions_(conditions), rule_(rigid_rule(conditions)), facts_(facts),
-          integrator_(integrators()[static_cast<std::size_t>(conditions.settings.integrator)]),
-          poses_(poses), velocities_(velocities), flights_(flights)
+        : conditions_(conditions), rule_(rigid_rule(conditions)), facts_(facts), poses_(poses),
+          velocities_(velocities), flights_(flights)
     { }
 
     /// Each body for itself, but for those that springs join: they go together.
@@ -137,9 +173,12 @@ private:
     {
         const double span = conditions_.substep();
         law.take(bodies, flights_);
+        // Of a group on whom springs act there is no other.
+        const IntegratorRow& integrator =
+            integrator_of(conditions_.settings, facts_.forces.act_on(bodies.front()));
         IntegratorRoom room;
         for (int step = 0; step < conditions_.settings.substeps; ++step) {
-            integrator_.advance(law, step * span, span, room, law.state());
+            integrator.advance(law, step * span, span, room, law.state());
             law.settle();
         }
         note(law, bodies, landings);
@@ -150,46 +189,19 @@ private:
                       std::span<const std::uint32_t> bodies,
                       std::vector<Landing>& landings)
     {
-        if (by_stiff_springs(conditions_, facts_.forces, facts_.masses, bodies))
+        if (by_stiff_springs(conditions_, facts_, bodies))
             carry_stiff(bodies, landings);
         else
             carry(law, bodies, landings);
     }
 
-    // What else acts is taken half before places change and half after it, as springs are.
     void carry_stiff(std::span<const std::uint32_t> bodies, std::vector<Landing>& landings)
     {
         const double span = conditions_.substep();
-        RigidMotion law(rule_, facts_);
-        law.leave_springs();
-        law.take(bodies, flights_);
-        StiffSprings springs(facts_.forces, facts_.masses, facts_.poses, facts_.velocities, bodies);
-        const auto look = [&] {
-            for (std::size_t i = 0; i < bodies.size(); ++i) {
-                const RigidMotion::Going going = law.going(i);
-                SpringBody& body = springs.bodies()[i];
-                body.position = going.position;
-                body.turn = going.turn;
-                body.velocity = going.velocity;
-                body.spin = going.spin;
-                body.inverse_inertia = going.inverse_inertia;
-            }
-        };
-        const auto give = [&](std::span<const StiffSprings::Six> change) {
-            for (std::size_t i = 0; i < bodies.size(); ++i)
-                law.add_speed(i, change[i].linear, change[i].angular);
-        };
-        for (int step = 0; step < conditions_.settings.substeps; ++step) {
-            law.kick(step * span, 0.5 * span, law.state());
-            look();
-            give(springs.begin(step * span, span));
-            law.coast(span, law.state());
-            look();
-            give(springs.end());
-            law.kick((step + 1) * span, 0.5 * span, law.state());
-            law.settle();
-        }
-        note(law, bodies, landings);
+        StiffFlight flight(rule_, facts_, bodies, flights_);
+        for (int step = 0; step < conditions_.settings.substeps; ++step)
+            flight.carry(step * span, span);
+        note(flight.law(), bodies, landings);
     }
 
     void note(const RigidMotion& law,
@@ -232,18 +244,18 @@ private:
     const Conditions& conditions_;
     RigidRule rule_;
     RigidFacts facts_;
-    const IntegratorRow& integrator_;
     Poses& poses_;
     Velocities& velocities_;
     Flights& flights_;
 };
 
-// Whether the wide kernel, or what it leaves to fly_one(), is the law that is asked for.
-bool falls_alone(const Conditions& conditions)
+// Whether the wide kernel, and what it leaves to fly_one(), is the law that is asked for where
+// nothing but gravity acts.
+bool falls_wide(const Settings& settings)
 {
-    return conditions.settings.integrator == Integrator::semi_implicit
-        && conditions.settings.rotation == Rotation::quaternion
-        && !conditions.effects.meets(kForces);
+    return (settings.integrator == Integrator::auto_
+            || settings.integrator == Integrator::semi_implicit)
+        && settings.rotation == Rotation::quaternion;
 }
 
 }  // namespace
@@ -265,7 +277,8 @@ void integrate_poses(const Conditions& conditions,
     const FlightRule rule = rule_of(conditions);
     const FlightArrays arrays = arrays_of(masses, poses, velocities);
     const FlyKernel kernel = fly_kernel();
-    const bool wide = !conditions.has(Effect::gyroscopic) || rule.gyroscopic;
+    const bool wide =
+        !conditions.has(Effect::gyroscopic) || rule.precession != FlightRule::Precession::none;
     const auto fly = [&](const std::vector<std::uint32_t>& bodies) {
         trouble.of_block.start(block_count(bodies.size(), kGrain));
         for_each_block(bodies.size(), kGrain, [&](auto begin, auto end, auto block) {
@@ -276,17 +289,28 @@ void integrate_poses(const Conditions& conditions,
             if (wide) count = kernel(rule, arrays, chosen.data(), count, left.data());
             auto& lost = trouble.of_block[block];
             for (std::size_t i = 0; i < count; ++i)
-                if (!fly_one(conditions, masses, wide ? left[i] : chosen[i], poses, velocities))
+                if (!fly_one(conditions, rule, masses, wide ? left[i] : chosen[i], poses,
+                             velocities))
                     lost.push_back(wide ? left[i] : chosen[i]);
         });
         trouble.of_block.append_to(trouble.quarantined);
     };
     const auto& free = alone ? states.movers.dynamic : islands.lone;
-    if (falls_alone(conditions))
-        fly(free);
-    else
+    const auto by_law = [&](const std::vector<std::uint32_t>& bodies) {
         LawFlight(conditions, {forces, masses, poses, velocities}, poses, velocities, flights)
-            .fly(free, states, trouble);
+            .fly(bodies, states, trouble);
+    };
+    if (!falls_wide(conditions.settings)) {
+        by_law(free);
+    } else if (!conditions.effects.meets(kForces)) {
+        fly(free);
+    } else {
+        std::vector<std::uint32_t> falling, acted_on;
+        for (const std::uint32_t body : free)
+            (forces.act_on(body) ? acted_on : falling).push_back(body);
+        fly(falling);
+        by_law(acted_on);
+    }
     fly(states.movers.kinematic);
 }
 

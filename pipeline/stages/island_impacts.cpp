@@ -85,10 +85,45 @@ bool WholeIsland::reflect_in_order(double least_speed)
     return any;
 }
 
-// What gravity did in the substep, resting contacts and friction.
+// What the impacts did, J, but for rounding; and more than friction and rest may leave of that.
+bool WholeIsland::gains(double work) const
+{
+    double size = 0;
+    for (const DirectPoint& point : others_) {
+        const double speed = velocity_between(point, before_).norm();
+        size =
+            std::max(size, point.impulse.norm() * (speed + velocity_between(point, after_).norm()));
+    }
+    return work_of(others_, free_, after_) > work + kRounding * size;
+}
+
+// What gravity did in the substep, resting contacts and friction: every struck point leaves with
+// the speed that it has now.
+void WholeIsland::hold_struck()
+{
+    after_ = free_;
+    for (std::size_t i = 0; i < others_.size(); ++i)
+        if (struck_impulse_[i] > 0) others_[i].least = std::max(0.0, approach(i, struck_));
+    solve(after_, others_);
+}
+
+// The same on top of the impacts.
+void WholeIsland::add_to_struck()
+{
+    after_ = free_;
+    for (std::size_t i = 0; i < after_.size(); ++i) {
+        after_[i].velocity += struck_[i].velocity - before_[i].velocity;
+        after_[i].spin += struck_[i].spin - before_[i].spin;
+    }
+    solve(after_, others_);
+}
+
+// By impacts with friction each point leaves as fast as without, unless that takes energy that
+// nobody gave: then friction bears its share of the impulse, and the point leaves as it comes.
 void WholeIsland::settle_after_impacts()
 {
     bool grips = false;
+    double work = 0;
     others_ = points_;
     for (std::size_t i = 0; i < others_.size(); ++i) {
         DirectPoint& point = others_[i];
@@ -96,19 +131,26 @@ void WholeIsland::settle_after_impacts()
         grips = grips || (struck && (point.friction > 0 || point.rolling > 0));
         point.least = struck ? 0 : std::min(point.least, 0.0);
         point.impulse = point.torque = Vec3::Zero();
+        if (struck)
+            work += 0.5 * struck_impulse_[i] * (approach(i, before_) + approach(i, struck_));
     }
-    after_ = free_;
-    for (std::size_t i = 0; i < others_.size(); ++i)
-        if (grips && struck_impulse_[i] > 0) others_[i].least = std::max(0.0, approach(i, struck_));
-    if (!grips)
-        for (std::size_t i = 0; i < after_.size(); ++i) {
-            after_[i].velocity += struck_[i].velocity - before_[i].velocity;
-            after_[i].spin += struck_[i].spin - before_[i].spin;
-        }
-    solve(after_, others_);
-    if (grips) return;
-    for (std::size_t i = 0; i < others_.size(); ++i)
-        others_[i].impulse += others_[i].normal * struck_impulse_[i];
+    if (grips) {
+        hold_struck();
+        if (!gains(work)) return;
+    }
+    struck_points_ = others_;
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+        DirectPoint& point = struck_points_[i];
+        point.impulse = point.normal * struck_impulse_[i];
+        point.torque.setZero();
+        if (struck_impulse_[i] > 0) rub(struck_impulse_[i], point, struck_);
+        if (struck_impulse_[i] > 0) others_[i].least = 0;
+    }
+    add_to_struck();
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+        others_[i].impulse += struck_points_[i].impulse;
+        others_[i].torque += struck_points_[i].torque;
+    }
 }
 
 bool WholeIsland::bounce(const Conditions& conditions)

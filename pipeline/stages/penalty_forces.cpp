@@ -1,10 +1,12 @@
 // Penalty forces: each point that overlaps is a spring with a damper, and all act at once. What
 // strikes is thrown back first, by its restitution.
 //
-// Overlap under a load is the load over the stiffness. Friction is a damper across the normal that
-// gives way at Coulomb's limit, so that what should stick creeps: a box on four corners at eight
-// times the speed that it is given in a substep. Rolling friction is a damper between the spins
-// that gives way likewise.
+// Overlap under a load is the load over the stiffness. Friction is a spring with a damper across
+// the normal that gives way at Coulomb's limit: what sticks comes to rest where the spring bears
+// it, and stays. Rolling friction is a damper between the spins that gives way likewise, so that
+// what should not roll creeps.
+//
+// Source: Cundall and Strack, A discrete numerical model for granular assemblies (1979).
 #include "pipeline/stages/whole_island.hpp"
 
 #include <algorithm>
@@ -24,6 +26,8 @@ constexpr double kRounding = 1e-11;
 constexpr double kSwing = 0.5, kDamped = 0.7;
 // A substep is cut to this share of the limit; to that of springs that join bodies.
 constexpr double kWithin = 0.9, kWithinSprings = 0.5;
+// Of what slides, the share that friction's damper stops in a substep.
+constexpr double kSlidingDamped = 0.5;
 
 // What presses a spring in is seen by the load that it bore and by how fast the two go on closing;
 // this many times as deep as both say it may be, for the load is that of a whole substep.
@@ -102,21 +106,36 @@ void WholeIsland::find_unearned(const Conditions& conditions)
     }
 }
 
-// Dampers that stop half of the sliding between two, and of the turning, in a substep, all their
-// points together, up to what friction bears under a push, N s.
-void WholeIsland::damp_sliding(DirectPoint& point, double push, std::uint32_t share)
+// What friction held as the step began, N.
+void WholeIsland::find_held(double time)
 {
-    const Vec3 between = velocity_between(point, before_);
-    const Vec3 sliding = between - point.normal * point.normal.dot(between);
-    const double fast = std::sqrt(sliding.squaredNorm());
-    if (!(fast > 0)) return;
-    const double ease = ease_along(point, sliding / fast, before_) * share;
+    if (!held_.empty()) return;
+    for (const DirectPoint& point : points_)
+        held_.emplace_back((point.impulse - point.normal * point.normal.dot(point.impulse)) / time);
+}
+
+// A spring that holds what has slid since the two stick, with a damper that stops half of the
+// sliding in a substep, all their points together, up to what friction bears under a push, N s.
+void WholeIsland::resist_sliding(std::size_t at, double push, double time, std::uint32_t share)
+{
+    DirectPoint& point = points_[at];
+    const auto across = [&](const Vec3& v) { return Vec3(v - point.normal * point.normal.dot(v)); };
+    const Vec3 sliding = across(velocity_between(point, before_));
+    const double ease = widest_ease(point, before_) * share;
     if (!(ease > 0)) return;
-    const Vec3 impulse = sliding * (-std::min(0.5 / ease, point.friction * push / fast));
+    const double most = point.friction * push;
+    const auto within = [&](const Vec3& impulse) -> Vec3 {
+        const double size = std::sqrt(impulse.squaredNorm());
+        return size > most ? Vec3(impulse * (most / size)) : impulse;
+    };
+    const Vec3 spring = across(held_[at]) * time - sliding * (kSwing * kSwing / ease);
+    held_[at] = within(spring) / time;
+    const Vec3 impulse = within(spring - sliding * (kSlidingDamped / ease));
     point.impulse += impulse;
     apply_impulse(point, impulse, after_);
 }
 
+// Dampers that stop half of the turning between two, likewise.
 void WholeIsland::damp_turning(DirectPoint& point, double push, std::uint32_t share)
 {
     const Vec3 turning = spin_between(point, before_);
@@ -127,30 +146,6 @@ void WholeIsland::damp_turning(DirectPoint& point, double push, std::uint32_t sh
     const Vec3 torque = turning * (-std::min(0.5 / ease, point.rolling * push / fast));
     point.torque += torque;
     apply_torque(point, torque, after_);
-}
-
-// Friction of an impact, up to what it bears of the impulse that threw the point back.
-void WholeIsland::rub(std::size_t at)
-{
-    DirectPoint& point = points_[at];
-    const Vec3 between = velocity_between(point, struck_);
-    const Vec3 sliding = between - point.normal * point.normal.dot(between);
-    const double fast = std::sqrt(sliding.squaredNorm());
-    if (fast > 0 && point.friction > 0) {
-        const double sticks = 1 / ease_along(point, sliding / fast, struck_);
-        const double most = point.friction * struck_impulse_[at] / fast;
-        const Vec3 impulse = sliding * -std::min(sticks, most);
-        point.impulse += impulse;
-        apply_impulse(point, impulse, struck_);
-    }
-    const Vec3 turning = spin_between(point, struck_);
-    const double turns = std::sqrt(turning.squaredNorm());
-    if (!(turns > 0 && point.rolling > 0)) return;
-    const double ease = ease_about(point, turning / turns, struck_);
-    if (!(ease > 0)) return;
-    const Vec3 torque = turning * -std::min(1 / ease, point.rolling * struck_impulse_[at] / turns);
-    point.torque += torque;
-    apply_torque(point, torque, struck_);
 }
 
 // What comes in faster than what rests may, and touches within that time, goes by the law of
@@ -179,7 +174,7 @@ void WholeIsland::throw_back(const Conditions& conditions, double time)
         reflect_in_order(least);
         for (const std::size_t at : touching_) {
             points_[at].impulse += points_[at].normal * struck_impulse_[at];
-            if (struck_impulse_[at] > 0) rub(at);
+            if (struck_impulse_[at] > 0) rub(struck_impulse_[at], points_[at], struck_);
         }
     }
     after_ = struck_;
@@ -190,6 +185,8 @@ void WholeIsland::push_by_forces(const Conditions& conditions, double time)
 {
     place_points();
     throw_back(conditions, time);
+    // The velocities before are those that took the bodies here: of the middle of the last part.
+    carry_arms(-time / 2, conditions.settings.dt);
     move_freely(conditions, time);
     count_touching(conditions, 0);
     // What is too stiff for the cut, with those who came to press in the middle of a substep, gives
@@ -199,7 +196,10 @@ void WholeIsland::push_by_forces(const Conditions& conditions, double time)
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         const double pressed = -gaps_[i] - unearned_[i];
         unearned_[i] = std::max(0.0, unearned_[i] - conditions.settings.push_limit * time);
-        if (!(pressed > 0)) continue;
+        if (!(pressed > 0)) {
+            held_[i].setZero();
+            continue;
+        }
         DirectPoint& point = points_[i];
         Give give = give_of(i, conditions.settings, time);
         if (give.longest < time) give = give_of(i, softened, time);
@@ -208,7 +208,7 @@ void WholeIsland::push_by_forces(const Conditions& conditions, double time)
         const Vec3 impulse = point.normal * (force * time);
         point.impulse += impulse;
         apply_impulse(point, impulse, after_);
-        if (point.friction > 0) damp_sliding(point, force * time, give.share);
+        if (point.friction > 0) resist_sliding(i, force * time, time, give.share);
         if (point.rolling > 0) damp_turning(point, force * time, give.share);
     }
     going_ = after_;
@@ -222,6 +222,7 @@ void WholeIsland::penalise(const Conditions& conditions)
     turn_inertias();
     count_touching(conditions, time);
     find_unearned(conditions);
+    find_held(time);
     double longest = time;
     if (following_) longest = std::min(longest, kWithinSprings * following_->longest_step());
     for (std::size_t i = 0; i < touches_.size(); ++i) {

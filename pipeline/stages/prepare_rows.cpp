@@ -1,7 +1,10 @@
 // Prepare rows: bodies into what the solver walks, and room for the rows of their contacts.
 #include "kernels/math/rotation.hpp"
+#include "kernels/motion/solver_bodies.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
+
+#include <algorithm>
 
 namespace throng {
 
@@ -67,6 +70,20 @@ void seat_pull(std::uint32_t body,
     }
 }
 
+// Whether anybody turns who would carry what is as light as any, and as easily turned.
+template <class Real>
+bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
+{
+    Ease lightest;
+    for (const SolverBody<Real>& body : bodies) {
+        const Ease ease = ease_of(body);
+        lightest = {std::max(lightest.of_moving, ease.of_moving),
+                    std::max(lightest.of_turning, ease.of_turning)};
+    }
+    return std::any_of(bodies.begin(), bodies.end(),
+                       [&](const auto& body) { return carries(body, lightest, dt); });
+}
+
 }  // namespace
 
 template <class Real>
@@ -109,6 +126,7 @@ void prepare_rows(const Conditions& conditions,
     }
     rows.points.resize(points);
     rows.bounces.resize(conditions.has(Effect::restitution) ? blocks : 0);
+    rows.carries.resize(anybody_carries(rows.bodies, conditions.settings.dt) ? blocks : 0);
     rows.grips.resize(conditions.grips_apart() ? points : 0);
     rows.rollings.resize(conditions.has(Effect::rolling_friction) ? blocks : 0);
 }

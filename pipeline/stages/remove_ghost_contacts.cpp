@@ -89,7 +89,8 @@ public:
                 note(pairs_.keys[entry.pair], entry.part, entry.contact, borne_);
     }
 
-    // Shape by shape: those of one come together.
+    // Shape by shape: those of one come together. All are judged before any goes, as a contact of
+    // two that can be pushed is seen from both.
     void remove()
     {
         look_at_several();
@@ -100,8 +101,10 @@ public:
         const std::span all(seen_);
         for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
             while (end < all.size() && all[end].mover == all[begin].mover) ++end;
-            if (end - begin > 1) remove_from(all.subspan(begin, end - begin));
+            if (end - begin > 1) judge(all.subspan(begin, end - begin));
         }
+        for (const Seen<Real>& ghost : all)
+            if (ghost.hidden) ghost.contact->count = 0;
     }
 
 private:
@@ -248,16 +251,13 @@ private:
         return true;
     }
 
-    // All are judged before any goes.
-    void remove_from(std::span<Seen<Real>> of_shape) const
+    void judge(std::span<Seen<Real>> of_shape) const
     {
         for (Seen<Real>& seen : of_shape) look_at(seen);
         for (Seen<Real>& ghost : of_shape)
             ghost.hidden = std::any_of(of_shape.begin(), of_shape.end(), [&](const auto& face) {
                 return &face != &ghost && hides(face, ghost);
             });
-        for (const Seen<Real>& ghost : of_shape)
-            if (ghost.hidden) ghost.contact->count = 0;
     }
 
     const Pairs& pairs_;

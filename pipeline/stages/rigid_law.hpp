@@ -6,6 +6,15 @@
 
 namespace throng {
 
+/// By which integrator a body goes; see chosen(). An explicit gyroscopic torque is the first
+/// order's.
+inline const IntegratorRow& integrator_of(const Settings& settings, bool acted_on)
+{
+    const bool kicked = settings.integrator == Integrator::auto_ && !acted_on
+        && settings.gyroscopic == Gyroscopic::explicit_;
+    return chosen(kicked ? Integrator::semi_implicit : settings.integrator, acted_on);
+}
+
 inline RigidRule rigid_rule(const Conditions& conditions)
 {
     using Law = RigidRule::Gyroscopic;
@@ -18,10 +27,9 @@ inline RigidRule rigid_rule(const Conditions& conditions)
         : conditions.settings.gyroscopic == Gyroscopic::implicit ? Law::implicit
                                                                  : Law::direct;
     // Methods of first order keep the damped gyroscopic torque, which never gains energy.
-    const auto& integrator =
-        integrators()[static_cast<std::size_t>(conditions.settings.integrator)];
-    rule.momentum_on_pivots =
-        conditions.settings.gyroscopic != Gyroscopic::off && integrator.order > 1;
+    constexpr bool kActedOn = true;  // by its pivot
+    rule.momentum_on_pivots = conditions.settings.gyroscopic != Gyroscopic::off
+        && chosen(conditions.settings.integrator, kActedOn).order > 1;
     return rule;
 }
 

@@ -11,6 +11,8 @@ namespace throng {
 
 /// Hz, of the spring that a contact of so many points is.
 double contact_rate(const Conditions& conditions, int points);
+/// The same as an angular frequency, rad/s.
+double contact_frequency(const Conditions& conditions, int points);
 /// 1/s, the share of its overlap that it pushes apart.
 double push_rate(const Conditions& conditions, int points);
 /// m, overlap under a load that so many points share, from which they begin to turn rigid.
@@ -43,6 +45,10 @@ public:
 
 private:
     void fill(std::size_t block, LooseBlock<Real>& loose) const;
+    Surfaces::Meeting meeting_of(std::uint32_t entry) const;
+    void
+    settle_gap(const Contact<Real>& contact, std::size_t lane, ContactBlock<Real>& block) const;
+    void find_carried(std::size_t block) const;
 
     const Layout& layout_;
     const ActiveContacts& active_;
@@ -54,7 +60,11 @@ private:
     const SolveKernels<Real>& kernels_;
     bool turns_;
     bool uncut_;                              // friction is not cut to a round cone
+    double dt_;                               // s, of a step
     std::array<Softness<Real>, 4> softness_;  // by the number of points, less one
+    // m, the overlap that weight makes; by the number of points, less one.
+    std::array<double, 4> pressed_;
+    bool settles_;  // that is so little that the digits of gaps are next to it
 };
 
 }  // namespace throng

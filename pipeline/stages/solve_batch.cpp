@@ -21,10 +21,11 @@ constexpr std::size_t kBodies = 512;  // a task
 // much again before they stop coming to rest; to relax, one does as well.
 constexpr int kPushSweeps = 2, kRelaxSweeps = 1;
 
-// Relaxing visits a substep, by what there is to hold up. One quietens a heap. Where most bodies
-// lie on one another by their faces, as in towers and walls, a second one leaves a hundredth of the
-// energy.
-constexpr int kInHeaps = 1, kInStructures = 2;
+constexpr int kInHeaps = 1, kInStructures = 2;  // see relax_visits()
+
+// Where half of what springs and pivots do acts after bodies moved, it is for these visits alone to
+// hold it up, through whatever a body lies on.
+constexpr int kInLateForces = 6;
 
 // Pushing visits a substep while bodies part. Each substep starts from nothing, and what is wedged
 // in the middle of a crowd waits for those around it: by one visit a thousand boxes made at one
@@ -40,12 +41,15 @@ constexpr int kImpactRounds = 16;
 // gave the time before.
 constexpr int kSpringTurns = 4;
 
+bool lies_on_faces(const Batch& batch) { return 2 * batch.on_faces > batch.contacts; }
+
 // One pass over the contacts or the bodies of a slice.
 struct Pass {
     enum class Kind : std::uint8_t {
         prepare,
         begin,
         warm_start,
+        carry,
         push,
         advance,
         relax,
@@ -89,7 +93,7 @@ public:
         visit_.slow = static_cast<Real>(2 * conditions.gravity.norm() * settings.dt);
         for (int k = 0; k < 3; ++k)
             visit_.fall[k] = static_cast<Real>(conditions.gravity[k] * conditions.substep());
-        on_faces_ = 2 * batch.on_faces > batch.contacts;
+        on_faces_ = lies_on_faces(batch);
         find_following();
     }
 
@@ -114,23 +118,29 @@ public:
             add(begin);
             begin_following(step);
             if (step == 0) add(warm_start);
-            const int relaxes = parts || on_faces_ ? kInStructures : kInHeaps;
+            if (view_.carries != nullptr) add(carry);
+            const int relaxes = parts ? kInStructures : relax_visits(conditions_.settings, batch_);
             if (parts) {
                 for (int i = 0; i < relaxes; ++i) add(relax);
                 add(keep);
                 for (std::size_t i = 0; i < parting_visits(); ++i) add(part);
+                note_spins();
                 add(advance);
                 add(put_back);
                 end_following();
             } else {
                 const bool turns = following_ && following_->stiff();
                 for (int i = 0; i < (turns ? std::max(pushes, kSpringTurns) : pushes); ++i) {
-                    if (turns && i > 0 && i < kSpringTurns) turn_to_springs();
                     add(push);
+                    // The last word is theirs: what contacts say of a stiff one without its say
+                    // would draw it out by more than anybody gave.
+                    if (turns) turn_to_springs();
                 }
+                note_spins();
                 add(advance);
                 const bool late = end_following();
-                for (int i = 0; i < relaxes && (!pgs || late); ++i) add(relax);
+                const int visits = late ? std::max(relaxes, kInLateForces) : pgs ? 0 : relaxes;
+                for (int i = 0; i < visits; ++i) add(relax);
             }
             if (on_faces_ || !window_fits()) run_passes();
         }
@@ -170,7 +180,19 @@ private:
                              turn_of(seat) * facts_.poses.orientation[follower.body]};
             follower.velocity = at(motion);
             follower.spin = spin_axes(seat) * at(motion + 4);
+            find_turn(seat, follower);
         }
+    }
+
+    // The axis of what is symmetric goes straight on, however fast it spins about that.
+    void find_turn(const SolverBody<Real>& seat, Follower& follower) const
+    {
+        const auto at = static_cast<std::size_t>(&seat - rows_.bodies.data());
+        const SpinInertia<Real>* const inertia = inertias_at(at);
+        if (inertia == nullptr || !(inertia->share[6] > 0) || !(inertia->axis[3] > 0)) return;
+        const Real* const axis = inertia->axis;
+        follower.axis = spin_axes(seat) * Vec3(double{axis[0]}, double{axis[1]}, double{axis[2]});
+        follower.carries = 0;
     }
 
     // Forces move a body with contacts and without, so that what contacts gave stays what it was.
@@ -202,10 +224,40 @@ private:
         move_followers();
     }
 
+    // The axes that spins are in are told by where the axis of a body has come to since the step
+    // began. Carried by its own turn in a substep, a spin comes out a little beside that, which
+    // springs that gave half of what they give before it would not know of.
+    void note_spins()
+    {
+        if (!following_ || !following_->stiff()) return;
+        look_at_followers(false);
+        for (Follower& follower : following_->followers())
+            follower.carried_spin =
+                BodyTurn(follower.spin, follower.axis, follower.carries, conditions_.substep())
+                    .carried()
+                * follower.spin;
+    }
+
+    void carry_spins()
+    {
+        for (const Follower& follower : following_->followers()) {
+            if (!follower.stiff || follower.carries == 1) continue;
+            SolverBody<Real>& seat = rows_.bodies[layout_.slot[follower.body]];
+            const Vec3 spin = spin_axes(seat).conjugate() * follower.carried_spin;
+            for (int k = 0; k < 3; ++k) {
+                const Real change = static_cast<Real>(spin[k]) - seat.motion[4 + k];
+                seat.motion[4 + k] += change;
+                seat.free[4 + k] += change;
+            }
+        }
+    }
+
     // Whether anything acts after bodies moved.
     bool end_following()
     {
         if (!following_ || !following_->late()) return false;
+        run_passes();
+        if (following_->stiff()) carry_spins();
         look_at_followers(false);
         following_->end();
         move_followers();
@@ -278,6 +330,10 @@ private:
         case Pass::Kind::warm_start:
             return for_colors(slice, shared, pass.backward, [&](std::size_t from, std::size_t end) {
                 warm_start_(view_, from, end, visit_);
+            });
+        case Pass::Kind::carry:
+            return for_blocks(slice, shared, [&](std::size_t from, std::size_t end) {
+                kernels_.carry(view_, from, end, time_ * Real(0.5));
             });
         case Pass::Kind::bounce:
             return bounce(slice, shared, pass.backward);
@@ -453,6 +509,22 @@ private:
 };
 
 }  // namespace
+
+int relax_visits(const Settings& settings, const Batch& batch)
+{
+    if (settings.relax_iterations > 0) return settings.relax_iterations;
+    return lies_on_faces(batch) ? kInStructures : kInHeaps;
+}
+
+double mean_relax_visits(const Settings& settings, const Layout& layout)
+{
+    double visits = 0, contacts = 0;
+    for (const Batch& batch : layout.batches) {
+        visits += double(batch.contacts) * relax_visits(settings, batch);
+        contacts += batch.contacts;
+    }
+    return contacts > 0 ? visits / contacts : 0;
+}
 
 template <class Real>
 void solve_batch(const Conditions& conditions,

@@ -13,6 +13,13 @@
 
 namespace throng {
 
+/// Relaxing visits that a batch gets in a substep: one quietens a heap, and where most bodies lie
+/// on one another by their faces, as in towers and walls, a second one leaves a hundredth of the
+/// energy.
+int relax_visits(const Settings& settings, const Batch& batch);
+/// The mean of that over all contacts; 0 where there are none.
+double mean_relax_visits(const Settings& settings, const Layout& layout);
+
 /// Makes the rows of a batch, solves them, moves its bodies, and gives the contacts their impulses.
 /// A wide batch uses all threads of the pool; of others, many may be solved at the same time.
 ///

@@ -17,12 +17,13 @@ constexpr double kShare = 0.25;
 // s, in which gravity makes what still counts as rest: no impact, no walk.
 constexpr double kResting = 1.0 / 15;
 // A strain is let go once it is this much less: loads that tremble, and an impact as something was
-// set down, do not change from step to step how they are borne.
-constexpr double kLasting = 3;
+// set down, do not change from step to step how they are borne. Nor does what is too great to be
+// solved exactly at first, is tossed by its contacts as they turn stiffer, and bears nothing for a
+// moment: how stubborn it is fades.
+constexpr double kLasting = 3, kFading = 0.95;
 // Overlap from which an island is not left to finer substeps, as a share of what its load makes
 // with the usual ones.
 constexpr double kDeep = 0.5;
-constexpr double kTurn = 2 * 3.14159265358979323846;
 
 // The direct solver needs no help, and pushes and forces go island by island.
 bool helps(const Settings& settings)
@@ -57,7 +58,7 @@ public:
           resting_(kResting * conditions.gravity.norm())
     {
         for (int points = 1; points <= 4; ++points) {
-            const double omega = kTurn * contact_rate(conditions, points);
+            const double omega = contact_frequency(conditions, points);
             per_speed_[points - 1] =
                 1 / (omega * omega * conditions.substep() * rigid_overlap(1, points));
         }
@@ -72,13 +73,16 @@ public:
         if (contacts.size() < 2 || contacts.size() > kBatchContacts) return 0;
         double most = 0;
         for (const std::uint32_t contact : contacts) most = std::max(most, give_of(contact));
-        if (!(most * double(bodies) > kRelieved)) return 0;
-        const double strain = most * height_of(island), before = strain_before(island);
+        const double before = strain_before(island);
+        if (!(std::max(most * double(bodies), before) > kRelieved)) return 0;
+        const double strain = most * height_of(island);
         const bool rests = is_resting(island);
         if (!(before > 1)) return rests ? begun(strain, before) : 0;
-        if (!(strain > kRelieved)) return 0;
+        const double faded =
+            contacts.size() > kExactContacts ? kFading * std::min(before, kStrained) : 0;
+        if (!(std::max(strain, faded) > kRelieved)) return 0;
         const double lasting =
-            std::max(strain, std::min({before, kLasting * strain, kExactStrain}));
+            std::max({strain, faded, std::min({before, kLasting * strain, kExactStrain})});
         return rests && is_deep(contacts) ? -lasting : lasting;
     }
 

@@ -6,6 +6,7 @@
 // send the group back to where the piece began. So the search for a touch is that of halving, and
 // every touch is late, by the shortest piece at most. What touches then bounces, or is held from
 // there on at half the tolerance from one another, as it is in back_up.cpp.
+#include "kernels/math/rotation.hpp"
 #include "pipeline/stages/group_flight.hpp"
 
 #include <algorithm>
@@ -23,6 +24,10 @@ constexpr double kRounding = 1e-9;
 // Shortest pieces of a substep that two may end too deep. They are jammed: after these no more
 // halving is done for them alone, and what is left of the substep takes its contacts as they are.
 constexpr int kMostDeep = 64;
+// Of a substep: further from a touch than this nobody is taken there. And how often it is asked how
+// far: each answer is as good as the square of the one before.
+constexpr double kLate = 1.0 / 256;
+constexpr int kCloser = 2;
 
 }  // namespace
 
@@ -123,9 +128,87 @@ bool GroupFlight::carry_piece(double begin, double span, bool shortest)
     find_pairs(begin, span);
     if (!ends_well(begin, span, shortest)) return false;
     commit();
+    const auto touched = gap_now_;
     list_touches(begin + span);
+    if (go_to_touch(touched, begin + span)) list_touches(begin + span);
     settle_impacts();
     return true;
+}
+
+// Takes those of a pair that are carried along their ways for a time, back where it is below 0.
+void GroupFlight::go_along(PairKey key, double time)
+{
+    for (const std::uint32_t at : {first_of(key), second_of(key)}) {
+        const std::uint32_t body = scene_.colliders.body[at];
+        if (member_of(body) < 0) continue;
+        Vec3& velocity = scene_.velocities.linear[body];
+        scene_.poses.position[body] += velocity * time;
+        scene_.poses.orientation[body] =
+            turned(scene_.poses.orientation[body], scene_.velocities.angular[body], time);
+        velocity += scene_.conditions.gravity * time;
+    }
+}
+
+// s, until two that close touch; below 0 where they did. Not a number where they do not close.
+double GroupFlight::time_to_touch(PairKey key, double time)
+{
+    const std::uint32_t a = scene_.colliders.body[first_of(key)];
+    const std::uint32_t b = scene_.colliders.body[second_of(key)];
+    const double gap = gap_of(key, pose_at(a, time), pose_at(b, time), 2 * tolerance_of(key));
+    if (met_.manifolds.size() != 1) return std::numeric_limits<double>::quiet_NaN();
+    const LocalManifold<double>& found = met_.manifolds.front();
+    const Vec3 normal = met_.at_first.orientation * found.normal;
+    const auto speed = [&](std::uint32_t body, const Vec3& at) {
+        const Vec3 arm = at - scene_.poses.position[body];
+        return normal.dot(scene_.velocities.linear[body]
+                          + scene_.velocities.angular[body].cross(arm));
+    };
+    double closing = 0;
+    for (int k = 0; k < found.count; ++k) {
+        const Vec3 at = met_.at_first * found.points[static_cast<std::size_t>(k)].position;
+        closing = std::max(closing,
+                           speed(scene_.colliders.body[met_.first], at)
+                               - speed(scene_.colliders.body[met_.second], at));
+    }
+    return closing > 0 ? gap / closing : std::numeric_limits<double>::quiet_NaN();
+}
+
+// Whether a body may be taken along its way: nothing but gravity bends it, and it touches nobody
+// but whom it has met. Who stands still need not be.
+bool GroupFlight::may_go(std::uint32_t collider, std::map<std::uint32_t, int>& touches) const
+{
+    const std::uint32_t body = scene_.colliders.body[collider];
+    if (member_of(body) < 0) return scene_.states.kind[body] == BodyKind::still;
+    const Forces& forces = scene_.forces;
+    const bool pulled = body < forces.force.size() && !forces.force[body].isZero(0);
+    return touches[body] == 1 && scene_.masses.inverse_mass[body] > 0 && !pulled
+        && !forces.follow(body);
+}
+
+// Two that have met in the piece just flown, and touch nobody else, are taken to where they touch:
+// what is left of the search for it would turn their normal. None goes for longer than a few
+// shortest pieces. False where nothing moved.
+bool GroupFlight::go_to_touch(const std::map<PairKey, double>& touched, double time)
+{
+    std::map<std::uint32_t, int> touches;  // of each body
+    for (const auto& [key, gap] : gap_now_)
+        for (const std::uint32_t at : {first_of(key), second_of(key)})
+            ++touches[scene_.colliders.body[at]];
+    const double most = scene_.conditions.substep() * kLate;
+    bool any = false;
+    for (const auto& [key, gap] : gap_now_) {
+        if (touched.count(key) > 0) continue;
+        const bool alone = may_go(first_of(key), touches) && may_go(second_of(key), touches);
+        double gone = 0;
+        for (int turn = 0; alone && turn < kCloser; ++turn) {
+            const double way = time_to_touch(key, time);
+            if (!(std::abs(gone + way) < most)) break;
+            go_along(key, way);
+            gone += way;
+        }
+        any = any || gone != 0;
+    }
+    return any;
 }
 
 void GroupFlight::subdivide()

@@ -9,10 +9,10 @@
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
 #include "kernels/geometry/shape_bounds.hpp"
-#include "kernels/motion/spring_limit.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/impact/impact_time.hpp"
 #include "pipeline/fast_bodies.hpp"
+#include "pipeline/force_builder.hpp"
 #include "pipeline/stages.hpp"
 
 #include <algorithm>
@@ -66,9 +66,6 @@ struct Way {
     bool ahead = false;   // of contacts: those that it may come to were not looked for
     bool slides = false;  // it touches what does not yield to it
 };
-
-// Of the longest step that springs bear, from which on who is on them is not held.
-constexpr double kSprung = 0.25;
 
 class FastSweep {
 public:
@@ -191,22 +188,6 @@ private:
         }
         std::sort(found_.begin(), found_.end());
         found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-        leave_out_sprung();
-    }
-
-    // Who is held while a spring's other end goes on draws the spring out. Where that would be more
-    // than it may move by in a step it is left to contacts, unless it was marked.
-    void leave_out_sprung()
-    {
-        if (forces_.groups.empty()) return;
-        std::vector<std::uint8_t> stiff(forces_.groups.size(), 0);
-        for (std::size_t i = 0; i < stiff.size(); ++i)
-            stiff[i] = settings_.dt > kSprung * longest_step(forces_, masses_, forces_.groups[i]);
-        std::erase_if(found_, [&](std::uint32_t body) {
-            const std::uint32_t group =
-                body < forces_.group_of.size() ? forces_.group_of[body] : kNobody;
-            return group != kNobody && stiff[group] != 0 && !states_.marked_fast(body);
-        });
     }
 
     bool is_fast(std::uint32_t body) const { return fast_.flags[body] != 0; }
@@ -500,6 +481,35 @@ private:
         velocity += (std::copysign(left, falling) - falling) * down;
     }
 
+    // Nor have its springs drawn it down that way: what they hold the more for it goes. False for
+    // one that has not so much: it is left to contacts.
+    bool take_back_pull(std::uint32_t body, double gained)
+    {
+        if (!(gained > 0)) return true;
+        const double had = kinetic_energy_of(body, masses_, poses_, velocities_);
+        if (had < gained) return false;
+        const double kept = std::sqrt(1 - gained / had);
+        velocities_.linear[body] *= kept;
+        velocities_.angular[body] *= kept;
+        return true;
+    }
+
+    void hold_at(const Way& way, const Pose& end)
+    {
+        const Pose went = poses_.at(way.body);
+        const Vec3 velocity = velocities_.linear[way.body], spin = velocities_.angular[way.body];
+        const double before = springs_energy_of(way.body, forces_, poses_);
+        if (way.rides == kNobody) take_back_fall(way.body, end.position);
+        poses_.position[way.body] = end.position;
+        turn_back(way.body, end.orientation.normalized());
+        if (take_back_pull(way.body, springs_energy_of(way.body, forces_, poses_) - before))
+            return fast_.held.push_back(way.body);
+        poses_.position[way.body] = went.position;
+        poses_.orientation[way.body] = went.orientation;
+        velocities_.linear[way.body] = velocity;
+        velocities_.angular[way.body] = spin;
+    }
+
     // What does not turn as far as it would have keeps the spin that it has in its own axes: its
     // inertia is in these.
     void turn_back(std::uint32_t body, const Quat& held)
@@ -580,14 +590,8 @@ private:
                 }
             }
         }
-        for (const Way& way : ways_) {
-            if (!way.held) continue;
-            const Pose end = pose_on(way, 1);
-            if (way.rides == kNobody) take_back_fall(way.body, end.position);
-            poses_.position[way.body] = end.position;
-            turn_back(way.body, end.orientation.normalized());
-            fast_.held.push_back(way.body);
-        }
+        for (const Way& way : ways_)
+            if (way.held) hold_at(way, pose_on(way, 1));
     }
 
     const Settings& settings_;

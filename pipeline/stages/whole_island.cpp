@@ -1,6 +1,7 @@
 #include "pipeline/stages/whole_island.hpp"
 
 #include "kernels/math/rotation.hpp"
+#include "kernels/solve/carried_points.hpp"
 
 namespace throng {
 
@@ -46,6 +47,33 @@ void WholeIsland::place_points()
         point.arm_a = arm_now(touch.arm_a, touch.a, round_a);
         point.arm_b = arm_now(touch.arm_b, touch.b, round_b);
         gaps_[i] = gap_now(i);
+    }
+}
+
+// Who is carried by a surface that turns by itself meets it where the middle of the coming time
+// finds the two, as the carried contacts of the other solvers do (CarryRows).
+void WholeIsland::carry_arms(double half, double dt)
+{
+    const auto carried_by = [&](std::int32_t carrier, std::int32_t carried) {
+        if (carrier < 0) return false;
+        const DirectBody& body = after_[static_cast<std::size_t>(carrier)];
+        const Ease other =
+            carried < 0 ? Ease{} : ease_of(after_[static_cast<std::size_t>(carried)]);
+        return carries(body.spin, ease_of(body), other, dt);
+    };
+    const auto side = [&](std::int32_t seat, const Vec3& core) -> CarriedSide {
+        if (seat < 0) return {};
+        const auto at = static_cast<std::size_t>(seat);
+        return carried_side(seats_[at].moved, seats_[at].turned, after_[at], core, half);
+    };
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        const IslandTouch& touch = touches_[i];
+        const bool by_a = carried_by(touch.a, touch.b);
+        if (!by_a && !carried_by(touch.b, touch.a)) continue;
+        points_[i].arm_a = touch.arm_a + touch.normal * touch.round_a;
+        points_[i].arm_b = touch.arm_b - touch.normal * touch.round_b;
+        throng::carry_arms(side(touch.a, touch.arm_a), side(touch.b, touch.arm_b),
+                           goes_with_b(touch.round_a, touch.round_b, by_a), points_[i]);
     }
 }
 
@@ -118,16 +146,17 @@ bool WholeIsland::end_following()
     return true;
 }
 
-// Contacts, and stiff springs with them.
+// Contacts, and stiff springs with them, which have the last word: see solve_batch.cpp.
 void WholeIsland::hold_contacts(double time)
 {
     for (std::size_t i = 0; i < points_.size(); ++i)
         points_[i].least = -std::max(gaps_[i], 0.0) / time;
     solve(after_, points_);
     if (!following_ || !following_->stiff()) return;
-    for (int turn = 1; turn < kSpringTurns; ++turn) {
+    for (int turn = 1;; ++turn) {
         look_at_followers();
         following_->again();
+        if (turn == kSpringTurns) return move_followers(after_);
         move_followers(free_);
         after_ = free_;
         solve(after_, points_);
@@ -180,16 +209,14 @@ bool WholeIsland::part(const Conditions& conditions)
 }
 
 // Who is wedged between what does not move cannot part from all of it: each point is then asked
-// for what a try at the whole came to, which can be had.
+// for what a try at the whole came to, which can be had. What is still asked for in vain is no law
+// of contact that was missed, and no residual: at rest it would be all there is to compare with.
 void WholeIsland::push_as_far_as_goes()
 {
     for (int tries = 0; tries < kPartTries; ++tries) {
         going_ = free_;
         const DirectAnswer answer = solver_.solve(going_, others_, steps_);
-        if (answer.residual <= kDirectResidual || tries + 1 == kPartTries) {
-            residual_ = std::max(residual_, answer.residual);
-            return;
-        }
+        if (answer.residual <= kDirectResidual || tries + 1 == kPartTries) return;
         for (std::size_t i = 0; i < others_.size(); ++i)
             others_[i].least = std::min(others_[i].least, std::max(0.0, approach(i, going_)));
     }
@@ -216,6 +243,7 @@ void WholeIsland::substep(const Conditions& conditions)
     if (conditions.settings.response == Response::kinematic) return separate(conditions);
     const double time = conditions.substep();
     place_points();
+    carry_arms(time / 2, conditions.settings.dt);
     move_freely(conditions, time);
     hold_contacts(time);
     going_ = after_;

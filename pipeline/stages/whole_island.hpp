@@ -51,6 +51,8 @@ public:
     template <class Real>
     void finish(const DirectScene<Real>& scene, const Batch& batch, Rows<Real>& rows) const;
 
+    /// The greatest of the solves that hold contacts and bounce them; pushes out of overlap, which
+    /// cannot always be had, are none of them.
     double residual() const { return residual_; }
     /// The most parts that penalty forces cut a substep into.
     int cuts() const { return cuts_; }
@@ -69,6 +71,7 @@ private:
     std::int32_t seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const;
     Vec3 arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round) const;
     void place_points();
+    void carry_arms(double half, double dt);
     void turn_inertias();
     double gap_now(std::size_t at) const;
     void move_freely(const Conditions& conditions, double time);
@@ -86,6 +89,9 @@ private:
     void list_touching(double threshold);
     bool reflect(std::size_t begin, std::size_t end, double least_speed);
     bool reflect_in_order(double least_speed);
+    bool gains(double work) const;
+    void hold_struck();
+    void add_to_struck();
     void settle_after_impacts();
 
     // Other responses: see penalty_forces.cpp and kinematic_pushes.cpp.
@@ -96,9 +102,9 @@ private:
     Give give_of(std::size_t at, const Settings& settings, double time) const;
     void find_unearned(const Conditions& conditions);
     void throw_back(const Conditions& conditions, double time);
-    void rub(std::size_t at);
     void push_by_forces(const Conditions& conditions, double time);
-    void damp_sliding(DirectPoint& point, double push, std::uint32_t share);
+    void find_held(double time);
+    void resist_sliding(std::size_t at, double push, double time, std::uint32_t share);
     void damp_turning(DirectPoint& point, double push, std::uint32_t share);
     void separate(const Conditions& conditions);
     void stop_approach(std::size_t at);
@@ -123,6 +129,7 @@ private:
     std::vector<Sym3> inertia_, inverse_inertia_;            // [seats] body axes
     std::vector<std::uint32_t> pressed_;                     // [seats] touches that overlap
     std::vector<double> unearned_;                           // [touches] m, overlap without a push
+    std::vector<Vec3> held_;                                 // [touches] N, by friction's springs
     std::unique_ptr<FollowingForces> following_;             // none: empty
     double elapsed_ = 0;                                     // s, since the step began
     DirectSolver solver_;

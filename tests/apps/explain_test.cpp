@@ -84,6 +84,19 @@ TEST(Explain, TheSubstepIsThatOfTheResponseAndTheSolver)
     }
 }
 
+TEST(Explain, ATopOnAPivotFalls)
+{
+    const TestFolder folder;
+    const Outcome said = run_throng(
+        {"explain",
+         folder.write("top.json",
+                      R"({"throng": 1, "shapes": {"top": {"box": {"half_extents": [1, 1, 2]}}},
+                                      "bodies": [{"shape": "top", "pivot": [0, 0, -2]}]})")});
+    ASSERT_EQ(said.code, 0) << said.err;
+    for (const char* effect : {"gravity", "pivot", "rotation", "gyroscopic"})
+        EXPECT_TRUE(is_on(said.out, effect)) << effect;
+}
+
 TEST(Explain, ALoneBallOnlyFalls)
 {
     const TestFolder folder;

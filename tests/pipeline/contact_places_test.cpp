@@ -85,7 +85,7 @@ TEST(ContactPlaces, NoneLeaksWhileATumblerTurns)
     for (const int threads : {1, 2}) {
         World world(make_scene("tumbler", 100), threads);
         Places<float> places(world);
-        for (int step = 0; step < 200; ++step) {
+        for (int step = 0; step < 250; ++step) {
             world.step();
             ASSERT_NO_FATAL_FAILURE(places.check()) << "step " << step;
         }

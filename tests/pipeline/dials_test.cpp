@@ -20,7 +20,7 @@ TEST(Dials, AreAllThere)
         "voxel_size",  "image_resolution", "sphere_levels",     "max_parts",       "response",
         "solver",      "direct_limit",     "penalty_stiffness", "penalty_damping", "friction_cone",
         "impact_law",  "overlap",          "halvings",          "toi_method",      "toi_tolerance",
-        "sleep",       "escalation"};
+        "sleep",       "escalation",       "relax_iterations"};
     for (const char* name : names) EXPECT_NE(find_dial(name), nullptr) << name;
     EXPECT_EQ(find_dial("speed"), nullptr);
 
@@ -134,7 +134,7 @@ TEST(Dials, SayWhatWasWanted)
         {"voxel_size", "-1", "voxel_size: wanted auto or a length from 1e-9 to 1e9 m"},
         {"image_resolution", "2", "image_resolution: wanted auto or a whole number from 4 to 512"},
         {"sphere_levels", "2.5", "sphere_levels: wanted auto or a whole number from 1 to 6"},
-        {"toi_tolerance", "1e-8", "toi_tolerance: wanted a share of the shape's size from 1.19"},
+        {"toi_tolerance", "1e-13", "toi_tolerance: wanted a share of the shape's size from 1e-12"},
         {"substep", "4", "substep: wanted the name of a dial, perhaps substeps"},
         {"presicion", "4", "presicion: wanted the name of a dial, perhaps precision"},
         {"zzzzzzzzz", "4", "zzzzzzzzz: wanted the name of a dial, one of: dt, substeps"},

@@ -54,6 +54,24 @@ double greatest_speed(const World& world)
     return speed;
 }
 
+// Under a lid that is held fast two cubes have no room to part: that they are asked to in vain is
+// no contact that misses its law.
+TEST(DirectStep, WhoIsWedgedAtRestMissesNoLaw)
+{
+    for (const Precision precision : {Precision::float_, Precision::double_}) {
+        Scene scene = empty_scene(precision);
+        add(scene, 1, Vec3(0, 0, 0.499));
+        add(scene, 1, Vec3(0, 0, 1.495));
+        BodyDescription& lid = add(scene, 1, Vec3(0, 0.3, 2.49));
+        lid.lock_position = lid.lock_rotation = true;
+        World world(scene);
+        world.step(2);
+        EXPECT_GT(world.measure().greatest_overlap, 1e-3);
+        EXPECT_LT(greatest_speed(world), 1e-9);
+        EXPECT_LT(world.report().direct_residual, 1e-8);
+    }
+}
+
 TEST(DirectStep, StackStandsStillAndWeighsWhatItWeighs)
 {
     for (const Precision precision : {Precision::float_, Precision::double_}) {

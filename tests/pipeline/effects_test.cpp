@@ -65,6 +65,24 @@ TEST(Effects, EachIsCalledForByTheFirstWhoNeedsIt)
     EXPECT_FALSE(world.effects().on.has(Effect::mesh_contact));
 }
 
+TEST(Effects, WhoHangsOnAPivotFallsAboutIt)
+{
+    const auto effects_at = [](const Vec3& pivot, bool locked) {
+        SceneOf made;
+        BodyDescription& top = made.box(Vec3(0.1, 0.1, 0.5), Vec3::Zero());
+        top.pivot = pivot;
+        top.lock_rotation = locked;
+        return World(made.scene).effects().on;
+    };
+    const Set<Effect> hanging = effects_at({0, 0, -0.5}, false);
+    for (const Effect effect :
+         {Effect::gravity, Effect::pivot, Effect::rotation, Effect::gyroscopic})
+        EXPECT_TRUE(hanging.has(effect)) << name_of(effect);
+    // Held by its center, or fast, it does not fall.
+    EXPECT_FALSE(effects_at(Vec3::Zero(), false).has(Effect::gravity));
+    EXPECT_FALSE(effects_at({0, 0, -0.5}, true).has(Effect::gravity));
+}
+
 TEST(Effects, MasksThatNeverMeetCallForNoContact)
 {
     SceneOf made = equal_balls();

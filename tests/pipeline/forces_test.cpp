@@ -175,6 +175,64 @@ TEST(Forces, AnAttractorHoldsABodyInItsOrbit)
     }
 }
 
+TEST(Forces, AttractorsAndWindGoWithTheLastBodyOfTheirScene)
+{
+    Scene lone = empty_scene();
+    add_body(lone, Vec3(0, 0, 0)).linear_drag = 1;
+    World world(lone);
+    const BodyId first = world.bodies()[0];
+    const auto pulled = [&] {
+        world.set_velocity(first, Vec3::Zero(), Vec3::Zero());
+        world.step();
+        return world.velocity(first);
+    };
+    EXPECT_EQ(pulled(), Vec3(0, 0, 0));
+
+    Scene planet = empty_scene();
+    planet.attractors.push_back({Vec3(10, 0, 0), 100});
+    add_body(planet, Vec3(10, 0, 0));
+    add_body(planet, Vec3(10, 5, 0));
+    Scene storm = empty_scene();
+    storm.wind = Vec3(0, 0, 7);
+    add_body(storm, Vec3(-50, 0, 0));
+    const std::vector<BodyId> of_planet = world.add(planet), of_storm = world.add(storm);
+    EXPECT_GT(pulled().x(), 0);
+    EXPECT_GT(pulled().z(), 0);
+    EXPECT_TRUE(world.effects().on.has(Effect::attractors));
+
+    // One of two leaves it there; who takes that one's place has nothing to do with it.
+    world.remove({&of_planet[0], 1});
+    const std::vector<BodyId> other = world.add(lone);
+    EXPECT_EQ(other[0].index, of_planet[0].index);
+    world.remove(other);
+    EXPECT_GT(pulled().x(), 0);
+    world.remove({&of_planet[1], 1});
+    EXPECT_EQ(pulled().x(), 0);
+    EXPECT_FALSE(world.effects().on.has(Effect::attractors));
+    EXPECT_GT(pulled().z(), 0);
+    world.remove(of_storm);
+    EXPECT_EQ(pulled(), Vec3(0, 0, 0));
+    EXPECT_FALSE(world.effects().on.has(Effect::wind));
+}
+
+TEST(Forces, WhoSleepsInAFieldWakesWhenItGoes)
+{
+    Scene scene;
+    scene.gravity.setZero();
+    add_floor(scene, 0.5);
+    add_crate(scene, Vec3(0, 0, 0.5));
+    World world(scene);
+    Scene magnet;
+    magnet.attractors.push_back({Vec3(0, 0, -100), 1e5});
+    magnet.bodies.emplace_back().motion = Motion::static_;
+    const std::vector<BodyId> below = world.add(magnet);
+    const BodyId crate = world.bodies()[1];
+    world.step(240);
+    ASSERT_FALSE(world.awake(crate));
+    world.remove(below);
+    EXPECT_TRUE(world.awake(crate));
+}
+
 TEST(Forces, ASpringBetweenTwoKeepsMomentumAndHasItsPeriod)
 {
     Scene scene = empty_scene();

@@ -172,5 +172,44 @@ TEST_F(RunFileTest, AFullDiskIsSaidAndNothingHangs)
     EXPECT_NE(said.find("File too large"), std::string::npos) << said;
 }
 
+// What room was kept for is told by a limit that is lifted once a frame has failed.
+TEST_F(RunFileTest, WhatWasWrittenBeforeTheDiskWasFullCanBeRead)
+{
+    const Scene scene = make_scene("pile", 2000);
+    World world(scene);
+    struct rlimit before = {};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const struct rlimit small = {6'000'000, before.rlim_max};
+    std::signal(SIGXFSZ, SIG_IGN);
+    RunFile file(path_, scene, world, {"pile:2000", "1.2.3", 1, 1});
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    std::size_t frames = 0;
+    EXPECT_THROW(
+        while (frames < 1000) {
+            world.step();
+            file.write_frame(world);
+            ++frames;
+        },
+        RunFileError);
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_THROW(file.write_frame(world), RunFileError);
+    file.close();
+    EXPECT_TRUE(file.closed());
+
+    const std::size_t whole = file.whole_frames();
+    EXPECT_GE(whole, 8u);
+    EXPECT_LE(whole, frames);
+    const auto time = read_array<double>(path_, "/frames/time", H5T_NATIVE_DOUBLE);
+    ASSERT_EQ(time.size, Sizes{whole});
+    const auto places = read_array<double>(path_, "/frames/position", H5T_NATIVE_DOUBLE);
+    ASSERT_GE(places.size[0], whole);
+    World again(scene);
+    again.step(static_cast<int>(whole));
+    const std::vector<BodyId> bodies = again.bodies();
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        ASSERT_EQ(places.values[((whole - 1) * bodies.size() + i) * 3 + 2],
+                  again.pose(bodies[i]).position.z());
+}
+
 }  // namespace
 }  // namespace throng

@@ -73,6 +73,30 @@ TEST(Subdivide, TellsWherePiecesEndTooDeep)
     }
 }
 
+// The last piece ends up to 5e-5 m past the touch, and the line of the centers has turned by then.
+TEST(Subdivide, TwoFastBallsLeaveByTheLineOfTheirTouch)
+{
+    const double radius = 0.01, aside = 0.012, speed = 50;
+    const double along = aside / (2 * radius);
+    const Vec3 normal(std::sqrt(1 - along * along), along, 0);
+    for (const double restitution : {1.0, 0.5, 0.0}) {
+        SceneOf made = divided(0, restitution);
+        made.scene.gravity = Vec3::Zero();
+        BodyDescription& one = made.ball(radius, Vec3(-1, 0, 0));
+        one.mass = 1;
+        one.velocity = Vec3(speed, 0, 0);
+        BodyDescription& other = made.ball(radius, Vec3(1, aside, 0));
+        other.mass = 1;
+        other.velocity = Vec3(-speed, 0, 0);
+        World world(made.scene);
+        world.step(3);
+        const double impulse = (1 + restitution) * speed * normal.x();
+        const Vec3 after = Vec3(speed, 0, 0) - normal * impulse;
+        EXPECT_LT((velocity_of(world, 0) - after).norm(), 1e-6 * speed) << restitution;
+        EXPECT_LT((velocity_of(world, 1) + after).norm(), 1e-6 * speed) << restitution;
+    }
+}
+
 TEST(Subdivide, ElasticBallKeepsItsEnergyWhereItsFlightDoes)
 {
     SceneOf made = divided(0, 1);

@@ -271,7 +271,7 @@ TEST(SceneFile, RefusesBadShapes)
          "shapes.s.plane.normal: wanted a direction of unit length"},
         {kShape, "\"plane\": {\"normal\": @[0, 0, 1.00001]}",
          "shapes.s.plane.normal: wanted a direction of unit length"},
-        {kShape, "\"mesh\": @{}", "shapes.s.mesh.file: wanted the name of an OBJ file"},
+        {kShape, "\"mesh\": @{}", "shapes.s.mesh.file: wanted the name of an OBJ or STL file"},
         {kShape, "\"mesh\": {\"file\": @7}", "shapes.s.mesh.file: wanted text, not 7"},
         {kShape, "\"mesh\": {\"file\": @\"\"}", "shapes.s.mesh.file: wanted the name of a file"},
         {kShape, "\"mesh\": {\"file\": @\"a\\u0000b\"}",

@@ -2,6 +2,7 @@
 #include "kernels/motion/flight.hpp"
 
 #include "kernels/math/rotation.hpp"
+#include "kernels/motion/free_rotation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,13 +63,16 @@ Flyers random_flyers(std::size_t count, std::uint64_t seed, double fastest = 10)
     return made;
 }
 
-FlightRule usual_rule()
+using Precession = FlightRule::Precession;
+
+FlightRule usual_rule(Precession precession = Precession::implicit)
 {
     FlightRule rule;
     rule.substep = 1.0 / 240;
     rule.substeps = 4;
     rule.gravity[2] = -9.81;
-    rule.turns = rule.gyroscopic = true;
+    rule.turns = true;
+    rule.precession = precession;
     return rule;
 }
 
@@ -103,6 +107,61 @@ void fly_plainly(const FlightRule& rule, Flyers& flyers, std::size_t i)
     }
 }
 
+// The parts as they are told, for a whole step.
+void turn_plainly(const FlightRule& rule, Flyers& flyers, std::size_t i)
+{
+    const Sym3& inertia = flyers.inertia[i];
+    const Vec3 moments(inertia.xx, inertia.yy, inertia.zz);
+    Quat& pose = flyers.orientation[i];
+    Vec3 momentum = moments.cwiseProduct(pose.conjugate() * flyers.angular[i]);
+    turn_freely(free_rotation(moments), rule.substep * rule.substeps, rule.substeps, momentum,
+                [&](const Vec3& turn) { pose = pose * exponential(turn); });
+    pose.normalize();
+    if (flyers.spins[i] != 0) flyers.angular[i] = pose * momentum.cwiseQuotient(moments);
+}
+
+TEST(Flight, TurnsInThePartsThatItTells)
+{
+    Flyers wide = random_flyers(1000, 1), plain = wide;
+    const FlightRule rule = usual_rule(Precession::split);
+    for (int step = 0; step < 20; ++step) {
+        ASSERT_TRUE(fly("scalar", rule, all_of(wide), wide).empty());
+        for (std::size_t i = 0; i < plain.size(); ++i) turn_plainly(rule, plain, i);
+    }
+    for (std::size_t i = 0; i < wide.size(); ++i) {
+        EXPECT_LE((wide.angular[i] - plain.angular[i]).norm(), 1e-11) << i;
+        EXPECT_LE((wide.orientation[i].coeffs() - plain.orientation[i].coeffs()).norm(), 1e-11);
+        EXPECT_NEAR(wide.orientation[i].norm(), 1, 4e-16) << i;
+    }
+}
+
+TEST(Flight, InPartsKeepsMomentumAndSwaysInEnergy)
+{
+    for (const double fastest : {0.1, 3.0, 10.0}) {
+        Flyers flyers = random_flyers(300, 6, fastest);
+        const auto momentum = [&](std::size_t i) {
+            const Quat& pose = flyers.orientation[i];
+            return Vec3(
+                pose * Vec3(flyers.inertia[i].matrix() * (pose.conjugate() * flyers.angular[i])));
+        };
+        const auto energy = [&](std::size_t i) { return momentum(i).dot(flyers.angular[i]); };
+        std::vector<double> had;
+        std::vector<Vec3> went;
+        for (std::size_t i = 0; i < flyers.size(); ++i) {
+            had.push_back(energy(i));
+            went.push_back(momentum(i));
+        }
+        for (int step = 0; step < 500; ++step) {
+            fly("scalar", usual_rule(Precession::split), all_of(flyers), flyers);
+            if (step % 50 != 49) continue;
+            for (std::size_t i = 0; i < flyers.size(); ++i) {
+                EXPECT_LE((momentum(i) - went[i]).norm(), 1e-12 * went[i].norm()) << i;
+                EXPECT_NEAR(energy(i) / had[i], 1, 1e-3) << i;
+            }
+        }
+    }
+}
+
 TEST(Flight, AgreesWithTheSubstepsOneByOne)
 {
     Flyers wide = random_flyers(1000, 1), plain = wide;
@@ -122,26 +181,28 @@ TEST(Flight, AgreesWithTheSubstepsOneByOne)
 
 TEST(Flight, IsTheSameBitsAtEveryWidthWhoeverFliesAlongside)
 {
-    const Flyers before = random_flyers(203, 2);
-    const FlightRule rule = usual_rule();
-    Flyers alone = before;
-    for (std::uint32_t i = 0; i < alone.size(); i += i % 7 == 3 ? 2 : 1)
-        ASSERT_TRUE(fly("scalar", rule, {i}, alone).empty());
-    std::vector<std::uint32_t> gaps;
-    for (std::uint32_t i = 0; i < before.size(); i += i % 7 == 3 ? 2 : 1) gaps.push_back(i);
-    for (const char* width : {"scalar", "avx2", "avx512"}) {
-        if (fly_kernel_of(width) == nullptr) continue;
-        for (std::size_t count = 0; count < 20; ++count) {
-            Flyers some = before, one_by_one = before;
-            const std::vector<std::uint32_t> ids(gaps.begin(),
-                                                 gaps.begin() + static_cast<std::ptrdiff_t>(count));
-            fly(width, rule, ids, some);
-            for (const std::uint32_t id : ids) fly("scalar", rule, {id}, one_by_one);
-            ASSERT_EQ(some, one_by_one) << width << ", " << count;
+    for (const Precession precession : {Precession::implicit, Precession::split}) {
+        const Flyers before = random_flyers(203, 2);
+        const FlightRule rule = usual_rule(precession);
+        Flyers alone = before;
+        for (std::uint32_t i = 0; i < alone.size(); i += i % 7 == 3 ? 2 : 1)
+            ASSERT_TRUE(fly("scalar", rule, {i}, alone).empty());
+        std::vector<std::uint32_t> gaps;
+        for (std::uint32_t i = 0; i < before.size(); i += i % 7 == 3 ? 2 : 1) gaps.push_back(i);
+        for (const char* width : {"scalar", "avx2", "avx512"}) {
+            if (fly_kernel_of(width) == nullptr) continue;
+            for (std::size_t count = 0; count < 20; ++count) {
+                Flyers some = before, one_by_one = before;
+                const std::vector<std::uint32_t> ids(
+                    gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(count));
+                fly(width, rule, ids, some);
+                for (const std::uint32_t id : ids) fly("scalar", rule, {id}, one_by_one);
+                ASSERT_EQ(some, one_by_one) << width << ", " << count;
+            }
+            Flyers together = before;
+            fly(width, rule, gaps, together);
+            EXPECT_EQ(together, alone) << width;
         }
-        Flyers together = before;
-        fly(width, rule, gaps, together);
-        EXPECT_EQ(together, alone) << width;
     }
 }
 
@@ -171,12 +232,17 @@ TEST(Flight, LeavesToOthersWhatItCannotDoAndDoesTheRest)
 
 TEST(Flight, AnEvenSpinKeepsItsVelocityToTheLastBit)
 {
-    Flyers flyers = random_flyers(100, 4);
-    const Flyers before = flyers;
-    for (int step = 0; step < 100; ++step) fly("scalar", usual_rule(), all_of(flyers), flyers);
-    for (std::size_t i = 0; i < flyers.size(); ++i)
-        if (flyers.spins[i] == 0) {
-            EXPECT_EQ(flyers.angular[i], before.angular[i]);
+    const Flyers before = random_flyers(100, 4);
+    Flyers by_steps = before, in_parts = before;
+    for (int step = 0; step < 100; ++step) {
+        fly("scalar", usual_rule(), all_of(by_steps), by_steps);
+        fly("scalar", usual_rule(Precession::split), all_of(in_parts), in_parts);
+    }
+    for (std::size_t i = 0; i < before.size(); ++i)
+        if (before.spins[i] == 0) {
+            EXPECT_EQ(by_steps.angular[i], before.angular[i]);
+            EXPECT_EQ(in_parts.angular[i], before.angular[i]);
+            EXPECT_EQ(in_parts.orientation[i].coeffs(), by_steps.orientation[i].coeffs());
         }
 }
 

@@ -59,17 +59,20 @@ TEST(Integrators, HaveTheOrdersThatTheyState)
     }
 }
 
-TEST(Integrators, StandInTheOrderOfTheirNames)
+TEST(Integrators, AreTheOnesThatAreAskedFor)
 {
-    EXPECT_EQ(integrators()[static_cast<std::size_t>(Integrator::rk4)].name, "rk4");
-    EXPECT_EQ(integrators()[static_cast<std::size_t>(Integrator::splitting)].name, "splitting");
+    for (const IntegratorRow& row : integrators())
+        for (const bool acted_on : {false, true})
+            EXPECT_EQ(chosen(row.which, acted_on).name, row.name);
+    EXPECT_EQ(chosen(Integrator::auto_, true).name, "splitting");
+    EXPECT_EQ(chosen(Integrator::auto_, false).name, "auto");
 }
 
 // Roots of each method's polynomial, worked out by hand.
 TEST(StableSpan, IsThatOfTheory)
 {
     const auto span = [](Integrator which, double ratio) {
-        return stable_span(integrators()[static_cast<std::size_t>(which)], ratio);
+        return stable_span(chosen(which, true), ratio);
     };
     for (const double ratio : {0.0, 0.1, 1.0, 3.0})
         EXPECT_NEAR(span(Integrator::semi_implicit, ratio),

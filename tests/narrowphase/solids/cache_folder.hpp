@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sys/stat.h>
 
 namespace throng::test {
 
@@ -31,6 +32,27 @@ protected:
 inline void overwrite(const std::filesystem::path& file, const std::string& bytes)
 {
     std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+/// Puts something else in the place of a file, one for each number below kObstacles: a folder, a
+/// full folder, a pipe that nobody writes to, links that lead nowhere and in a circle, a file that
+/// may not be read.
+inline constexpr int kObstacles = 6;
+inline void put_in_the_way(const std::filesystem::path& file, int which)
+{
+    namespace fs = std::filesystem;
+    fs::remove_all(file);
+    if (which <= 1) fs::create_directory(file);
+    if (which == 1) std::ofstream(file / "within") << "something";
+    if (which == 2) {
+        ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    }
+    if (which == 3) fs::create_symlink("nowhere", file);
+    if (which == 4) fs::create_symlink(file.filename(), file);
+    if (which == 5) {
+        std::ofstream(file) << "locked";
+        fs::permissions(file, fs::perms::none);
+    }
 }
 
 /// A file of some length cut short, with more behind it, without its seal, and with a bit turned

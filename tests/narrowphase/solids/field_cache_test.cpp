@@ -64,6 +64,16 @@ TEST_F(FieldCache, BelievesNothingThatIsDamaged)
     }
 }
 
+TEST_F(FieldCache, PassesByWhatIsNoFile)
+{
+    cached_field(mesh_, settings_, folder);
+    for (const int which : {0, 2}) {
+        test::put_in_the_way(file(), which);
+        EXPECT_EQ(cached_field(mesh_, settings_, folder).trouble, "") << which;
+        EXPECT_EQ(fs::is_regular_file(fs::symlink_status(file())), which > 1) << which;
+    }
+}
+
 TEST_F(FieldCache, BelievesNoFileOfAnotherMesh)
 {
     const Mesh other = closed(ball_mesh(1, 20, 10));

@@ -82,6 +82,24 @@ TEST_F(PartsCache, DamagedFilesAreMadeAnew)
     }
 }
 
+TEST_F(PartsCache, WhatIsNoFileIsPassedBy)
+{
+    const ConvexParts plain = cached_parts(mesh, wanted, folder);
+    for (const int which : {0, 2}) {
+        test::put_in_the_way(file(), which);
+        ConvexParts parts = cached_parts(mesh, wanted, folder);
+        // A folder cannot be replaced, which is told; all else is.
+        if (which <= 1) {
+            EXPECT_EQ(parts.remarks.back().rfind("not kept for the next run: ", 0), 0u) << which;
+            parts.remarks.pop_back();
+        } else {
+            EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(file()))) << which;
+        }
+        expect_same(parts, plain);
+        EXPECT_EQ(files(), 1) << which;
+    }
+}
+
 TEST_F(PartsCache, FolderThatCannotBeWrittenIsRemarkedOn)
 {
     // A file where the folder should be.

@@ -102,6 +102,18 @@ TEST_F(SpheresCache, DamagedFilesAreMadeAnew)
     }
 }
 
+TEST_F(SpheresCache, WhatIsNoFileIsPassedBy)
+{
+    const SphereTree plain = cached_spheres(mesh, wanted, folder).tree;
+    for (int which = 0; which < test::kObstacles; ++which) {
+        test::put_in_the_way(file(), which);
+        CachedSpheres made = cached_spheres(mesh, wanted, folder);
+        EXPECT_EQ(made.remark.empty(), which > 1) << made.remark;
+        made.remark.clear();
+        expect_same(made, plain);
+    }
+}
+
 TEST_F(SpheresCache, FolderThatCannotBeWrittenIsRemarkedOn)
 {
     // A file where the folder should be.

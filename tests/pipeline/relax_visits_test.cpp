@@ -1,0 +1,47 @@
+// Relaxing visits: how many soft_step makes is told, and can be set.
+#include "pipeline/dials.hpp"
+#include "tests/pipeline/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+double visits(const Scene& scene)
+{
+    World world(scene);
+    world.step(3);
+    return world.report().relax_visits;
+}
+
+// Two boxes on a floor, and so many balls beside them: by default the whole is relaxed by what most
+// of its contacts are.
+given::SceneOf boxes_and_balls(int balls)
+{
+    given::SceneOf made;
+    made.floor();
+    made.scene.settings.sleep = false;
+    for (const int i : {0, 1}) made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.5 + i));
+    for (int i = 0; i < balls; ++i) made.ball(0.5, Vec3(2 + 2 * i, 0, 0.5));
+    return made;
+}
+
+TEST(RelaxVisits, AreTwoWhereMostContactsAreFacesAndOneElsewhere)
+{
+    EXPECT_EQ(visits(boxes_and_balls(0).scene), 2);
+    EXPECT_EQ(visits(boxes_and_balls(20).scene), 1);
+}
+
+TEST(RelaxVisits, AreWhatTheDialSaysAndNoneOfOtherSolvers)
+{
+    Scene scene = boxes_and_balls(0).scene;
+    ASSERT_EQ(set_dial(scene.settings, "relax_iterations", "5"), "");
+    EXPECT_EQ(visits(scene), 5);
+    ASSERT_EQ(set_dial(scene.settings, "solver", "pgs"), "");
+    EXPECT_EQ(visits(scene), 0);
+    for (const char* wrong : {"0", "101", "-1", "2.5", "many"})
+        EXPECT_NE(set_dial(scene.settings, "relax_iterations", wrong), "") << wrong;
+}
+
+}  // namespace
+}  // namespace throng
