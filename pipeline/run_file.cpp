@@ -353,13 +353,14 @@ struct Frames {
     hsize_t written = 0;
 };
 
-/// Room on the disk behind what a file holds. Asked for before HDF5 writes anything: what it has once
-/// failed to write it forgets, and chunks that were whole with it.
+/// Room on the disk behind what a file holds. Asked for before HDF5 writes anything: what it has
+/// once failed to write it forgets, and chunks that were whole with it.
 class Room {
 public:
     explicit Room(const std::string& path)
     {
-        if (std::filesystem::is_regular_file(path)) file_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+        if (std::filesystem::is_regular_file(path))
+            file_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     }
     ~Room()
     {
@@ -376,7 +377,8 @@ public:
         struct rlimit limit = {};
         if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && bytes + more > limit.rlim_cur) fail(EFBIG);
         const bool kept = ::fallocate(file_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(bytes),
-                                      static_cast<off_t>(more)) == 0;
+                                      static_cast<off_t>(more))
+            == 0;
         if (!kept && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)) fail(errno);
     }
     /// Gives back what is behind so many bytes.

@@ -18,10 +18,10 @@
 //   /frames/angular_velocity  [F, N, 3] float
 //
 // `time` grows last, so its length is the number of frames that are whole. What was written is
-// flushed every second or so: after a crash all but the last moments can be read. Room on the disk is
-// made sure of before anything is written, so that what was written before the disk was full can be
-// read, too. A program that uses HDF5 itself closes its own files: with a run file about, HDF5 no
-// longer does so at exit.
+// flushed every second or so: after a crash all but the last moments can be read. Room on the disk
+// is made sure of before anything is written, so that what was written before the disk was full can
+// be read, too. A program that uses HDF5 itself closes its own files: with a run file about, HDF5
+// no longer does so at exit.
 #pragma once
 
 #include "pipeline/world.hpp"

@@ -135,10 +135,13 @@ StepTimes run_steps(World& world, std::int64_t steps)
     using Clock = std::chrono::steady_clock;
     StepTimes times;
     Progress progress(steps, true);
+    StepGuard guard([] {});
     for (std::int64_t done = 0; done < steps && !interrupted();) {
+        guard.begin_step();
         const auto begin = Clock::now();
         world.step();
         const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
+        guard.end_step();
         times.add(taken.count(), world.stages());
         progress.show(++done, world.report().bodies_awake);
     }

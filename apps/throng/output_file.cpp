@@ -60,9 +60,10 @@ OutputFile::OutputFile(std::string_view option, std::string_view path)
     }
 }
 
-OutputFile::~OutputFile()
+void OutputFile::discard()
 {
     if (kept_) return;
+    kept_ = true;
     stream_.close();
     std::error_code ignored;
     fs::remove(growing_, ignored);

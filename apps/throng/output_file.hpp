@@ -16,8 +16,7 @@ public:
     /// Throws BadInput, which names the option, when the path cannot be written. An empty path is a
     /// file that nobody asked for.
     OutputFile(std::string_view option, std::string_view path);
-    /// Removes what was not kept.
-    ~OutputFile();
+    ~OutputFile() { discard(); }
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
 
@@ -34,6 +33,8 @@ public:
     std::string try_keep();
     /// The same. Throws BadInput when something could not be written.
     void keep();
+    /// Removes what was not kept.
+    void discard();
 
 private:
     std::string option_, path_, growing_;

@@ -67,11 +67,47 @@ void warn(const SceneArgument& argument, World& world)
     std::cerr.flush();
 }
 
+/// What a run writes, but for its frames.
+struct Outputs {
+    explicit Outputs(const Options& options)
+        : stats("--stats", options.text("--stats")), final("--final", options.text("--final")),
+          frames("--out", options.text("--out")), trace(options)
+    { }
+
+    void refuse_same_files(const SceneArgument& argument) const
+    {
+        for (const OutputFile* file : {&stats, &final, &frames, &trace.file()}) {
+            refuse_same_file(*file, argument.file, "the scene");
+            refuse_same_file(*file, argument.mesh, "--mesh");
+        }
+        refuse_same_file(final, stats.path(), "--stats");
+        refuse_same_file(frames, stats.path(), "--stats");
+        refuse_same_file(frames, final.path(), "--final");
+        refuse_same_file(trace.file(), stats.path(), "--stats");
+        refuse_same_file(trace.file(), final.path(), "--final");
+        refuse_same_file(trace.file(), frames.path(), "--out");
+    }
+    // Whoever has a file sent to the standard output reads it from there.
+    bool leave_stdout_free() const
+    {
+        return !stats.is_stdout() && !final.is_stdout() && !trace.file().is_stdout();
+    }
+
+    void discard()
+    {
+        for (OutputFile* file : {&stats, &final, &frames}) file->discard();
+        trace.discard();
+    }
+
+    OutputFile stats, final, frames;
+    TraceOption trace;
+};
+
 // The ledger looks on before and after each step, where there is one; no time is taken of that.
 StepTimes run_steps(World& world,
                     std::int64_t steps,
                     RunFrames& frames,
-                    TraceOption& trace,
+                    Outputs& outputs,
                     std::optional<EnergyLedger>& ledger,
                     bool quiet)
 {
@@ -79,13 +115,20 @@ StepTimes run_steps(World& world,
     StepTimes times;
     Progress progress(steps, !quiet);
     std::int64_t done = 0;
+    TraceOption& trace = outputs.trace;
+    StepGuard guard([&] {
+        frames.close();
+        outputs.discard();
+    });
     frames.step_done(0, false);
     while (done < steps && !interrupted()) {
         if (ledger) ledger->before_step(world);
         trace.begin_step(static_cast<std::uint64_t>(done) + 1);
+        guard.begin_step();
         const auto begin = Clock::now();
         world.step();
         const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
+        guard.end_step();
         trace.end_step();
         if (ledger) ledger->after_step(world);
         times.add(taken.count(), world.stages());
@@ -124,36 +167,6 @@ void name_quarantined(const World& world)
               << " put to rest after turning non-finite (quarantined): " << named
               << (count > kMostNamed ? ", ..." : "") << std::endl;
 }
-
-/// What a run writes, but for its frames.
-struct Outputs {
-    explicit Outputs(const Options& options)
-        : stats("--stats", options.text("--stats")), final("--final", options.text("--final")),
-          frames("--out", options.text("--out")), trace(options)
-    { }
-
-    void refuse_same_files(const SceneArgument& argument) const
-    {
-        for (const OutputFile* file : {&stats, &final, &frames, &trace.file()}) {
-            refuse_same_file(*file, argument.file, "the scene");
-            refuse_same_file(*file, argument.mesh, "--mesh");
-        }
-        refuse_same_file(final, stats.path(), "--stats");
-        refuse_same_file(frames, stats.path(), "--stats");
-        refuse_same_file(frames, final.path(), "--final");
-        refuse_same_file(trace.file(), stats.path(), "--stats");
-        refuse_same_file(trace.file(), final.path(), "--final");
-        refuse_same_file(trace.file(), frames.path(), "--out");
-    }
-    // Whoever has a file sent to the standard output reads it from there.
-    bool leave_stdout_free() const
-    {
-        return !stats.is_stdout() && !final.is_stdout() && !trace.file().is_stdout();
-    }
-
-    OutputFile stats, final, frames;
-    TraceOption trace;
-};
 
 /// Writes what comes at the end of a run, stats last: they tell what of the others could not be
 /// written. Answers what could not be.
@@ -205,7 +218,7 @@ int run(const Options& options)
     // Who sees neither stats nor warnings spends nothing on them.
     if (outputs.stats.asked_for() || !quiet) ledger.emplace();
     RunFrames frames(outputs.frames, argument, world, every);
-    StepTimes times = run_steps(world, steps, frames, outputs.trace, ledger, quiet);
+    StepTimes times = run_steps(world, steps, frames, outputs, ledger, quiet);
 
     RunStats stats = collect_stats(world, std::move(times));
     stats.scene = argument.label;

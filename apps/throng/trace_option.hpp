@@ -33,6 +33,8 @@ public:
     /// Writes and completes the file. `label` says what was run. Answers what could not be written,
     /// or nothing.
     std::string write(World& world, std::string_view label);
+    /// Removes what was begun of the file.
+    void discard() { file_.discard(); }
 
 private:
     OutputFile file_;

@@ -363,6 +363,26 @@ TEST(Run, AnInterruptEndsTheStepAndKeepsTheFiles)
     }
 }
 
+// Steps of this scene take longer than anybody waits.
+TEST(Run, AnInterruptWithinALongStepKeepsTheFrames)
+{
+    const TestFolder folder;
+    const Outcome ended =
+        run_throng({"run", "pile:200", "--set", "overlap=subdivide", "--set", "dt=1", "--stats",
+                    folder / "s.json", "--final", folder / "f.csv", "--trace", folder / "t.json",
+                    "--out", folder / "r.h5"},
+                   [&](pid_t process) {
+                       while (folder.files().size() < 4)
+                           std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                       std::this_thread::sleep_for(std::chrono::milliseconds(500));
+                       ::kill(process, SIGINT);
+                   });
+    EXPECT_EQ(ended.code, 130) << ended.err;
+    EXPECT_NE(ended.err.find("interrupted within a step"), std::string::npos) << ended.err;
+    EXPECT_EQ(folder.files(), Names{"r.h5"});
+    EXPECT_GT(std::filesystem::file_size(folder / "r.h5"), 10'000u);
+}
+
 TEST(Run, AQuarantinedBodyIsNamedAndOutputsAreWritten)
 {
     const TestFolder folder;
