@@ -22,8 +22,9 @@ namespace throng {
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kGravity = 9.81;  // m/s2, where a case does not say another
 
-/// missed: the default misses a bound that a named setting of the same case meets.
-enum class Verdict : std::uint8_t { pass, fail, skipped, missed };
+/// missed: the default misses a bound that a named setting of the same case meets. shown: held to
+/// no bound, and so no verdict.
+enum class Verdict : std::uint8_t { pass, fail, skipped, missed, shown };
 
 /// One line of a case's answer. A figure passes when it is at most its bound.
 struct CaseResult {
@@ -135,7 +136,9 @@ public:
                         std::string unit,
                         const std::string& met_by);
 
-    /// Adds a line of how long something took, ns: it is shown, and held to nothing.
+    /// Adds a figure that is held to nothing.
+    void show(std::string setting, std::string quantity, double figure, std::string unit);
+    /// The same of how long something took, ns; a brief run has none.
     void report_time(std::string setting, std::string quantity, double ns);
     /// ns, the mean over the steps of the last run.
     double time_a_step() const { return steps_ > 0 ? 1e6 * step_ms_ / steps_ : 0; }

@@ -14,6 +14,7 @@
 #include <iomanip>
 #include <iostream>
 #include <map>
+#include <sstream>
 
 namespace throng {
 namespace {
@@ -67,6 +68,16 @@ std::string_view text_of(Verdict verdict)
     default:
         return "skipped";
     }
+}
+
+// A figure that is held to nothing; apart, so that nobody takes it for a pass.
+std::string shown_line(const CaseResult& result)
+{
+    std::ostringstream line;
+    line << std::left << std::setw(5) << result.name << ' ' << std::scientific
+         << std::setprecision(2) << result.figure << ' ' << std::setw(4) << result.unit << ' '
+         << result.setting << ": " << result.quantity << '\n';
+    return line.str();
 }
 
 void print_line(const CaseResult& result)
@@ -148,10 +159,13 @@ int run_cases(const Options& options)
     note_interrupts();
 
     std::size_t passed = 0, failed = 0, skipped = 0, missed = 0;
-    std::string lines;
+    std::string lines, shown;
     MethodTable methods;
     const auto take_line = [&](const CaseResult& result) {
-        print_line(result);
+        if (result.verdict == Verdict::shown)
+            shown += shown_line(result);
+        else
+            print_line(result);
         methods.add(result);
         lines += (lines.empty() ? "  " : ",\n  ") + json_line(result);
         passed += result.verdict == Verdict::pass ? 1 : 0;
@@ -170,6 +184,7 @@ int run_cases(const Options& options)
         json.stream() << "[\n" << lines << "\n]\n";
         json.keep();
     }
+    if (!shown.empty()) std::cout << "measured, held to nothing:\n" << shown;
     methods.print(std::cout);
     std::cout << passed << " passed, " << failed << " failed";
     if (skipped > 0) std::cout << ", " << skipped << " skipped";

@@ -75,13 +75,10 @@ void ask_set(CaseBench& bench, const std::string& name, const std::vector<ExactQ
         const double ns = bench.spent_on(method.text) * 1e6 / count;
         const std::string setting = name + ", " + std::to_string(queries.size()) + " queries";
         bench.report_method(method.text, setting, "touches missed", missed, 0, "1");
-        // Measured, and no bound of their own: all of those that are apart, a microsecond each in
-        // the thousands.
-        bench.report_method(method.text, setting, "of those apart, told to touch",
-                            spurious / std::max(apart, 1.0), 1, "1");
-        bench.report_method(method.text, setting, "evaluations a query", evaluations / count, 1e3,
-                            "1");
-        bench.report_method(method.text, setting, "time a query", ns, 1e6, "ns");
+        const std::string by = setting + ", " + std::string(method.text);
+        bench.show(by, "of those apart, told to touch", spurious / std::max(apart, 1.0), "1");
+        bench.show(by, "evaluations a query", evaluations / count, "1");
+        bench.show(by, "time a query", ns, "ns");
     }
 }
 

@@ -65,7 +65,7 @@ void in_a_pyramid(CaseBench& bench)
         late = velocity;
         return true;
     });
-    const double wanted = kGravity * (slope * cos - friction * level);
+    const double wanted = kRoundGravity * (slope * cos - friction * level);
     bench.report("mu=0.36 aslant, friction within a pyramid", "error of the acceleration",
                  std::abs((late - early).norm() / 4 / wanted - 1), 1e-2, "1");
 }

@@ -18,9 +18,10 @@ namespace {
 constexpr double kBound = 1e-3, kStep = 1e-3;
 const std::string kDirect = ", direct, dt 1e-3";
 
-void beside(CaseBench& bench, const char* name, const char* quantity, double figure)
+void by_default(CaseBench& bench, const std::string& name, const char* quantity, double figure)
 {
-    bench.skip(name, quantity, "for comparison, of the default solver: " + std::to_string(figure));
+    bench.report_default(name + ", default", quantity, figure, kBound, "1",
+                         "solver=direct, dt 1e-3");
 }
 
 // A prism of which +x is the high end.
@@ -124,8 +125,8 @@ void on_the_wedge(CaseBench& bench)
                       *const wedge = "error of the wedge's acceleration",
                       *const block = "error of the block's against it";
     const auto soft = slide_down(bench, scene);
-    beside(bench, name, wedge, soft.first);
-    beside(bench, name, block, soft.second);
+    by_default(bench, name, wedge, soft.first);
+    by_default(bench, name, block, soft.second);
     ask_exactly(scene.settings);
     scene.settings.dt = kStep;
     const auto exact = slide_down(bench, scene);
@@ -139,8 +140,8 @@ void rod_that_tips(CaseBench& bench)
     const char *const name = "rod of 2 m that tips", *const spin = "error of the spin",
                       *const sideways = "way of its center sideways";
     const Tipped soft = tip(bench, scene);
-    beside(bench, name, spin, soft.spin);
-    beside(bench, name, sideways, soft.sideways);
+    by_default(bench, name, spin, soft.spin);
+    by_default(bench, name, sideways, soft.sideways);
     ask_exactly(scene.settings);
     scene.settings.dt = kStep;
     const Tipped exact = tip(bench, scene);

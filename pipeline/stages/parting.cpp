@@ -12,6 +12,10 @@ namespace {
 // half extent): who is put deeper than four tenths of the half extent has to part, and is done at a
 // twenty-thousandth, from where the usual push gives no speed to speak of.
 constexpr double kDeep = 80, kFlat = 0.01;
+// Of who is wedged: depth as a share of the half extent, and steps, which begin anew while it is as
+// deep. The rest is left to the usual push.
+constexpr double kWedged = 0.2;
+constexpr std::uint16_t kWedgedSteps = 60;
 
 // Steps that a body has to part in: a tenth comes down to flat in some 60, whatever their length,
 // and a crowd of a thousand takes ten times as many. While a step runs kGoesOn marks who does.
@@ -106,6 +110,38 @@ void start_parting(const Layout& layout, Parting& parting)
 }
 
 template <class Real>
+void part_wedged(const ActiveContacts& active,
+                 const Colliders& colliders,
+                 const RowMaker<Real>& maker,
+                 Parting& parting)
+{
+    const auto many = [&](std::uint32_t body) { return colliders.count[body] > 1; };
+    for (const ActiveContacts::Entry& entry : active.entries) {
+        const bool wedges =
+            entry.list == ContactList::solid || (many(entry.body_a) && many(entry.body_b));
+        if (!wedges) continue;
+        const Contact<Real>& contact = maker.contact_of(entry);
+        double depth = 0;
+        for (std::size_t k = 0; k < entry.points; ++k)
+            depth = std::max(depth, -double{contact.points[k].separation});
+        if (!(depth > kWedged * double{entry.extent})) continue;
+        for (const std::uint32_t body : {entry.body_a, entry.body_b})
+            parting.steps[body] = std::max(parting.steps[body], kWedgedSteps);
+        parting.some = true;
+    }
+}
+
+bool anybody_parts(const Layout& layout, const Batch& batch, const Parting& parting)
+{
+    const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
+    return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
+        const auto bodies = std::span(layout.body_of_slot).subspan(slice.first_body, slice.dynamic);
+        return std::any_of(bodies.begin(), bodies.end(),
+                           [&](std::uint32_t body) { return parting.parts(body); });
+    });
+}
+
+template <class Real>
 bool note_parting(const Layout& layout,
                   const Batch& batch,
                   const Rows<Real>& rows,
@@ -171,6 +207,8 @@ void PutAside<Real>::put_back(const Slice& slice,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template bool note_parting<Real>(const Layout&, const Batch&, const Rows<Real>&, Parting&);    \
     template void stiffen<Real>(const Layout&, const Batch&, Rows<Real>&);                         \
+    template void part_wedged<Real>(const ActiveContacts&, const Colliders&,                       \
+                                    const RowMaker<Real>&, Parting&);                              \
     template class PutAside<Real>;
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

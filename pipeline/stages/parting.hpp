@@ -8,12 +8,14 @@
 // A body that the program puts somewhere parts from when it lies deep in another until all its
 // contacts are flat, and so do those that it leans on and that lean on it: pushed the usual way
 // they would get the speed. What has no room, or a load keeps from coming flat, stops after a
-// number of steps. What a fall or a load drives deep into another does not part: bodies in motion
-// have the usual push.
+// number of steps. What a fall or a load drives deep into another does not part, where the two are
+// convex: bodies in motion have the usual push. Where they meet in many places, as plates that a
+// fall has driven through one another do, its pushes to all sides would spin them.
 //
 // Source: split impulses, as Bullet has them (btContactSolverInfo::m_splitImpulse).
 #pragma once
 
+#include "pipeline/stages/row_maker.hpp"
 #include "pipeline/step_data.hpp"
 
 #include <array>
@@ -22,6 +24,17 @@ namespace throng {
 
 /// Before the batches of a step: room for their bodies.
 void start_parting(const Layout& layout, Parting& parting);
+
+/// Bodies that are solids, or have several shapes, and lie deep in another part, however they came
+/// there: they meet it in many places, whose ways out may be to all sides.
+template <class Real>
+void part_wedged(const ActiveContacts& active,
+                 const Colliders& colliders,
+                 const RowMaker<Real>& maker,
+                 Parting& parting);
+
+/// Whether bodies of a batch were parting before this step, or are wedged in it.
+bool anybody_parts(const Layout& layout, const Batch& batch, const Parting& parting);
 
 /// Whether bodies of a batch part, whose rows are prepared. Notes who, for the next step.
 template <class Real>

@@ -108,6 +108,12 @@ bool take_back(const SolverBody<Real>& seat,
     return true;
 }
 
+bool any_compound(const Colliders& colliders)
+{
+    return std::any_of(colliders.count.begin(), colliders.count.end(),
+                       [](std::uint32_t count) { return count > 1; });
+}
+
 }  // namespace
 
 std::span<const InnerRow> solve_table(const Settings& settings)
@@ -124,6 +130,7 @@ void solve_impulses(const Conditions& conditions,
                     const Islands& islands,
                     const Layout& layout,
                     const ActiveContacts& active,
+                    const Colliders& colliders,
                     const Masses& masses,
                     const Forces& forces,
                     const Pulls& pulls,
@@ -141,12 +148,14 @@ void solve_impulses(const Conditions& conditions,
     const RowMaker<Real> maker(conditions, layout, active, convex, meshes, solids, rows);
     const RigidFacts facts{forces, masses, poses, velocities};
     Conditions exactly = conditions;
-    if (conditions.settings.solver != Solver::direct
-        && conditions.settings.response == Response::impulse)
-        exactly.settings.iterations = kExactSteps;
+    const bool escalates = conditions.settings.solver != Solver::direct
+        && conditions.settings.response == Response::impulse;
+    if (escalates) exactly.settings.iterations = kExactSteps;
     const DirectScene<Real> direct{exactly, layout, active, facts, pulls, maker, poses, velocities};
     start_direct(layout, rows, trouble);
     start_parting(layout, parting);
+    if (!solids.entries.empty() || any_compound(colliders))
+        part_wedged(active, colliders, maker, parting);
     const auto solve_finer = [&](const Batch& batch) {
         Conditions finer = conditions;
         finer.settings.substeps *= batch.times;
@@ -157,10 +166,13 @@ void solve_impulses(const Conditions& conditions,
         solve_batch(finer, facts, layout, batch, with, rows, parting);
         with.scale_impulses(slice, Real(batch.times));
     };
+    // No island is escalated while bodies of it part: what makes contacts stiffer would throw
+    // those apart that are deep in one another.
     const auto solve = [&](const Batch& batch) {
-        if (batch.direct)
+        const bool usual = escalates && parting.some && anybody_parts(layout, batch, parting);
+        if (batch.direct && !usual)
             solve_direct(direct, batch, rows, trouble);
-        else if (batch.times > 1)
+        else if (batch.times > 1 && !usual)
             solve_finer(batch);
         else
             solve_batch(conditions, facts, layout, batch, maker, rows, parting);
@@ -199,9 +211,10 @@ void solve_impulses(const Conditions& conditions,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(                                                            \
-        const Conditions&, const Islands&, const Layout&, const ActiveContacts&, const Masses&,    \
-        const Forces&, const Pulls&, Rows<Real>&, ConvexContacts<Real>&, MeshContacts<Real>&,      \
-        SolidContacts<Real>&, Poses&, Velocities&, Parting&, Stubborn&, Trouble&);
+        const Conditions&, const Islands&, const Layout&, const ActiveContacts&, const Colliders&, \
+        const Masses&, const Forces&, const Pulls&, Rows<Real>&, ConvexContacts<Real>&,            \
+        MeshContacts<Real>&, SolidContacts<Real>&, Poses&, Velocities&, Parting&, Stubborn&,       \
+        Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

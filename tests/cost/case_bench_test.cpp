@@ -47,6 +47,19 @@ TEST(CaseBench, WhatTheDefaultMissesIsNoFailureWhereASettingMeetsIt)
     EXPECT_EQ(results[2].verdict, Verdict::fail);
 }
 
+TEST(CaseBench, WhatIsHeldToNothingIsNoPass)
+{
+    const auto results = run_case(case_that([](CaseBench& bench) {
+        bench.show("default", "way", 2, "m");
+        bench.report_time("default", "time a step", 3);
+    }));
+    ASSERT_EQ(results.size(), 2U);
+    EXPECT_EQ(results[0].verdict, Verdict::shown);
+    EXPECT_EQ(results[0].figure, 2);
+    EXPECT_EQ(results[1].verdict, Verdict::shown);
+    EXPECT_EQ(results[1].unit, "ns");
+}
+
 // Ten steps, of which a line each is told.
 void tell_ten_steps(CaseBench& bench)
 {

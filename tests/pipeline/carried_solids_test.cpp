@@ -193,7 +193,7 @@ TEST_P(CarriedSolids, AreHeldApartFromStaticMeshesAndWhatMovesByItself)
         paddle.angular_velocity = Vec3(0, 0, 1);
         add_rings(made);
         World world(made.scene);
-        for (int step = 0; step < 35; ++step) {
+        for (int step = 0; step < 24; ++step) {
             world.step();
             if (overlap == Overlap::back_up) {
                 ASSERT_EQ(overlapping(made.scene, world, -0.5), 0) << "step " << step;

@@ -1,4 +1,7 @@
 // Parting: bodies made deep inside one another move apart, and get no speed by it.
+#include "pipeline/energy_ledger.hpp"
+#include "scenes/catalog.hpp"
+#include "scenes/closed_meshes.hpp"
 #include "tests/pipeline/small_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -135,6 +138,28 @@ TEST(Parting, WhoIsPutIntoAnotherLaterPartsFromIt)
         ASSERT_LT(greatest_speed(world), 1e-3);
     }
     EXPECT_LT(world.measure().greatest_overlap, 1e-3);
+}
+
+// A flat six-sided frame that falls several times its thickness in a step: contacts of two that
+// have come through one another push to all sides.
+TEST(Parting, ThinSolidsThatAFallHasDrivenThroughOneAnotherGetNoSpeedByIt)
+{
+    for (const NonConvex way : {NonConvex::voxels, NonConvex::spheres})
+        for (const int substeps : {4, 32}) {
+            Scene scene = find_scene("knots")->make_of(12, 1, torus_mesh(0.4, 0.015, 6, 4));
+            scene.settings.nonconvex = way;
+            scene.settings.voxel_size = 0.012;
+            scene.settings.substeps = substeps;
+            World world(scene);
+            EnergyLedger ledger;
+            for (int step = 0; step < 90; ++step) {
+                ledger.before_step(world);
+                world.step();
+                ledger.after_step(world);
+            }
+            EXPECT_LE(ledger.gained(), 3e-2 * ledger.greatest_kinetic())
+                << substeps << (way == NonConvex::voxels ? ", voxels" : ", spheres");
+        }
 }
 
 TEST(Parting, NobodyFallsAsleepBeforeTheyAreApart)
