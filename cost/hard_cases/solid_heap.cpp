@@ -122,7 +122,8 @@ void case_solid_heap(CaseBench& bench)
         judge_file(bench, kind, 50, voxels);
     // 0.032 m thick, and falls five times that in a step: plates then come to lie through one
     // another, whatever the voxels, and the nearest way out is to either side. Steps of about its
-    // thickness and three voxels across it will do; parts come to rest without, in one another by a hair.
+    // thickness and three voxels across it will do; parts come to rest without, in one another by a
+    // hair.
     judge_file(bench, "snowflake", 50, voxels, {0, 0, "dt 1/240, voxel_size 0.01, below"});
     judge_file(bench, "snowflake", 50, voxels, {1.0 / 240, 0.01});
     judge_file(bench, "snowflake", 50, kSolidWays[1], {0, 0, "dt 1/240, below"});

@@ -499,7 +499,10 @@ private:
         const Pose went = poses_.at(way.body);
         const Vec3 velocity = velocities_.linear[way.body], spin = velocities_.angular[way.body];
         const double before = springs_energy_of(way.body, forces_, poses_);
-        if (way.rides == kNobody) take_back_fall(way.body, end.position);
+        // What goes by itself lifts and lowers who rides on it: there it is where he would have
+        // been.
+        const bool driven = way.rides != kNobody && !states_.dynamic(way.rides);
+        take_back_fall(way.body, driven ? pose_on(way, way.since).position : end.position);
         poses_.position[way.body] = end.position;
         turn_back(way.body, end.orientation.normalized());
         if (take_back_pull(way.body, springs_energy_of(way.body, forces_, poses_) - before))
