@@ -107,7 +107,7 @@ public:
         const int wanted = left ? 0 : conditions_.settings.iterations;
         const int pushes = wanted > 0 ? wanted : pgs ? 20 : 1;
         add_pass({prepare});
-        const bool parts = !pgs && parting_.some && find_parting();
+        const bool parts = parting_.some && find_parting();
         for (int step = 0; step < conditions_.settings.substeps; ++step) {
             // In towers and structures there in one substep and back in the next: who comes first
             // takes a little more of a load than its share, which would lean a whole wall to one
@@ -119,9 +119,9 @@ public:
             begin_following(step);
             if (step == 0) add(warm_start);
             if (view_.carries != nullptr) add(carry);
-            const int relaxes = parts ? kInStructures : relax_visits(conditions_.settings, batch_);
+            const int relaxes = relax_visits(conditions_.settings, batch_);
             if (parts) {
-                for (int i = 0; i < relaxes; ++i) add(relax);
+                for (int i = 0; i < (pgs ? pushes : kInStructures); ++i) add(relax);
                 add(keep);
                 for (std::size_t i = 0; i < parting_visits(); ++i) add(part);
                 note_spins();

@@ -144,22 +144,30 @@ TEST(Parting, WhoIsPutIntoAnotherLaterPartsFromIt)
 // have come through one another push to all sides.
 TEST(Parting, ThinSolidsThatAFallHasDrivenThroughOneAnotherGetNoSpeedByIt)
 {
-    for (const NonConvex way : {NonConvex::voxels, NonConvex::spheres})
-        for (const int substeps : {4, 32}) {
-            Scene scene = find_scene("knots")->make_of(12, 1, torus_mesh(0.4, 0.015, 6, 4));
-            scene.settings.nonconvex = way;
-            scene.settings.voxel_size = 0.012;
-            scene.settings.substeps = substeps;
-            World world(scene);
-            EnergyLedger ledger;
-            for (int step = 0; step < 90; ++step) {
-                ledger.before_step(world);
-                world.step();
-                ledger.after_step(world);
-            }
-            EXPECT_LE(ledger.gained(), 3e-2 * ledger.greatest_kinetic())
-                << substeps << (way == NonConvex::voxels ? ", voxels" : ", spheres");
+    struct Setting {
+        const char* name;
+        NonConvex way;
+        int substeps;
+        Solver solver = Solver::soft_step;
+    };
+    for (const Setting& setting :
+         {Setting{"voxels", NonConvex::voxels, 4}, Setting{"voxels, finer", NonConvex::voxels, 32},
+          Setting{"spheres", NonConvex::spheres, 4},
+          Setting{"spheres, pgs", NonConvex::spheres, 4, Solver::pgs}}) {
+        Scene scene = find_scene("knots")->make_of(12, 1, torus_mesh(0.4, 0.015, 6, 4));
+        scene.settings.nonconvex = setting.way;
+        scene.settings.voxel_size = 0.012;
+        scene.settings.substeps = setting.substeps;
+        scene.settings.solver = setting.solver;
+        World world(scene);
+        EnergyLedger ledger;
+        for (int step = 0; step < 90; ++step) {
+            ledger.before_step(world);
+            world.step();
+            ledger.after_step(world);
         }
+        EXPECT_LE(ledger.gained(), 3e-2 * ledger.greatest_kinetic()) << setting.name;
+    }
 }
 
 TEST(Parting, NobodyFallsAsleepBeforeTheyAreApart)
