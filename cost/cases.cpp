@@ -113,6 +113,8 @@ constexpr HardCase kCases[] = {
     {"H85", "walls of bricks stand, as high as soft contacts bear", case_tall_walls, Fault::haste},
     {"H87", "thin solids that a fall drives through one another are thrown by nothing",
      case_wedged_solids, Fault::haste},
+    {"H88", "what falls on something light and bounces off nothing is thrown back by nothing",
+     case_crushed, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -36,7 +36,8 @@ inline constexpr int kExactSteps = 24;
 /// solved. A strain has to last, with the island at rest, before that counts as stubborn: until
 /// then what is told is how far it is on the way, from 0 to 1. It is told below 0 where the next
 /// step should be exact: where an island has only become stubborn, or is pressed in further than
-/// finer substeps would hold it, which would throw it off. Islands of more than a batch of contacts
+/// finer substeps would hold it, which would throw it off; or where a blow drives somebody light in
+/// before somebody heavy, and while he is as deep. Islands of more than a batch of contacts
 /// are not looked at: what is so great holds itself up sideways, or is beyond the budget.
 template <class Real>
 void note_strain(const Conditions& conditions,

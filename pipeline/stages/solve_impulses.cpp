@@ -159,6 +159,8 @@ void solve_impulses(const Conditions& conditions,
     const auto solve_finer = [&](const Batch& batch) {
         Conditions finer = conditions;
         finer.settings.substeps *= batch.times;
+        // Its overlap is that of the usual ones, which these would push apart as much faster.
+        finer.settings.push_limit /= batch.times;
         const RowMaker<Real> with(finer, layout, active, convex, meshes, solids, rows);
         const Slice& slice = layout.slices[batch.first_slice];
         // Impulses are kept as of the substep that the settings say.

@@ -24,6 +24,9 @@ constexpr double kLasting = 3, kFading = 0.95;
 // Overlap from which an island is not left to finer substeps, as a share of what its load makes
 // with the usual ones.
 constexpr double kDeep = 0.5;
+// An impact is too much where somebody so much lighter than another is driven in by such a share of
+// the extent in a step.
+constexpr double kHeavy = 4, kDriven = 0.05, kCrushed = 2 * kExactStrain;
 
 // The direct solver needs no help, and pushes and forces go island by island.
 bool helps(const Settings& settings)
@@ -55,7 +58,7 @@ public:
           Stubborn& stubborn)
         : islands_(islands), layout_(layout), active_(active), masses_(masses),
           velocities_(velocities), maker_(maker), stubborn_(stubborn),
-          resting_(kResting * conditions.gravity.norm())
+          resting_(kResting * conditions.gravity.norm()), step_(conditions.settings.dt)
     {
         for (int points = 1; points <= 4; ++points) {
             const double omega = contact_frequency(conditions, points);
@@ -74,10 +77,13 @@ public:
         double most = 0;
         for (const std::uint32_t contact : contacts) most = std::max(most, give_of(contact));
         const double before = strain_before(island);
+        // Pushed apart otherwise, what was driven in is thrown.
+        if (before >= kCrushed && overlaps(contacts, kDriven)) return -kCrushed;
         if (!(std::max(most * double(bodies), before) > kRelieved)) return 0;
         const double strain = most * height_of(island);
         const bool rests = is_resting(island);
-        if (!(before > 1)) return rests ? begun(strain, before) : 0;
+        if (!(before > 1))
+            return rests ? begun(strain, before) : is_crushed(island) ? -kCrushed : 0;
         const double faded =
             contacts.size() > kExactContacts ? kFading * std::min(before, kStrained) : 0;
         if (!(std::max(strain, faded) > kRelieved)) return 0;
@@ -133,11 +139,53 @@ private:
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
             const Contact<Real>& contact = maker_.contact_of(entry);
-            double overlap = 0;
-            for (std::size_t k = 0; k < entry.points; ++k)
-                overlap = std::max(overlap, -double{contact.points[k].separation});
+            const double overlap = overlap_of(contact, entry.points);
             const double held = give_of(place) * rigid_overlap(double{entry.extent}, entry.points);
             return overlap > kDeep * held;
+        });
+    }
+
+    // Whether somebody light is still driven in after the step, in front of somebody heavy.
+    bool is_crushed(std::size_t island) const
+    {
+        const auto contacts = contacts_of(island);
+        if (contacts.size() > kExactContacts) return false;
+        double heaviest = 0;
+        for (const std::uint32_t body : bodies_of(island))
+            heaviest = std::max(heaviest, masses_.mass[body]);
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            const double lightest = 1
+                / std::max(masses_.inverse_mass[entry.body_a], masses_.inverse_mass[entry.body_b]);
+            return heaviest > kHeavy * lightest
+                && approach(entry) * step_ > kDriven * double{entry.extent};
+        });
+    }
+
+    // m/s, of the middles of two bodies.
+    double approach(const ActiveContacts::Entry& entry) const
+    {
+        const Vec3T<Real>& normal = maker_.contact_of(entry).normal;
+        return (velocities_.linear[entry.body_a] - velocities_.linear[entry.body_b])
+            .dot(normal.template cast<double>());
+    }
+
+    static double overlap_of(const Contact<Real>& contact, std::size_t points)
+    {
+        double overlap = 0;
+        for (std::size_t k = 0; k < points; ++k)
+            overlap = std::max(overlap, -double{contact.points[k].separation});
+        return overlap;
+    }
+
+    // Whether a contact overlaps by more than a share of the extent.
+    bool overlaps(std::span<const std::uint32_t> contacts, double share) const
+    {
+        if (contacts.size() > kExactContacts) return false;
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            const double overlap = overlap_of(maker_.contact_of(entry), entry.points);
+            return overlap > share * double{entry.extent};
         });
     }
 
@@ -186,6 +234,7 @@ private:
     const RowMaker<Real>& maker_;
     Stubborn& stubborn_;
     double resting_;       // m/s
+    double step_;          // s
     double per_speed_[4];  // s, by points, less one: overlap over the rigid share of the extent
 };
 

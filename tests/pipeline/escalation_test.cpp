@@ -1,7 +1,11 @@
 // Escalation: what the solver would let fall is found, held, and let go again.
+#include "kernels/math/rotation.hpp"
+#include "pipeline/energy_ledger.hpp"
 #include "tests/pipeline/small_scenes.hpp"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace throng {
 namespace {
@@ -61,6 +65,58 @@ TEST(Escalation, GivesTheSameBitsOnAnyNumberOfThreads)
     };
     EXPECT_EQ(hash_of(1), hash_of(2));
     EXPECT_EQ(hash_of(1), hash_of(3));
+}
+
+// A ball that weighs so many times as much falls on a small one, 0.3 m above it.
+Scene heavy_falls_on_light(double ratio, double speed)
+{
+    given::SceneOf made;
+    made.floor();
+    made.ball(0.1, Vec3(0, 0, 0.1)).mass = 1;
+    BodyDescription& heavy = made.ball(1, Vec3(0, 0, 1.5));
+    heavy.mass = ratio;
+    heavy.velocity = Vec3(0, 0, -speed);
+    return made.scene;
+}
+
+TEST(Escalation, StopsWhatFallsOnSomethingLightWithoutThrowingItBack)
+{
+    for (const double ratio : {10.0, 30.0, 1000.0})
+        for (const Solver solver : {Solver::soft_step, Solver::pgs}) {
+            Scene scene = heavy_falls_on_light(ratio, 27);
+            scene.settings.solver = solver;
+            World world(scene);
+            double fastest = 0;
+            for (int i = 0; i < 60; ++i) {
+                world.step();
+                fastest = std::max(fastest, world.velocity(world.bodies().back()).z());
+            }
+            EXPECT_LT(fastest, 0.05 * 27) << ratio;
+        }
+}
+
+// What is taken in finer substeps has the overlap of the usual ones, which would be pushed apart
+// as much faster.
+TEST(Escalation, OfAHeapThatSettlesMakesNoEnergy)
+{
+    given::SceneOf made;
+    made.floor();
+    // Planks, each a hundredth and more deep in the ones below it, a hundred on the lowest.
+    for (int i = 0; i < 60; ++i) {
+        const double along = i % 2 == 0 ? 0 : kPi / 2;
+        made.box(Vec3(0.3, 0.075, 0.015), Vec3(0.12 * (i / 2 % 4 - 1.5), 0, 0.014 + 0.028 * i))
+            .orientation = exponential(Vec3(0, 0, along));
+    }
+    made.scene.settings.sleep = false;
+    World world(made.scene);
+    EnergyLedger ledger;
+    for (int i = 0; i < 120; ++i) {
+        ledger.before_step(world);
+        world.step();
+        ledger.after_step(world);
+    }
+    EXPECT_LT(ledger.gained(), 0.02 * ledger.greatest_kinetic());
+    EXPECT_GT(world.report().islands_escalated, 0u);
 }
 
 }  // namespace
