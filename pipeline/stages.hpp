@@ -129,6 +129,7 @@ void prepare_rows(const Conditions&,
                   const Masses&,
                   const BodyStates&,
                   const Pulls&,
+                  const Drives&,
                   Rows<Real>&);
 
 /// Contacts into rows, rows into impulses, velocities and poses. Substeps live here: see
@@ -163,6 +164,7 @@ void carry_groups(const Conditions&,
                   const BodyStates&,
                   const Masses&,
                   const Forces&,
+                  const Drives&,
                   Poses&,
                   Velocities&,
                   Flights&,

@@ -7,6 +7,7 @@
 
 #include "kernels/parallel/wavefront.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -118,13 +119,15 @@ struct GripRows {
     Lane16<Real> impulse[2];  // N s on b, along tangent, other tangent
 };
 
-/// What surfaces that turn do to the sliding of 16 contacts within the step. Rows see arms as the
-/// step began, by which a body that a plate carries leaves it along the tangent.
+/// What surfaces that go do to the sliding of 16 contacts within the step. Rows see arms as the
+/// step began, by which a body that a plate carries leaves it along the tangent; and they do not
+/// know of who walks (see driven_contacts.hpp).
 ///
 ///   by_a, by_b  whose material the place of the contact goes with, as shares; zeros where nothing
 ///               that turns carries anything
 ///   speed       m/s, along tangent, other tangent: of b against a where the contact is in the
-///               middle of the substep, less what the arms as the step began have it
+///               middle of the substep, less what the arms as the step began have it; of who walks
+///               the opposite of its walk
 template <class Real>
 struct CarryRows {
     Lane16<Real> by_a, by_b;
@@ -197,7 +200,11 @@ struct Layout {
 ///   first_point  [blocks] place of the first among the points
 ///   bounces      [blocks] while restitution acts
 ///   rollings     [blocks] while rolling friction acts
-///   carries      [blocks] while something turns that carries what lies on it
+///   carries      [blocks] while something turns that carries what lies on it, or somebody walks
+///   carry_turns  something turns: carries change from substep to substep
+///   drives       [bodies] while bodies that contacts push are driven: see DriveVelocity; null of
+///   who
+///                is not
 ///   grips        [points] while friction acts at points or within a pyramid
 ///   inertias     [bodies] while the gyroscopic torque acts
 ///   pulls        [bodies] while forces act
@@ -211,6 +218,8 @@ struct Rows {
     std::vector<BounceRows<Real>> bounces;
     std::vector<RollingRows<Real>> rollings;
     std::vector<CarryRows<Real>> carries;
+    bool carry_turns = false;
+    std::vector<const std::array<double, 3>*> drives;
     std::vector<GripRows<Real>> grips;
     std::vector<SolverBody<Real>> bodies;
     std::vector<SpinInertia<Real>> inertias;

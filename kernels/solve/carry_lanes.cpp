@@ -50,9 +50,14 @@ template <class L>
     const L by_a = lane<L>(carried.by_a, at), by_b = lane<L>(carried.by_b, at);
     const V3<L> contact = a.material * by_a + b.material * by_b;
     const V3<L> slip = cross(b.spin, contact - b.center) - cross(a.spin, contact - a.center);
+    // Where nothing is carried the speed is what it was: of who walks, or none.
     const L acts = by_a + by_b;
-    (dot(frame.tangent, slip) * acts).store(carried.speed[0].at + at);
-    (dot(frame.other, slip) * acts).store(carried.speed[1].at + at);
+    const auto carries = acts > L(typename L::Number(0));
+    const auto tell = [&](const V3<L>& along, Lane16<typename L::Number>& speed) {
+        select(carries, dot(along, slip) * acts, lane<L>(speed, at)).store(speed.at + at);
+    };
+    tell(frame.tangent, carried.speed[0]);
+    tell(frame.other, carried.speed[1]);
 }
 
 }  // namespace
