@@ -7,13 +7,18 @@
 
 #include "kernels/parallel/wavefront.hpp"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace throng {
 
 inline constexpr int kBlock = 16;
+
+/// Who is driven walks on what faces up by this at least, as a cosine: what is steeper than 45
+/// degrees is a wall, and friction that went along with the drive would climb it.
+inline constexpr double kSteepestWalk = 0.7;
+/// Least square of the share of a normal that is free of the drive, for a walk up a slope.
+inline constexpr double kLeastFreeWalk = 0.25;
 
 /// What the solver knows of one body, in four lines of eight numbers.
 ///
@@ -48,6 +53,15 @@ struct SpinInertia {
 template <class Real>
 struct SolverPull {
     alignas(32) Real rate[8];
+};
+
+/// How a body is driven, if it is and contacts push it; see driven_contacts.hpp.
+///
+///   number  the speed wanted along x, y, z, 0 where that is free; 1 if the body can turn; 1 along
+///           x, y, z that are not free, 0 that are, and 0
+template <class Real>
+struct SolverDrive {
+    alignas(32) Real number[8];
 };
 
 /// One number a lane.
@@ -202,9 +216,7 @@ struct Layout {
 ///   rollings     [blocks] while rolling friction acts
 ///   carries      [blocks] while something turns that carries what lies on it, or somebody walks
 ///   carry_turns  something turns: carries change from substep to substep
-///   drives       [bodies] while bodies that contacts push are driven: see DriveVelocity; null of
-///   who
-///                is not
+///   drives       [bodies] while bodies that contacts push are driven
 ///   grips        [points] while friction acts at points or within a pyramid
 ///   inertias     [bodies] while the gyroscopic torque acts
 ///   pulls        [bodies] while forces act
@@ -219,7 +231,7 @@ struct Rows {
     std::vector<RollingRows<Real>> rollings;
     std::vector<CarryRows<Real>> carries;
     bool carry_turns = false;
-    std::vector<const std::array<double, 3>*> drives;
+    std::vector<SolverDrive<Real>> drives;
     std::vector<GripRows<Real>> grips;
     std::vector<SolverBody<Real>> bodies;
     std::vector<SpinInertia<Real>> inertias;

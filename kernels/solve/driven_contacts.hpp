@@ -7,6 +7,7 @@
 #pragma once
 
 #include "kernels/data/bodies.hpp"
+#include "kernels/data/rows.hpp"
 #include "kernels/math/types.hpp"
 
 #include <algorithm>
@@ -21,21 +22,18 @@ inline Vec3 up_of(const Vec3& gravity)
     return fall > 0 ? Vec3(-gravity / fall) : Vec3(Vec3::Zero());
 }
 
-/// Whether a body stands on what it touches. What is steeper than 45 degrees is a wall: friction
-/// that went along with the drive would climb it.
+/// Whether a body stands on what it touches.
 ///
 ///   normal  towards the body
 inline bool stands_on(const Vec3& normal, const Vec3& up)
 {
-    constexpr double kSteepest = 0.7;
-    return normal.dot(up) >= kSteepest;
+    return normal.dot(up) >= kSteepestWalk;
 }
 
 /// Along the ground, against what is there: as the drive wants it on its axes and, where the ground
 /// slopes, what follows on the axes that it leaves free.
 inline Vec3 walk_along(const DriveVelocity& wanted, const Vec3& ground, const Vec3& normal)
 {
-    constexpr double kLeastFree = 0.25;
     Vec3 walk = Vec3::Zero(), free = normal;
     for (int k = 0; k < 3; ++k) {
         const double speed = wanted[static_cast<std::size_t>(k)];
@@ -43,7 +41,7 @@ inline Vec3 walk_along(const DriveVelocity& wanted, const Vec3& ground, const Ve
         walk[k] = speed - ground[k];
         free[k] = 0;
     }
-    walk -= free * (normal.dot(walk) / std::max(free.squaredNorm(), kLeastFree));
+    walk -= free * (normal.dot(walk) / std::max(free.squaredNorm(), kLeastFreeWalk));
     return walk - normal * normal.dot(walk);
 }
 

@@ -162,8 +162,13 @@ void WholeIsland::take_contact(const DirectScene<Real>& scene,
     point.normal = touch.normal;
     point.friction = meeting.friction;
     point.rolling = meeting.rolling_friction;
-    const DriveVelocity* const by_a = scene.maker.drive_of(scene.layout.slot_a[lane]);
-    const DriveVelocity* const by_b = scene.maker.drive_of(scene.layout.slot_b[lane]);
+    const auto drive = [&](std::int32_t slot) {
+        return scene.layout.movable(slot)
+            ? scene.drives.of(scene.layout.body_of_slot[static_cast<std::size_t>(slot)])
+            : nullptr;
+    };
+    const DriveVelocity* const by_a = drive(scene.layout.slot_a[lane]);
+    const DriveVelocity* const by_b = drive(scene.layout.slot_b[lane]);
     for (int k = 0; k < contact.count; ++k) {
         const auto& from = contact.points[static_cast<std::size_t>(k)];
         touch.point = static_cast<std::uint32_t>(k);

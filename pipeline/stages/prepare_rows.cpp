@@ -5,6 +5,7 @@
 #include "pipeline/stages.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace throng {
 
@@ -93,8 +94,15 @@ void seat_drives(const Drives& drives, const Layout& layout, Rows<Real>& rows)
         const std::uint32_t body = drives.body[i];
         const std::uint32_t slot = body < layout.slot.size() ? layout.slot[body] : Layout::kNoSlot;
         if (slot == Layout::kNoSlot) continue;
-        if (rows.drives.empty()) rows.drives.assign(rows.bodies.size(), nullptr);
-        rows.drives[slot] = &drives.velocity[i];
+        if (rows.drives.empty()) rows.drives.assign(rows.bodies.size(), SolverDrive<Real>{});
+        Real(&number)[8] = rows.drives[slot].number;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double speed = drives.velocity[i][k];
+            const bool free = std::isnan(speed);
+            number[k] = free ? Real(0) : static_cast<Real>(speed);
+            number[4 + k] = free ? Real(0) : Real(1);
+        }
+        number[3] = ease_of(rows.bodies[slot]).of_turning > 0 ? Real(1) : Real(0);
     }
 }
 

@@ -82,14 +82,15 @@ RowMaker<Real>::RowMaker(const Conditions& conditions,
       turns_(conditions.has(Effect::rotation) || conditions.grips_apart()),
       uncut_(conditions.grips_apart()
              && conditions.settings.friction_cone == FrictionCone::pyramid),
-      dt_(conditions.settings.dt), up_(up_of(conditions.gravity)),
-      softness_(softness_of<Real>(conditions))
+      dt_(conditions.settings.dt), softness_(softness_of<Real>(conditions))
 {
     for (std::size_t points = 0; points < pressed_.size(); ++points) {
         const double omega = contact_frequency(conditions, static_cast<int>(points) + 1);
         pressed_[points] = conditions.gravity.norm() / (omega * omega);
     }
     settles_ = pressed_[0] < kLeastPress;
+    const Vec3 up = up_of(conditions.gravity);
+    for (int k = 0; k < 3; ++k) up_[k] = static_cast<Real>(up[k]);
 }
 
 template <class Real>
@@ -139,7 +140,7 @@ void RowMaker<Real>::fill(std::size_t at, LooseBlock<Real>& loose) const
     if (view_.carries != nullptr) {
         rows_.carries[at] = {};
         if (rows_.carry_turns) find_carried(at);
-        if (!rows_.drives.empty()) find_walking(at);
+        if (view_.drives != nullptr) kernels_.walk(view_, at, up_);
     }
     if (!uncut_ && !settles_) return;
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
@@ -196,41 +197,6 @@ void RowMaker<Real>::find_carried(std::size_t at) const
         const double share = goes_with_b(double{round_a}, double{round_b}, by_a);
         carried.by_a.at[lane] = static_cast<Real>(1 - share);
         carried.by_b.at[lane] = static_cast<Real>(share);
-    }
-}
-
-// The walk is told once a step: what it is told against, the ground, is as the step began.
-template <class Real>
-void RowMaker<Real>::find_walking(std::size_t at) const
-{
-    const ContactBlock<Real>& block = rows_.blocks[at];
-    CarryRows<Real>& carried = rows_.carries[at];
-    for (std::size_t lane = 0; lane < kBlock; ++lane) {
-        const DriveVelocity* const by_a = drive_of(block.a[lane]);
-        const DriveVelocity* const by_b = drive_of(block.b[lane]);
-        if (by_a == nullptr && by_b == nullptr) continue;
-        const auto vector = [&](const Lane16<Real>(&v)[3]) {
-            return Vec3(double{v[0].at[lane]}, double{v[1].at[lane]}, double{v[2].at[lane]});
-        };
-        const auto body = [&](bool is_b) -> const SolverBody<Real>& {
-            return rows_.bodies[static_cast<std::size_t>(is_b ? block.b[lane] : block.a[lane])];
-        };
-        const auto rolls = [&](bool is_b) {
-            const Real round = is_b ? block.round_b.at[lane] : block.round_a.at[lane];
-            return round > 0 && ease_of(body(is_b)).of_turning > 0;
-        };
-        const auto velocity = [&](bool is_b) -> Vec3 {
-            const Real* const v = body(is_b).motion;
-            return Vec3(double{v[0]}, double{v[1]}, double{v[2]})
-                + Vec3(double{v[4]}, double{v[5]}, double{v[6]})
-                      .cross(vector(is_b ? block.center_b : block.center_a));
-        };
-        const Vec3 normal = vector(block.normal), tangent = vector(block.tangent);
-        const Vec3 walk = walk_of(by_a, by_b, normal, up_, rolls, velocity);
-        if (walk.isZero(0)) continue;
-        carried.by_a.at[lane] = carried.by_b.at[lane] = 0;
-        carried.speed[0].at[lane] = static_cast<Real>(-walk.dot(tangent));
-        carried.speed[1].at[lane] = static_cast<Real>(-walk.dot(normal.cross(tangent)));
     }
 }
 

@@ -43,19 +43,12 @@ public:
 
     Contact<Real>& contact_of(const ActiveContacts::Entry& source) const;
 
-    /// The drive of a solver body that contacts push, else null.
-    const DriveVelocity* drive_of(std::int32_t slot) const
-    {
-        return rows_.drives.empty() ? nullptr : rows_.drives[static_cast<std::size_t>(slot)];
-    }
-
 private:
     void fill(std::size_t block, LooseBlock<Real>& loose) const;
     Surfaces::Meeting meeting_of(std::uint32_t entry) const;
     void
     settle_gap(const Contact<Real>& contact, std::size_t lane, ContactBlock<Real>& block) const;
     void find_carried(std::size_t block) const;
-    void find_walking(std::size_t block) const;
 
     const Layout& layout_;
     const ActiveContacts& active_;
@@ -68,7 +61,7 @@ private:
     bool turns_;
     bool uncut_;                              // friction is not cut to a round cone
     double dt_;                               // s, of a step
-    Vec3 up_;                                 // see driven_contacts.hpp
+    Real up_[3];                              // see driven_contacts.hpp
     std::array<Softness<Real>, 4> softness_;  // by the number of points, less one
     // m, the overlap that weight makes; by the number of points, less one.
     std::array<double, 4> pressed_;
