@@ -1,6 +1,7 @@
 #include "broadphase/embree_tree.hpp"
 
 #include "broadphase/layered_finder.hpp"
+#include "kernels/parallel/race_notes.hpp"
 
 #include <embree3/rtcore.h>
 
@@ -48,6 +49,20 @@ void isolated(const Body& body)
 #else
     tbb::this_task_arena::isolate(body);
 #endif
+}
+
+// Embree builds its trees by itself, of memory that the race checker sees it take and nobody pass
+// on: for that alone it is kept on one thread.
+template <class Body>
+void build_isolated(const Body& body)
+{
+#ifndef THRONG_PLAIN_THREADS
+    if (kChecksRaces) {
+        tbb::task_arena(1).execute(body);
+        return;
+    }
+#endif
+    isolated(body);
 }
 
 float rounded_down(double value)
@@ -138,10 +153,12 @@ struct Collision {
     const EmbreeBoxes::Accept& accept;
     CallbackLists& lists;
     bool with_itself;
+    TaskNotes notes = {};
 
     static void report(void* self, RTCCollision* collisions, unsigned count)
     {
         const auto& my = *static_cast<const Collision*>(self);
+        const TaskNotes::Run run(my.notes);
         my.lists.with_list([&](std::vector<PairKey>& found) {
             for (unsigned i = 0; i < count; ++i) {
                 const unsigned a = collisions[i].primID0, b = collisions[i].primID1;
@@ -207,7 +224,7 @@ void EmbreeBoxes::build(std::span<const Box3> boxes, const Vec3& origin, double 
     inside_->boxes = boxes;
     rtcSetGeometryUserPrimitiveCount(inside_->geometry, static_cast<unsigned>(boxes.size()));
     rtcCommitGeometry(inside_->geometry);
-    isolated([&] { rtcCommitScene(inside_->scene); });
+    build_isolated([&] { rtcCommitScene(inside_->scene); });
     inside_->boxes = {};
     throw_if_failed("building a tree");
 }
@@ -219,9 +236,12 @@ void EmbreeBoxes::collide(const EmbreeBoxes& other,
                           std::vector<PairKey>& keys)
 {
     if (empty() || other.empty()) return;
-    Collision collision{accept, inside_->lists, this == &other};
-    isolated(
-        [&] { rtcCollide(inside_->scene, other.inside_->scene, &Collision::report, &collision); });
+    {
+        Collision collision{accept, inside_->lists, this == &other};
+        isolated([&] {
+            rtcCollide(inside_->scene, other.inside_->scene, &Collision::report, &collision);
+        });
+    }
     throw_if_failed("looking for pairs");
     inside_->lists.move_to(keys);
 }

@@ -111,6 +111,8 @@ constexpr HardCase kCases[] = {
     {"H76", "heavy boxes on light ones, dice, cylinders and cards stand by the default dials",
      case_heavy_on_light, Fault::mass},
     {"H85", "walls of bricks stand, as high as soft contacts bear", case_tall_walls, Fault::haste},
+    {"H86", "who is driven has the speed that it is driven at, whatever friction bears",
+     case_walkers, Fault::haste},
     {"H87", "thin solids that a fall drives through one another are thrown by nothing",
      case_wedged_solids, Fault::haste},
     {"H88", "what falls on something light and bounces off nothing is thrown back by nothing",

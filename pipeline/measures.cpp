@@ -249,7 +249,8 @@ std::size_t World::memory_bytes() const
                          convex.travels.placed, convex.travels.traveled, convex.travels.approach,
                          methods.of_pair, methods.bounds, methods.fallbacks,
                          std::get<ActiveContacts>(chosen.data).entries, rows.blocks, rows.points,
-                         rows.bounces, rows.rollings, rows.carries, rows.bodies, rows.inertias);
+                         rows.bounces, rows.rollings, rows.carries, rows.drives, rows.bodies,
+                         rows.inertias);
         },
         state_->step);
     return sum;

@@ -113,7 +113,7 @@ struct BodyDescription {
     double linear_drag = 0;       // kg/s
     double angular_drag = 0;      // kg m2/s
     std::optional<Vec3> pivot;    // this point of the body stays where it is
-    std::array<std::optional<double>, 3> drive_velocity;  // set before every step where given
+    std::array<std::optional<double>, 3> drive_velocity;  // m/s, set before every step
     std::uint32_t group = 1;
     std::uint32_t mask = 0xffffffffu;
     bool lock_rotation = false;

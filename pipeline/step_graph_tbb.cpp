@@ -1,5 +1,6 @@
 // The step graph on a oneTBB flow graph, or, where a step is over before other threads are awake,
 // on one thread.
+#include "kernels/parallel/race_notes.hpp"
 #include "pipeline/step_graph.hpp"
 
 #include <tbb/flow_graph.h>
@@ -51,7 +52,36 @@ struct StepGraph<Real>::Nodes {
     std::deque<tbb::flow::continue_node<Signal>> stages;
     tbb::task_arena one_thread{1};
     Quicker quicker;
+
+    // For the race checker alone: that stages begun, and that each has ended.
+    using Waits = std::vector<std::pair<std::size_t, std::size_t>>;
+    Waits waits;
+    std::vector<char> ended;
+    char begun = 0;
+
+    void run_stage(StepGraph& step, std::size_t place) const
+    {
+        note_after(begun);
+        if (kChecksRaces)
+            for (const auto& [earlier, later] : waits)
+                if (later == place) note_after(ended[earlier]);
+        step.run_stage(place);
+        if (kChecksRaces) note_before(ended[place]);
+    }
 };
+
+namespace {
+
+template <class Nodes, class Step>
+struct RunStage {
+    const Nodes* nodes;
+    Step* step;
+    std::size_t place;
+
+    THRONG_CALLED_BY_SCHEDULER void operator()(Signal) const { nodes->run_stage(*step, place); }
+};
+
+}  // namespace
 
 template <class Real>
 StepGraph<Real>::StepGraph(std::vector<Stage<Real>> stages, StepData<Real>& data)
@@ -59,12 +89,15 @@ StepGraph<Real>::StepGraph(std::vector<Stage<Real>> stages, StepData<Real>& data
       nodes_(std::make_unique<Nodes>())
 {
     for (std::size_t place = 0; place < stages_.size(); ++place) {
-        auto& node =
-            nodes_->stages.emplace_back(nodes_->graph, [this, place](Signal) { run_stage(place); });
+        auto& node = nodes_->stages.emplace_back(
+            nodes_->graph, RunStage<Nodes, StepGraph>{nodes_.get(), this, place});
         tbb::flow::make_edge(nodes_->start, node);
     }
     for (const auto& [earlier, later] : waits(stages_))
         tbb::flow::make_edge(nodes_->stages[earlier], nodes_->stages[later]);
+    if (!kChecksRaces) return;
+    nodes_->waits = waits(stages_);
+    nodes_->ended.resize(stages_.size());
 }
 
 template <class Real>
@@ -83,8 +116,10 @@ void StepGraph<Real>::run()
     if (way == Quicker::alone) {
         nodes_->one_thread.execute([this] { run_in_order(); });
     } else {
+        note_before(nodes_->begun);
         nodes_->start.try_put(Signal());
         nodes_->graph.wait_for_all();
+        for (const char& ended : nodes_->ended) note_after(ended);
     }
     nodes_->quicker.took(way,
                          std::chrono::duration<double, std::milli>(Clock::now() - begin).count());

@@ -125,14 +125,14 @@ test_preset() {
 }
 
 # Runs what a sanitizer is there for: asan the fast tests, but for those that only compare runs with
-# one another or that do the same many times over; tsan those with threads.
+# one another or that do the same many times over; tsan and tsan-tbb those with threads.
 test_sanitized() {
     local which=(-LE "slow|tree") steady=()
     export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
     export LSAN_OPTIONS=print_suppressions=0:suppressions=$root/tools/leaks.supp
-    export TSAN_OPTIONS=halt_on_error=1
-    if [[ $1 == tsan ]]; then
-        which+=(-R "$(sed -n 's/^THRONG_TESTS_NAMED:STRING=//p' "$root/build/tsan/CMakeCache.txt")"
+    export TSAN_OPTIONS=halt_on_error=1:suppressions=$root/tools/races.supp
+    if [[ $1 == tsan* ]]; then
+        which+=(-R "$(sed -n 's/^THRONG_TESTS_NAMED:STRING=//p' "$root/build/$1/CMakeCache.txt")"
             -E "Lanes|SweepWidths|Catalogue/HardCases")
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi

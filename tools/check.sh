@@ -28,8 +28,10 @@ cmake --preset tidy >build/tidy.log || { cat build/tidy.log; exit 1; }
 if [[ ${1:-} == all ]]; then
     build_preset asan
     test_sanitized asan
-    build_preset tsan
-    test_sanitized tsan
+    for races in tsan tsan-tbb; do
+        build_preset "$races"
+        test_sanitized "$races"
+    done
     build_preset release
     build_preset perf
     build_preset fuzz

@@ -84,6 +84,7 @@ void case_thin_falls(CaseBench& bench);     // H74, thin_falls.cpp
 void case_slender_bars(CaseBench& bench);   // H75, slender_bars.cpp
 void case_round_rims(CaseBench& bench);     // H80, round_rims.cpp
 void case_carried_round(CaseBench& bench);  // H84, carried_round.cpp
+void case_walkers(CaseBench& bench);        // H86, walkers.cpp
 // Bodies on floors of many pieces, and on meshes from either side.
 void case_tiles(CaseBench& bench);          // H81, tiles.cpp
 void case_both_sides(CaseBench& bench);     // H82, both_sides.cpp

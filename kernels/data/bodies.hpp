@@ -7,6 +7,7 @@
 #include "kernels/data/shapes.hpp"
 #include "kernels/math/types.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -60,10 +61,20 @@ struct Masses {
     std::vector<Vec3> symmetry_axis;
 };
 
+/// m/s along each axis; not a number where it is free.
+using DriveVelocity = std::array<double, 3>;
+
 /// Velocities that the user sets before every step.
 struct Drives {
-    std::vector<std::uint32_t> body;              // ascending
-    std::vector<std::array<double, 3>> velocity;  // m/s; not a number where it is free
+    std::vector<std::uint32_t> body;  // ascending
+    std::vector<DriveVelocity> velocity;
+
+    /// Null for who is not driven.
+    const DriveVelocity* of(std::uint32_t who) const
+    {
+        const auto at = std::lower_bound(body.begin(), body.end(), who);
+        return at != body.end() && *at == who ? &velocity[std::size_t(at - body.begin())] : nullptr;
+    }
 };
 
 enum class BodyKind : std::uint8_t { gone, still, kinematic, dynamic };

@@ -14,6 +14,12 @@ namespace throng {
 
 inline constexpr int kBlock = 16;
 
+/// Who is driven walks on what faces up by this at least, as a cosine: what is steeper than 45
+/// degrees is a wall, and friction that went along with the drive would climb it.
+inline constexpr double kSteepestWalk = 0.7;
+/// Least square of the share of a normal that is free of the drive, for a walk up a slope.
+inline constexpr double kLeastFreeWalk = 0.25;
+
 /// What the solver knows of one body, in four lines of eight numbers.
 ///
 ///   motion   velocity, 0, angular velocity, 0; the latter of what has a SpinInertia in axes that
@@ -47,6 +53,15 @@ struct SpinInertia {
 template <class Real>
 struct SolverPull {
     alignas(32) Real rate[8];
+};
+
+/// How a body is driven, if it is and contacts push it; see driven_contacts.hpp.
+///
+///   number  the speed wanted along x, y, z, 0 where that is free; 1 if the body can turn; 1 along
+///           x, y, z that are not free, 0 that are, and 0
+template <class Real>
+struct SolverDrive {
+    alignas(32) Real number[8];
 };
 
 /// One number a lane.
@@ -118,13 +133,15 @@ struct GripRows {
     Lane16<Real> impulse[2];  // N s on b, along tangent, other tangent
 };
 
-/// What surfaces that turn do to the sliding of 16 contacts within the step. Rows see arms as the
-/// step began, by which a body that a plate carries leaves it along the tangent.
+/// What surfaces that go do to the sliding of 16 contacts within the step. Rows see arms as the
+/// step began, by which a body that a plate carries leaves it along the tangent; and they do not
+/// know of who walks (see driven_contacts.hpp).
 ///
 ///   by_a, by_b  whose material the place of the contact goes with, as shares; zeros where nothing
 ///               that turns carries anything
 ///   speed       m/s, along tangent, other tangent: of b against a where the contact is in the
-///               middle of the substep, less what the arms as the step began have it
+///               middle of the substep, less what the arms as the step began have it; of who walks
+///               the opposite of its walk
 template <class Real>
 struct CarryRows {
     Lane16<Real> by_a, by_b;
@@ -197,7 +214,9 @@ struct Layout {
 ///   first_point  [blocks] place of the first among the points
 ///   bounces      [blocks] while restitution acts
 ///   rollings     [blocks] while rolling friction acts
-///   carries      [blocks] while something turns that carries what lies on it
+///   carries      [blocks] while something turns that carries what lies on it, or somebody walks
+///   carry_turns  something turns: carries change from substep to substep
+///   drives       [bodies] while bodies that contacts push are driven
 ///   grips        [points] while friction acts at points or within a pyramid
 ///   inertias     [bodies] while the gyroscopic torque acts
 ///   pulls        [bodies] while forces act
@@ -211,6 +230,8 @@ struct Rows {
     std::vector<BounceRows<Real>> bounces;
     std::vector<RollingRows<Real>> rollings;
     std::vector<CarryRows<Real>> carries;
+    bool carry_turns = false;
+    std::vector<SolverDrive<Real>> drives;
     std::vector<GripRows<Real>> grips;
     std::vector<SolverBody<Real>> bodies;
     std::vector<SpinInertia<Real>> inertias;

@@ -4,6 +4,7 @@
 // asked for, so the constructor holds a rendezvous: no task of it ends before all have begun.
 #include "kernels/parallel/block_watch.hpp"
 #include "kernels/parallel/blocks.hpp"
+#include "kernels/parallel/race_notes.hpp"
 #include "kernels/parallel/work_count.hpp"
 
 #include <tbb/blocked_range.h>
@@ -24,26 +25,54 @@
 
 namespace throng {
 
+namespace {
+
+// A loop that threads share.
+class SharedLoop {
+public:
+    SharedLoop(std::size_t count, std::size_t grain, const BlockBody& body)
+        : count_(count), grain_(grain), body_(body), counted_(work_count())
+    { }
+
+    void run(std::size_t begin, std::size_t end) const
+    {
+        const TaskNotes::Run run(notes_);
+        const WorkCountScope counted(counted_);
+        for (std::size_t block = begin; block < end; ++block)
+            body_(block * grain_, std::min(count_, (block + 1) * grain_), block);
+    }
+
+private:
+    std::size_t count_, grain_;
+    const BlockBody& body_;
+    WorkCount* counted_;
+    TaskNotes notes_;
+};
+
+struct LoopPart {
+    const SharedLoop* loop;
+
+    THRONG_CALLED_BY_SCHEDULER void operator()(const tbb::blocked_range<std::size_t>& range) const
+    {
+        loop->run(range.begin(), range.end());
+    }
+};
+
+}  // namespace
+
 void for_each_block(std::size_t count, std::size_t grain, BlockBody body)
 {
     if (run_watched(count, grain, body)) return;
     const std::size_t blocks = block_count(count, grain);
-    const auto run = [&](std::size_t block) {
-        body(block * grain, std::min(count, (block + 1) * grain), block);
-    };
     // One thread gains nothing from being asked through the scheduler.
     if (blocks <= 1 || tbb::this_task_arena::max_concurrency() == 1) {
-        for (std::size_t block = 0; block < blocks; ++block) run(block);
+        for (std::size_t block = 0; block < blocks; ++block)
+            body(block * grain, std::min(count, (block + 1) * grain), block);
         return;
     }
-    WorkCount* const count_of_work = work_count();
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, blocks, 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            const WorkCountScope counted(count_of_work);
-            for (std::size_t block = range.begin(); block < range.end(); ++block) run(block);
-        },
-        tbb::simple_partitioner());
+    const SharedLoop loop(count, grain, body);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 1), LoopPart{&loop},
+                      tbb::simple_partitioner());
 }
 
 namespace {
@@ -103,27 +132,51 @@ struct ThreadPool::Inside {
 namespace {
 
 // Counts the threads that can be made to stand at one spot at the same time.
+class Rendezvous {
+public:
+    explicit Rendezvous(int threads) : threads_(threads) { }
+
+    void arrive()
+    {
+        const TaskNotes::Run run(notes_);
+        {
+            const std::lock_guard lock(guard_);
+            who_.insert(std::this_thread::get_id());
+        }
+        ++arrived_;
+        while (arrived_ < threads_ && Clock::now() < deadline_) std::this_thread::yield();
+    }
+    int met()
+    {
+        const std::lock_guard lock(guard_);
+        return static_cast<int>(who_.size());
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    int threads_;
+    std::atomic<int> arrived_{0};
+    std::mutex guard_;
+    std::set<std::thread::id> who_;
+    Clock::time_point deadline_ = Clock::now() + std::chrono::seconds(2);
+    TaskNotes notes_;
+};
+
+struct Arrival {
+    Rendezvous* rendezvous;
+
+    THRONG_CALLED_BY_SCHEDULER void operator()() const { rendezvous->arrive(); }
+};
+
 int meet(tbb::task_arena& arena, int threads)
 {
-    using Clock = std::chrono::steady_clock;
-    std::atomic<int> arrived{0};
-    std::mutex guard;
-    std::set<std::thread::id> who;
-    const auto deadline = Clock::now() + std::chrono::seconds(2);
+    Rendezvous rendezvous(threads);
     arena.execute([&] {
         tbb::task_group group;
-        for (int i = 0; i < threads; ++i)
-            group.run([&] {
-                {
-                    const std::lock_guard lock(guard);
-                    who.insert(std::this_thread::get_id());
-                }
-                ++arrived;
-                while (arrived < threads && Clock::now() < deadline) std::this_thread::yield();
-            });
+        for (int i = 0; i < threads; ++i) group.run(Arrival{&rendezvous});
         group.wait();
     });
-    return static_cast<int>(who.size());
+    return rendezvous.met();
 }
 
 }  // namespace

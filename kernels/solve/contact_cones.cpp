@@ -32,6 +32,7 @@ Vec3 across(const Vec3& n)
     return n.cross(flat ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitY())).normalized();
 }
 
+// To slide as one walks is not to slide.
 void choose_rows(const DirectPoint& point, ContactCone& cone)
 {
     const Vec3 tangent = across(point.normal), other = point.normal.cross(tangent);
@@ -43,7 +44,10 @@ void choose_rows(const DirectPoint& point, ContactCone& cone)
     };
     add(point.normal, 1, false);
     if (point.friction > 0)
-        for (const Vec3& axis : {tangent, other}) add(axis, point.friction, false);
+        for (const Vec3& axis : {tangent, other}) {
+            cone.free[cone.rows] = -point.friction * axis.dot(point.walk);
+            add(axis, point.friction, false);
+        }
     if (point.rolling > 0)
         for (const Vec3& axis : {tangent, other, point.normal}) add(axis, point.rolling, true);
 }

@@ -24,6 +24,7 @@ struct DirectBody {
 ///   arm_a, _b  m, from the centers of mass
 ///   least      m/s, the least speed along the normal at which b may leave a: below 0 while there
 ///              is a gap to close
+///   walk       m/s across the normal, at which friction is to have b slide on a: of who walks
 ///   rolling    m, of a torque that resists turning, as a share of the normal impulse
 ///   impulse    N s on b; torque N m s on b. In: a guess, or 0
 struct DirectPoint {
@@ -32,6 +33,7 @@ struct DirectPoint {
     Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
     double friction = 0, rolling = 0;
     double least = 0;
+    Vec3 walk = Vec3::Zero();
     Vec3 impulse = Vec3::Zero(), torque = Vec3::Zero();
 };
 

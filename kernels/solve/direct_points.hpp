@@ -7,7 +7,7 @@
 
 namespace throng {
 
-/// Velocity of b against a at a point, m/s.
+/// Velocity of b against a at a point, m/s, as friction sees it: less the walk.
 inline Vec3 velocity_between(const DirectPoint& point, std::span<const DirectBody> bodies)
 {
     const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
@@ -15,7 +15,7 @@ inline Vec3 velocity_between(const DirectPoint& point, std::span<const DirectBod
         const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
         return body.velocity + body.spin.cross(arm);
     };
-    return speed(point.b, point.arm_b) - speed(point.a, point.arm_a);
+    return speed(point.b, point.arm_b) - speed(point.a, point.arm_a) - point.walk;
 }
 
 /// Of that, the part along the normal: below 0 while they close.

@@ -29,6 +29,9 @@ template <class Real>
 void carry(const RowsView<Real>& rows, std::size_t begin, std::size_t end, Real half);
 
 template <class Real>
+void walk(const RowsView<Real>& rows, std::size_t place, const Real (&up)[3]);
+
+template <class Real>
 void warm_start_grips(const RowsView<Real>& rows,
                       std::size_t begin,
                       std::size_t end,

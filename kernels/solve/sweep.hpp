@@ -61,6 +61,7 @@ struct RowsView {
     SolverBody<Real>* bodies = nullptr;
     GripRows<Real>* grips = nullptr;
     CarryRows<Real>* carries = nullptr;
+    const SolverDrive<Real>* drives = nullptr;
 
     static RowsView of(Rows<Real>& rows)
     {
@@ -70,7 +71,8 @@ struct RowsView {
                 rows.rollings.empty() ? nullptr : rows.rollings.data(),
                 rows.bodies.data(),
                 rows.grips.empty() ? nullptr : rows.grips.data(),
-                rows.carries.empty() ? nullptr : rows.carries.data()};
+                rows.carries.empty() ? nullptr : rows.carries.data(),
+                rows.drives.empty() ? nullptr : rows.drives.data()};
     }
 };
 
@@ -98,6 +100,8 @@ inline constexpr double kAtRest = 1e-4;
 ///   warm_start     gives the bodies the impulses that the contacts hold
 ///   carry          tells CarryRows::speed, half a substep ahead of where the bodies are. Needs
 ///                  RowsView::carries
+///   walk           tells CarryRows::speed of those at `place` who walk, see driven_contacts.hpp,
+///                  by their bodies as the step begins. Needs RowsView::carries and drives
 ///   sweep          moves every point towards its wanted normal speed, never pulling; then
 ///                  friction, a round cone of the contact's normal impulse; then the points again
 ///   bounce         impacts, one contact after another: points that come in faster than `slow` and
@@ -134,6 +138,7 @@ struct SolveKernels {
                        std::size_t end,
                        const Visit<Real>& visit);
     void (*carry)(const RowsView<Real>& rows, std::size_t begin, std::size_t end, Real half);
+    void (*walk)(const RowsView<Real>& rows, std::size_t place, const Real (&up)[3]);
     void (*sweep)(const RowsView<Real>& rows,
                   std::size_t begin,
                   std::size_t end,

@@ -223,10 +223,19 @@ bool bounce(const RowsView<Real>& rows,
 template <class Real>
 constexpr SolveKernels<Real> table()
 {
-    return {THRONG_LANES_NAME,      Lanes<Real>::kWidth, prepare<Real>,
-            warm_start<Real>,       carry<Real>,         sweep<Real>,
-            bounce<Real>,           begin_substep<Real>, advance<Real>,
-            warm_start_grips<Real>, sweep_grips<Real>,   bounce_grips<Real>};
+    return {THRONG_LANES_NAME,
+            Lanes<Real>::kWidth,
+            prepare<Real>,
+            warm_start<Real>,
+            carry<Real>,
+            walk<Real>,
+            sweep<Real>,
+            bounce<Real>,
+            begin_substep<Real>,
+            advance<Real>,
+            warm_start_grips<Real>,
+            sweep_grips<Real>,
+            bounce_grips<Real>};
 }
 
 }  // namespace

@@ -199,6 +199,7 @@ void carry_groups(const Conditions& conditions,
                   const BodyStates& states,
                   const Masses& masses,
                   const Forces& forces,
+                  const Drives& drives,
                   Poses& poses,
                   Velocities& velocities,
                   Flights& flights,
@@ -212,8 +213,8 @@ void carry_groups(const Conditions& conditions,
     islands.lone.clear();  // none is left to fly alone
     contacts = {};
     contacts.force.assign(states.kind.size(), Vec3::Zero());
-    GroupScene scene{conditions, shapes, surfaces,   filter,  colliders, states, masses,
-                     forces,     poses,  velocities, flights, {},        {}};
+    GroupScene scene{conditions, shapes, surfaces, filter,     colliders, states, masses,
+                     forces,     drives, poses,    velocities, flights,   {},     {}};
     const bool backs_up = conditions.has(Effect::no_overlap);
     Carriage(scene, backs_up ? &GroupFlight::back_up : &GroupFlight::subdivide)
         .run(contacts, trouble);

@@ -9,6 +9,7 @@
 // Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
 #include "kernels/math/rotation.hpp"
 #include "kernels/solve/carried_points.hpp"
+#include "kernels/solve/driven_contacts.hpp"
 #include "pipeline/stages/collide.hpp"
 #include "pipeline/stages/group_flight.hpp"
 
@@ -86,6 +87,26 @@ void GroupFlight::list_touches_of(PairKey key, double time)
         add_touches(found, place(a).position, place(b).position, touch);
 }
 
+// Who is driven walks on what bears it.
+Vec3 GroupFlight::walk_at(const Touch& touch) const
+{
+    const auto drive = [&](std::uint32_t body) {
+        return scene_.states.movable(body) ? scene_.drives.of(body) : nullptr;
+    };
+    const auto rolls = [&](bool is_b) {
+        const std::uint32_t body = is_b ? touch.body_b : touch.body_a;
+        return (is_b ? touch.round_b : touch.round_a) > 0 && rule_.turns
+            && !(scene_.masses.inverse_inertia[body] == Sym3{});
+    };
+    const auto velocity = [&](bool is_b) -> Vec3 {
+        const std::uint32_t body = is_b ? touch.body_b : touch.body_a;
+        return scene_.velocities.linear[body]
+            + scene_.velocities.angular[body].cross(is_b ? touch.point.arm_b : touch.point.arm_a);
+    };
+    return walk_of(drive(touch.body_a), drive(touch.body_b), touch.point.normal,
+                   up_of(scene_.conditions.gravity), rolls, velocity);
+}
+
 // The points of one manifold, of bodies at these positions; `touch` is what they have in common.
 void GroupFlight::add_touches(const LocalManifold<double>& found,
                               const Vec3& a,
@@ -108,6 +129,7 @@ void GroupFlight::add_touches(const LocalManifold<double>& found,
         touch.gap = at.separation;
         point.arm_a = middle - half - a;
         point.arm_b = middle + half - b;
+        if (!scene_.drives.body.empty()) point.walk = walk_at(touch);
         touches_.push_back(touch);
     }
 }
@@ -286,6 +308,7 @@ void GroupFlight::carry(const Touch& touch,
     };
     const bool by_a = carried_by(a, b);
     if (!by_a && !carried_by(b, a)) return;
+    if (!point.walk.isZero(0)) return;  // it is told for where it was
     const Vec3 core_a = point.arm_a - point.normal * touch.round_a;
     const Vec3 core_b = point.arm_b + point.normal * touch.round_b;
     carry_arms(carried_side(Vec3::Zero(), Quat::Identity(), a, core_a, half),

@@ -31,6 +31,7 @@ struct GroupScene {
     const BodyStates& states;
     const Masses& masses;
     const Forces& forces;
+    const Drives& drives;
     Poses& poses;
     Velocities& velocities;
     Flights& flights;
@@ -151,6 +152,7 @@ private:
     // Contacts: see group_contacts.cpp.
     void list_touches(double time);
     void list_touches_of(PairKey key, double time);
+    Vec3 walk_at(const Touch& touch) const;
     void add_touches(const LocalManifold<double>& found, const Vec3& a, const Vec3& b, Touch touch);
     std::int32_t seat_of(std::uint32_t body);
     Motions motions(bool ends) const;

@@ -1,4 +1,5 @@
 // Island exchange: an island taken from the step's data, and its answer given back.
+#include "kernels/solve/driven_contacts.hpp"
 #include "pipeline/stages/whole_island.hpp"
 
 namespace throng {
@@ -63,6 +64,8 @@ WholeIsland::WholeIsland(const DirectScene<Real>& scene, const Batch& batch)
     const Slice& slice = scene.layout.slices[batch.first_slice];
     const int steps = scene.conditions.settings.iterations;
     steps_ = steps > 0 ? steps : kDirectSteps;
+    up_ = up_of(scene.conditions.gravity);
+    spins_ = scene.conditions.settings.response != Response::kinematic;
     take_bodies(scene, slice);
     take_forces(scene, slice);
     for (std::uint32_t i = 0; i < slice.contacts; ++i)
@@ -159,6 +162,13 @@ void WholeIsland::take_contact(const DirectScene<Real>& scene,
     point.normal = touch.normal;
     point.friction = meeting.friction;
     point.rolling = meeting.rolling_friction;
+    const auto drive = [&](std::int32_t slot) {
+        return scene.layout.movable(slot)
+            ? scene.drives.of(scene.layout.body_of_slot[static_cast<std::size_t>(slot)])
+            : nullptr;
+    };
+    const DriveVelocity* const by_a = drive(scene.layout.slot_a[lane]);
+    const DriveVelocity* const by_b = drive(scene.layout.slot_b[lane]);
     for (int k = 0; k < contact.count; ++k) {
         const auto& from = contact.points[static_cast<std::size_t>(k)];
         touch.point = static_cast<std::uint32_t>(k);
@@ -167,6 +177,7 @@ void WholeIsland::take_contact(const DirectScene<Real>& scene,
         point.arm_b = point.arm_a + touch.normal * touch.gap + in_double(contact.between);
         touch.arm_a = point.arm_a - touch.normal * touch.round_a;
         touch.arm_b = point.arm_b + touch.normal * touch.round_b;
+        if (by_a != nullptr || by_b != nullptr) walks_.push_back({touches_.size(), by_a, by_b});
         touches_.push_back(touch);
         points_.push_back(point);
     }

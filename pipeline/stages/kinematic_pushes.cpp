@@ -50,7 +50,7 @@ void WholeIsland::stop_approach(std::size_t at)
     const auto velocity = [&](std::int32_t seat) -> Vec3 {
         return seat < 0 ? Vec3(Vec3::Zero()) : after_[static_cast<std::size_t>(seat)].velocity;
     };
-    const Vec3 between = velocity(point.b) - velocity(point.a);
+    const Vec3 between = velocity(point.b) - velocity(point.a) - point.walk;
     const Vec3 sliding = between - point.normal * point.normal.dot(between);
     const double fast = std::sqrt(sliding.squaredNorm());
     Vec3 change = point.normal * closing;

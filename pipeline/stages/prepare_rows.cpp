@@ -5,6 +5,7 @@
 #include "pipeline/stages.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace throng {
 
@@ -84,6 +85,27 @@ bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
                        [&](const auto& body) { return carries(body, lightest, dt); });
 }
 
+// Drives of those that contacts push. Of nobody else does friction ask.
+template <class Real>
+void seat_drives(const Drives& drives, const Layout& layout, Rows<Real>& rows)
+{
+    rows.drives.clear();
+    for (std::size_t i = 0; i < drives.body.size(); ++i) {
+        const std::uint32_t body = drives.body[i];
+        const std::uint32_t slot = body < layout.slot.size() ? layout.slot[body] : Layout::kNoSlot;
+        if (slot == Layout::kNoSlot) continue;
+        if (rows.drives.empty()) rows.drives.assign(rows.bodies.size(), SolverDrive<Real>{});
+        Real(&number)[8] = rows.drives[slot].number;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double speed = drives.velocity[i][k];
+            const bool free = std::isnan(speed);
+            number[k] = free ? Real(0) : static_cast<Real>(speed);
+            number[4 + k] = free ? Real(0) : Real(1);
+        }
+        number[3] = ease_of(rows.bodies[slot]).of_turning > 0 ? Real(1) : Real(0);
+    }
+}
+
 }  // namespace
 
 template <class Real>
@@ -94,6 +116,7 @@ void prepare_rows(const Conditions& conditions,
                   const Masses& masses,
                   const BodyStates& states,
                   const Pulls& pulls,
+                  const Drives& drives,
                   Rows<Real>& rows)
 {
     const bool forced = conditions.effects.meets(kForces);
@@ -126,7 +149,12 @@ void prepare_rows(const Conditions& conditions,
     }
     rows.points.resize(points);
     rows.bounces.resize(conditions.has(Effect::restitution) ? blocks : 0);
-    rows.carries.resize(anybody_carries(rows.bodies, conditions.settings.dt) ? blocks : 0);
+    rows.carry_turns = anybody_carries(rows.bodies, conditions.settings.dt);
+    if (conditions.has(Effect::drive))
+        seat_drives(drives, layout, rows);
+    else
+        rows.drives.clear();
+    rows.carries.resize(rows.carry_turns || !rows.drives.empty() ? blocks : 0);
     rows.grips.resize(conditions.grips_apart() ? points : 0);
     rows.rollings.resize(conditions.has(Effect::rolling_friction) ? blocks : 0);
 }
@@ -134,7 +162,7 @@ void prepare_rows(const Conditions& conditions,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void prepare_rows<Real>(const Conditions&, const Layout&, const Poses&,               \
                                      const Velocities&, const Masses&, const BodyStates&,          \
-                                     const Pulls&, Rows<Real>&);
+                                     const Pulls&, const Drives&, Rows<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

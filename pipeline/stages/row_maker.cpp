@@ -2,6 +2,7 @@
 
 #include "kernels/motion/solver_bodies.hpp"
 #include "kernels/solve/carried_points.hpp"
+#include "kernels/solve/driven_contacts.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -88,6 +89,8 @@ RowMaker<Real>::RowMaker(const Conditions& conditions,
         pressed_[points] = conditions.gravity.norm() / (omega * omega);
     }
     settles_ = pressed_[0] < kLeastPress;
+    const Vec3 up = up_of(conditions.gravity);
+    for (int k = 0; k < 3; ++k) up_[k] = static_cast<Real>(up[k]);
 }
 
 template <class Real>
@@ -134,7 +137,11 @@ void RowMaker<Real>::fill(std::size_t at, LooseBlock<Real>& loose) const
                lane_at, loose);
     }
     kernels_.prepare(loose, at, view_, turns_);
-    if (view_.carries != nullptr) find_carried(at);
+    if (view_.carries != nullptr) {
+        rows_.carries[at] = {};
+        if (rows_.carry_turns) find_carried(at);
+        if (view_.drives != nullptr) kernels_.walk(view_, at, up_);
+    }
     if (!uncut_ && !settles_) return;
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
         const std::uint32_t entry = layout_.lanes[at * kBlock + lane].entry;
@@ -181,7 +188,6 @@ void RowMaker<Real>::find_carried(std::size_t at) const
 {
     const ContactBlock<Real>& block = rows_.blocks[at];
     CarryRows<Real>& carried = rows_.carries[at];
-    carried = {};
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
         const auto& a = rows_.bodies[static_cast<std::size_t>(block.a[lane])];
         const auto& b = rows_.bodies[static_cast<std::size_t>(block.b[lane])];

@@ -61,6 +61,7 @@ private:
     bool turns_;
     bool uncut_;                              // friction is not cut to a round cone
     double dt_;                               // s, of a step
+    Real up_[3];                              // see driven_contacts.hpp
     std::array<Softness<Real>, 4> softness_;  // by the number of points, less one
     // m, the overlap that weight makes; by the number of points, less one.
     std::array<double, 4> pressed_;

@@ -118,7 +118,7 @@ public:
             add(begin);
             begin_following(step);
             if (step == 0) add(warm_start);
-            if (view_.carries != nullptr) add(carry);
+            if (rows_.carry_turns) add(carry);
             const int relaxes = relax_visits(conditions_.settings, batch_);
             if (parts) {
                 for (int i = 0; i < (pgs ? pushes : kInStructures); ++i) add(relax);

@@ -18,6 +18,7 @@ struct DirectScene {
     const ActiveContacts& active;
     const RigidFacts& facts;  // as the step began, of the bodies of any batch not yet solved
     const Pulls& pulls;
+    const Drives& drives;
     const RowMaker<Real>& maker;
     Poses& poses;
     Velocities& velocities;

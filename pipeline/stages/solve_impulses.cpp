@@ -134,6 +134,7 @@ void solve_impulses(const Conditions& conditions,
                     const Masses& masses,
                     const Forces& forces,
                     const Pulls& pulls,
+                    const Drives& drives,
                     Rows<Real>& rows,
                     ConvexContacts<Real>& convex,
                     MeshContacts<Real>& meshes,
@@ -151,7 +152,8 @@ void solve_impulses(const Conditions& conditions,
     const bool escalates = conditions.settings.solver != Solver::direct
         && conditions.settings.response == Response::impulse;
     if (escalates) exactly.settings.iterations = kExactSteps;
-    const DirectScene<Real> direct{exactly, layout, active, facts, pulls, maker, poses, velocities};
+    const DirectScene<Real> direct{exactly, layout, active, facts,     pulls,
+                                   drives,  maker,  poses,  velocities};
     start_direct(layout, rows, trouble);
     start_parting(layout, parting);
     if (!solids.entries.empty() || any_compound(colliders))
@@ -214,9 +216,9 @@ void solve_impulses(const Conditions& conditions,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(                                                            \
         const Conditions&, const Islands&, const Layout&, const ActiveContacts&, const Colliders&, \
-        const Masses&, const Forces&, const Pulls&, Rows<Real>&, ConvexContacts<Real>&,            \
-        MeshContacts<Real>&, SolidContacts<Real>&, Poses&, Velocities&, Parting&, Stubborn&,       \
-        Trouble&);
+        const Masses&, const Forces&, const Pulls&, const Drives&, Rows<Real>&,                    \
+        ConvexContacts<Real>&, MeshContacts<Real>&, SolidContacts<Real>&, Poses&, Velocities&,     \
+        Parting&, Stubborn&, Trouble&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -2,6 +2,7 @@
 
 #include "kernels/math/rotation.hpp"
 #include "kernels/solve/carried_points.hpp"
+#include "kernels/solve/driven_contacts.hpp"
 
 namespace throng {
 
@@ -48,6 +49,29 @@ void WholeIsland::place_points()
         point.arm_b = arm_now(touch.arm_b, touch.b, round_b);
         gaps_[i] = gap_now(i);
     }
+    find_walks();
+}
+
+// Who is driven walks on what bears it: see driven_contacts.hpp. By the arms as they are.
+void WholeIsland::find_walks()
+{
+    for (const IslandWalk& walk : walks_) {
+        const IslandTouch& touch = touches_[walk.touch];
+        DirectPoint& point = points_[walk.touch];
+        const auto rolls = [&](bool is_b) {
+            const auto seat = static_cast<std::size_t>(is_b ? touch.b : touch.a);
+            return (is_b ? touch.round_b : touch.round_a) > 0
+                && !(inverse_inertia_[seat] == Sym3{});
+        };
+        const auto velocity = [&](bool is_b) -> Vec3 {
+            const std::int32_t seat = is_b ? touch.b : touch.a;
+            if (seat < 0) return Vec3::Zero();
+            const DirectBody& body = after_[static_cast<std::size_t>(seat)];
+            if (!spins_) return body.velocity;
+            return body.velocity + body.spin.cross(is_b ? point.arm_b : point.arm_a);
+        };
+        point.walk = walk_of(walk.by_a, walk.by_b, point.normal, up_, rolls, velocity);
+    }
 }
 
 // Who is carried by a surface that turns by itself meets it where the middle of the coming time
@@ -75,6 +99,7 @@ void WholeIsland::carry_arms(double half, double dt)
         throng::carry_arms(side(touch.a, touch.arm_a), side(touch.b, touch.arm_b),
                            goes_with_b(touch.round_a, touch.round_b, by_a), points_[i]);
     }
+    find_walks();
 }
 
 // Into world axes, as the bodies are turned now.

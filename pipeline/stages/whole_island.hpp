@@ -40,6 +40,12 @@ struct IslandTouch {
     double tolerance = 0;  // m, overlap that is let be
 };
 
+/// A touch of somebody driven: by what each side is, or null.
+struct IslandWalk {
+    std::size_t touch = 0;
+    const DriveVelocity *by_a = nullptr, *by_b = nullptr;
+};
+
 class WholeIsland {
 public:
     template <class Real>
@@ -72,6 +78,7 @@ private:
     Vec3 arm_now(const Vec3& arm, std::int32_t seat, const Vec3& round) const;
     void place_points();
     void carry_arms(double half, double dt);
+    void find_walks();
     void turn_inertias();
     double gap_now(std::size_t at) const;
     void move_freely(const Conditions& conditions, double time);
@@ -118,6 +125,7 @@ private:
 
     std::vector<IslandSeat> seats_;  // those that can be moved, then those that move by themselves
     std::vector<IslandTouch> touches_;
+    std::vector<IslandWalk> walks_;
     std::vector<DirectBody> before_, free_, after_, going_;  // [seats]; going_: how places change
     std::vector<DirectPoint> points_, others_;               // [touches]
     std::vector<double> gaps_;                               // [touches] m, now
@@ -131,6 +139,8 @@ private:
     std::vector<double> unearned_;                           // [touches] m, overlap without a push
     std::vector<Vec3> held_;                                 // [touches] N, by friction's springs
     std::unique_ptr<FollowingForces> following_;             // none: empty
+    Vec3 up_ = Vec3::Zero();                                 // see driven_contacts.hpp
+    bool spins_ = true;                                      // contacts see how bodies spin
     double elapsed_ = 0;                                     // s, since the step began
     DirectSolver solver_;
     int steps_ = 0, cuts_ = 1;
