@@ -54,6 +54,7 @@ enum class Fault : std::uint8_t {
     haste,        // bodies that go 5 % faster after every step
     restitution,  // coefficients of restitution 10 % too small
     shrink,       // meshes a tenth too small, and all that is asked for its shared volume
+    unsteady,     // bodies moved a bit after every step, in each run by another
 };
 
 /// How much of a case is run: all of it, or what a test has time for.
@@ -79,6 +80,9 @@ public:
 
     const Settings& settings() const { return settings_; }
     bool brief() const { return extent_ == Extent::brief; }
+    int threads() const { return threads_; }
+    /// For runs to come.
+    void use_threads(int threads) { threads_ = threads; }
 
     /// A scene with the bench's settings, ready to be filled.
     Scene scene() const;
@@ -183,6 +187,7 @@ private:
     double spent_ms_ = 0;
     double step_ms_ = 0;    // of the last run's steps
     int steps_ = 0;         // of the last run
+    int runs_ = 0;          // so far
     std::size_t lost_ = 0;  // bodies quarantined since the last line
     double missed_ = 0;     // greatest residual of the direct solver, likewise
     std::map<std::string, double, std::less<>> method_ms_;

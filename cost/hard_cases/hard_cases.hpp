@@ -31,12 +31,15 @@ void case_rolling(CaseBench& bench);      // H14, rolling.cpp
 void case_spin_bounce(CaseBench& bench);  // H15, impacts.cpp, and bounces()
 void case_cradle(CaseBench& bench);       // H17, impacts.cpp
 void case_break(CaseBench& bench);        // H18, impacts.cpp
+void case_euler_disk(CaseBench& bench);   // H19, euler_disk.cpp
+void case_dominoes(CaseBench& bench);     // H20, dominoes.cpp
 void case_painleve(CaseBench& bench);     // H21, slid_rods.cpp
 void case_leaning(CaseBench& bench);      // H22, leaning.cpp
 void case_struck_rod(CaseBench& bench);   // H23, impacts.cpp, and without_friction.cpp
 void motion_without_friction(CaseBench& bench);
-void case_turntable(CaseBench& bench);  // H24, turntable.cpp
-void case_planks(CaseBench& bench);     // H25, turntable.cpp
+void case_turntable(CaseBench& bench);   // H24, turntable.cpp
+void case_planks(CaseBench& bench);      // H25, turntable.cpp
+void case_invariance(CaseBench& bench);  // H26, invariance.cpp
 
 void case_recovery(CaseBench& bench);  // H47, recovery.cpp
 void case_heavy_on_light(CaseBench& bench);
