@@ -23,6 +23,10 @@ constexpr int kPushSweeps = 2, kRelaxSweeps = 1;
 
 constexpr int kInHeaps = 1, kInStructures = 2;  // see relax_visits()
 
+// From where on a push is more than what a contact bears in a substep: friction that it made, left
+// behind by a single visit, slows what rubs on its way down.
+constexpr int kManySubsteps = 16;
+
 // Where half of what springs and pivots do acts after bodies moved, it is for these visits alone to
 // hold it up, through whatever a body lies on.
 constexpr int kInLateForces = 6;
@@ -513,7 +517,7 @@ private:
 int relax_visits(const Settings& settings, const Batch& batch)
 {
     if (settings.relax_iterations > 0) return settings.relax_iterations;
-    return lies_on_faces(batch) ? kInStructures : kInHeaps;
+    return lies_on_faces(batch) || settings.substeps > kManySubsteps ? kInStructures : kInHeaps;
 }
 
 double mean_relax_visits(const Settings& settings, const Layout& layout)
