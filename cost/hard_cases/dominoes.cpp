@@ -131,9 +131,9 @@ void case_dominoes(CaseBench& bench)
         const bool wide = spacing > 0.75;
         const Dominoes exact{.count = spacing > 0.5 ? 15 : 30,
                              .spacing = spacing,
-                             .dt = wide ? 2e-3 : 4e-3,
+                             .dt = wide ? 3e-3 : 4e-3,
                              .exactly = true};
-        const double time = judge_row(bench, exact, wide ? ", dt 2e-3" : ", dt 4e-3");
+        const double time = judge_row(bench, exact, wide ? ", dt 3e-3" : ", dt 4e-3");
         for (const int substeps : {4, 16, 64}) {
             const Dominoes row{
                 .count = exact.count, .spacing = spacing, .dt = 2e-3, .substeps = substeps};

@@ -24,9 +24,10 @@ constexpr double kLasting = 3, kFading = 0.95;
 // Overlap from which an island is not left to finer substeps, as a share of what its load makes
 // with the usual ones.
 constexpr double kDeep = 0.5;
-// An impact is too much where somebody so much lighter than another is driven in by such a share of
-// the extent in a step.
-constexpr double kHeavy = 4, kDriven = 0.05, kCrushed = 2 * kExactStrain;
+// A blow is too much where somebody so much lighter than who he touches is driven in by such a
+// share of the extent in a step; and what is small enough to be solved exactly at once.
+constexpr double kHeavy = 8, kDriven = 0.1, kCrushed = 2 * kExactStrain;
+constexpr std::size_t kCrushedContacts = 16;
 
 // The direct solver needs no help, and pushes and forces go island by island.
 bool helps(const Settings& settings)
@@ -145,21 +146,35 @@ private:
         });
     }
 
-    // Whether somebody light is still driven in after the step, in front of somebody heavy.
+    // Whether somebody light who touches somebody heavy is still driven in after the step.
     bool is_crushed(std::size_t island) const
     {
         const auto contacts = contacts_of(island);
-        if (contacts.size() > kExactContacts) return false;
-        double heaviest = 0;
-        for (const std::uint32_t body : bodies_of(island))
-            heaviest = std::max(heaviest, masses_.mass[body]);
+        if (contacts.size() > kCrushedContacts) return false;
+        const auto entry = [&](std::uint32_t place) -> const ActiveContacts::Entry& {
+            return active_.entries[place];
+        };
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
-            const ActiveContacts::Entry& entry = active_.entries[place];
-            const double lightest = 1
-                / std::max(masses_.inverse_mass[entry.body_a], masses_.inverse_mass[entry.body_b]);
-            return heaviest > kHeavy * lightest
-                && approach(entry) * step_ > kDriven * double{entry.extent};
+            if (!(approach(entry(place)) * step_ > kDriven * double{entry(place).extent}))
+                return false;
+            const std::uint32_t light = lighter(entry(place));
+            return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t other) {
+                const std::uint32_t a = entry(other).body_a, b = entry(other).body_b;
+                return (a == light && is_heavy_for(b, light))
+                    || (b == light && is_heavy_for(a, light));
+            });
         });
+    }
+
+    std::uint32_t lighter(const ActiveContacts::Entry& entry) const
+    {
+        const auto& ease = masses_.inverse_mass;
+        return ease[entry.body_a] > ease[entry.body_b] ? entry.body_a : entry.body_b;
+    }
+    // Of who can be moved.
+    bool is_heavy_for(std::uint32_t body, std::uint32_t light) const
+    {
+        return masses_.inverse_mass[body] > 0 && masses_.mass[body] > kHeavy * masses_.mass[light];
     }
 
     // m/s, of the middles of two bodies.

@@ -1,6 +1,4 @@
 // Escalation: what the solver would let fall is found, held, and let go again.
-#include "kernels/math/rotation.hpp"
-#include "pipeline/energy_ledger.hpp"
 #include "tests/pipeline/small_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -93,30 +91,6 @@ TEST(Escalation, StopsWhatFallsOnSomethingLightWithoutThrowingItBack)
             }
             EXPECT_LT(fastest, 0.05 * 27) << ratio;
         }
-}
-
-// What is taken in finer substeps has the overlap of the usual ones, which would be pushed apart
-// as much faster.
-TEST(Escalation, OfAHeapThatSettlesMakesNoEnergy)
-{
-    given::SceneOf made;
-    made.floor();
-    // Planks, each a hundredth and more deep in the ones below it, a hundred on the lowest.
-    for (int i = 0; i < 60; ++i) {
-        const double along = i % 2 == 0 ? 0 : 1.6;
-        made.box(Vec3(0.3, 0.075, 0.015), Vec3(0.12 * (i / 2 % 4 - 1.5), 0, 0.014 + 0.028 * i))
-            .orientation = exponential(Vec3(0, 0, along));
-    }
-    made.scene.settings.sleep = false;
-    World world(made.scene);
-    EnergyLedger ledger;
-    for (int i = 0; i < 120; ++i) {
-        ledger.before_step(world);
-        world.step();
-        ledger.after_step(world);
-    }
-    EXPECT_LT(ledger.gained(), 0.02 * ledger.greatest_kinetic());
-    EXPECT_GT(world.report().islands_escalated, 0u);
 }
 
 }  // namespace
