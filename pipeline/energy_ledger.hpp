@@ -19,7 +19,8 @@ namespace throng {
 /// that group gains is its doing and stays out of the account. What a step may have made by
 /// rounding is not counted; nor is what contacts lift as they give way less, but for the motion
 /// that becomes of it, and of that none that they took out of others in the few steps before: a
-/// soft contact gives back some of what it stopped.
+/// soft contact gives back some of what it stopped. Heights are those that go with the velocities,
+/// half a substep before, of what falls by the semi-implicit rule.
 ///
 /// Where work is not known exactly, in the middle of a step, the most it can have been is taken:
 /// what the account shows has no source, but it may miss some. So may it while others lose energy.

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace throng {
 namespace {
@@ -127,6 +128,20 @@ TEST(EnergyLedger, TellsNothingOfAHeapThatFallsAndRests)
         for (Material& material : scene.materials) material.restitution = restitution;
         const EnergyLedger ledger = keep(scene, 300);
         EXPECT_LT(ledger.gained(), 0.01 * ledger.greatest_kinetic());
+    }
+}
+
+TEST(EnergyLedger, TellsNothingOfABallThatBouncesForEver)
+{
+    for (const int substeps : {1, 4}) {
+        SceneOf made;
+        made.floor();
+        made.ball(0.5, Vec3(0, 0, 2));
+        made.scene.materials.front().restitution = 1;
+        made.scene.settings.substeps = substeps;
+        const EnergyLedger ledger = keep(made.scene, 300);
+        EXPECT_LT(ledger.gained(), 1e-4 * ledger.greatest_kinetic()) << substeps;
+        EXPECT_LT(std::abs(ledger.net()), 0.02 * ledger.greatest_kinetic()) << substeps;
     }
 }
 
