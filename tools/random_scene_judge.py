@@ -163,10 +163,12 @@ def too_slow(made, run):
     return None
 
 
-def failures(made, run):
+def failures(made, run, timed=True):
     """What was not kept, gravest first; each begins with the name of its kind."""
     end = ending(run)
     if end:
         return [end]
-    judges = (not_finite, through_floor, energy_made, not_at_rest, too_deep, too_slow)
+    judges = [not_finite, through_floor, energy_made, not_at_rest, too_deep]
+    if timed:
+        judges.append(too_slow)
     return [found for found in (judge(made, run) for judge in judges) if found]
