@@ -72,12 +72,12 @@ def good_stats(**changes):
 BEFORE = {"kinetic_energy_j": 0.0, "potential_energy_j": 200.0}
 
 
-def told(made=None, code=0, bodies=None, timed_out=False, **changes):
+def told(made=None, code=0, bodies=None, timed_out=False, timed=True, **changes):
     """The kinds of failures of a run that is good but for these changes."""
     standing = [([0, 0, -1], [0, 0, 0]), ([0, 0, 1], [0, 0, 0])]
     run = judge.Run(code, "", good_stats(**changes), BEFORE,
                     standing if bodies is None else bodies, timed_out)
-    return [line.split(":")[0] for line in judge.failures(made or box_on_floor(), run)]
+    return [line.split(":")[0] for line in judge.failures(made or box_on_floor(), run, timed)]
 
 
 class Judge(unittest.TestCase):
@@ -117,6 +117,10 @@ class Judge(unittest.TestCase):
         for long in ({"p99": 1.0, "greatest": 2000.0}, {"p99": 100.0, "greatest": 200.0}):
             self.assertEqual(told(ms_per_step=long), ["slow"])
             self.assertEqual(told(box_on_floor(slow=True), ms_per_step=long), [])
+
+    def test_has_no_verdict_on_time_where_none_is_asked_for(self):
+        long = {"p99": 100.0, "greatest": 200.0}
+        self.assertEqual(told(timed=False, ms_per_step=long), [])
 
 
 if __name__ == "__main__":
