@@ -4,6 +4,7 @@
 #include "kernels/math/rotation.hpp"
 #include "kernels/solve/direct.hpp"
 #include "pipeline/dials.hpp"
+#include "pipeline/energy_ledger.hpp"
 #include "pipeline/names.hpp"
 #include "pipeline/world.hpp"
 
@@ -176,15 +177,18 @@ void plant(Fault fault, Scene& scene)
 
 Vec3 rounded(const Vec3& place) { return place.cast<float>().cast<double>(); }
 
-void round_poses(World& world)
+template <class Place>
+void place_anew(World& world, const Place& place)
 {
     for (const BodyId body : world.bodies()) {
         if (world.motion(body) != Motion::dynamic) continue;
         Pose pose = world.pose(body);
-        pose.position = rounded(pose.position);
+        pose.position = place(pose.position);
         world.set_pose(body, pose);
     }
 }
+
+void round_poses(World& world) { place_anew(world, rounded); }
 
 constexpr double kHaste = 1.05;
 
@@ -199,12 +203,7 @@ void hasten(World& world)
 
 void shift_poses(World& world, double by)
 {
-    for (const BodyId body : world.bodies()) {
-        if (world.motion(body) != Motion::dynamic) continue;
-        Pose pose = world.pose(body);
-        pose.position += Vec3::Constant(by);
-        world.set_pose(body, pose);
-    }
+    place_anew(world, [&](const Vec3& at) -> Vec3 { return at + Vec3::Constant(by); });
 }
 
 // Aslant, so that no face of a pair lets it pass.
@@ -261,7 +260,8 @@ Scene CaseBench::scene() const
 
 void CaseBench::run(const Scene& scene,
                     double time,
-                    const std::function<bool(World&, double)>& watch)
+                    const std::function<bool(World&, double)>& watch,
+                    EnergyLedger* ledger)
 {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
@@ -273,12 +273,14 @@ void CaseBench::run(const Scene& scene,
     step_ms_ = steps_ = 0;
     ++runs_;
     for (int step = 1; step <= steps; ++step) {
+        if (ledger != nullptr) ledger->before_step(world);
         world.step();
         step_ms_ += world.report().time_ms;
         ++steps_;
         if (fault_ == Fault::float_poses) round_poses(world);
         if (fault_ == Fault::haste) hasten(world);
         if (fault_ == Fault::unsteady) shift_poses(world, 1e-8 * runs_);
+        if (ledger != nullptr) ledger->after_step(world);
         stop_where_enough();
         if (!watch(world, step * dt)) break;
     }

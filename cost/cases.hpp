@@ -87,10 +87,11 @@ public:
     /// A scene with the bench's settings, ready to be filled.
     Scene scene() const;
     /// Runs a scene for a time; `watch` sees the world after every step and may end the run early
-    /// by answering false.
+    /// by answering false. A ledger is kept of every step.
     void run(const Scene& scene,
              double time,
-             const std::function<bool(class World&, double now)>& watch);
+             const std::function<bool(class World&, double now)>& watch,
+             class EnergyLedger* ledger = nullptr);
 
     /// Shows a scene's world before its first step.
     void look_at(const Scene& scene, const std::function<void(const class World&)>& look);

@@ -1,5 +1,6 @@
 #include "pipeline/energy_ledger.hpp"
 
+#include "kernels/motion/integrators.hpp"
 #include "pipeline/force_builder.hpp"
 #include "pipeline/world_state.hpp"
 
@@ -35,8 +36,7 @@ bool moves_by_itself(const World::State& state, std::uint32_t body)
 // would seem to win by it.
 double lag_of(const Conditions& conditions)
 {
-    const Integrator integrator = conditions.settings.integrator;
-    const bool kicked = integrator == Integrator::auto_ || integrator == Integrator::semi_implicit;
+    const bool kicked = falls_by_kicks(conditions.settings.integrator);
     return kicked && !conditions.has(Effect::no_overlap) ? conditions.substep() / 2 : 0;
 }
 

@@ -41,8 +41,7 @@ std::uint32_t put_plate(SceneParts& parts, std::uint32_t material, const Ride& r
     parts.body(id).angular_velocity = ride.turn * Vec3(0, 0, ride.rate);
     if (ride.plate == Plate::axle) parts.body(id).lock_position = true;
     if (ride.plate != Plate::driven) return id;
-    parts.body(id).motion = Motion::kinematic;
-    parts.body(id).mass.reset();
+    parts.hold(id, Motion::kinematic);
     return id;
 }
 

@@ -39,8 +39,7 @@ void add_walls(SceneParts& parts, std::uint32_t material, double half, const Roo
             at[axis] = side * (half + 2);
             const std::uint32_t wall =
                 parts.box(material, 1, extents, {room.off + room.turn * at, room.turn});
-            parts.body(wall).motion = Motion::static_;
-            parts.body(wall).mass.reset();
+            parts.hold(wall);
         }
 }
 

@@ -111,15 +111,12 @@ Account account_of(CaseBench& bench, const Scene& scene, double time)
         account.moving = world.measure().kinetic_energy;
     });
     EnergyLedger ledger;
-    bool begun = false;
-    bench.run(scene, time, [&](World& world, double) {
-        if (begun) ledger.after_step(world);
-        begun = true;
-        ledger.before_step(world);
+    const auto watch = [&](World& world, double) {
         account.most = std::max(account.most, energy_of(world));
         account.least = std::min(account.least, energy_of(world));
         return account.most < 1e6 * account.first;
-    });
+    };
+    bench.run(scene, time, watch, &ledger);
     account.gained = ledger.gained();
     account.moving = std::max(account.moving, ledger.greatest_kinetic());
     return account;

@@ -117,6 +117,8 @@ public:
         std::uint32_t material, double mass, double radius, double half_length, const Pose& pose);
     std::uint32_t hull(std::uint32_t material, double mass, HullShape shape, const Pose& pose);
     BodyDescription& body(std::uint32_t id) { return scene_.bodies[id]; }
+    /// Lets nothing move it, or nothing but its own velocity.
+    void hold(std::uint32_t id, Motion motion = Motion::static_);
     Scene& scene() { return scene_; }
 
 private:

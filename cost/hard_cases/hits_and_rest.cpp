@@ -42,8 +42,7 @@ void put_wall(
     SceneParts& parts, std::uint32_t material, const Way& way, const Vec3& at, const Vec3& half)
 {
     const std::uint32_t wall = parts.box(material, 1, half, {way.place(at), way.turn});
-    parts.body(wall).motion = Motion::static_;
-    parts.body(wall).mass.reset();
+    parts.hold(wall);
 }
 
 // How far the velocities after it are off, over the speed.

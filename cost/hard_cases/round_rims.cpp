@@ -112,8 +112,7 @@ void put_floor(SceneParts& parts, std::uint32_t material, Floor floor, const Vec
     }
     id = parts.box(material, 1, Vec3(wide, wide, thick),
                    {at - thick * Vec3::UnitZ(), Quat::Identity()});
-    parts.body(id).motion = Motion::static_;
-    parts.body(id).mass.reset();
+    parts.hold(id);
     auto& shape = parts.scene().shapes[parts.body(id).shape].shape;
     if (floor == Floor::hull) {
         HullShape slab;

@@ -19,6 +19,12 @@ std::uint32_t SceneParts::material(double friction, double restitution)
     return static_cast<std::uint32_t>(scene_.materials.size() - 1);
 }
 
+void SceneParts::hold(std::uint32_t id, Motion motion)
+{
+    body(id).motion = motion;
+    body(id).mass.reset();
+}
+
 void SceneParts::meet(std::uint32_t a, std::uint32_t b, double friction)
 {
     scene_.pairs.push_back({a, b, friction, std::nullopt});

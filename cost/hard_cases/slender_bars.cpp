@@ -59,8 +59,7 @@ void put_obstacle(SceneParts& parts, std::uint32_t material, const Swing& swing)
         id = parts.ball(material, 1, size, placed.position);
     else
         id = parts.cylinder(material, 1, size, 2 * size, placed);
-    parts.body(id).motion = Motion::static_;
-    parts.body(id).mass.reset();
+    parts.hold(id);
 }
 
 std::uint32_t put_bar(SceneParts& parts, std::uint32_t material, const Swing& swing)

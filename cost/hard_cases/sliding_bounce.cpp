@@ -36,8 +36,7 @@ void slide(CaseBench& bench, const Bounce& bounce)
     const auto add_floor = [&] {
         const std::uint32_t floor = parts.box(
             material, 1, Vec3(5, 5, 1), {bounce.off + bounce.turn * Vec3(0, 0, -1), bounce.turn});
-        parts.body(floor).motion = Motion::static_;
-        parts.body(floor).mass.reset();
+        parts.hold(floor);
     };
     if (!bounce.ball_first) add_floor();
     const std::uint32_t ball =

@@ -126,8 +126,7 @@ void comes_and_goes(CaseBench& bench)
     const std::uint32_t smooth = parts.material(0);
     const std::uint32_t tile =
         parts.box(smooth, 1, Vec3(0.2, 0.2, 0.2), {Vec3(-0.25, 0, -0.2), Quat::Identity()});
-    parts.body(tile).motion = Motion::static_;
-    parts.body(tile).mass.reset();
+    parts.hold(tile);
     const double height = kHalf + 1e-3;
     const std::uint32_t box =
         parts.box(smooth, 1, Vec3::Constant(kHalf), {Vec3(kFirst, 0, height), Quat::Identity()});
@@ -191,8 +190,7 @@ Scene net(CaseBench& bench, double stiffness)
     const std::uint32_t rough = parts.material(0.3);
     parts.plane(rough, Vec3::UnitZ(), 0);
     const std::uint32_t big = parts.ball(rough, 1, 0.4, Vec3(0, 0, 0.4));
-    parts.body(big).motion = Motion::static_;
-    parts.body(big).mass.reset();
+    parts.hold(big);
     std::uint32_t first = 0;
     for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
         const std::uint32_t row = i / kSide, column = i % kSide;

@@ -121,16 +121,13 @@ void drop(CaseBench& bench, const Stick& stick, Scene scene, const std::string& 
     bench.look_at(scene, [&](const World& world) { start = energy_of(world).second; });
     EnergyLedger ledger;
     double most = start, kinetic = 0;
-    bool begun = false;
-    bench.run(scene, time, [&](World& world, double) {
-        if (begun) ledger.after_step(world);
-        begun = true;
-        ledger.before_step(world);
+    const auto watch = [&](World& world, double) {
         const auto [moving, all] = energy_of(world);
         kinetic = moving;
         most = std::max(most, all);
         return true;
-    });
+    };
+    bench.run(scene, time, watch, &ledger);
     const std::string name = stick.name + how;
     bench.report(name, "energy above that of the start, of it", (most - start) / start, 1e-3, "1");
     if (scene.settings.response == Response::penalty)

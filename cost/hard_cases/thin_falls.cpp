@@ -45,8 +45,7 @@ void put_ground(SceneParts& parts, std::uint32_t material, const Tipping& tippin
     const double wide = 3 * tipping.size;
     const Pose pose = {tipping.at() - wide * Vec3::UnitZ(), Quat::Identity()};
     const std::uint32_t id = parts.box(material, 1, Vec3::Constant(wide), pose);
-    parts.body(id).motion = Motion::static_;
-    parts.body(id).mass.reset();
+    parts.hold(id);
     if (tipping.ground == Ground::box) return;
     MeshShape mesh;
     mesh.vertices = {

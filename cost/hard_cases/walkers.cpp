@@ -55,8 +55,7 @@ MeshShape sheet(double half, int cells)
 std::uint32_t put_static_box(SceneParts& parts, const Vec3& half, const Pose& pose)
 {
     const std::uint32_t id = parts.box(0, 1, half, pose);
-    parts.body(id).motion = Motion::static_;
-    parts.body(id).mass.reset();
+    parts.hold(id);
     return id;
 }
 

@@ -44,14 +44,11 @@ void drop_stars(CaseBench& bench, const std::string& setting, const Scene& scene
 {
     EnergyLedger ledger;
     double speed = 0;
-    bool begun = false;
-    bench.run(scene, bench.brief() ? 1.5 : kFall, [&](World& world, double) {
-        if (begun) ledger.after_step(world);
-        ledger.before_step(world);
-        begun = true;
+    const auto watch = [&](World& world, double) {
         speed = greatest_speed(world);
         return true;
-    });
+    };
+    bench.run(scene, bench.brief() ? 1.5 : kFall, watch, &ledger);
     bench.report(setting, "energy gained over the greatest of motion",
                  ledger.gained() / ledger.greatest_kinetic(), 1e-2, "1");
     if (!bench.brief()) bench.show(setting, "speed after 5 s", speed, "m/s");

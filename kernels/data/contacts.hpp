@@ -10,6 +10,7 @@
 #include "kernels/data/travels.hpp"
 #include "kernels/parallel/compact.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace throng {
@@ -33,6 +34,13 @@ struct Contact {
     int count = 0;     // of points; next to what is always read, as most have one or two
     std::array<Point, 4> points;
 
+    /// m, of the deepest among the first points; 0 where all are apart.
+    Real overlap(std::size_t among) const
+    {
+        Real deepest = 0;
+        for (std::size_t k = 0; k < among; ++k) deepest = std::max(deepest, -points[k].separation);
+        return deepest;
+    }
     /// The same point on the surface of b, from its center of mass.
     Vec3T<Real> from_b(int point) const
     {

@@ -65,12 +65,15 @@ std::span<const IntegratorRow> integrators();
 ///   acted_on  something other than gravity acts on the body
 const IntegratorRow& chosen(Integrator integrator, bool acted_on);
 
-/// Whether springs that a substep is too long for go by a rule that bears any: with the
-/// integrators that nobody asks for an order.
-inline bool bears_stiff_springs(Integrator integrator)
+/// Whether what only falls gets its velocity at once for a whole substep, and then its place.
+inline bool falls_by_kicks(Integrator integrator)
 {
     return integrator == Integrator::auto_ || integrator == Integrator::semi_implicit;
 }
+
+/// Whether springs that a substep is too long for go by a rule that bears any: with the
+/// integrators that nobody asks for an order.
+inline bool bears_stiff_springs(Integrator integrator) { return falls_by_kicks(integrator); }
 
 /// The longest span, as a share of 1 / (angular frequency), at which an oscillation damped by
 /// `ratio` of critical does not grow; 0 where it grows at any. Found by trying: the integrator

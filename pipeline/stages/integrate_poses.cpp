@@ -253,9 +253,7 @@ private:
 // nothing but gravity acts.
 bool falls_wide(const Settings& settings)
 {
-    return (settings.integrator == Integrator::auto_
-            || settings.integrator == Integrator::semi_implicit)
-        && settings.rotation == Rotation::quaternion;
+    return falls_by_kicks(settings.integrator) && settings.rotation == Rotation::quaternion;
 }
 
 }  // namespace

@@ -120,10 +120,7 @@ void part_wedged(const ActiveContacts& active,
         const bool wedges =
             entry.list == ContactList::solid || (many(entry.body_a) && many(entry.body_b));
         if (!wedges) continue;
-        const Contact<Real>& contact = maker.contact_of(entry);
-        double depth = 0;
-        for (std::size_t k = 0; k < entry.points; ++k)
-            depth = std::max(depth, -double{contact.points[k].separation});
+        const double depth{maker.contact_of(entry).overlap(entry.points)};
         if (!(depth > kWedged * double{entry.extent})) continue;
         for (const std::uint32_t body : {entry.body_a, entry.body_b})
             parting.steps[body] = std::max(parting.steps[body], kWedgedSteps);

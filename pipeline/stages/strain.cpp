@@ -139,8 +139,7 @@ private:
     {
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            const Contact<Real>& contact = maker_.contact_of(entry);
-            const double overlap = overlap_of(contact, entry.points);
+            const double overlap{maker_.contact_of(entry).overlap(entry.points)};
             const double held = give_of(place) * rigid_overlap(double{entry.extent}, entry.points);
             return overlap > kDeep * held;
         });
@@ -185,21 +184,13 @@ private:
             .dot(normal.template cast<double>());
     }
 
-    static double overlap_of(const Contact<Real>& contact, std::size_t points)
-    {
-        double overlap = 0;
-        for (std::size_t k = 0; k < points; ++k)
-            overlap = std::max(overlap, -double{contact.points[k].separation});
-        return overlap;
-    }
-
     // Whether a contact overlaps by more than a share of the extent.
     bool overlaps(std::span<const std::uint32_t> contacts, double share) const
     {
         if (contacts.size() > kExactContacts) return false;
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            const double overlap = overlap_of(maker_.contact_of(entry), entry.points);
+            const double overlap{maker_.contact_of(entry).overlap(entry.points)};
             return overlap > share * double{entry.extent};
         });
     }
