@@ -12,8 +12,8 @@ namespace throng {
 
 namespace {
 
-// Residual at which nothing is to be gained, and one that will do once holding has failed.
-constexpr double kDone = 1e-11, kGood = 1e-9;
+// Residual at which nothing is to be gained, as a share of the one that is enough.
+constexpr double kDone = 0.01;
 // Holding is tried from here on, and again each time that the path has come a hundred times nearer.
 constexpr double kNear = 1e-3, kNearer = 0.01;
 constexpr int kHoldSteps = 8;  // factorisations of one try
@@ -50,9 +50,11 @@ struct DirectSolver::Work {
     std::vector<ConeVector> best;  // impulses
     std::vector<BodySix> scratch;
     DirectAnswer answer;
+    DirectEffort effort;
     int left = 0;          // steps
     bool solvable = true;  // for certain, as no point is asked to part
 
+    double done() const { return kDone * effort.enough; }
     bool keep_if_better(double residual);
     bool hold();
     void go_back_to_best();
@@ -72,7 +74,7 @@ bool DirectSolver::Work::keep_if_better(double residual)
         answer.residual = residual;
         for (std::size_t i = 0; i < best.size(); ++i) best[i] = island.cones[i].impulse;
     }
-    return answer.residual <= kDone;
+    return answer.residual <= done();
 }
 
 bool DirectSolver::Work::hold()
@@ -118,7 +120,7 @@ bool DirectSolver::Work::follow_path()
         if (keep_if_better(now)) return true;
         if (now < 0.9 * nearest) nearest = now, waited = 0;
         if (now < try_below) {
-            if (hold() || answer.residual < kGood) return true;
+            if (hold() || answer.residual < effort.enough) return true;
             try_below = now * kNearer;
         }
         if (!went) return false;
@@ -137,7 +139,7 @@ bool DirectSolver::Work::sweep_and_hold()
         if (keep_if_better(island.residual(scratch))) return true;
         for (std::size_t i = 0; i < swept.size(); ++i) swept[i] = island.cones[i].impulse;
         const double before = answer.residual;
-        if (hold() || answer.residual < kGood) return true;
+        if (hold() || answer.residual < effort.enough) return true;
         if (answer.residual < before) continue;
         for (std::size_t i = 0; i < swept.size(); ++i) island.cones[i].impulse = swept[i];
     }
@@ -153,7 +155,7 @@ bool DirectSolver::Work::pivot_and_hold()
     for (const int closer : kCloser) {
         if (left <= 0 || !pivots.run(closer)) return false;
         for (std::size_t i = 0; i < found.size(); ++i) found[i] = island.cones[i].impulse;
-        if (hold_from_here() || answer.residual < kGood) return true;
+        if (hold_from_here() || answer.residual < effort.enough) return true;
         for (std::size_t i = 0; i < found.size(); ++i) island.cones[i].impulse = found[i];
         if (sweep_and_hold()) return true;
         for (std::size_t i = 0; i < found.size(); ++i) island.cones[i].impulse = found[i];
@@ -166,9 +168,9 @@ bool DirectSolver::Work::take_springs(int most)
 {
     most = std::min(most, left);
     left -= most;
-    const double residual = ConeMultipliers(island, matrix).run(kDone, kGood, most);
+    const double residual = ConeMultipliers(island, matrix).run(done(), effort.enough, most);
     left += most;
-    return keep_if_better(residual) || answer.residual < kGood;
+    return keep_if_better(residual) || answer.residual < effort.enough;
 }
 
 // The path leads to the middle of all answers, whatever it starts from. Where it stalls each way is
@@ -181,7 +183,7 @@ void DirectSolver::Work::find()
     if (sweep_and_hold()) return;
     go_back_to_best();
     if (solvable) {
-        if (take_springs(left / 2) || pivot_and_hold()) return;
+        if (take_springs(left / 2) || (effort.pivots && pivot_and_hold())) return;
         go_back_to_best();
     }
     if (take_springs(left)) return;
@@ -194,8 +196,9 @@ DirectSolver::~DirectSolver() = default;
 DirectSolver::DirectSolver(DirectSolver&&) noexcept = default;
 DirectSolver& DirectSolver::operator=(DirectSolver&&) noexcept = default;
 
-DirectAnswer
-DirectSolver::solve(std::span<DirectBody> bodies, std::span<DirectPoint> points, int most_steps)
+DirectAnswer DirectSolver::solve(std::span<DirectBody> bodies,
+                                 std::span<DirectPoint> points,
+                                 const DirectEffort& effort)
 {
     Work& work = *work_;
     work.answer = {};
@@ -207,14 +210,15 @@ DirectSolver::solve(std::span<DirectBody> bodies, std::span<DirectPoint> points,
     }
     work.best.assign(work.island.cones.size(), ConeVector{});
     work.answer.residual = kInfinite;
-    work.left = most_steps;
+    work.effort = effort;
+    work.left = effort.steps;
     work.solvable = std::all_of(points.begin(), points.end(),
                                 [](const DirectPoint& point) { return !(point.least > 0); });
     work.find();
     work.go_back_to_best();
     work.island.give(bodies, points);
     if (!is_finite(bodies, points)) work.answer.residual = kInfinite;
-    work.answer.steps = most_steps - work.left;
+    work.answer.steps = effort.steps - work.left;
     return work.answer;
 }
 

@@ -56,6 +56,18 @@ inline constexpr double kDirectResidual = 1e-8;
 /// many bodies, or many points that contradict one another, may take a hundred.
 inline constexpr int kDirectSteps = 200;
 
+/// How much an answer is worth.
+///
+///   steps   at most
+///   enough  residual that will do where a hundredth of it does not come at once
+///   pivots  whether to go through tables of all rows by all rows where all else has failed, each
+///           of which takes as long as hundreds of steps
+struct DirectEffort {
+    int steps = kDirectSteps;
+    double enough = 1e-9;
+    bool pivots = true;
+};
+
 /// Finds the impulses after which, for every point, the speed u of b against a obeys
 /// u_n >= least, impulse in the cone, and both or neither: (u_n - least + friction |u_t|, u_t) lies
 /// in the dual cone and is square to the impulse. Where several impulses do, as on four legs, it
@@ -81,9 +93,9 @@ public:
     DirectSolver(DirectSolver&&) noexcept;
     DirectSolver& operator=(DirectSolver&&) noexcept;
 
-    /// Gives the points their impulses and the bodies their velocities. Takes no more steps than
-    /// allowed.
-    DirectAnswer solve(std::span<DirectBody> bodies, std::span<DirectPoint> points, int most_steps);
+    /// Gives the points their impulses and the bodies their velocities.
+    DirectAnswer
+    solve(std::span<DirectBody> bodies, std::span<DirectPoint> points, const DirectEffort& effort);
 
 private:
     struct Work;

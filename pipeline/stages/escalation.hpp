@@ -5,6 +5,7 @@
 // heavy box on a light one, a tower, a column of dice and a house of cards have in common.
 #pragma once
 
+#include "kernels/solve/direct.hpp"
 #include "pipeline/stages/row_maker.hpp"
 
 namespace throng {
@@ -25,8 +26,8 @@ Effort effort_for(double strain);
 
 /// Contacts up to which an island may be solved exactly.
 inline constexpr std::size_t kExactContacts = 48;
-/// Factorisations that an island which is escalated may take a solve.
-inline constexpr int kExactSteps = 24;
+/// What is put into a solve of an island that is escalated: what float tells of its speeds.
+inline constexpr DirectEffort kExactEffort = {.steps = 24, .enough = 1e-7, .pivots = false};
 
 /// Tells who is stubborn after this step.
 ///

@@ -1,5 +1,6 @@
 // Group solve: the points of a group solved together, and point by point where that fails.
 #include "pipeline/stages/group_flight.hpp"
+#include "pipeline/stages/solve_direct.hpp"
 
 #include <algorithm>
 
@@ -20,9 +21,9 @@ constexpr double kFaster = 100;
 
 void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
 {
-    const int asked = scene_.conditions.settings.iterations;
     const Motions before = bodies;
-    const DirectAnswer answer = solver_.solve(bodies, points, asked > 0 ? asked : kDirectSteps);
+    const DirectAnswer answer =
+        solver_.solve(bodies, points, asked_effort(scene_.conditions.settings));
     spend(points.size() * (1 + kPointWork * static_cast<std::size_t>(answer.steps)));
     const bool sound = std::all_of(bodies.begin(), bodies.end(), [](const DirectBody& body) {
         return holdable(body.velocity) && holdable(body.spin);

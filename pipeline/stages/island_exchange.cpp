@@ -9,6 +9,7 @@ namespace {
 // Overlap that is let be, as a share of the lesser shape: what the numbers of contacts resolve.
 template <class Real>
 constexpr double kTolerance = sizeof(Real) == 4 ? 2e-7 : 1e-9;
+
 template <class Real>
 Vec3 in_double(const Vec3T<Real>& v)
 {
@@ -62,8 +63,8 @@ template <class Real>
 WholeIsland::WholeIsland(const DirectScene<Real>& scene, const Batch& batch)
 {
     const Slice& slice = scene.layout.slices[batch.first_slice];
-    const int steps = scene.conditions.settings.iterations;
-    steps_ = steps > 0 ? steps : kDirectSteps;
+    effort_ = scene.effort;
+    left_ = effort_.steps * (2 + scene.conditions.settings.substeps);
     up_ = up_of(scene.conditions.gravity);
     spins_ = scene.conditions.settings.response != Response::kinematic;
     take_bodies(scene, slice);

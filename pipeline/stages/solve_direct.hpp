@@ -6,14 +6,23 @@
 #pragma once
 
 #include "kernels/motion/rigid_motion.hpp"
+#include "kernels/solve/direct.hpp"
 #include "pipeline/stages/row_maker.hpp"
 
 namespace throng {
+
+/// What the settings ask of a solve.
+inline DirectEffort asked_effort(const Settings& settings)
+{
+    if (settings.iterations > 0) return {.steps = settings.iterations};
+    return {};
+}
 
 /// What an island is solved from, and its answer given to.
 template <class Real>
 struct DirectScene {
     const Conditions& conditions;
+    const DirectEffort& effort;  // a solve
     const Layout& layout;
     const ActiveContacts& active;
     const RigidFacts& facts;  // as the step began, of the bodies of any batch not yet solved

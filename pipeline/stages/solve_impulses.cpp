@@ -148,12 +148,11 @@ void solve_impulses(const Conditions& conditions,
     trouble.quarantined.clear();
     const RowMaker<Real> maker(conditions, layout, active, convex, meshes, solids, rows);
     const RigidFacts facts{forces, masses, poses, velocities};
-    Conditions exactly = conditions;
     const bool escalates = conditions.settings.solver != Solver::direct
         && conditions.settings.response == Response::impulse;
-    if (escalates) exactly.settings.iterations = kExactSteps;
-    const DirectScene<Real> direct{exactly, layout, active, facts,     pulls,
-                                   drives,  maker,  poses,  velocities};
+    const DirectEffort effort = escalates ? kExactEffort : asked_effort(conditions.settings);
+    const DirectScene<Real> direct{conditions, effort, layout, active, facts,
+                                   pulls,      drives, maker,  poses,  velocities};
     start_direct(layout, rows, trouble);
     start_parting(layout, parting);
     if (!solids.entries.empty() || any_compound(colliders))

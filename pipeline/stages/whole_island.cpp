@@ -14,6 +14,8 @@ constexpr int kPartTries = 3;
 // How often contacts and stiff springs take turns in a substep: each sees what the other gave the
 // time before.
 constexpr int kSpringTurns = 4;
+// Share of the steps of a solve that each still has when those of the whole step are spent.
+constexpr int kFewSteps = 6;
 
 }  // namespace
 
@@ -207,8 +209,18 @@ void WholeIsland::answer_late_forces(const Conditions& conditions)
 
 void WholeIsland::solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
 {
-    const DirectAnswer answer = solver_.solve(bodies, points, steps_);
-    residual_ = std::max(residual_, answer.residual);
+    residual_ = std::max(residual_, ask(bodies, points));
+}
+
+// The residual of one more solve. Those of a step together may take as many steps as one a
+// substep, and two more, may at most; from then on each has a few.
+double WholeIsland::ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
+{
+    DirectEffort effort = effort_;
+    effort.steps = std::clamp(left_, (effort.steps + kFewSteps - 1) / kFewSteps, effort.steps);
+    const DirectAnswer answer = solver_.solve(bodies, points, effort);
+    left_ -= std::min(left_, answer.steps);
+    return answer.residual;
 }
 
 // Speed along the normal, of b against a.
@@ -238,10 +250,11 @@ bool WholeIsland::part(const Conditions& conditions)
 // of contact that was missed, and no residual: at rest it would be all there is to compare with.
 void WholeIsland::push_as_far_as_goes()
 {
-    for (int tries = 0; tries < kPartTries; ++tries) {
+    const int most = effort_.pivots ? kPartTries : 1;
+    for (int tries = 1;; ++tries) {
         going_ = free_;
-        const DirectAnswer answer = solver_.solve(going_, others_, steps_);
-        if (answer.residual <= kDirectResidual || tries + 1 == kPartTries) return;
+        const double residual = ask(going_, others_);
+        if (residual <= kDirectResidual || tries >= most) return;
         for (std::size_t i = 0; i < others_.size(); ++i)
             others_[i].least = std::min(others_[i].least, std::max(0.0, approach(i, going_)));
     }

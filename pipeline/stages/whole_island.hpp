@@ -91,6 +91,7 @@ private:
     void hold_contacts(double time);
     void answer_late_forces(const Conditions& conditions);
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
+    double ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     // Impacts: see island_impacts.cpp.
     bool bounce(const Conditions& conditions);
     void list_touching(double threshold);
@@ -143,7 +144,9 @@ private:
     bool spins_ = true;                                      // contacts see how bodies spin
     double elapsed_ = 0;                                     // s, since the step began
     DirectSolver solver_;
-    int steps_ = 0, cuts_ = 1;
+    DirectEffort effort_;
+    int left_ = 0;  // steps, of all solves
+    int cuts_ = 1;
     double residual_ = 0;
 };
 

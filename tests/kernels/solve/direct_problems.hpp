@@ -15,9 +15,9 @@ struct Problem {
     std::vector<DirectBody> bodies;
     std::vector<DirectPoint> points;
 
-    DirectAnswer solve(int steps = kDirectSteps)
+    DirectAnswer solve(const DirectEffort& effort = {})
     {
-        return DirectSolver().solve(bodies, points, steps);
+        return DirectSolver().solve(bodies, points, effort);
     }
 };
 

@@ -119,6 +119,32 @@ TEST(Direct, WhereAnAnswerCeasedAnotherIsFound)
     }
 }
 
+// The same, where no more is wanted than can be had soon: what was nearest is taken.
+TEST(Direct, WithoutPivotsItStopsAtWhatWasNearest)
+{
+    Dice dice(79);
+    Problem problem;
+    for (int round = 0; round <= 4; ++round) problem = heap(dice, 10, 0.7);
+    const DirectAnswer answer = problem.solve({.pivots = false});
+    EXPECT_GT(answer.residual, kDirectResidual);
+    EXPECT_LT(answer.residual, 0.1);
+    for (const DirectPoint& point : problem.points) EXPECT_GE(point.impulse.z(), 0);
+}
+
+TEST(Direct, WhatIsEnoughTakesFewerStepsThanWhatIsBest)
+{
+    Dice dice(21);
+    int soon = 0, late = 0;
+    for (int round = 0; round < 20; ++round) {
+        Problem rough = heap(dice, 20, 0.6), best = rough;
+        const DirectAnswer answer = rough.solve({.enough = 1e-3});
+        EXPECT_LE(answer.residual, 1e-3);
+        soon += answer.steps;
+        late += best.solve().steps;
+    }
+    EXPECT_LT(soon, late);
+}
+
 // Each point a second time, in the very same place.
 TEST(Direct, PointsToldTwiceChangeNothing)
 {
@@ -360,7 +386,7 @@ TEST(Direct, TakesNoMoreStepsThanAllowedAndTellsWhatIsMissing)
 {
     Dice dice(15);
     Problem problem = heap(dice, 30, 0.4);
-    const DirectAnswer answer = problem.solve(2);
+    const DirectAnswer answer = problem.solve({.steps = 2});
     EXPECT_LE(answer.steps, 2);
     EXPECT_GT(answer.residual, kDirectResidual);
     EXPECT_TRUE(std::isfinite(greatest_speed(problem)));
