@@ -202,6 +202,15 @@ struct Layout {
     std::vector<std::uint32_t> contacts;       // places in ActiveContacts, slice by slice
     std::vector<std::uint32_t> lane;           // [contacts] where among the lanes each is
 
+    /// From the first block of a slice to behind its last.
+    struct Blocks {
+        std::size_t begin = 0, end = 0;
+    };
+    Blocks blocks_of(const Slice& slice) const
+    {
+        const Color& last = colors[slice.first_color + slice.colors - 1];
+        return {colors[slice.first_color].first, std::size_t{last.first} + last.count};
+    }
     /// Of a place among the solver bodies.
     bool movable(std::int32_t place) const
     {

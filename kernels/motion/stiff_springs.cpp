@@ -304,8 +304,7 @@ double StiffSprings::gained_energy() const
                       going_[i].angular + without_[i].angular};
         gained += 0.5 * dot(impulse_[i], sum);
     }
-    for (const Row& row : rows_) gained += row.stored;
-    return gained;
+    return gained + stored();
 }
 
 // Some of what springs would give that go on as they began, so much that nothing is gained.
@@ -352,8 +351,7 @@ Vec3 StiffSprings::common_velocity() const
 {
     Vec3 momentum = Vec3::Zero();
     double mass = 0;
-    const auto held = [](const Row& row) { return row.a < 0 || row.b < 0; };
-    if (std::any_of(rows_.begin(), rows_.end(), held)) return momentum;
+    if (are_tied()) return momentum;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         if (!(bodies_[i].inverse_mass > 0)) return Vec3::Zero();
         mass += 1 / bodies_[i].inverse_mass;
@@ -466,6 +464,25 @@ void StiffSprings::damp_end()
         impulse_ = missing_;
 }
 
+double StiffSprings::stored() const
+{
+    double stored = 0;
+    for (const Row& row : rows_) stored += row.stored;
+    return stored;
+}
+
+bool StiffSprings::are_tied() const
+{
+    return std::any_of(rows_.begin(), rows_.end(),
+                       [](const Row& row) { return row.a < 0 || row.b < 0; });
+}
+
+bool StiffSprings::are_drawn() const
+{
+    return std::any_of(rows_.begin(), rows_.end(),
+                       [](const Row& row) { return !row.outer.isZero(0); });
+}
+
 double StiffSprings::furthest_turn() const
 {
     double furthest = 0;
@@ -480,11 +497,36 @@ double StiffSprings::furthest_turn() const
     return furthest;
 }
 
+// What of the dampers' first half is to act once more after places changed, as a share, lest
+// anything is gained: dampers that act before alone turn velocities that springs were to work
+// along. Of the energy that comes in by a share s, with e and d of either half and u between,
+//
+//   (1 + s) d u - (1 - s) e d / m - (1 - s^2) d^2 / 2m,
+//
+// the first is what they take; the second may be more than that, and is nothing once s is 1.
+double StiffSprings::damping_again()
+{
+    std::fill(step_.begin(), step_.end(), Six{});
+    for (const Row& row : rows_) push(row, row.damping, step_);
+    double taken = 0, turned = 0, square = 0;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const Six answer = eased(i, step_[i]);
+        taken += dot(step_[i], going_[i]);
+        turned += dot(missing_[i], answer);
+        square += dot(step_[i], answer);
+    }
+    const double gained = taken - turned - square / 2, slope = taken + turned;
+    if (!(gained > 0)) return 0;
+    const double root = slope * slope - 2 * square * gained;
+    return std::clamp(2 * gained / (std::sqrt(std::max(root, 0.0)) - slope), 0.0, 1.0);
+}
+
 std::span<const Six> StiffSprings::end()
 {
     std::fill(missing_.begin(), missing_.end(), Six{});
     if (!found_) return changes(missing_);
     for (const Row& row : rows_) push(row, row.elastic, missing_);
+    add(damping_again(), step_, missing_);
     // In axes that are carried along they turn a body after it moved as they did before.
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         missing_[i].angular = turns_[i].carried() * missing_[i].angular;

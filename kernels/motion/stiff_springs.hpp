@@ -79,6 +79,11 @@ public:
 
     /// Whether what they were asked last was found.
     bool found() const { return found_; }
+    /// J, that they take up in the step as bodies go on by that.
+    double stored() const;
+    /// Whether any end is on none of the bodies; and whether such an end moves, and so does work.
+    bool are_tied() const;
+    bool are_drawn() const;
     /// rad, how far any arm goes round by that.
     double furthest_turn() const;
 
@@ -115,6 +120,7 @@ private:
     void slow_down();
     Vec3 common_velocity() const;
     Six stopping(std::size_t i, const Vec3& common) const;
+    double damping_again();
     void damp_end();
     void find();
     void conjugate_gradients();

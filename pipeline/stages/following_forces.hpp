@@ -62,9 +62,13 @@ public:
     FollowingForces& operator=(const FollowingForces&) = delete;
 
     std::vector<Follower>& followers() { return followers_; }
+    std::span<const Follower> followers() const { return followers_; }
     /// Whether there is any of a kind.
     bool late() const { return late_; }
     bool stiff() const { return !stiff_.empty(); }
+    /// Of stiff springs, group by group: the followers that they join, and themselves.
+    std::span<const std::vector<std::uint32_t>> joined() const { return members_; }
+    const StiffSprings& springs_of(std::size_t group) const { return stiff_[group]; }
     /// s, the longest step that their springs bear where none is stiff by itself.
     double longest_step() const { return longest_; }
 

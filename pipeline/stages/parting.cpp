@@ -21,20 +21,13 @@ constexpr std::uint16_t kWedgedSteps = 60;
 // and a crowd of a thousand takes ten times as many. While a step runs kGoesOn marks who does.
 constexpr std::uint16_t kSteps = 1000, kGoesOn = 0x8000;
 
-// From the first block of a slice to behind its last.
-std::pair<std::size_t, std::size_t> blocks_of(const Layout& layout, const Slice& slice)
-{
-    const Color& last = layout.colors[slice.first_color + slice.colors - 1];
-    return {layout.colors[slice.first_color].first, std::size_t{last.first} + last.count};
-}
-
 // Of all slices of a batch.
 template <class AnyRows>
 auto blocks_of(const Layout& layout, const Batch& batch, AnyRows& rows)
 {
     const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
-    const std::size_t begin = blocks_of(layout, slices.front()).first;
-    return std::span(rows.blocks).subspan(begin, blocks_of(layout, slices.back()).second - begin);
+    const std::size_t begin = layout.blocks_of(slices.front()).begin;
+    return std::span(rows.blocks).subspan(begin, layout.blocks_of(slices.back()).end - begin);
 }
 
 // Behind the last point of the blocks before `end`.
@@ -173,8 +166,8 @@ PutAside<Real>::PutAside(const Layout& layout, const Batch& batch, const Rows<Re
     const Slice& last = layout.slices[batch.first_slice + batch.slices - 1];
     first_body_ = first.first_body;
     motions_.resize(last.first_body + last.dynamic - first_body_);
-    first_point_ = rows.first_point[blocks_of(layout, first).first];
-    impulses_.resize(end_of_points(rows, blocks_of(layout, last).second) - first_point_);
+    first_point_ = rows.first_point[layout.blocks_of(first).begin];
+    impulses_.resize(end_of_points(rows, layout.blocks_of(last).end) - first_point_);
 }
 
 template <class Real>

@@ -5,6 +5,7 @@
 #include "kernels/solve/sweep.hpp"
 #include "pipeline/stages/following_forces.hpp"
 #include "pipeline/stages/parting.hpp"
+#include "pipeline/stages/spring_account.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -119,9 +120,11 @@ public:
             const bool backward = on_faces_ && step % 2 == 1;
             const auto add = [&](Pass::Kind kind) { add_pass({kind, step == 0, backward}); };
             if (conditions_.has(Effect::restitution)) bounce_all();
+            if (account_) open_account();
             add(begin);
             begin_following(step);
             if (step == 0) add(warm_start);
+            if (account_) take_share();
             if (rows_.carry_turns) add(carry);
             const int relaxes = relax_visits(conditions_.settings, batch_);
             if (parts) {
@@ -145,6 +148,7 @@ public:
                 const bool late = end_following();
                 const int visits = late ? std::max(relaxes, kInLateForces) : pgs ? 0 : relaxes;
                 for (int i = 0; i < visits; ++i) add(relax);
+                if (account_) close_account();
             }
             if (on_faces_ || !window_fits()) run_passes();
         }
@@ -168,6 +172,27 @@ private:
         }
         following_.emplace(conditions_, facts_, bodies);
         if (following_->followers().empty()) following_.reset();
+        if (following_ && following_->stiff())
+            account_.emplace(layout_, batch_, facts_, *following_,
+                             conditions_.gravity * conditions_.substep());
+    }
+
+    void open_account()
+    {
+        run_passes();
+        account_->open(rows_);
+    }
+
+    void take_share()
+    {
+        run_passes();
+        account_->take_share(rows_);
+    }
+
+    void close_account()
+    {
+        run_passes();
+        account_->close(rows_);
     }
 
     // Followers as they are now, less what contacts gave in this substep if that is asked.
@@ -377,15 +402,12 @@ private:
     template <class Body>
     void for_blocks(const Slice& slice, bool shared, Body body)
     {
-        const Color& last = layout_.colors[slice.first_color + slice.colors - 1];
-        const std::size_t first = layout_.colors[slice.first_color].first;
-        const std::size_t count = last.first + last.count - first;
-        if (shared)
-            for_each_block(count, kBlocks, [&](std::size_t begin, std::size_t end, std::size_t) {
-                body(first + begin, first + end);
-            });
-        else
-            body(first, first + count);
+        const auto [first, last] = layout_.blocks_of(slice);
+        if (!shared) return body(first, last);
+        for_each_block(last - first, kBlocks,
+                       [&, first = first](std::size_t begin, std::size_t end, std::size_t) {
+                           body(first + begin, first + end);
+                       });
     }
 
     // Calls body(begin, end) for the blocks of one color after another.
@@ -509,7 +531,8 @@ private:
     bool on_faces_ = false;
     PutAside<Real> put_aside_;  // while bodies of the batch part
     std::optional<FollowingForces> following_;
-    std::vector<Pass> passes_;  // that wait to be run
+    std::optional<SpringAccount<Real>> account_;  // where some of them are stiff
+    std::vector<Pass> passes_;                    // that wait to be run
 };
 
 }  // namespace

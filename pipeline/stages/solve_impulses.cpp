@@ -3,6 +3,7 @@
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/stages.hpp"
 #include "pipeline/stages/escalation.hpp"
+#include "pipeline/stages/following_forces.hpp"
 #include "pipeline/stages/parting.hpp"
 #include "pipeline/stages/solve_batch.hpp"
 #include "pipeline/stages/solve_direct.hpp"
@@ -125,6 +126,20 @@ std::span<const InnerRow> solve_table(const Settings& settings)
                        [static_cast<std::size_t>(settings.friction_cone)];
 }
 
+// Whether stiff springs pull at bodies of an island. Exact solves take turns with them, which over
+// long substeps does not come together.
+bool is_stiff(const Conditions& conditions,
+              const RigidFacts& facts,
+              const Layout& layout,
+              const Batch& batch)
+{
+    if (facts.forces.springs.empty()) return false;
+    const Slice& slice = layout.slices[batch.first_slice];
+    return FollowingForces(conditions, facts,
+                           std::span(layout.body_of_slot).subspan(slice.first_body, slice.dynamic))
+        .stiff();
+}
+
 template <class Real>
 void solve_impulses(const Conditions& conditions,
                     const Islands& islands,
@@ -173,7 +188,7 @@ void solve_impulses(const Conditions& conditions,
     // those apart that are deep in one another.
     const auto solve = [&](const Batch& batch) {
         const bool usual = escalates && parting.some && anybody_parts(layout, batch, parting);
-        if (batch.direct && !usual)
+        if (batch.direct && !usual && !(escalates && is_stiff(conditions, facts, layout, batch)))
             solve_direct(direct, batch, rows, trouble);
         else if (batch.times > 1 && !usual)
             solve_finer(batch);
