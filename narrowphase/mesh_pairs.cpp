@@ -188,6 +188,16 @@ void collide_triangles(const Shapes& shapes,
     }
 }
 
+// What was pressed all the way through is beyond what it touched, and is pushed back all the same.
+void keep_held(std::span<const std::uint32_t> held, std::vector<std::uint32_t>& near)
+{
+    for (const std::uint32_t one : held) {
+        const std::uint32_t triangle = one & ~kBehind;
+        const auto place = std::lower_bound(near.begin(), near.end(), triangle);
+        if (place == near.end() || *place != triangle) near.insert(place, triangle);
+    }
+}
+
 }  // namespace
 
 template <class Real>
@@ -207,6 +217,7 @@ void collide_mesh(const Shapes& shapes,
     box.upper.array() += double{reach};
     near.clear();
     find_triangles(*mesh_of(shapes, mesh), box, near);
+    keep_held(held, near);
     collide_triangles(shapes, mesh, b, pose, double{reach}, near, held,
                       [&](std::uint32_t triangle, const LocalManifold<double>& found) {
                           out.push_back({triangle, found.cast<Real>()});

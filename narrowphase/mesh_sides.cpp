@@ -76,8 +76,8 @@ MeshSides::Approach MeshSides::crossed(std::uint32_t triangle, bool behind) cons
 {
     const MeshTriangle seen(mesh_, triangle, behind);
     const Approach went_round{.behind = !behind}, through{true, behind, true, true};
-    if (-seen.height(center_) > through_) return went_round;
     const auto nearest = nearest_to(center_, seen);
+    if (-seen.height(center_) > through_ && is_hidden(nearest.point, triangle)) return went_round;
     const Vec3 apart = center_ - nearest.point;
     const Vec3 past = apart - seen.normal * seen.normal.dot(apart);
     if (past.norm() <= kSeam * through_) return through;

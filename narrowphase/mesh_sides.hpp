@@ -19,9 +19,9 @@ class MeshSides {
 public:
     /// near    triangles that the shape may touch, ascending
     /// held    those that it touched in the last step, each with its side
-    /// through m, no center is taken to have come further than this through a triangle: its
-    /// smallest
-    ///         half extent, as one that touches the other flank of a ridge is further behind it
+    /// through m, its smallest half extent: a center further than this behind a triangle has come
+    ///         through only where no other is in the way, as one that touches the other flank of a
+    ///         ridge is behind this one too
     MeshSides(const Mesh& mesh,
               std::span<const std::uint32_t> near,
               std::span<const std::uint32_t> held,

@@ -165,25 +165,16 @@ struct OutwardEdges {
     PolytopePair pair;
 };
 
-}  // namespace
-
-void touch_polytope(const MeshTriangle& triangle,
-                    const PolytopeView& shape,
-                    const Pose& pose,
-                    double reach,
-                    LocalManifold<double>& out,
-                    bool through)
+// By what tells them apart best, or least of all overlaps.
+void touch_along_best(const MeshTriangle& triangle,
+                      const TrianglePolytope& flat,
+                      const PolytopePair& pair,
+                      const PolytopePair& turned,
+                      const FaceAxis& front,
+                      double reach,
+                      double bias,
+                      LocalManifold<double>& out)
 {
-    out.count = 0;
-    const auto& corners = triangle.corners;
-    const TrianglePolytope flat(corners[0], corners[1], corners[2], triangle.normal);
-    const PolytopePair pair(flat.view(), shape, pose);
-    if (triangle.normal.dot(pair.offset) < 0 && !through) return;
-    const FaceAxis front = face_axis(pair, 0);
-    if (front.separation > reach) return;
-
-    const double bias = 1e-3 * shape.inner_radius;
-    const PolytopePair turned = pair.mirrored();
     TriangleAxis best;
     best.separation = best.apart = front.separation;
     if (!within_reach(triangle, pair, turned, reach, bias, best)) return;
@@ -203,6 +194,37 @@ void touch_polytope(const MeshTriangle& triangle,
     if (out.count > 0 || best.separation >= 0 || parted) return;
     const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
     if (!better.normal.isZero(0)) cross_edges(outward.pair, better, reach + bias, out);
+}
+
+}  // namespace
+
+void touch_polytope(const MeshTriangle& triangle,
+                    const PolytopeView& shape,
+                    const Pose& pose,
+                    double reach,
+                    LocalManifold<double>& out,
+                    bool through)
+{
+    out.count = 0;
+    const auto& corners = triangle.corners;
+    const TrianglePolytope flat(corners[0], corners[1], corners[2], triangle.normal);
+    const PolytopePair pair(flat.view(), shape, pose);
+    if (triangle.normal.dot(pair.offset) < 0 && !through) return;
+    const FaceAxis front = face_axis(pair, 0);
+    if (front.separation > reach) return;
+    const double bias = 1e-3 * shape.inner_radius;
+    const PolytopePair turned = pair.mirrored();
+    touch_along_best(triangle, flat, pair, turned, front, reach, bias, out);
+    if (!through || out.count > 0) return;
+    // Pressed all but out of the triangle on its other side it goes back the way it came; by its
+    // deepest corner where its lowest side is over another, for which this one pushes too.
+    TriangleAxis back;
+    back.separation = back.apart = front.separation;
+    lay_face(triangle, pair, turned, front, back, reach, bias, out);
+    if (out.count > 0) return;
+    const Vec3 deepest = pair.turn * shape.vertices[front.vertex] + pair.shift;
+    out.normal = triangle.normal;
+    out.add(deepest - triangle.normal * (front.separation / 2), front.separation, 0);
 }
 
 }  // namespace throng

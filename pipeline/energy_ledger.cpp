@@ -49,6 +49,15 @@ double wind_power(double drag, const Vec3& wind, const Vec3& from, const Vec3& t
     return most;
 }
 
+// The same of what goes round a pivot, which may go any way in between, no faster than at either
+// end.
+double wind_power_round(double drag, const Vec3& wind, const Vec3& from, const Vec3& to)
+{
+    const double fastest = std::sqrt(std::max(from.squaredNorm(), to.squaredNorm()));
+    const double blows = wind.norm(), speed = std::min(fastest, blows / 2);
+    return drag * speed * (blows - speed);
+}
+
 }  // namespace
 
 void EnergyLedger::look(const World& world, Look& look) const
@@ -135,11 +144,11 @@ double EnergyLedger::work_on(const World& world, std::uint32_t body) const
     const OfBody &from = before_.bodies[body], &to = after_.bodies[body];
     const Vec3 none = Vec3::Zero();
     const Vec3 torque = of_body(forces.torque, body, none);
+    const auto power = of_body(forces.hangs, body, {}) != 0 ? wind_power_round : wind_power;
     return of_body(forces.force, body, none).dot(to.place - from.place)
         + dt
         * (std::max(torque.dot(from.spin), torque.dot(to.spin))
-           + wind_power(of_body(forces.linear_drag, body, 0.0), forces.wind, from.velocity,
-                        to.velocity)
+           + power(of_body(forces.linear_drag, body, 0.0), forces.wind, from.velocity, to.velocity)
            + std::max(from.power, to.power));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace throng {
 
@@ -125,14 +126,18 @@ bool bounded(const IntegratorRow& integrator, double ratio, double span)
     return std::abs(trace) <= 1 + determinant + kRounding && std::abs(determinant) <= 1 + kRounding;
 }
 
+// What a spin does to itself swings at sqrt(2) times its rate at most: rk4 bears 2 sqrt(2) of a
+// swing's phase. The two others gain at any: midpoint up to 0.4 % a span at a quarter of a radian.
+constexpr double kOfRk4 = 2, kOfGrowing = 0.25, kAny = std::numeric_limits<double>::infinity();
+
 constexpr IntegratorRow kIntegrators[] = {
-    {Integrator::semi_implicit, "semi_implicit", 1, semi_implicit},
-    {Integrator::euler, "euler", 1, euler},
-    {Integrator::midpoint, "midpoint", 2, midpoint},
-    {Integrator::splitting, "splitting", 2, splitting},
-    {Integrator::rk4, "rk4", 4, rk4},
+    {Integrator::semi_implicit, "semi_implicit", 1, kAny, semi_implicit},
+    {Integrator::euler, "euler", 1, kOfGrowing, euler},
+    {Integrator::midpoint, "midpoint", 2, kOfGrowing, midpoint},
+    {Integrator::splitting, "splitting", 2, kAny, splitting},
+    {Integrator::rk4, "rk4", 4, kOfRk4, rk4},
 };
-constexpr IntegratorRow kFall = {Integrator::auto_, "auto", 1, fall};
+constexpr IntegratorRow kFall = {Integrator::auto_, "auto", 1, kAny, fall};
 
 }  // namespace
 

@@ -50,6 +50,9 @@ struct IntegratorRow {
     Integrator which;
     std::string_view name;
     int order;  // of the error after a fixed time
+    /// rad, that what swerves may turn in a span; infinity where the law itself follows it. Beyond
+    /// that an explicit rule makes energy of spins alone, more with every span.
+    double furthest_turn;
     /// Carries the state from `time` on for a span, both in s.
     void (*advance)(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state);
 };

@@ -94,6 +94,27 @@ void RigidMotion::take(std::span<const std::uint32_t> bodies, const Flights& fli
     }
 }
 
+// rad, that any body turns whose spin changes itself. A momentum does not.
+double RigidMotion::furthest_turn(double span) const
+{
+    double fastest = 0;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        if (bodies_[i].precesses && !bodies_[i].by_momentum)
+            fastest = std::max(fastest, vector_at(state_.data() + speed_of(i) + 3).norm());
+    return span * fastest;
+}
+
+void RigidMotion::advance(const IntegratorRow& integrator,
+                          double time,
+                          double span,
+                          IntegratorRoom& room)
+{
+    const bool follows =
+        std::isinf(integrator.furthest_turn) || furthest_turn(span) <= integrator.furthest_turn;
+    const IntegratorRow& taken = follows ? integrator : chosen(Integrator::splitting, true);
+    taken.advance(*this, time, span, room, state());
+}
+
 void RigidMotion::settle()
 {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -444,12 +465,25 @@ void RigidMotion::swerve(double span, double* state)
     }
 }
 
+// In how many parts what precesses goes by a turn, rad: its energy sways by what a part turns.
+int RigidMotion::parts_of_turn(const Vec3& turn)
+{
+    constexpr double kWhole = 2, kPart = 0.5;  // what most do in a span, one part follows well
+    constexpr int kMostParts = 64;
+    const double angle = turn.norm();
+    if (!(angle > kWhole)) return 1;
+    return static_cast<int>(std::min<double>(std::ceil(angle / kPart), kMostParts));
+}
+
 void RigidMotion::coast_turning(std::size_t i, double span, double* state)
 {
     const auto turn = [&](const Vec3& by) { turn_by(i, by, state); };
-    if (bodies_[i].precesses) return turn_momentum(i, span, 1, state, turn);
     const Mat3 now = bodies_[i].by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
-    turn(span * body_spin(i, now, state));
+    const Vec3 by = span * body_spin(i, now, state);
+    // What is symmetric goes exactly by one.
+    const int parts = precesses_evenly(bodies_[i]) ? 1 : parts_of_turn(by);
+    if (bodies_[i].precesses) return turn_momentum(i, span, parts, state, turn);
+    turn(by);
 }
 
 void RigidMotion::turn_by(std::size_t i, const Vec3& turn, double* state)

@@ -57,6 +57,9 @@ public:
     double* state() { return state_.data(); }
     /// From now on springs are somebody else's (see stiff_springs.hpp).
     void leave_springs() { by_springs_ = false; }
+    /// Goes on by an integrator from a time, s since the step began; by splitting, which bears any
+    /// spin, where a body turns further in the span than that one can follow.
+    void advance(const IntegratorRow& integrator, double time, double span, IntegratorRoom& room);
     /// After each call of an integrator: changes of rotation are taken into the orientations.
     void settle();
 
@@ -127,6 +130,7 @@ private:
         Vec3 velocity, spin;  // of the center of mass, m/s; rad/s; world axes
     };
 
+    double furthest_turn(double span) const;
     std::size_t place_numbers() const
     {
         const int turn = adds_rates(rule_.rotation) ? numbers_of(rule_.rotation) : 4;
@@ -150,6 +154,7 @@ private:
     }
     void add_momentum(std::size_t i, double span, double* momentum) const;
     bool precesses_evenly(const Body& body) const;
+    static int parts_of_turn(const Vec3& turn);
     void coast_turning(std::size_t i, double span, double* state);
     template <class Turn>
     void turn_momentum(std::size_t i, double span, int parts, double* state, Turn turn_by);

@@ -76,8 +76,7 @@ bool GroupFlight::fly(double begin, double span)
         return note_ends(flight.law());
     }
     law_.take(bodies_, scene_.flights);
-    integrator_of(scene_.conditions.settings, acted_on)
-        .advance(law_, begin, span, room_, law_.state());
+    law_.advance(integrator_of(scene_.conditions.settings, acted_on), begin, span, room_);
     law_.settle();
     return note_ends(law_);
 }

@@ -178,7 +178,7 @@ private:
             integrator_of(conditions_.settings, facts_.forces.act_on(bodies.front()));
         IntegratorRoom room;
         for (int step = 0; step < conditions_.settings.substeps; ++step) {
-            integrator.advance(law, step * span, span, room, law.state());
+            law.advance(integrator, step * span, span, room);
             law.settle();
         }
         note(law, bodies, landings);

@@ -35,6 +35,8 @@ constexpr double kPressed = 3;
 // So much of a shape's extent is looked at no further: swings near the limit of the step go by
 // neither.
 constexpr double kShallow = 1e-3;
+// Steps that what nobody pressed in takes to part. It keeps the speed that it parts at.
+constexpr double kStepsToPart = 4;
 
 }  // namespace
 
@@ -90,6 +92,11 @@ WholeIsland::Give WholeIsland::give_of(std::size_t at, const Settings& settings,
 // looked for. Its spring would give back what nobody put in; it is let go at the push limit.
 void WholeIsland::find_unearned(const Conditions& conditions)
 {
+    // As the step begins: later substeps see on their way what presses, and would take what a part
+    // of such a spring gives for a load that had pressed the rest of it in.
+    for (std::size_t i = 0; i < unearned_.size(); ++i)
+        unearned_[i] = std::min(unearned_[i], std::max(0.0, -gaps_[i]));
+    if (!unearned_.empty()) return;
     const double time = conditions.substep();
     unearned_.assign(touches_.size(), 0);
     for (std::size_t i = 0; i < touches_.size(); ++i) {
@@ -100,8 +107,9 @@ void WholeIsland::find_unearned(const Conditions& conditions)
         const double borne = normal.dot(points_[i].impulse) / (time * stiffness);
         const double speed = approach(i, after_);
         const double ease = ease_along(points_[i], touches_[i].normal, after_);
-        const double pressed =
-            kPressed * std::sqrt(borne * borne + speed * speed / (stiffness * ease));
+        double pressed = kPressed * std::sqrt(borne * borne + speed * speed / (stiffness * ease));
+        // Who bore nothing yet has come in since, and no further than he closes.
+        if (!(borne > 0)) pressed = std::min(pressed, std::max(0.0, -speed * time));
         unearned_[i] = std::max(0.0, -gaps_[i] - pressed);
     }
 }
@@ -195,7 +203,8 @@ void WholeIsland::push_by_forces(const Conditions& conditions, double time)
     softened.penalty_stiffness = softened.penalty_damping = -1;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
         const double pressed = -gaps_[i] - unearned_[i];
-        unearned_[i] = std::max(0.0, unearned_[i] - conditions.settings.push_limit * time);
+        const double let_go = unearned_[i] / (kStepsToPart * conditions.settings.dt);
+        unearned_[i] -= std::min(let_go, conditions.settings.push_limit) * time;
         if (!(pressed > 0)) {
             held_[i].setZero();
             continue;

@@ -466,16 +466,30 @@ private:
             .restitution;
     }
 
-    // Who is kept from the rest of its way has not fallen down it: what gravity gave it for that
+    // m/s2, of what pulls alike all along its way: gravity, attractors and what pushes it.
+    Vec3 pull_on(std::uint32_t body) const
+    {
+        Vec3 pull = gravity_;
+        for (const AttractorForce& attractor : forces_.attractors) {
+            const Vec3 towards = attractor.position - poses_.position[body];
+            const double square = towards.squaredNorm();
+            if (square > 0) pull += attractor.strength / (square * std::sqrt(square)) * towards;
+        }
+        if (body < forces_.force.size()) pull += masses_.inverse_mass[body] * forces_.force[body];
+        return pull;
+    }
+
+    // Who is kept from the rest of its way has not fallen down it: what its pull gave it for that
     // goes, and what it took comes back. Else who is held high bounces higher than it fell.
     void take_back_fall(std::uint32_t body, const Vec3& held)
     {
-        const double pull = gravity_.norm();
+        const Vec3 pulled = pull_on(body);
+        const double pull = pulled.norm();
         if (!(pull > 0) || !states_.dynamic(body)) return;
-        const Vec3 down = gravity_ / pull;
+        const Vec3 down = pulled / pull;
         Vec3& velocity = velocities_.linear[body];
         const double falling = down.dot(velocity);
-        const double gained = 2 * gravity_.dot(held - poses_.position[body]);
+        const double gained = 2 * pulled.dot(held - poses_.position[body]);
         if (!(falling * gained < 0)) return;
         const double left = std::sqrt(std::max(0.0, falling * falling + gained));
         velocity += (std::copysign(left, falling) - falling) * down;

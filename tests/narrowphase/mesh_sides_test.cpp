@@ -73,13 +73,16 @@ struct Stage {
     }
 
     using Found = std::vector<TriangleManifold<double>>;
-    Found meet(const Guest& guest, const Vec3& at, const Found& before = {}) const
+    Found meet(const Guest& guest,
+               const Vec3& at,
+               const Found& before = {},
+               const Quat& turn = Quat::Identity()) const
     {
         std::vector<std::uint32_t> held;
         for (const auto& one : before) held.push_back(one.triangle);
         Found found;
-        collide_mesh<double>(shapes, {ShapeKind::mesh, 0}, guest.shape, {at, Quat::Identity()},
-                             0.01, held, found);
+        collide_mesh<double>(shapes, {ShapeKind::mesh, 0}, guest.shape, {at, turn}, 0.01, held,
+                             found);
         return found;
     }
 };
@@ -124,6 +127,40 @@ TEST(MeshSides, WhatTouchedOnOneSideIsPushedBackThereFromThrough)
                 expect_push(found, side * Vec3::UnitZ(), guest.height - height);
             }
         }
+}
+
+TEST(MeshSides, WhatWasPressedAllTheWayThroughIsPushedBackToo)
+{
+    const Stage stage(floor_soup());
+    for (const Guest& guest : stage.guests)
+        for (const double side : {1.0, -1.0}) {
+            SCOPED_TRACE(std::string(guest.name) + (side > 0 ? " in front" : " behind"));
+            auto found = stage.meet(guest, Vec3(0.3, 0.2, side * 0.5 * guest.height));
+            for (const double share : {-0.8, -1.2, -1.6}) {
+                const double height = share * guest.height;
+                found = stage.meet(guest, Vec3(0.32, 0.2, side * height), found);
+                expect_push(found, side * Vec3::UnitZ(), guest.height - height);
+            }
+        }
+}
+
+// A plate that leans: its middle is over one triangle, and all that is lowest over the next.
+TEST(MeshSides, WhatLeansIsPushedBackByTheTriangleThatItsMiddleIsOver)
+{
+    Stage stage(floor_soup());
+    stage.shapes.boxes.push_back({{0.8, 0.1, 0.02}});
+    const Guest plate{"plate", {ShapeKind::box, 1}, 0};
+    for (const double lean : {0.1, 0.5}) {
+        SCOPED_TRACE(lean);
+        const Quat turn(Eigen::AngleAxisd(lean, Vec3::UnitY()));
+        auto found = stage.meet(plate, Vec3(-0.1, 0.45, 0.001), {}, turn);
+        ASSERT_FALSE(found.empty());
+        for (const double height : {-0.01, -0.03, -0.1}) {
+            found = stage.meet(plate, Vec3(-0.1, 0.45, height), found, turn);
+            ASSERT_FALSE(found.empty()) << height;
+            for (const auto& one : found) EXPECT_GT(one.manifold.normal.z(), 0) << height;
+        }
+    }
 }
 
 TEST(MeshSides, WhatGoesRoundARimIsLetGo)

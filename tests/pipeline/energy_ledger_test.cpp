@@ -92,6 +92,68 @@ TEST(EnergyLedger, TellsWhatOverlapThrowsApart)
     EXPECT_NEAR(ledger.gained(), greatest, 1e-3 * greatest);
 }
 
+// From above its pivot to below it in a step or two: across the wind at either end, along it
+// between.
+TEST(EnergyLedger, TellsNothingOfWindThatDrivesWhatGoesRoundAPivot)
+{
+    for (const Vec3& wind : {Vec3(5, 6, -10), Vec3(0, 12, 0), Vec3(0, 0, -12)})
+        for (const double mass : {0.005, 0.017, 0.1}) {
+            SceneOf made;
+            made.scene.wind = wind;
+            BodyDescription& ball = made.ball(0.01, Vec3(0, 0, 0.01));
+            ball.orientation = Quat(1, -0.004, -0.009, 0).normalized();
+            ball.pivot = Vec3(0, 0, -0.01);
+            ball.mass = mass;
+            ball.linear_drag = 0.4;
+            World world(made.scene);
+            const EnergyLedger ledger = keep(world, 60);
+            EXPECT_GT(ledger.greatest_kinetic(), 1e-3);
+            EXPECT_LE(ledger.gained(), 1e-3 * ledger.greatest_kinetic()) << wind << ' ' << mass;
+        }
+}
+
+// A bar that tips over and is held on its way down, drawn by gravity, by a force, or from far away.
+TEST(EnergyLedger, TellsNothingOfWhoIsHeldOnItsWayByWhateverItIsDrawn)
+{
+    for (int drawn = 0; drawn < 3; ++drawn)
+        for (const double spin : {0.0, 10.0, 30.0})
+            for (const double pull : {9.81, 100.0}) {
+                SceneOf made;
+                made.scene.gravity = drawn == 0 ? Vec3(0, 0, -pull) : Vec3(Vec3::Zero());
+                made.floor();
+                BodyDescription& bar = made.box(Vec3(0.005, 0.005, 0.5), Vec3(0, 0, 0.6));
+                bar.orientation = Quat(Eigen::AngleAxisd(0.2, Vec3::UnitX()));
+                bar.angular_velocity = Vec3(spin, 0.1 * spin, 0);
+                bar.mass = 1;
+                if (drawn == 1) bar.force = Vec3(0, 0, -pull);
+                if (drawn == 2) made.scene.attractors.push_back({Vec3(0, 0, -1e4), 1e8 * pull});
+                const EnergyLedger ledger = keep(made.scene, 120);
+                EXPECT_LE(ledger.gained(), 3e-3 * ledger.greatest_kinetic())
+                    << drawn << ' ' << spin << ' ' << pull;
+            }
+}
+
+// Rims that rock come to beside what contacts had looked for: nobody pressed these springs in.
+TEST(EnergyLedger, TellsNothingOfPenaltySpringsInHoweverManySubsteps)
+{
+    for (const int substeps : {4, 16, 64, 128}) {
+        SceneOf made;
+        made.scene.settings.response = Response::penalty;
+        made.scene.settings.dt = 1.0 / 240;
+        made.scene.settings.substeps = substeps;
+        made.floor();
+        for (int i = 0; i < 6; ++i) {
+            const std::uint32_t shape =
+                made.shape(CylinderShape{0.1 + 0.02 * (i % 3), 0.3 - 0.1 * (i % 3)});
+            BodyDescription& drum = made.body(shape, Vec3(0.05 * i, 0, 0.4 + 0.7 * i));
+            drum.orientation = Quat(Eigen::AngleAxisd(0.4 * i, Vec3(1, 0.3 * i, 0).normalized()));
+            drum.angular_velocity = Vec3(3, 2 - i, 1);
+        }
+        const EnergyLedger ledger = keep(made.scene, 720);
+        EXPECT_LE(ledger.gained(), 1e-2 * ledger.greatest_kinetic()) << substeps;
+    }
+}
+
 TEST(EnergyLedger, TellsNothingOfForcesAndOfWhatMovesByItself)
 {
     SceneOf made;

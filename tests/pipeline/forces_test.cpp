@@ -299,6 +299,42 @@ TEST(Forces, OfASpringGoWithEitherOfItsBodies)
     EXPECT_FALSE(world.effects().on.has(Effect::springs));
 }
 
+// A body that a spring holds by its middle, where it pulls at no arm: what it turns by is its own.
+BodyDescription& add_held(Scene& scene, const Sym3& inertia, const Vec3& spin)
+{
+    BodyDescription& body = add_body(scene);
+    body.inertia = inertia;
+    body.angular_velocity = spin;
+    Spring spring;
+    spring.a = 0;
+    spring.at_b = Vec3(0, 0, 1);
+    spring.stiffness = 1;
+    spring.length = 1;
+    scene.springs.push_back(spring);
+    return body;
+}
+
+TEST(Forces, NoSpinMakesEnergyOfItselfByAnyIntegratorThatIsAskedFor)
+{
+    const Sym3 needle{0.1, 0.099995, 1e-5}, crate{0.1, 0.2, 0.3}, slab{0.1, 0.11, 0.2};
+    for (const Integrator integrator :
+         {Integrator::midpoint, Integrator::splitting, Integrator::rk4, Integrator::auto_})
+        for (const Sym3& inertia : {needle, crate, slab})
+            for (const double rate : {30.0, 100.0, 300.0, 1000.0, 4000.0}) {
+                Scene scene = empty_scene(integrator);
+                add_held(scene, inertia, rate * Vec3(0.6, 0.48, 0.64));
+                World world(scene);
+                const double first = world.measure().kinetic_energy;
+                for (int step = 0; step < 300; ++step) {
+                    world.step();
+
+                    ASSERT_LE(world.measure().kinetic_energy / first, 1.02)
+                        << int(integrator) << ' ' << inertia.zz << ' ' << rate << " step " << step;
+                    ASSERT_EQ(world.report().bodies_quarantined, 0u);
+                }
+            }
+}
+
 TEST(Forces, OfASpringGoOnWhereItsOtherBodyWasQuarantined)
 {
     Scene scene = empty_scene();

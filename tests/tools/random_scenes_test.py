@@ -103,6 +103,18 @@ class Judge(unittest.TestCase):
         self.assertEqual(told(potential_energy_j=205.0), ["energy net"])
         self.assertEqual(told(box_on_floor(driven=True), potential_energy_j=205.0), [])
 
+    def test_takes_what_contacts_hold_and_what_is_lifted_apart_for_no_gain(self):
+        self.assertEqual(told(energy_gained_j=40.0, max_overlap_m=0.01), [])
+        self.assertEqual(told(energy_gained_j=150.0, max_overlap_m=0.01), ["energy"])
+        rigid = {"throng": 1, "settings": {"overlap": "subdivide"}, "bodies": [{}, {}]}
+        tower = {"scene": rigid, "classes": {"layout stack"}, "mass_of": [1000.0] * 3,
+                 "pieces": [None] + [maker.box_of([1, 1, 1])] * 3}
+        held = [([0, 0, -1], [0, 0, 0])] + [([0, 0, 1], [0, 0, 0])] * 3
+        made = box_on_floor(**tower)
+        made.scene["bodies"] = [{}] * 4
+        self.assertEqual(told(made, bodies=held, energy_gained_j=6.0), [])
+        self.assertEqual(told(made, bodies=held, energy_gained_j=8.0), ["energy"])
+
     def test_sees_energy_lost_where_nothing_takes_any(self):
         self.assertEqual(told(box_on_floor(kept=True)), ["energy kept"])
         self.assertEqual(told(box_on_floor(kept=True), potential_energy_j=199.0), [])
