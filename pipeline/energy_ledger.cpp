@@ -37,7 +37,7 @@ bool moves_by_itself(const World::State& state, std::uint32_t body)
 double lag_of(const Conditions& conditions)
 {
     const bool kicked = falls_by_kicks(conditions.settings.integrator);
-    return kicked && !conditions.has(Effect::no_overlap) ? conditions.substep() / 2 : 0;
+    return kicked && !conditions.effects.meets(kCarried) ? conditions.substep() / 2 : 0;
 }
 
 // W, the most that drag in the wind gives at a velocity between two.
@@ -127,7 +127,7 @@ void EnergyLedger::mark_groups(const World& world)
     }
     for (const SpringForce& spring : state.get<Forces>().springs) meet(spring.a, spring.b);
     // Who touches whom is not kept where the step is cut at touches.
-    if (!state.get<Conditions>().has(Effect::no_overlap)) return;
+    if (!state.get<Conditions>().effects.meets(kCarried)) return;
     bool any = !state.get<Drives>().body.empty();
     for (std::uint32_t body = 0; body < states.kind.size(); ++body)
         any = any || moves_by_itself(state, body);

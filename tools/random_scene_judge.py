@@ -90,11 +90,15 @@ def trivial_energy(made, stats, first):
 
 def borne_energy(made, stats):
     """J: what soft contacts may hold under the weight of all, as deep as any is found and allowed
-    to be. They are springs that no ledger has: motion and height take turns with what they hold."""
-    if made.scene["settings"].get("overlap", "allow") != "allow" or \
+    to be; penalty forces, whose springs are as soft as the step asks, as deep as any is. No ledger
+    has these springs: motion and height take turns with what they hold."""
+    settings = made.scene["settings"]
+    if settings.get("overlap", "allow") != "allow" or \
             not any(made.scene.get("gravity", [0, 0, -9.81])):
         return 0.0
-    deep = min(stats["max_overlap_m"], OVERLAP_SHARE * thickness_of(made))
+    deep = stats["max_overlap_m"]
+    if settings.get("response") != "penalty":
+        deep = min(deep, OVERLAP_SHARE * thickness_of(made))
     return made.mass * 9.81 * deep / 2
 
 

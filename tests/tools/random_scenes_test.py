@@ -106,6 +106,11 @@ class Judge(unittest.TestCase):
     def test_takes_what_contacts_hold_and_what_is_lifted_apart_for_no_gain(self):
         self.assertEqual(told(energy_gained_j=40.0, max_overlap_m=0.01), [])
         self.assertEqual(told(energy_gained_j=150.0, max_overlap_m=0.01), ["energy"])
+        deep = {"energy_gained_j": 1000.0, "max_overlap_m": 0.25}
+        soft = box_on_floor()
+        soft.scene["settings"]["response"] = "penalty"
+        self.assertEqual(told(soft, **deep), [])
+        self.assertEqual(told(**deep), ["energy", "overlap"])
         rigid = {"throng": 1, "settings": {"overlap": "subdivide"}, "bodies": [{}, {}]}
         tower = {"scene": rigid, "classes": {"layout stack"}, "mass_of": [1000.0] * 3,
                  "pieces": [None] + [maker.box_of([1, 1, 1])] * 3}
