@@ -295,35 +295,34 @@ void RigidMotion::stand(std::size_t i, const Pose& pose, const Vec3& velocity, c
 
 void RigidMotion::find_pulls(double time, std::size_t begin, std::size_t end)
 {
-    find_wrenches(time, true, begin, end);
-}
-
-RigidMotion::Pull RigidMotion::pull_on(std::size_t i) const
-{
-    const Mat3& turn = moments_[i].turn;
-    return {bodies_[i].inverse_mass * wrenches_[i].force,
-            turn * Vec3(bodies_[i].ease * Vec3(turn.transpose() * wrenches_[i].torque))};
+    find_wrenches(time, false, begin, end);
 }
 
 // What is held for a span is what drag comes to over all of it: as it is at the beginning, a strong
 // one would turn velocities round, and more each time.
-RigidMotion::Pull RigidMotion::pull_over(std::size_t i, double span)
+RigidMotion::Pull RigidMotion::pull_on(std::size_t i, double span) const
 {
     const Body& body = bodies_[i];
+    const Moment& now = moments_[i];
     const Forces& forces = facts_.forces;
-    const bool slows = !body.by_momentum
-        && (of(forces.linear_drag, body.body, 0.0) > 0
-            || of(forces.angular_drag, body.body, 0.0) > 0);
-    look(state_.data());
-    find_wrenches(0, !slows, i, i + 1);
-    if (!slows) return pull_on(i);
-    const Mat3& turn = moments_[i].turn;
-    const double* const before = state_.data() + speed_of(i);
+    if (of(forces.linear_drag, body.body, 0.0) == 0 && of(forces.angular_drag, body.body, 0.0) == 0)
+        return {body.inverse_mass * wrenches_[i].force,
+                now.turn * Vec3(body.ease * Vec3(now.turn.transpose() * wrenches_[i].torque))};
+    const Vec3 velocity = now.velocity - now.spin.cross(now.arm);
+    const Vec3 spin = now.turn.transpose() * now.spin;
     double after[6];
-    std::copy_n(before, 6, after);
+    put(velocity, after);
+    put(spin, after + 3);
     push(i, span, after);
-    return {Vec3(vector_at(after) - vector_at(before)) / span - fall_of(body),
-            turn * Vec3((vector_at(after + 3) - vector_at(before + 3)) / span)};
+    return {Vec3(vector_at(after) - velocity) / span - fall_of(body),
+            now.turn * Vec3((vector_at(after + 3) - spin) / span)};
+}
+
+RigidMotion::Pull RigidMotion::pull_over(std::size_t i, double span)
+{
+    look(state_.data());
+    find_wrenches(0, false, i, i + 1);
+    return pull_on(i, span);
 }
 
 RigidMotion::Going RigidMotion::going(std::size_t i) const

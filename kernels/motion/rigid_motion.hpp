@@ -77,13 +77,12 @@ public:
     /// step began.
     void find_pulls(double time, std::size_t begin, std::size_t end);
     /// World axes, m/s2 and rad/s2. Gravity is among them where it hangs from a pivot, and not
-    /// where it falls.
+    /// where it falls. Of drag it is the mean over a span from there on.
     struct Pull {
         Vec3 linear, angular;
     };
-    Pull pull_on(std::size_t i) const;
-    /// The same of one as its state has it, at the step's beginning, and of drag its mean over a
-    /// span from there on.
+    Pull pull_on(std::size_t i, double span) const;
+    /// The same of one as its state has it, at the step's beginning.
     Pull pull_over(std::size_t i, double span);
 
     /// Where its state has a body and how fast that goes, world axes.

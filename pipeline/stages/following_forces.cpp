@@ -161,8 +161,8 @@ void FollowingForces::begin(double time, double span)
     span_ = span;
     find_pulls(time, true);
     for (Follower& follower : followers_) {
-        const auto pull = (follower.stiff ? stiff_law_ : soft_law_).pull_on(follower.place);
         const double share = follower.late ? 0.5 * span : span;
+        const auto pull = (follower.stiff ? stiff_law_ : soft_law_).pull_on(follower.place, share);
         follower.gained = share * pull.linear;
         if (follower.late) follower.gained -= 0.5 * fall_of(follower);
         follower.gained_spin = share * pull.angular;
@@ -184,7 +184,8 @@ void FollowingForces::end()
     clear();
     for (Follower& follower : followers_) {
         if (!follower.late) continue;
-        const auto pull = (follower.stiff ? stiff_law_ : soft_law_).pull_on(follower.place);
+        const auto pull =
+            (follower.stiff ? stiff_law_ : soft_law_).pull_on(follower.place, 0.5 * span_);
         follower.gained = 0.5 * (span_ * pull.linear + fall_of(follower));
         follower.gained_spin = 0.5 * span_ * pull.angular;
     }

@@ -134,29 +134,35 @@ TEST(Forces, DragHoweverStrongOnlySlows)
     }
 }
 
+// With what changes on the way, and without.
+void expect_drag_slows(double rate, bool attracted)
+{
+    Scene scene = empty_scene();
+    scene.gravity = Vec3(0, 0, -10);
+    scene.settings.dt = 1.0 / 60;
+    if (attracted) scene.attractors.push_back({Vec3(0, 0, 100), 1e-6});
+    add_floor(scene, 0);
+    // A long crate: about its length its drag is stiffest.
+    BodyDescription& crate = add_crate(scene, Vec3(0, 0, 0.25));
+    crate.linear_drag = crate.angular_drag = rate;
+    crate.velocity = Vec3(3, 0, 0);
+    crate.angular_velocity = Vec3(0.5, 0, 2);
+    World world(scene);
+    double speed = 3;
+    for (int step = 0; step < 120; ++step) {
+        world.step();
+        const BodyId id = world.bodies()[1];
+        EXPECT_LE(world.velocity(id).norm(), speed + 1e-6) << rate;
+        EXPECT_LE(world.angular_velocity(id).norm(), 2.1) << rate;
+        speed = std::max(world.velocity(id).norm(), 0.3);
+    }
+    EXPECT_LT(speed, 0.31) << rate;
+}
+
 TEST(Forces, DragHoweverStrongOnlySlowsWhatTouches)
 {
-    // A long crate: about its length its drag is stiffest.
-    for (const double rate : {30.0, 300.0, 1e6}) {
-        Scene scene = empty_scene();
-        scene.gravity = Vec3(0, 0, -10);
-        scene.settings.dt = 1.0 / 60;
-        add_floor(scene, 0);
-        BodyDescription& crate = add_crate(scene, Vec3(0, 0, 0.25));
-        crate.linear_drag = crate.angular_drag = rate;
-        crate.velocity = Vec3(3, 0, 0);
-        crate.angular_velocity = Vec3(0.5, 0, 2);
-        World world(scene);
-        double speed = 3;
-        for (int step = 0; step < 120; ++step) {
-            world.step();
-            const BodyId id = world.bodies()[1];
-            EXPECT_LE(world.velocity(id).norm(), speed + 1e-6) << rate;
-            EXPECT_LE(world.angular_velocity(id).norm(), 2.1) << rate;
-            speed = std::max(world.velocity(id).norm(), 0.3);
-        }
-        EXPECT_LT(speed, 0.31) << rate;
-    }
+    for (const double rate : {30.0, 300.0, 1e6})
+        for (const bool attracted : {false, true}) expect_drag_slows(rate, attracted);
 }
 
 TEST(Forces, AnAttractorHoldsABodyInItsOrbit)
