@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace throng {
 
@@ -165,6 +166,40 @@ void far_away_bullets(CaseBench& bench)
     }
 }
 
+// Where boxes of a stack lie after 5 s, and the step after which none was awake: none where one
+// still is, which is no step like any other.
+struct Settled {
+    std::vector<Vec3> places;  // m, from where the stack was set down
+    double asleep = std::numeric_limits<double>::quiet_NaN();
+    double time_a_step = 0;  // ns
+};
+
+Settled settle(CaseBench& bench, const Vec3& at)
+{
+    Settled settled;
+    double step = 0;
+    bench.run(stack(bench, kHigh, 1, 0, at), 5, [&](World& world, double now) {
+        ++step;
+        if (world.report().bodies_awake > 0)
+            settled.asleep = std::numeric_limits<double>::quiet_NaN();
+        else if (std::isnan(settled.asleep))
+            settled.asleep = step;
+        if (now < 5 - 1e-9) return true;
+        for (const BodyId body : world.bodies())
+            if (world.motion(body) == Motion::dynamic)
+                settled.places.push_back(world.pose(body).position - at);
+        return true;
+    });
+    settled.time_a_step = bench.time_a_step();
+    return settled;
+}
+
+void show_settled(CaseBench& bench, const char* name, const Settled& settled)
+{
+    bench.show(name, "step after which it sleeps", settled.asleep, "1");
+    bench.report_time(name, "time a step", settled.time_a_step);
+}
+
 }  // namespace
 
 void case_stack(CaseBench& bench)
@@ -209,25 +244,18 @@ void case_stack(CaseBench& bench)
 
 void case_far_away(CaseBench& bench)
 {
-    const auto end_of = [&](const Vec3& at) {
-        std::vector<Vec3> places;
-        bench.run(stack(bench, kHigh, 1, 0, at), 5, [&](World& world, double now) {
-            if (now < 5 - 1e-9) return true;
-            for (const BodyId body : world.bodies())
-                if (world.motion(body) == Motion::dynamic)
-                    places.push_back(world.pose(body).position - at);
-            return true;
-        });
-        return places;
-    };
-    const std::vector<Vec3> home = end_of(Vec3::Zero());
+    const Settled home = settle(bench, Vec3::Zero());
     for (const auto& [name, at] : kAway) {
-        const std::vector<Vec3> away = end_of(at);
+        const Settled away = settle(bench, at);
         double error = 0;
-        for (std::size_t i = 0; i < home.size(); ++i)
-            error = std::max(error, (home[i] - away[i]).norm());
+        for (std::size_t i = 0; i < home.places.size(); ++i)
+            error = std::max(error, (home.places[i] - away.places[i]).norm());
         bench.report(name, "distance from where it rests at the origin", error, 1e-3, "m");
+        bench.report(name, "steps from when it falls asleep at the origin",
+                     std::abs(away.asleep - home.asleep), 0, "1");
+        show_settled(bench, name, away);
     }
+    show_settled(bench, "at the origin", home);
     far_away_bullets(bench);
     far_away_pairs(bench);
 }
