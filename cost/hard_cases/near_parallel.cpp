@@ -36,16 +36,21 @@ void judge_normal(
         tally.worst(method.name, setting, "lean of the normal / tilt",
                     (answer.normal - Vec3::UnitZ()).norm() / tilt, 10);
     }
-    // What a step would have; in float a normal is no better than its last digits.
+    // What a step would have; in float a normal is no better than its last digits. It keeps to the
+    // faces, which may be deeper than the least depth by a share of the square of the tilt.
     const ConvexQuery query(pair.a, pair.b);
     for (const Precision precision : {Precision::double_, Precision::float_}) {
         const ConvexAnswer answer = bench.touch(query, precision, pair.at_a, pair.at_b, pair.size);
         if (answer.verdict != QueryVerdict::touching) continue;
         const bool in_float = precision == Precision::float_;
         const double least = in_float ? std::max(tilt, 1e-7) : tilt;
-        tally.worst("auto", std::string(setting) + (in_float ? ", float" : ""),
+        const std::string way = std::string(setting) + (in_float ? ", float" : "");
+        tally.worst("auto", way,
                     in_float ? "lean of the normal / tilt or 1e-7" : "lean of the normal / tilt",
                     (answer.normal - Vec3::UnitZ()).norm() / least, 10);
+        const double off = std::abs(answer.separation - pair.truth) / pair.size;
+        tally.worst("auto", way, "separation off the truth / size, beyond the tilt's square",
+                    std::max(0.0, off - tilt * tilt), in_float ? 1e-6 : 1e-11);
     }
 }
 
