@@ -41,20 +41,20 @@ std::atomic<int> begun{0};
 void change_pairs(Pairs&)
 {
     given::meet_another(begun);
-    ++shared;
+    given::change_often(shared);
 }
 
 void change_bounds(Bounds&)
 {
     given::meet_another(begun);
-    ++shared;
+    given::change_often(shared);
 }
 
 void race_of_stages()
 {
     run_stages({stage<float, change_pairs>("change_pairs", {}),
                 stage<float, change_bounds>("change_bounds", {})});
-    std::exit(shared == 2 ? 0 : 1);
+    std::exit(0);
 }
 
 TEST(RaceChecker, SeesARaceInTheStepGraph) { given::expect_race(race_of_stages); }

@@ -19,6 +19,15 @@ inline void meet_another(std::atomic<int>& come)
         std::this_thread::yield();
 }
 
+/// Changes a number often: two changes at the very same time may both go unseen.
+inline void change_often(int& number)
+{
+    for (int i = 0; i < 1000; ++i) {
+        ++number;
+        std::this_thread::yield();
+    }
+}
+
 /// That a function which ends the program has raced by then.
 inline void expect_race(void (*races)())
 {

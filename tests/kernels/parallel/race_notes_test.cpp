@@ -23,10 +23,10 @@ void race_of_blocks()
     pool.run([&](std::size_t, std::size_t, std::size_t) {
         for_each_block(2, 1, [&](std::size_t, std::size_t, std::size_t) {
             given::meet_another(come);
-            ++shared;
+            given::change_often(shared);
         });
     });
-    std::exit(shared == 2 ? 0 : 1);
+    std::exit(0);
 }
 
 TEST(RaceChecker, SeesARaceOfBlocks) { given::expect_race(race_of_blocks); }
