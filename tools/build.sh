@@ -139,9 +139,9 @@ test_sanitized() {
     else
         local compares="SameBits|SolidBits|SweepWidths|PlantedFault|OnThreeThreads|ChangesNoBit"
         compares+="|OnAnyNumberOfThreads|IslandsThatAreCut|Catalog.(SameSeed|OtherSeed)"
-        local repeats="KeepsItsBounds/H(37|43|48)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
+        local repeats="KeepsItsBounds/H(37|43|47|48|72)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
         repeats+="|ProgressIs|Bench.ValuesOfADial|ConvexCover.T|ConvexParts.(ErrorIs|SizeChanges)"
-        repeats+="|PartsCache.Damaged|Friction.OfEveryKind|Subdivide.WhatIsJammed"
+        repeats+="|PartsCache.Damaged|Friction.OfEveryKind|Subdivide.WhatIsJammed|Parting.ThinSolids"
         # Methods held against one another, or against plain sums, on thousands of random shapes.
         local agree="MeshPairs.WhatIsApart|Friction.HoldsOnASlope|SurfaceGaps.TheLeast|AskGjk.RightOn"
         agree+="|AskSat.FastAndPlain|ImpactOf(Spheres|Surfaces).IsNever|Containment.(Agrees|FacesThat)"
@@ -150,6 +150,5 @@ test_sanitized() {
         agree+="|StepGraph.MatchesRunInOrder"
         which+=(-E "$compares|$repeats|$agree")
     fi
-    (cd "$root/build/$1" && "${steady[@]}" ctest --output-on-failure --no-tests=error \
-        --timeout 600 -j "$(job_count)" "${which[@]}")
+    "${steady[@]}" "$root/tools/test_groups.py" "$root/build/$1" -j "$(job_count)" "${which[@]}"
 }
