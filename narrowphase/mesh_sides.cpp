@@ -23,18 +23,6 @@ TrianglePoint<double> nearest_to(const Vec3& point, const MeshTriangle& triangle
     return closest_on_triangle<double>(point, a, b, c);
 }
 
-bool crosses(const Vec3& from, const Vec3& way, const MeshTriangle& triangle)
-{
-    const double first = triangle.height(from), last = triangle.height(from + way);
-    if ((first > 0) == (last > 0)) return false;
-    const Vec3 at = from + way * (first / (first - last));
-    for (std::size_t e = 0; e < 3; ++e) {
-        const Vec3 along = triangle.corners[(e + 1) % 3] - triangle.corners[e];
-        if (along.cross(at - triangle.corners[e]).dot(triangle.normal) < 0) return false;
-    }
-    return true;
-}
-
 }  // namespace
 
 MeshSides::MeshSides(const Mesh& mesh,
@@ -136,7 +124,7 @@ bool MeshSides::is_hidden(const Vec3& point, std::uint32_t triangle) const
 {
     const Vec3 way = kNearly * (point - center_);
     return std::any_of(near_.begin(), near_.end(), [&](std::uint32_t other) {
-        return other != triangle && crosses(center_, way, MeshTriangle(mesh_, other));
+        return other != triangle && MeshTriangle(mesh_, other).is_crossed(center_, center_ + way);
     });
 }
 

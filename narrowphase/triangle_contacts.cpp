@@ -136,6 +136,18 @@ MeshTriangle::MeshTriangle(const Mesh& of, std::uint32_t triangle, bool from_beh
         corners[i] = of.vertices[of.triangles[triangle][own_corner(i)]];
 }
 
+bool MeshTriangle::is_crossed(const Vec3& from, const Vec3& to) const
+{
+    const double first = height(from), last = height(to);
+    if ((first > 0) == (last > 0)) return false;
+    const Vec3 at = from + (to - from) * (first / (first - last));
+    for (std::size_t e = 0; e < 3; ++e) {
+        const Vec3 along = corners[(e + 1) % 3] - corners[e];
+        if (along.cross(at - corners[e]).dot(normal) < 0) return false;
+    }
+    return true;
+}
+
 bool corner_sticks_out(const MeshTriangle& triangle, std::size_t corner, const Vec3& direction)
 {
     const Mesh& mesh = triangle.mesh;
@@ -205,12 +217,12 @@ void touch_rod(const MeshTriangle& triangle,
     const bool before = height_from + height_to >= 0;
     if ((!before && !through) || std::min(height_from, height_to) - radius > reach) return;
     const Segment<double> rod{from, to};
-    if (!before) return lay_rod(triangle, rod, radius, reach, out);
+    if (!before || triangle.is_crossed(from, to)) return lay_rod(triangle, rod, radius, reach, out);
     const RodTouch touch = closest_on_rod(triangle, rod);
     const double limit = reach + radius;
     if (touch.distance2 > limit * limit) return;
 
-    // A rod that runs through the triangle, or lies on it, or leans over a seam, is measured from
+    // A rod that lies on the triangle or leans over a seam, is measured from
     // the face; only an edge or a corner that sticks out pushes along the line to it.
     const Vec3 apart = touch.on_rod - touch.on_triangle;
     const double distance = std::sqrt(touch.distance2);

@@ -4,6 +4,7 @@
 // away, whichever way the triangles are wound; a closed mesh keeps out what comes from outside.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
+#include "pipeline/names.hpp"
 #include "pipeline/world.hpp"
 
 #include <algorithm>
@@ -32,12 +33,12 @@ std::vector<Guest> guests()
             {"stone", stone, 0.2}};
 }
 
-// A square of 4 m by 4 m, 1 m above its origin, of 32 triangles.
-MeshShape sheet()
+// A square of 4 by 4 cells, 1 m above its origin, of 32 triangles.
+MeshShape sheet(double cell = 1)
 {
     MeshShape mesh;
     for (int i = 0; i < 5; ++i)
-        for (int j = 0; j < 5; ++j) mesh.vertices.emplace_back(i - 2, j - 2, 1);
+        for (int j = 0; j < 5; ++j) mesh.vertices.emplace_back(cell * (i - 2), cell * (j - 2), 1);
     for (std::uint32_t i = 0; i < 4; ++i)
         for (std::uint32_t j = 0; j < 4; ++j) {
             const std::uint32_t a = 5 * i + j, b = a + 5;
@@ -129,6 +130,38 @@ void stay_there(CaseBench& bench,
     bench.report(name, "come through", through, 0, "1");
 }
 
+// A stick of 1:36 is let fall as it spins, by any of three axes: how often it ends on the other
+// side, or goes there as far as it reaches.
+void stay_there_spinning(CaseBench& bench,
+                         const std::string& name,
+                         double side,
+                         double spin,
+                         const std::function<void(Settings&)>& set)
+{
+    constexpr double kCell = 20, kLength = 0.245;  // m
+    const Guest sticks[] = {{"capsule", CapsuleShape{0.0068, kLength}, 0},
+                            {"beam", BoxShape{Vec3(0.0068, 0.0068, kLength)}, 0}};
+    int through = 0;
+    for (const Guest& stick : sticks)
+        for (const Vec3& axis : {Vec3(0.1, 1, 0.1), Vec3(1, 0.3, -0.4), Vec3(0.05, -0.1, 1)}) {
+            Scene scene = met(bench, sheet(kCell), stick, {.side = side, .above = 0.3});
+            BodyDescription& body = scene.bodies.back();
+            body.orientation = exponential(Vec3(axis.z(), axis.x(), axis.y()));
+            body.angular_velocity = spin * axis.normalized();
+            set(scene.settings);
+            bool held = true;
+            bench.run(scene, bench.brief() ? 1 : 4, [&](World& world, double) {
+                const Vec3 now = world.pose(world.bodies().back()).position;
+                const bool over = std::max(std::abs(now.x()), std::abs(now.y())) < 2 * kCell;
+                if (!over) return false;
+                held = side * now.z() > 0;
+                return side * now.z() > -kLength;
+            });
+            through += held ? 0 : 1;
+        }
+    bench.report(name, "come through", through, 0, "1");
+}
+
 }  // namespace
 
 void case_both_sides(CaseBench& bench)
@@ -157,6 +190,15 @@ void case_both_sides(CaseBench& bench)
         rest_there(bench, std::string("from behind, ") + name, sheet(), {.side = -1},
                    [dt = dt](Settings& settings) { settings.dt = dt; });
     rest_there(bench, "from behind, direct", sheet(), {.side = -1}, ask_exactly);
+    for (const double spin : {50.0, 150.0, 440.0}) {
+        const std::string who = "sticks at " + number_text(spin) + " rad/s";
+        for (const int substeps : {1, 4, 16}) {
+            if (bench.brief() && substeps != 4) continue;
+            stay_there_spinning(bench, who + ", substeps=" + std::to_string(substeps), 1, spin,
+                                [=](Settings& settings) { settings.substeps = substeps; });
+        }
+        stay_there_spinning(bench, who + ", from behind", -1, spin, by_default);
+    }
     // Its center on the back, all but through: it comes out there.
     rest_there(bench, "from behind, made half through", sheet(), {.side = -1, .above = -0.18},
                by_default);

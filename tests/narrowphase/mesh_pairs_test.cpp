@@ -119,6 +119,29 @@ TEST(MeshPairs, TiltedShapesStillGetTheFloorsNormal)
     }
 }
 
+// Its ends may both be further from the floor than it is thick.
+TEST(MeshPairs, ARodThroughAFaceIsPushedOutAsFarAsItReachesBelow)
+{
+    Shapes shapes;
+    std::vector<Vec3> square = {{-9, -8, 0}, {9, -8, 0}, {0, 9, 0}};
+    shapes.meshes = {build_mesh(square, {{0, 1, 2}}).mesh};
+    shapes.capsules = {{0.01, 0.5}};
+    RandomShapes random(35);
+    int met = 0;
+    for (int i = 0; i < 300; ++i) {
+        SCOPED_TRACE("seed 35, pose " + std::to_string(i));
+        Pose pose{random.vector(-1, 1), random.turn()};
+        const double up = 0.5 * std::abs((pose.orientation * Vec3::UnitZ()).z());
+        pose.position.z() = 0.9 * up * random.number(0, 1);
+        const auto found = touch_mesh<double>(shapes, {ShapeKind::capsule, 0}, pose, 0.01);
+        ASSERT_EQ(found.size(), 1U);
+        ASSERT_LT((found[0].manifold.normal - Vec3::UnitZ()).norm(), 1e-9);
+        ASSERT_NEAR(deepest(found[0].manifold), pose.position.z() - up - 0.01, 1e-9);
+        met += up - pose.position.z() > 0.05 ? 1 : 0;
+    }
+    EXPECT_GT(met, 50);
+}
+
 TEST(MeshPairs, DeepestPointOnAFloorIsTheLowestPoint)
 {
     Shapes shapes;
