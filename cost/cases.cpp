@@ -127,6 +127,7 @@ constexpr HardCase kCases[] = {
 };
 
 constexpr double kShrunk = 0.9;
+constexpr double kEnergyGained = 1e-3;  // of the greatest kinetic energy
 
 void shrink(ShapeDescription& shape)
 {
@@ -213,6 +214,16 @@ Pose nudged(const Pose& pose, double size)
     return {pose.position + 1e-6 * size * aslant, pose.orientation * exponential(1e-6 * aslant)};
 }
 
+// Whether nobody chose another value than the default, but for the step and for sleep.
+bool by_default(Settings settings)
+{
+    settings.dt = Settings().dt;
+    settings.sleep = Settings().sleep;
+    return std::all_of(dials().begin(), dials().end(), [&](const Dial& dial) {
+        return dial_value(settings, dial.name) == dial_value(Settings(), dial.name);
+    });
+}
+
 std::string name_of(ToiMethod method)
 {
     Settings settings;
@@ -245,10 +256,29 @@ std::vector<CaseResult> CaseBench::run(const HardCase& which)
     name_ = which.name;
     try {
         which.run(*this);
+        if (energy_runs_ > 0) report_energy();
     } catch (const Stopped&) {
         // What came before it stands.
     }
     return std::move(results_);
+}
+
+void CaseBench::enter_energy(const EnergyLedger& ledger)
+{
+    ++energy_runs_;
+    const EnergyOfRun run{ledger.gained(), ledger.greatest_kinetic(), {}};
+    if (run.is_worse_than(energy_)) energy_ = run;
+}
+
+void CaseBench::report_energy()
+{
+    std::string runs = std::to_string(energy_runs_) + " runs by default";
+    const auto& [gained, kinetic, setting] = worst_energy_;
+    if (gained > 0)
+        runs += ", worst: " + setting + ", " + number_text(gained) + " of " + number_text(kinetic)
+            + " J";
+    report(runs, "energy nobody gave, beside the greatest kinetic",
+           gained > 0 ? gained / kinetic : 0, kEnergyGained, "1");
 }
 
 Scene CaseBench::scene() const
@@ -268,6 +298,8 @@ void CaseBench::run(const Scene& scene,
     Scene planted = scene;
     plant(fault_, planted);
     World world(planted, threads_);
+    EnergyLedger of_default;
+    if (ledger == nullptr && listener_.energy && by_default(scene.settings)) ledger = &of_default;
     const double dt = scene.settings.dt;
     const int steps = static_cast<int>(std::llround(time / dt));
     step_ms_ = steps_ = 0;
@@ -284,6 +316,7 @@ void CaseBench::run(const Scene& scene,
         stop_where_enough();
         if (!watch(world, step * dt)) break;
     }
+    if (listener_.energy && ledger != nullptr && by_default(scene.settings)) enter_energy(*ledger);
     lost_ += world.report().bodies_quarantined;
     missed_ = std::max(missed_, world.report().direct_residual);
     spent_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
@@ -316,6 +349,11 @@ CaseResult CaseBench::judged(
     if (lost_ > 0) result.why = "bodies quarantined: " + std::to_string(lost_);
     lost_ = 0;
     missed_ = 0;
+    if (energy_.is_worse_than(worst_energy_)) {
+        worst_energy_ = energy_;
+        worst_energy_.setting = result.setting;
+    }
+    energy_ = {};
     result.time_ms = spent_ms_;
     spent_ms_ = 0;
     return result;

@@ -64,6 +64,9 @@ enum class Extent : std::uint8_t { brief, whole };
 struct CaseListener {
     std::function<void(const CaseResult&)> line = [](const CaseResult&) {};
     std::function<bool()> enough = [] { return false; };  // asked after every step and question
+    /// Keeps an energy ledger of every run by the default dials (but for dt and sleep), and adds a
+    /// line at the case's end: the worst of them.
+    bool energy = false;
 };
 
 /// What a case runs on: it makes the worlds, so that settings and faults reach all of them.
@@ -176,6 +179,8 @@ private:
     CaseResult judged(
         std::string setting, std::string quantity, double figure, double bound, std::string unit);
     void keep(CaseResult result);
+    void enter_energy(const class EnergyLedger& ledger);
+    void report_energy();
     // Throws Stopped.
     void stop_where_enough() const;
 
@@ -191,6 +196,19 @@ private:
     int runs_ = 0;          // so far
     std::size_t lost_ = 0;  // bodies quarantined since the last line
     double missed_ = 0;     // greatest residual of the direct solver, likewise
+    // What ledgers kept for the listener say, of the run that gained most beside its greatest
+    // kinetic energy.
+    struct EnergyOfRun {
+        double gained = 0, kinetic = 0;  // J
+        std::string setting;             // of the line that followed
+        bool is_worse_than(const EnergyOfRun& other) const
+        {
+            return gained * other.kinetic > other.gained * kinetic
+                || (gained > 0 && other.gained == 0);
+        }
+    };
+    int energy_runs_ = 0;
+    EnergyOfRun energy_, worst_energy_;  // since the last line, and of all
     std::map<std::string, double, std::less<>> method_ms_;
     std::vector<CaseResult> results_;
 };

@@ -20,6 +20,7 @@ namespace throng {
 namespace {
 
 constexpr Option kOptions[] = {
+    {"--energy", "", "a line more a case: energy that nobody gave its runs by default"},
     {"--json", "FILE", "writes the lines as JSON too"},
     kSetOption,
     kThreadsOption,
@@ -177,7 +178,7 @@ int run_cases(const Options& options)
     const auto ended = [&] { return interrupted() || (!std::cout && !json.asked_for()); };
     for (const HardCase* one : cases) {
         run_case(*one, settings, Fault::none, threads_asked(options), Extent::whole,
-                 {take_line, ended});
+                 {take_line, ended, options.has("--energy")});
         if (ended()) break;
     }
     if (json.asked_for()) {

@@ -60,6 +60,31 @@ TEST(CaseBench, WhatIsHeldToNothingIsNoPass)
     EXPECT_EQ(results[1].unit, "ns");
 }
 
+TEST(CaseBench, ALedgerIsKeptOfRunsByDefaultWhereItIsWanted)
+{
+    const HardCase falls = case_that([](CaseBench& bench) {
+        Scene scene = falling_ball(bench, -9.81);
+        bench.run(scene, 0.5, [](World&, double) { return true; });
+        bench.report("falls", "error", 0, 1, "1");
+        scene.settings.substeps += 1;
+        bench.run(scene, 0.5, [](World&, double) { return true; });
+        bench.report("falls finely", "error", 0, 1, "1");
+    });
+    CaseListener listener;
+    listener.energy = true;
+    const auto kept = run_case(falls, {}, Fault::none, 1, Extent::whole, listener);
+    ASSERT_EQ(kept.size(), 3U);
+    EXPECT_EQ(kept[2].setting.find("1 runs by default"), 0U) << kept[2].setting;
+    EXPECT_EQ(kept[2].verdict, Verdict::pass);
+
+    const auto hastened = run_case(falls, {}, Fault::haste, 1, Extent::whole, listener);
+    ASSERT_EQ(hastened.size(), 3U);
+    EXPECT_NE(hastened[2].setting.find("worst: falls,"), std::string::npos) << hastened[2].setting;
+    EXPECT_EQ(hastened[2].verdict, Verdict::fail);
+
+    EXPECT_EQ(run_case(falls).size(), 2U);
+}
+
 // Ten steps, of which a line each is told.
 void tell_ten_steps(CaseBench& bench)
 {
