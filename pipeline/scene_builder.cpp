@@ -44,10 +44,9 @@ bool uneven(const Sym3& inertia)
 
 // The axis about which an inertia is all but symmetric, or zero. Moments across it that differ by a
 // fifteenth count as alike: those of a needle never differ by more than the one along it.
-Vec3 symmetry_axis_of(const Sym3& inertia)
+Vec3 symmetry_axis_of(const PrincipalInertia& principal)
 {
     constexpr double kAlike = 1.0 / 32;  // the difference, of their sum
-    const PrincipalInertia principal = principal_inertia(inertia);
     const int axis = principal.axis_of_symmetry();
     if (principal.asymmetry(axis) > kAlike) return Vec3::Zero();
     return principal.axes.col(axis);
@@ -321,13 +320,13 @@ void SceneBuilder::weigh(std::uint32_t body,
         masses.inertia[body] = shifted(masses.inertia[body], mass, off);
         state_.center[body] = *stated.pivot;
     }
-    if (stated.lock_rotation || masses.inertia[body] == Sym3{}) return;
-    const bool in_double = state_.get<Conditions>().settings.precision == Precision::double_;
-    masses.inverse_inertia[body] = turning_ease(masses.inertia[body], in_double ? 1e14 : 1e6);
     const Sym3& inertia = masses.inertia[body];
-    const bool principal = inertia.xy == 0 && inertia.xz == 0 && inertia.yz == 0;
-    masses.spins_unevenly[body] = !uneven(inertia) ? 0 : principal ? 1 : 2;
-    if (uneven(inertia)) masses.symmetry_axis[body] = symmetry_axis_of(inertia);
+    if (inertia.has_products()) put(masses.principal, body, principal_inertia(inertia));
+    if (stated.lock_rotation || inertia == Sym3{}) return;
+    const bool in_double = state_.get<Conditions>().settings.precision == Precision::double_;
+    masses.inverse_inertia[body] = turning_ease(inertia, in_double ? 1e14 : 1e6);
+    masses.spins_unevenly[body] = !uneven(inertia) ? 0 : inertia.has_products() ? 2 : 1;
+    if (uneven(inertia)) masses.symmetry_axis[body] = symmetry_axis_of(masses.principal_of(body));
 }
 
 void SceneBuilder::note_requests(std::uint32_t body, const BodyDescription& stated)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/data/shapes.hpp"
+#include "kernels/math/principal_inertia.hpp"
 #include "kernels/math/types.hpp"
 
 #include <algorithm>
@@ -59,6 +60,16 @@ struct Masses {
     // Of those, body axes: the one about which the inertia is all but symmetric, as of rods, discs
     // and needles of any kind; zero where there is none.
     std::vector<Vec3> symmetry_axis;
+    // Of bodies whose axes are not the principal ones, up to the last such: to find these takes
+    // longer than to fly by them.
+    std::vector<PrincipalInertia> principal;
+
+    PrincipalInertia principal_of(std::size_t body) const
+    {
+        const Sym3& own = inertia[body];
+        return own.has_products() && body < principal.size() ? principal[body]
+                                                             : principal_inertia(own);
+    }
 };
 
 /// m/s along each axis; not a number where it is free.

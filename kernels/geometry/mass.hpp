@@ -29,20 +29,6 @@ MassProperties mass_of(const Mesh& mesh);
 /// The same for a mesh that may have a rim: its holes are closed by cones to the middle of its box.
 MassProperties mass_as_if_closed(const Mesh& mesh);
 
-/// An inertia by its principal axes: the columns of a rotation, and the moments about them.
-struct PrincipalInertia {
-    Mat3 axes = Mat3::Identity();
-    Vec3 moments = Vec3::Zero();
-
-    /// By how much the moments about the other two axes differ, of their sum.
-    double asymmetry(int axis) const;
-    /// The axis that comes nearest to one of symmetry.
-    int axis_of_symmetry() const;
-};
-
-/// Of an inertia without products the axes are those that it is given in.
-PrincipalInertia principal_inertia(const Sym3& inertia);
-
 /// All parts as one, in the axes of the whole. Parts that overlap count twice.
 MassProperties combine(std::span<const PlacedMass> parts);
 

@@ -58,6 +58,8 @@ struct Sym3 {
         m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
         return m;
     }
+    /// Whether its axes are not the principal ones.
+    bool has_products() const { return xy != 0 || xz != 0 || yz != 0; }
     static Sym3 from(const Mat3& m)
     {
         return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};

@@ -53,7 +53,7 @@ RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) c
         && of(facts_.forces.angular_drag, id, 0.0) == 0;
     body.ease = masses.inverse_inertia[id].matrix();
     const Sym3& inertia = masses.inertia[id];
-    body.principal = principal_inertia(inertia);
+    body.principal = masses.principal_of(id);
     if (body.by_momentum && !adds_rates(rule_.rotation)) {
         const int own = body.principal.axis_of_symmetry();
         const double beside =

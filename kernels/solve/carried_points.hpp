@@ -21,6 +21,9 @@ inline Ease ease_of(const DirectBody& body)
             body.inverse_inertia.xx + body.inverse_inertia.yy + body.inverse_inertia.zz};
 }
 
+/// How many times as heavy, or as hard to turn, a body is that takes another along.
+inline constexpr double kHeavier = 10;
+
 /// Whether a body takes along what lies on it as it turns: one that nothing turns, one that is held
 /// at a point or an axle and ten times as hard to turn as the other or, where it turns enough to be
 /// seen, one that is ten times as heavy. Of two of like weight neither goes round by itself for
@@ -30,7 +33,7 @@ inline Ease ease_of(const DirectBody& body)
 ///   dt    s, of the step that arms are taken in
 inline bool carries(const Vec3& spin, const Ease& carrier, const Ease& carried, double dt)
 {
-    constexpr double kHeavier = 10, kSeen = 1e-3;  // rad a step
+    constexpr double kSeen = 1e-3;  // rad a step
     if (spin.isZero(0)) return false;
     if (carrier.of_moving == 0) return carrier.of_turning * kHeavier <= carried.of_turning;
     return carrier.of_moving * kHeavier <= carried.of_moving

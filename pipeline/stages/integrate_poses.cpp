@@ -46,10 +46,12 @@ FlightArrays arrays_of(const Masses& masses, Poses& poses, Velocities& velocitie
 
 // A body turned through the step by what its angular momentum does, in as many parts as it takes.
 // False where that are too many: it is left as it was.
-bool turn_in_parts(const FlightRule& rule, const Sym3& inertia, Quat& orientation, Vec3& angular)
+bool turn_in_parts(const FlightRule& rule,
+                   const PrincipalInertia& principal,
+                   Quat& orientation,
+                   Vec3& angular)
 {
     constexpr int kMostParts = 256;  // some 20 microseconds
-    const PrincipalInertia principal = principal_inertia(inertia);
     const FreeRotation rotation = free_rotation(principal.moments);
     const double span = rule.substep * rule.substeps;
     const Vec3 spin = principal.axes.transpose() * (orientation.conjugate() * angular);
@@ -105,7 +107,7 @@ bool fly_one(const Conditions& conditions,
     if (conditions.has(Effect::rotation)) {
         const bool split =
             rule.precession == FlightRule::Precession::split && masses.spins_unevenly[body] != 0;
-        if (!split || !turn_in_parts(rule, masses.inertia[body], orientation, angular))
+        if (!split || !turn_in_parts(rule, masses.principal_of(body), orientation, angular))
             turn_by_steps(conditions, masses, body, orientation, angular);
     }
     if (!holdable(position, orientation, linear, angular)) return false;

@@ -81,8 +81,13 @@ bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
         lightest = {std::max(lightest.of_moving, ease.of_moving),
                     std::max(lightest.of_turning, ease.of_turning)};
     }
-    return std::any_of(bodies.begin(), bodies.end(),
-                       [&](const auto& body) { return carries(body, lightest, dt); });
+    return std::any_of(bodies.begin(), bodies.end(), [&](const SolverBody<Real>& body) {
+        // Most are told by a number or two.
+        const Real* const spin = body.motion + 4;
+        if (spin[0] == 0 && spin[1] == 0 && spin[2] == 0) return false;
+        const double ease{body.inertia[0]};
+        return !(ease > 0 && ease * kHeavier > lightest.of_moving) && carries(body, lightest, dt);
+    });
 }
 
 // Drives of those that contacts push. Of nobody else does friction ask.

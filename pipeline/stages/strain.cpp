@@ -28,6 +28,7 @@ constexpr double kDeep = 0.5;
 // share of the extent in a step; and what is small enough to be solved exactly at once.
 constexpr double kHeavy = 8, kDriven = 0.1, kCrushed = 2 * kExactStrain;
 constexpr std::size_t kCrushedContacts = 16;
+constexpr double kAllBut = 0.999999;  // for the last digits of a product in another order
 
 // The direct solver needs no help, and pushes and forces go island by island.
 bool helps(const Settings& settings)
@@ -75,9 +76,11 @@ public:
         const auto contacts = contacts_of(island);
         // Who lies on what stands still, by one contact, has nobody to wait for.
         if (contacts.size() < 2 || contacts.size() > kBatchContacts) return 0;
+        const double before = strain_before(island);
+        // What is loaded by so little that no height makes it too much is most of what there is.
+        if (before == 0 && !gives_more_than(kRelieved / double(bodies), contacts)) return 0;
         double most = 0;
         for (const std::uint32_t contact : contacts) most = std::max(most, give_of(contact));
-        const double before = strain_before(island);
         // Pushed apart otherwise, what was driven in is thrown.
         if (before >= kCrushed && overlaps(contacts, kDriven)) return -kCrushed;
         if (!(std::max(most * double(bodies), before) > kRelieved)) return 0;
@@ -121,6 +124,17 @@ private:
         if (!(entry.extent > 0)) return 0;
         return speed_borne(entry, maker_.contact_of(entry), masses_) * per_speed_[entry.points - 1u]
             / double{entry.extent};
+    }
+
+    // Whether any contact does; give_of() without its division.
+    bool gives_more_than(double least, std::span<const std::uint32_t> contacts) const
+    {
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            const double held = speed_borne(entry, maker_.contact_of(entry), masses_)
+                * per_speed_[entry.points - 1u];
+            return held > kAllBut * least * double{entry.extent};
+        });
     }
 
     // By mass, as a light body between heavy ones may tremble.
@@ -226,6 +240,7 @@ private:
 
     double strain_before(std::size_t island) const
     {
+        if (stubborn_.strained.empty()) return 0;
         double most = 0;
         for (const std::uint32_t body : bodies_of(island))
             most = std::max(most, std::abs(double{stubborn_.of(body)}));

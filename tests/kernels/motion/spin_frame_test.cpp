@@ -1,5 +1,5 @@
 // Spin frame: bodies that contacts push while they turn, with the inertia of the step's beginning.
-#include "kernels/geometry/mass.hpp"
+#include "kernels/math/principal_inertia.hpp"
 #include "kernels/math/rotation.hpp"
 #include "kernels/motion/solver_bodies.hpp"
 #include "kernels/solve/sweep.hpp"
