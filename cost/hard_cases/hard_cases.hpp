@@ -78,9 +78,10 @@ void case_same_answers(CaseBench& bench);   // H37, same_answers.cpp, and pair_f
 void compare_pair_finders(CaseBench& bench);
 
 // Shapes that are not convex.
-void case_through_hole(CaseBench& bench);  // H43, through_hole.cpp
-void case_solid_heap(CaseBench& bench);    // H44, solid_heap.cpp
-void case_convergence(CaseBench& bench);   // H45, convergence.cpp
+void case_through_hole(CaseBench& bench);  // H43, through_hole.cpp, and spikes_and_wedges.cpp
+void spikes_and_wedges(CaseBench& bench);
+void case_solid_heap(CaseBench& bench);   // H44, solid_heap.cpp
+void case_convergence(CaseBench& bench);  // H45, convergence.cpp
 
 // Scenes a step beside those above: docs/accuracy.md.
 void case_thin_falls(CaseBench& bench);     // H74, thin_falls.cpp
