@@ -144,13 +144,21 @@ ShapeDescription shrunk(ShapeDescription shape)
     return shape;
 }
 
+void scale_friction(Scene& scene, double by)
+{
+    for (Material& material : scene.materials) material.friction *= by;
+    for (MaterialPair& pair : scene.pairs)
+        if (pair.friction) *pair.friction *= by;
+}
+
 void plant(Fault fault, Scene& scene)
 {
     switch (fault) {
     case Fault::friction:
-        for (Material& material : scene.materials) material.friction *= 0.9;
-        for (MaterialPair& pair : scene.pairs)
-            if (pair.friction) *pair.friction *= 0.9;
+        scale_friction(scene, 0.9);
+        break;
+    case Fault::grip:
+        scale_friction(scene, 1.1);
         break;
     case Fault::restitution:
         for (Material& material : scene.materials) material.restitution *= 0.9;
@@ -205,6 +213,27 @@ void hasten(World& world)
 void shift_poses(World& world, double by)
 {
     place_anew(world, [&](const Vec3& at) -> Vec3 { return at + Vec3::Constant(by); });
+}
+
+void sink(World& world)
+{
+    const Vec3 down = world.gravity().normalized();  // zero stays zero
+    place_anew(world, [&](const Vec3& at) -> Vec3 { return at + 1e-3 * down; });
+}
+
+constexpr double kSkew = 1e-6;  // m and m/s, times a body's place in the list
+
+void skew(World& world)
+{
+    double by = 0;
+    place_anew(world, [&](const Vec3& at) -> Vec3 { return at + Vec3::Constant(by += kSkew); });
+    by = 0;
+    for (const BodyId body : world.bodies()) {
+        if (world.motion(body) != Motion::dynamic) continue;
+        by += kSkew;
+        world.set_velocity(body, world.velocity(body) + Vec3::Constant(by),
+                           world.angular_velocity(body));
+    }
 }
 
 // Aslant, so that no face of a pair lets it pass.
@@ -312,6 +341,8 @@ void CaseBench::run(const Scene& scene,
         if (fault_ == Fault::float_poses) round_poses(world);
         if (fault_ == Fault::haste) hasten(world);
         if (fault_ == Fault::unsteady) shift_poses(world, 1e-8 * runs_);
+        if (fault_ == Fault::sink) sink(world);
+        if (fault_ == Fault::skew) skew(world);
         if (ledger != nullptr) ledger->after_step(world);
         stop_where_enough();
         if (!watch(world, step * dt)) break;

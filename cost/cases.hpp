@@ -55,6 +55,9 @@ enum class Fault : std::uint8_t {
     restitution,  // coefficients of restitution 10 % too small
     shrink,       // meshes a tenth too small, and all that is asked for its shared volume
     unsteady,     // bodies moved a bit after every step, in each run by another
+    grip,         // coefficients of friction 10 % too great
+    sink,         // bodies moved down by a millimeter after every step
+    skew,         // bodies moved and pushed aslant after every step, each by more than the last
 };
 
 /// How much of a case is run: all of it, or what a test has time for.

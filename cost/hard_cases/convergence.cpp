@@ -84,6 +84,16 @@ SharedPair turned_cubes(Random& random)
             Vec3::Zero(),        shared_side(a, b)};
 }
 
+// Unit cubes whose axes are those of every lattice, the one pushed into the other: at worst a whole
+// layer of cells is counted or is not.
+SharedPair aligned_cubes(Random& random)
+{
+    Vec3 off;
+    for (int axis = 0; axis < 3; ++axis) off[axis] = random.uniform(0.01, 0.49);
+    const ShapeDescription cube{"", BoxShape{Vec3::Constant(0.5)}};
+    return {cube, cube, {off, Quat::Identity()}, (Vec3::Ones() - off).prod(), off / 2};
+}
+
 // Errors against numbers of cells, rays or voxels, and the line through them.
 struct Fall {
     std::vector<double> cells, errors;
@@ -171,6 +181,21 @@ void judge_exact(CaseBench& bench)
     const SharedError error = shared_error(bench, turned_cubes, "exact", 1);
     bench.report("cubes, exact", "error of the volume", error.volume, 1e-12, "1");
     bench.report("cubes, exact", "error of the center", error.center, 1e-12, "1");
+}
+
+// Flat faces in step with the lattice, the worst there is: order 1. Sides are half of the longest
+// at least, and the count along each of the two others is off by half a cell at most.
+void judge_aligned(CaseBench& bench)
+{
+    Fall volumes;
+    for (int cells = 8; cells <= (bench.brief() ? 32 : 256); cells *= 2) {
+        const SharedError error = shared_error(bench, aligned_cubes, "voxels", cells);
+        volumes.add(cells, error.volume);
+        bench.report("aligned cubes, voxels, " + std::to_string(cells) + " cells",
+                     "error of the volume", error.volume, 2.0 / cells, "1");
+    }
+    bench.report("aligned cubes, voxels", "order of the volume short of 1",
+                 std::max(0.0, 1 - volumes.order()), kOrderSlack, "1");
 }
 
 // A post through the hole of a torus: one layer of depths fills it, and says so.
@@ -264,6 +289,28 @@ void judge_voxel_depths(CaseBench& bench)
                  kOrderSlack, "1");
 }
 
+// A small ball inside an edge, half way between its faces, where distances bend: order 1.
+DepthPair edge_pair()
+{
+    const auto place = [](Random& random) -> Vec3 {
+        return {1 - kDepth / 2, random.uniform(-0.7, 0.7), 0.5 - kDepth / 2};
+    };
+    return {box_mesh({1, 0.8, 0.5}), {"b", SphereShape{kDepth / 2}}, place};
+}
+
+void judge_edge_depths(CaseBench& bench)
+{
+    for (const int cells : {16, 32, 64, 128}) {
+        if (bench.brief() && cells > 32) continue;
+        Settings settings = bench.settings();
+        settings.nonconvex = NonConvex::voxels;
+        settings.voxel_size = 2.0 / cells;
+        const double error = depth_error(bench, settings, edge_pair());
+        bench.report("edge of a box, voxels, " + std::to_string(cells) + " along",
+                     "error of the depth, in voxels", error / settings.voxel_size, 0.5, "1");
+    }
+}
+
 void judge_sphere_depths(CaseBench& bench)
 {
     double before = 0;
@@ -285,15 +332,17 @@ void case_convergence(CaseBench& bench)
 {
     judge_exact(bench);
     for (const VolumeBounds& bounds :
-         {VolumeBounds{"lens", lens, "voxels", 6.2, 128},
-          VolumeBounds{"cubes", turned_cubes, "voxels", 0.92, 128, true},
+         {VolumeBounds{"lens", lens, "voxels", 6.2, 256},
+          VolumeBounds{"cubes", turned_cubes, "voxels", 0.92, 256, true},
           VolumeBounds{"lens", lens, "depth_image", 1.8, 256},
           VolumeBounds{"cubes", turned_cubes, "depth_image", 0.39, 256, true},
           VolumeBounds{"lens", lens, "single_layer", 1.8, 256},
           VolumeBounds{"cubes", turned_cubes, "single_layer", 0.39, 256, true}})
         judge_volumes(bench, bounds);
+    judge_aligned(bench);
     judge_hole(bench);
     judge_voxel_depths(bench);
+    judge_edge_depths(bench);
     judge_sphere_depths(bench);
 }
 

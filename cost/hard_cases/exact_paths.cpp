@@ -2,14 +2,13 @@
 //
 // Answers: exact ones that come with the sets, in integers. None that meet may be missed; how many
 // of those that do not are told to is printed as their share, for a tolerance of a millionth.
+#include "cost/exact_queries.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/shared_data.hpp"
 #include "pipeline/dials.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace throng {
 
@@ -18,44 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kTolerance = 1e-6;  // m, as the sets are commonly asked with; they are some m wide
-
-struct ExactQuery {
-    LinearQuestion question;
-    bool meets = false;
-};
-
-// Eight rows a query, each of a fraction an axis and the truth: the points at the start, then
-// those at the end.
-void read_queries(const fs::path& file, bool edges, std::vector<ExactQuery>& queries)
-{
-    std::ifstream text(file);
-    ExactQuery query;
-    query.question.edges = edges;
-    std::string line;
-    for (std::size_t row = 0; std::getline(text, line); row = (row + 1) % 8) {
-        std::replace(line.begin(), line.end(), ',', ' ');
-        std::istringstream numbers(line);
-        Vec3 above, below;
-        int truth = 0;
-        numbers >> above.x() >> below.x() >> above.y() >> below.y() >> above.z() >> below.z()
-            >> truth;
-        auto& points = row < 4 ? query.question.from : query.question.to;
-        points[row % 4] = above.cwiseQuotient(below);
-        query.meets = truth != 0;
-        if (row == 7) queries.push_back(query);
-    }
-}
-
-std::vector<ExactQuery> read_set(const fs::path& folder, bool edges)
-{
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(folder / (edges ? "edge-edge" : "vertex-face")))
-        files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    std::vector<ExactQuery> queries;
-    for (const fs::path& file : files) read_queries(file, edges, queries);
-    return queries;
-}
 
 void ask_set(CaseBench& bench, const std::string& name, const std::vector<ExactQuery>& queries)
 {
@@ -97,9 +58,10 @@ void case_exact_paths(CaseBench& bench)
     std::sort(folders.begin(), folders.end());
     for (const fs::path& folder : folders)
         for (const bool edges : {false, true})
-            if (fs::exists(folder / (edges ? "edge-edge" : "vertex-face")))
+            if (const std::vector<ExactQuery> queries = read_exact_queries(folder, edges);
+                !queries.empty())
                 ask_set(bench, folder.filename().string() + (edges ? " edge-edge" : " vertex-face"),
-                        read_set(folder, edges));
+                        queries);
 }
 
 }  // namespace throng

@@ -78,7 +78,9 @@ void case_same_answers(CaseBench& bench);   // H37, same_answers.cpp, and pair_f
 void compare_pair_finders(CaseBench& bench);
 
 // Shapes that are not convex.
-void case_through_hole(CaseBench& bench);  // H43, through_hole.cpp, and edges_and_cracks.cpp
+// H43: through_hole.cpp, spikes_and_wedges.cpp and edges_and_cracks.cpp.
+void case_through_hole(CaseBench& bench);
+void spikes_and_wedges(CaseBench& bench);
 void edges_and_cracks(CaseBench& bench);
 void case_solid_heap(CaseBench& bench);   // H44, solid_heap.cpp
 void case_convergence(CaseBench& bench);  // H45, convergence.cpp

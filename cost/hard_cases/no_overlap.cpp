@@ -3,6 +3,10 @@
 // The step is cut at every touch, so an impact is where and when it is, however long the step; or
 // it is halved until what overlaps is within the tolerance.
 #include "cost/hard_cases/hard_cases.hpp"
+#include "cost/hard_cases/quad_truth.hpp"
+#include "cost/mesh_overlap.hpp"
+#include "kernels/data/bounds.hpp"
+#include "pipeline/convex_query.hpp"
 #include "pipeline/world.hpp"
 #include "scenes/catalog.hpp"
 #include "scenes/closed_meshes.hpp"
@@ -10,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
 
 namespace throng {
@@ -254,8 +259,38 @@ Tower tower(CaseBench& bench, Overlap overlap)
     return seen;
 }
 
+// How far apart boxes and the ground at z = 0 are: the least of all pairs within reach, in four
+// times the digits and by nothing that a step knows.
+class BoxGaps {
+public:
+    explicit BoxGaps(const Vec3& half) : half_(half) { }
+
+    double least(std::span<const Pose> poses) const
+    {
+        std::vector<QuadSolid> solids;
+        std::vector<Box3> boxes;
+        double gap = kReach;
+        for (const Pose& pose : poses) {
+            solids.push_back(quad_box(half_, QuadPose(pose)));
+            const Vec3 extent = pose.orientation.toRotationMatrix().cwiseAbs() * half_;
+            boxes.push_back({pose.position - extent - Vec3::Constant(kReach / 2),
+                             pose.position + extent + Vec3::Constant(kReach / 2)});
+            gap = std::min(gap, pose.position.z() - extent.z());
+        }
+        for (std::size_t i = 0; i < solids.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                if (boxes[i].overlaps(boxes[k]))
+                    gap = std::min(gap, quad_truth(solids[i], solids[k]).separation);
+        return gap;
+    }
+
+private:
+    static constexpr double kReach = 1e-3;  // m, what is further apart is not looked at
+    Vec3 half_;
+};
+
 struct House : Price {
-    double drift = 0;
+    double drift = 0, gap = 1;
     std::uint64_t fallbacks = 0;
 };
 
@@ -266,14 +301,18 @@ House house(CaseBench& bench, Overlap overlap, int levels)
     scene.settings = bench.settings();
     hold_apart(scene.settings, overlap);
     const World built(scene);
+    const BoxGaps gaps(
+        std::get<BoxShape>(scene.shapes[scene.instances.front().common.shape].shape).half_extents);
     House seen;
     bench.run(scene, bench.brief() ? 1 : 10, [&](World& world, double) {
         seen.drift = 0;
-        for (std::size_t i = 0; i < world.bodies().size(); ++i) {
-            const BodyId body = world.bodies()[i];
-            const Vec3 drift = world.pose(body).position - built.pose(built.bodies()[i]).position;
+        std::vector<Pose> cards;  // the ground comes first
+        for (std::size_t i = 1; i < world.bodies().size(); ++i) {
+            cards.push_back(world.pose(world.bodies()[i]));
+            const Vec3 drift = cards.back().position - built.pose(built.bodies()[i]).position;
             seen.drift = std::max(seen.drift, drift.norm());
         }
+        if (overlap != Overlap::allow) seen.gap = std::min(seen.gap, gaps.least(cards));
         seen.fallbacks = world.report().fallbacks;
         seen.add(world);
         return true;
@@ -293,6 +332,13 @@ void report_house(CaseBench& bench)
         const double half = 0.001;  // m, of a card's thickness
         const double most = backs ? 0 : bench.settings().toi_tolerance * half;
         bench.report(by, "greatest overlap, at any step", seen.overlap, most, "m");
+        if (backs)
+            bench.report(by, "least distance by geometry, at any step, wanting",
+                         seen.gap > 0 ? 0 : 1, 0, "1");
+        else
+            bench.report(by, "greatest overlap by geometry, at any step", std::max(0.0, -seen.gap),
+                         most, "m");
+        bench.show(by, "least distance by geometry, at any step", seen.gap, "m");
         bench.report(by, "drift at the end", seen.drift, 1e-3, "m");
         bench.report(by, "groups or pieces given up", static_cast<double>(seen.fallbacks), 0, "1");
         bench.report_time(by, "time a step", seen.ms * 1e6);
@@ -307,6 +353,7 @@ void report_house(CaseBench& bench)
 
 struct Rings : Price {
     double deepest = 0, speed = 0;
+    double triangles = 0;  // m, greatest overlap by their triangles, of voxels alone
     std::uint64_t fallbacks = 0;
 };
 
@@ -340,19 +387,36 @@ Scene rings_in_a_shaft(const CaseBench& bench, Overlap overlap, NonConvex way)
     return std::move(scene);
 }
 
+// m, by which rings are in one another, by their triangles.
+double triangles_overlap(const World& world, const MeshOverlap& rings)
+{
+    std::vector<Pose> poses;
+    for (const BodyId body : world.bodies())
+        if (world.motion(body) == Motion::dynamic) poses.push_back(world.pose(body));
+    double overlap = 0;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            overlap = std::max(overlap, rings.greatest(seen_from(poses[i], poses[k])));
+    return overlap;
+}
+
 Rings rings(CaseBench& bench, Overlap overlap, NonConvex way = NonConvex::spheres)
 {
     Rings seen;
-    bench.run(rings_in_a_shaft(bench, overlap, way), bench.brief() ? 0.5 : 3,
-              [&](World& world, double) {
-                  seen.speed = 0;
-                  for (const BodyId body : world.bodies())
-                      seen.speed = std::max(seen.speed, world.velocity(body).norm());
-                  seen.fallbacks = world.report().fallbacks;
-                  seen.deepest = world.report().deepest;
-                  seen.add(world);
-                  return true;
-              });
+    const Scene scene = rings_in_a_shaft(bench, overlap, way);
+    const auto& ring = std::get<MeshShape>(scene.shapes.back().shape);
+    const MeshOverlap pair(ring, ring);
+    bench.run(scene, bench.brief() ? 0.5 : 3, [&](World& world, double) {
+        if (way == NonConvex::voxels)
+            seen.triangles = std::max(seen.triangles, triangles_overlap(world, pair));
+        seen.speed = 0;
+        for (const BodyId body : world.bodies())
+            seen.speed = std::max(seen.speed, world.velocity(body).norm());
+        seen.fallbacks = world.report().fallbacks;
+        seen.deepest = world.report().deepest;
+        seen.add(world);
+        return true;
+    });
     return seen;
 }
 
@@ -363,6 +427,7 @@ void report_voxel_rings(CaseBench& bench)
     const char* const by = "six rings as voxels in a shaft, back_up";
     const double half_voxel = 0.84 / 48 / 2;
     bench.report(by, "greatest overlap as voxels tell it", seen.overlap, half_voxel, "m");
+    bench.report(by, "greatest overlap of the triangles, at any step", seen.triangles, 0, "m");
     if (!bench.brief()) bench.report(by, "speed at the end", seen.speed, 1e-3, "m/s");
     bench.report(by, "groups or pieces given up", static_cast<double>(seen.fallbacks), 0, "1");
     bench.report_time(by, "time a step", seen.ms * 1e6);

@@ -69,6 +69,59 @@ INSTANTIATE_TEST_SUITE_P(Catalogue,
                          testing::ValuesIn(hard_cases().begin(), hard_cases().end()),
                          [](const auto& one) { return std::string(one.param.name); });
 
+// What a case's own fault leaves alone, and the fault that it is noticed by.
+struct OtherFault {
+    const char* name;
+    Fault fault;
+    const char* quantity;
+};
+
+class OtherFaults : public testing::TestWithParam<OtherFault> { };
+
+TEST_P(OtherFaults, AreNoticedInTheQuantityThatTheyChange)
+{
+    const OtherFault& one = GetParam();
+    bool looked_at = false, noticed = false;
+    for (const CaseResult& result : run(*find_case(one.name), one.fault)) {
+        if (result.quantity != one.quantity) continue;
+        looked_at = true;
+        noticed |= result.verdict == Verdict::fail;
+    }
+    EXPECT_TRUE(looked_at) << one.name << " has no line of " << one.quantity;
+    EXPECT_TRUE(noticed) << one.name << " passes with a fault in " << one.quantity;
+}
+
+// clang-format off
+constexpr OtherFault kOtherFaults[] = {
+    {"H7",  Fault::skew, "way apart of equal bodies"},
+    {"H7",  Fault::haste, "velocity error"},
+    {"H8",  Fault::haste, "greatest overlap"},
+    {"H8",  Fault::skew, "speed after 10 s"},
+    {"H9",  Fault::sink, "greatest overlap over the smallest box"},
+    {"H9",  Fault::sink, "way that the top one sank"},
+    {"H10", Fault::grip, "falls: wrong outcomes"},
+    {"H12", Fault::haste, "way off the line over the way"},
+    {"H15", Fault::sink, "overlap"},
+    {"H15", Fault::restitution, "error of the time to rest"},
+    {"H16", Fault::sink, "greatest overlap"},
+    {"H16", Fault::sink, "mean over steps of the squared overlaps"},
+    {"H17", Fault::restitution, "error of the velocities"},
+    {"H17", Fault::skew, "difference of the mirror images"},
+    {"H18", Fault::haste, "error of the energy"},
+    {"H18", Fault::skew, "difference of the mirror images"},
+    {"H18", Fault::skew, "difference by the order of bodies"},
+    {"H21", Fault::sink, "greatest overlap"},
+    {"H21", Fault::haste, "growth of energy in a step over the first"},
+    {"H21", Fault::skew, "speed at the end"},
+    {"H22", Fault::grip, "falls: wrong outcomes"},
+    {"H23", Fault::haste, "error of the wedge's acceleration"},
+    {"H24", Fault::grip, "stays: wrong outcomes"},
+    {"H24", Fault::skew, "off its straight way"},
+};
+// clang-format on
+
+INSTANTIATE_TEST_SUITE_P(Planted, OtherFaults, testing::ValuesIn(kOtherFaults));
+
 TEST(HardCaseNames, AreFoundWhateverTheCaseOfLetters)
 {
     EXPECT_EQ(find_case("h8")->name, "H8");
