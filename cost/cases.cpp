@@ -299,8 +299,18 @@ void CaseBench::enter_energy(const EnergyLedger& ledger)
     if (run.is_worse_than(energy_)) energy_ = run;
 }
 
+void CaseBench::fold_energy(const std::string& setting)
+{
+    if (energy_.is_worse_than(worst_energy_)) {
+        worst_energy_ = energy_;
+        worst_energy_.setting = setting;
+    }
+    energy_ = {};
+}
+
 void CaseBench::report_energy()
 {
+    fold_energy("after the last line");
     std::string runs = std::to_string(energy_runs_) + " runs by default";
     const auto& [gained, kinetic, setting] = worst_energy_;
     if (gained > 0)
@@ -380,11 +390,7 @@ CaseResult CaseBench::judged(
     if (lost_ > 0) result.why = "bodies quarantined: " + std::to_string(lost_);
     lost_ = 0;
     missed_ = 0;
-    if (energy_.is_worse_than(worst_energy_)) {
-        worst_energy_ = energy_;
-        worst_energy_.setting = result.setting;
-    }
-    energy_ = {};
+    fold_energy(result.setting);
     result.time_ms = spent_ms_;
     spent_ms_ = 0;
     return result;

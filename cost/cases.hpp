@@ -183,6 +183,7 @@ private:
         std::string setting, std::string quantity, double figure, double bound, std::string unit);
     void keep(CaseResult result);
     void enter_energy(const class EnergyLedger& ledger);
+    void fold_energy(const std::string& setting);
     void report_energy();
     // Throws Stopped.
     void stop_where_enough() const;

@@ -217,13 +217,14 @@ void touch_rod(const MeshTriangle& triangle,
     const bool before = height_from + height_to >= 0;
     if ((!before && !through) || std::min(height_from, height_to) - radius > reach) return;
     const Segment<double> rod{from, to};
+    // What runs through the face is measured along its normal, however far its ends are.
     if (!before || triangle.is_crossed(from, to)) return lay_rod(triangle, rod, radius, reach, out);
     const RodTouch touch = closest_on_rod(triangle, rod);
     const double limit = reach + radius;
     if (touch.distance2 > limit * limit) return;
 
-    // A rod that lies on the triangle or leans over a seam, is measured from
-    // the face; only an edge or a corner that sticks out pushes along the line to it.
+    // A rod that lies on the triangle, or leans over a seam, is measured from the face; only an
+    // edge or a corner that sticks out pushes along the line to it.
     const Vec3 apart = touch.on_rod - touch.on_triangle;
     const double distance = std::sqrt(touch.distance2);
     const Vec3 past = apart - triangle.normal * triangle.normal.dot(apart);

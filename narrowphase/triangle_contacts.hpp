@@ -22,7 +22,7 @@ struct MeshTriangle {
     Vec3 normal;
 
     double height(const Vec3& point) const { return normal.dot(point - corners[0]); }
-    /// By the way from one point to another, from one side of it to the other.
+    /// Whether the segment between two points goes through it.
     bool is_crossed(const Vec3& from, const Vec3& to) const;
     /// The place in the mesh's own arrays.
     std::size_t own_corner(std::size_t corner) const { return behind ? (3 - corner) % 3 : corner; }

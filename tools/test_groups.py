@@ -6,7 +6,7 @@ Usage: test_groups.py BUILD [-j JOBS] [-LE LABELS] [-R NAMED] [-E EXCLUDED] [--t
 CTest starts a program for each test. Under a sanitizer the start alone takes a quarter of a second to a
 second, which over the suite is a third of the time. Here what CTest knows of the tests stays the list;
 those of one program run some at a time in one process. -LE, -R, -E are CTest's, but by Python's regular
-expressions. Prints what a group that failed has printed and, at the end, how many tests ran. Exits 1
+expressions; of a test's properties, its labels and its folder count. Prints what a group that failed has printed and, at the end, how many tests ran. Exits 1
 when one failed, crashed, took more than SECONDS (600) with its group, or never reported.
 """
 import argparse
@@ -41,11 +41,11 @@ def chosen(tests, without_labels=None, named=None, excluded=None):
 
 
 def grouped(tests):
-    """Commands, each with its folder and the number of its tests: neighbours, which take alike long, are
+    """Commands, each with its folder and the number of its tests: neighbors, which take alike long, are
     dealt to different groups."""
     programs, commands = collections.defaultdict(list), []
     for test in tests:
-        command = test["command"]
+        command = test.get("command", ["false"])  # what is not built has none
         folder = next((each["value"] for each in test["properties"] if each["name"] == "WORKING_DIRECTORY"), None)
         names = [word[len(FILTER):] for word in command if word.startswith(FILTER)]
         if names:

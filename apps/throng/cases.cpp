@@ -20,7 +20,8 @@ namespace throng {
 namespace {
 
 constexpr Option kOptions[] = {
-    {"--energy", "", "a line more a case: energy that nobody gave its runs by default"},
+    {"--energy", "",
+     "adds a line to each case: energy that its runs by the default dials gained from nowhere"},
     {"--json", "FILE", "writes the lines as JSON too"},
     kSetOption,
     kThreadsOption,

@@ -72,7 +72,7 @@ double least_half_extent(const std::vector<Vec3>& corners)
     return (upper - lower).minCoeff() / 2;
 }
 
-// What came of a fall: m by which the two ever overlapped, least gap and way from where it hung.
+// What came of a fall: the least gap ever, below 0 by overlap, and the way from where it hung, m.
 struct Fallen {
     double gap = 1;
     Vec3 way = Vec3::Zero();

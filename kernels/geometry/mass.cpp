@@ -2,8 +2,6 @@
 
 #include "kernels/geometry/mesh.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <cmath>
 #include <numbers>
 

@@ -66,11 +66,11 @@ public:
                 const Velocities& velocities,
                 const BodyStates& states)
         : pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds), poses_(poses),
-          velocities_(velocities), states_(states), has_neighbors_(colliders.size())
+          velocities_(velocities), states_(states), may_have_neighbors_(colliders.size())
     {
-        for (std::size_t i = 0; i < has_neighbors_.size(); ++i) {
+        for (std::size_t i = 0; i < may_have_neighbors_.size(); ++i) {
             const std::uint32_t body = colliders.body[i];
-            has_neighbors_[i] =
+            may_have_neighbors_[i] =
                 body != kNobody && !(states.dynamic(body) && colliders.count[body] < 2);
         }
     }
@@ -131,10 +131,11 @@ private:
     void note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& list) const
     {
         const std::uint32_t a = first_of(key), b = second_of(key);
-        if ((has_neighbors_[a] | has_neighbors_[b]) == 0) return;
+        if ((may_have_neighbors_[a] | may_have_neighbors_[b]) == 0) return;
         for (const bool first : {true, false}) {
             const std::uint32_t mover = first ? a : b, other = first ? b : a;
-            if (has_neighbors_[other] == 0 || !states_.movable(colliders_.body[mover])) continue;
+            if (may_have_neighbors_[other] == 0 || !states_.movable(colliders_.body[mover]))
+                continue;
             list.push_back({mover, other, part, first, &contact});
         }
     }
@@ -272,7 +273,8 @@ private:
     const Poses& poses_;
     const Velocities& velocities_;
     const BodyStates& states_;
-    std::vector<std::uint8_t> has_neighbors_;  // 1 for colliders that may lie flush with another
+    std::vector<std::uint8_t>
+        may_have_neighbors_;  // 1 for colliders that may lie flush with another
     std::vector<Borne<Real>> borne_;
     std::vector<Seen<Real>> seen_;
 };

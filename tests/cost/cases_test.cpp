@@ -120,7 +120,13 @@ constexpr OtherFault kOtherFaults[] = {
 };
 // clang-format on
 
-INSTANTIATE_TEST_SUITE_P(Planted, OtherFaults, testing::ValuesIn(kOtherFaults));
+// By case and place in the list: a fault has no name that a test's may have.
+INSTANTIATE_TEST_SUITE_P(Planted,
+                         OtherFaults,
+                         testing::ValuesIn(kOtherFaults),
+                         [](const auto& info) {
+                             return std::string(info.param.name) + "_" + std::to_string(info.index);
+                         });
 
 TEST(HardCaseNames, AreFoundWhateverTheCaseOfLetters)
 {

@@ -127,7 +127,7 @@ TEST(MeshPairs, ARodThroughAFaceIsPushedOutAsFarAsItReachesBelow)
     shapes.meshes = {build_mesh(square, {{0, 1, 2}}).mesh};
     shapes.capsules = {{0.01, 0.5}};
     RandomShapes random(35);
-    int met = 0;
+    int deep = 0;
     for (int i = 0; i < 300; ++i) {
         SCOPED_TRACE("seed 35, pose " + std::to_string(i));
         Pose pose{random.vector(-1, 1), random.turn()};
@@ -137,9 +137,9 @@ TEST(MeshPairs, ARodThroughAFaceIsPushedOutAsFarAsItReachesBelow)
         ASSERT_EQ(found.size(), 1U);
         ASSERT_LT((found[0].manifold.normal - Vec3::UnitZ()).norm(), 1e-9);
         ASSERT_NEAR(deepest(found[0].manifold), pose.position.z() - up - 0.01, 1e-9);
-        met += up - pose.position.z() > 0.05 ? 1 : 0;
+        deep += up - pose.position.z() > 0.05 ? 1 : 0;
     }
-    EXPECT_GT(met, 50);
+    EXPECT_GT(deep, 50);
 }
 
 TEST(MeshPairs, DeepestPointOnAFloorIsTheLowestPoint)
