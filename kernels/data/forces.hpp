@@ -107,6 +107,7 @@ struct Pulls {
 struct FlightMemory {
     std::array<double, 9> orientation = {};  // by the rotation that is chosen
     Vec3 spin = Vec3::Zero();                // rad/s, body axes
+    bool is_momentum = false;                // what spin is instead: N m s, world axes
     Quat shown_orientation = Quat(0, 0, 0, 0);
     Vec3 shown_spin = Vec3::Zero();  // world axes
 };

@@ -62,17 +62,19 @@ RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) c
         body.own_share = 1 / body.principal.moments[own] - 2 / beside;
     }
     const Vec3& spin = facts_.velocities.angular[id];
-    if (id < flights.memory.size()) {
-        const FlightMemory& memory = flights.memory[id];
-        if (memory.shown_orientation.coeffs() == pose.coeffs() && memory.shown_spin == spin) {
-            body.spin = memory.spin;
-            body.orientation = memory.orientation;
-            return body;
-        }
+    const FlightMemory* memory = id < flights.memory.size() ? &flights.memory[id] : nullptr;
+    if (memory != nullptr
+        && (memory->shown_orientation.coeffs() != pose.coeffs() || memory->shown_spin != spin))
+        memory = nullptr;
+    body.orientation =
+        memory != nullptr ? memory->orientation : write_orientation(rule_.rotation, pose);
+    // Another law may have carried it last.
+    if (memory != nullptr && memory->is_momentum == body.by_momentum) {
+        body.spin = memory->spin;
+        return body;
     }
     body.spin = pose.conjugate() * spin;
     if (body.by_momentum) body.spin = pose * Vec3(inertia.matrix() * body.spin);
-    body.orientation = write_orientation(rule_.rotation, pose);
     return body;
 }
 
@@ -154,7 +156,7 @@ RigidMotion::Outcome RigidMotion::outcome(std::size_t i) const
         out.angular_velocity =
             spin == body.spin ? facts_.velocities.angular[body.body] : Vec3(out.orientation * spin);
     }
-    out.memory = {body.orientation, spin, out.orientation, out.angular_velocity};
+    out.memory = {body.orientation, spin, body.by_momentum, out.orientation, out.angular_velocity};
     return out;
 }
 

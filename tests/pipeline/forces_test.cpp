@@ -565,6 +565,42 @@ TEST(Pivot, OfWhatTouchesSomethingMakesNoEnergy)
     EXPECT_GT(energy(world) - first, -0.3);
 }
 
+// The spring is now stiff for the step and now not, by how it stands to the rod, and the rod is
+// carried by two laws in turn. Nothing turns it about its length.
+TEST(Springs, OnARodOnAPivotLeaveItsOwnSpinAloneWhicheverLawCarriesIt)
+{
+    Scene scene;
+    scene.shapes.push_back({"rod", CapsuleShape{0.021, 0.069}});
+    BodyDescription& rod = scene.bodies.emplace_back();
+    rod.shape = 0;
+    rod.mass = 31;
+    rod.pivot = Vec3(0, 0, 0.09);
+    rod.orientation = Quat(0.799, 0.199, -0.552, -0.133).normalized();
+    rod.angular_velocity = Vec3(-22, -25, -13);
+    BodyDescription other;
+    other.shape = 0;
+    other.mass = 62;
+    other.position = Vec3(0, 0, -2.1);
+    other.velocity = Vec3(-0.4, 0.2, -2.2);
+    other.angular_velocity = Vec3(-16, 4, -37);
+    scene.bodies.push_back(other);
+    scene.springs.push_back({});
+    scene.springs[0].a = 0;
+    scene.springs[0].b = 1;
+    scene.springs[0].stiffness = 1100;
+    scene.springs[0].length = 2;
+    World world(scene);
+    const BodyId id = world.bodies().front();
+    const auto own_spin = [&] {
+        return world.angular_velocity(id).dot(world.pose(id).orientation * Vec3::UnitZ());
+    };
+    const double begun = own_spin();
+    for (int step = 0; step < 180; ++step) {
+        world.step();
+        ASSERT_NEAR(own_spin(), begun, 1e-6 * std::abs(begun)) << "step " << step;
+    }
+}
+
 TEST(Springs, ByDefaultAreToldNothingOfAndHold)
 {
     Scene scene = empty_scene(Integrator::semi_implicit);
