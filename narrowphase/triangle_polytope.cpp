@@ -16,6 +16,10 @@ constexpr double kAlike = 0.9998;
 // so for any shorter way, one in a few hundred shapes deep inside would be pushed by none.
 constexpr double kShorter = 0.2;
 
+// Cosine up to which a face of the shape looks at the triangle. Its sides do not: what is let in
+// from above is hardly beyond the triangles beside it.
+constexpr double kLooksAt = 0.5;
+
 // The best axis so far of a triangle against a polytope, of those that the mesh sticks out to.
 struct TriangleAxis {
     enum class Kind { front, face, apart } kind = Kind::front;
@@ -112,21 +116,39 @@ void lay_face(const MeshTriangle& triangle,
     if (!by_front) turn_round(pair, out);
 }
 
-// Whether over an edge that sticks out there is a triangle that the shape is no further behind than
-// `most`, below 0. It pushes itself, and seen from this one what has just come past the edge may be
-// deep inside.
-bool yields(const MeshTriangle& triangle, const PolytopePair& pair, double most)
+// Whether the shape is before a triangle, or no further behind it than `most`, below 0.
+bool is_shallow(const MeshTriangle& triangle, const PolytopePair& pair, double most)
+{
+    const Vec3& normal = triangle.normal;
+    // Nothing pushes from behind.
+    if (triangle.height(pair.offset + pair.a.center) < 0) return false;
+    const auto lowest = support_vertex(pair.b, -(pair.turn.transpose() * normal), 0);
+    return triangle.height(pair.turn * pair.b.vertices[lowest] + pair.shift) > most;
+}
+
+// Whether over an edge that sticks out there is a triangle that the shape is hardly behind. It
+// pushes itself, and seen from this one what has just come past the edge may be deep inside.
+bool yields_over_edges(const MeshTriangle& triangle, const PolytopePair& pair, double most)
 {
     for (std::size_t e = 0; e < 3; ++e) {
         const std::int32_t next = triangle.beyond(e);
         if (next < 0 || !triangle.is_convex(e)) continue;
-        const Vec3 normal = triangle.normal_of(next);
-        const Vec3& corner = triangle.corners[e];
-        // Nothing pushes from behind.
-        if (normal.dot(pair.offset + pair.a.center - corner) < 0) continue;
-        const auto lowest = support_vertex(pair.b, -(pair.turn.transpose() * normal), 0);
-        const Vec3 place = pair.turn * pair.b.vertices[lowest] + pair.shift;
-        if (normal.dot(place - corner) > most) return true;
+        const auto beyond = static_cast<std::uint32_t>(next);
+        if (is_shallow({triangle.mesh, beyond, triangle.behind}, pair, most)) return true;
+    }
+    return false;
+}
+
+// Whether one of the shape's faces that look at the triangle is hardly beyond it, or not at all,
+// and may not push: then another triangle sticks out further that way and pushes, as where a face
+// lies on a peak or on a ridge. By an edge of this one the same shape would be deep inside.
+bool yields_to_faces(const MeshTriangle& triangle, const PolytopePair& turned, double most)
+{
+    for (std::size_t i = 0; i < turned.a.normals.size(); ++i) {
+        const Vec3 direction = -(turned.turn.transpose() * turned.a.normals[i]);
+        if (direction.dot(triangle.normal) > kLooksAt
+            && face_axis(turned, static_cast<std::uint16_t>(i)).separation > most)
+            return true;
     }
     return false;
 }
@@ -184,7 +206,11 @@ void touch_along_best(const MeshTriangle& triangle,
     const double to_beat = best.separation + bias;
     const EdgeAxis edge = best_edge_axis(outward.pair, parted ? std::max(to_beat, 0.0) : to_beat);
     const double told = edge.normal.isZero(0) ? best.separation : edge.separation;
-    if (!parted && told < -bias && yields(triangle, pair, kShorter * told)) return;
+    if (!parted && told < -bias) {
+        const double most = kShorter * told;
+        if (yields_over_edges(triangle, pair, most)) return;
+        if (!edge.normal.isZero(0) && yields_to_faces(triangle, turned, most)) return;
+    }
     if (!edge.normal.isZero(0)) {
         if (edge.separation <= reach) cross_edges(outward.pair, edge, reach + bias, out);
         return;

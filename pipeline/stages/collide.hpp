@@ -76,11 +76,17 @@ inline Pose seen_from_first(std::uint32_t first,
                             const Colliders& colliders,
                             const Bounds& bounds)
 {
-    const Pose from = frame_of(first, second, colliders, bounds);
-    Pose to = {bounds.placed[second].position, axes_of(second, first, colliders, bounds)};
-    if (from.position == to.position)
-        to.position = from.position + between_centers(first, second, colliders, bounds);
-    return pose_seen_from_a(shapes, colliders.shape[second], from, to);
+    const Pose &from = bounds.placed[first], &to = bounds.placed[second];
+    const ShapeRef shape = colliders.shape[second];
+    const bool round =
+        colliders.shape[first].kind == ShapeKind::sphere || shape.kind == ShapeKind::sphere;
+    const bool apart = from.position != to.position;
+    // Most, and without a copy.
+    if (!round && apart) return pose_seen_from_a(shapes, shape, from, to);
+    const Pose frame = frame_of(first, second, colliders, bounds);
+    Pose seen = {to.position, axes_of(second, first, colliders, bounds)};
+    if (!apart) seen.position += between_centers(first, second, colliders, bounds);
+    return pose_seen_from_a(shapes, shape, frame, seen);
 }
 
 /// True when somebody in the pair can be pushed and somebody is awake.

@@ -75,6 +75,11 @@ void seat_pull(std::uint32_t body,
 template <class Real>
 bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
 {
+    const auto turns = [](const SolverBody<Real>& body) {
+        return body.motion[4] != 0 || body.motion[5] != 0 || body.motion[6] != 0;
+    };
+    // The first that moves says so, but in a crowd of those that never turn.
+    if (std::none_of(bodies.begin(), bodies.end(), turns)) return false;
     Ease lightest;
     for (const SolverBody<Real>& body : bodies) {
         const Ease ease = ease_of(body);
@@ -83,8 +88,7 @@ bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
     }
     return std::any_of(bodies.begin(), bodies.end(), [&](const SolverBody<Real>& body) {
         // Most are told by a number or two.
-        const Real* const spin = body.motion + 4;
-        if (spin[0] == 0 && spin[1] == 0 && spin[2] == 0) return false;
+        if (!turns(body)) return false;
         const double ease{body.inertia[0]};
         return !(ease > 0 && ease * kHeavier > lightest.of_moving) && carries(body, lightest, dt);
     });

@@ -72,27 +72,31 @@ public:
             const std::uint32_t body = colliders.body[i];
             may_have_neighbors_[i] =
                 body != kNobody && !(states.dynamic(body) && colliders.count[body] < 2);
+            if (may_have_neighbors_[i] != 0) end_ = static_cast<std::uint32_t>(i) + 1;
         }
     }
 
     void gather(ConvexContacts<Real>& convex)
     {
-        BlockLists<Borne<Real>> lists;
-        lists.start(block_count(convex.of_pair.size(), kGrain));
-        for_each_block(convex.of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
+        const std::size_t count = pairs_to_look_at();
+        BlockLists<Borne<Real>> rimmed, planes;
+        rimmed.start(block_count(count, kGrain));
+        planes.start(block_count(count, kGrain));
+        for_each_block(count, kGrain, [&](auto begin, auto end, auto block) {
             for (std::size_t i = begin; i < end; ++i)
                 if (const std::uint32_t place = convex.of_pair[i].contact;
                     place != PairState::kApart)
-                    note(pairs_.keys[i], 0, convex.contacts[place], lists[block]);
+                    note(pairs_.keys[i], 0, convex.contacts[place], rimmed[block], planes[block]);
         });
-        lists.append_to(borne_);
+        rimmed.append_to(by_rimmed_);
+        planes.append_to(by_planes_);
     }
 
     void gather(ManyContacts<Real>& contacts)
     {
         for (auto& entry : contacts.entries)
             if (entry.contact.count > 0)
-                note(pairs_.keys[entry.pair], entry.part, entry.contact, borne_);
+                note(pairs_.keys[entry.pair], entry.part, entry.contact, by_rimmed_, by_planes_);
     }
 
     // Shape by shape: those of one come together. All are judged before any goes, as a contact of
@@ -114,21 +118,39 @@ public:
     }
 
 private:
-    // Of shapes that have more than one, and most have not.
+    // They ascend by their first, and what stands still is mostly made before what moves: behind
+    // the last that may have neighbors, no pair has one.
+    std::size_t pairs_to_look_at() const
+    {
+        const auto& keys = pairs_.keys;
+        return static_cast<std::size_t>(
+            std::lower_bound(keys.begin(), keys.end(), end_,
+                             [](PairKey key, std::uint32_t end) { return first_of(key) < end; })
+            - keys.begin());
+    }
+
+    // Of shapes that have more than one, and most have not. Planes have no rims: what is borne by
+    // them alone meets no ghost, and most of what there is lies on a floor.
     void look_at_several()
     {
         static thread_local std::vector<std::uint8_t> several;  // by collider; zero between calls
         constexpr std::uint8_t kOne = 1, kMore = 2;
         several.resize(std::max(several.size(), colliders_.size()), 0);
-        for (const Borne<Real>& borne : borne_)
+        for (const Borne<Real>& borne : by_rimmed_)
             several[borne.mover] = several[borne.mover] == 0 ? kOne : kMore;
-        for (const Borne<Real>& borne : borne_)
+        for (const Borne<Real>& borne : by_planes_) {
+            if (several[borne.mover] == 0) continue;
+            several[borne.mover] = kMore;
+            seen_.emplace_back(borne);
+        }
+        for (const Borne<Real>& borne : by_rimmed_)
             if (several[borne.mover] == kMore) seen_.emplace_back(borne);
-        for (const Borne<Real>& borne : borne_) several[borne.mover] = 0;
+        for (const Borne<Real>& borne : by_rimmed_) several[borne.mover] = 0;
     }
 
-    // Those of shapes that may have a flush neighbor, once for each side that can be pushed.
-    void note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& list) const
+    // Those with what may have a flush neighbor, once for each side that can be pushed.
+    void
+    note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& rimmed, auto& planes) const
     {
         const std::uint32_t a = first_of(key), b = second_of(key);
         if ((may_have_neighbors_[a] | may_have_neighbors_[b]) == 0) return;
@@ -136,7 +158,8 @@ private:
             const std::uint32_t mover = first ? a : b, other = first ? b : a;
             if (may_have_neighbors_[other] == 0 || !states_.movable(colliders_.body[mover]))
                 continue;
-            list.push_back({mover, other, part, first, &contact});
+            const bool has_rim = colliders_.shape[other].kind != ShapeKind::plane;
+            (has_rim ? rimmed : planes).push_back({mover, other, part, first, &contact});
         }
     }
 
@@ -275,7 +298,8 @@ private:
     const BodyStates& states_;
     std::vector<std::uint8_t>
         may_have_neighbors_;  // 1 for colliders that may lie flush with another
-    std::vector<Borne<Real>> borne_;
+    std::uint32_t end_ = 0;   // behind the last of them
+    std::vector<Borne<Real>> by_rimmed_, by_planes_;
     std::vector<Seen<Real>> seen_;
 };
 

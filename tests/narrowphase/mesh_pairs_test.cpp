@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace throng {
 namespace {
 
@@ -65,6 +67,36 @@ touch_mesh(const Shapes& shapes, ShapeRef shape, const Pose& pose, double reach)
     std::vector<TriangleManifold<Real>> found;
     collide_mesh<Real>(shapes, kMesh, shape, cast<Real>(pose), static_cast<Real>(reach), found);
     return found;
+}
+
+// Of a box and the triangles of a mesh: the separation by the axis that parts each best, where it
+// is least. All axes there are, and no mesh: the answer sheet of what lies on a peak.
+double separation_from(const Mesh& mesh, const Vec3& half, const Pose& pose)
+{
+    const Mat3 turn = pose.orientation.toRotationMatrix();
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        std::array<Vec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[mesh.triangles[t][k]];
+        std::vector<Vec3> axes{mesh.normals[t], turn.col(0), turn.col(1), turn.col(2)};
+        for (std::size_t e = 0; e < 3; ++e)
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 axis = (corners[(e + 1) % 3] - corners[e]).cross(Vec3(turn.col(k)));
+                if (axis.norm() > 1e-6) axes.push_back(axis.normalized());
+            }
+        double best = -std::numeric_limits<double>::max();
+        for (const Vec3& axis : axes) {
+            const double reach = (turn.transpose() * axis).cwiseAbs().dot(half);
+            double low = std::numeric_limits<double>::max(), high = -low;
+            for (const Vec3& corner : corners) {
+                low = std::min(low, axis.dot(corner - pose.position));
+                high = std::max(high, axis.dot(corner - pose.position));
+            }
+            best = std::max({best, low - reach, -high - reach});
+        }
+        least = std::min(least, best);
+    }
+    return least;
 }
 
 }  // namespace
@@ -342,6 +374,52 @@ TEST(MeshPairs, WhatLiesOnARimIsNotPushedOffSideways)
         leaning += pose.position.x() > 1;
     }
     EXPECT_GT(leaning, 200);
+}
+
+// A face that leans over a peak is before all triangles round it but those that it leans to, and no
+// edge on the near side takes it for what lies deep behind.
+TEST(MeshPairs, WhatLeansOverAPeakIsNoDeeperThanItLies)
+{
+    const double depth = 1e-3;
+    RandomShapes random(41);
+    int held = 0;
+    for (int i = 0; i < 2000; ++i) {
+        SCOPED_TRACE("seed 41, pose " + std::to_string(i));
+        const TriangleSoup soup = [&] {
+            TriangleSoup ground;
+            for (int x = -1; x <= 1; ++x)
+                for (int y = -1; y <= 1; ++y)
+                    ground.vertices.emplace_back(10 * x, 10 * y,
+                                                 x == 0 && y == 0 ? 0.5 : random.number(-1, 0.6));
+            for (std::uint32_t x = 0; x < 2; ++x)
+                for (std::uint32_t y = 0; y < 2; ++y) {
+                    const std::uint32_t at = 3 * x + y;
+                    ground.triangles.push_back({at, at + 3, at + 4});
+                    ground.triangles.push_back({at, at + 4, at + 1});
+                }
+            return ground;
+        }();
+        Shapes shapes;
+        shapes.meshes = {build_mesh(soup.vertices, soup.triangles).mesh};
+        shapes.boxes = {{{random.number(0.5, 2), random.number(0.5, 2), random.number(0.5, 2)}}};
+        const Vec3 up(random.number(-0.06, 0.06), random.number(-0.06, 0.06), 1);
+        Pose pose{{random.number(-0.3, 0.3), random.number(-0.3, 0.3), 0},
+                  Quat::FromTwoVectors(Vec3::UnitZ(), up)
+                      * Quat(Eigen::AngleAxisd(random.number(-3, 3), Vec3::UnitZ()))};
+        double low = 0, high = 5;
+        while (high - low > 1e-9) {
+            pose.position.z() = (low + high) / 2;
+            const double apart =
+                separation_from(shapes.meshes[0], shapes.boxes[0].half_extents, pose);
+            (apart > -depth ? high : low) = pose.position.z();
+        }
+        double deepest_of_all = 0;
+        for (const auto& one : touch_mesh<double>(shapes, {ShapeKind::box, 0}, pose, 0.05))
+            deepest_of_all = std::min(deepest_of_all, deepest(one.manifold));
+        ASSERT_GE(deepest_of_all, -6 * depth);
+        if (deepest_of_all < -0.9 * depth) ++held;
+    }
+    EXPECT_EQ(held, 2000);
 }
 
 TEST(MeshPairs, ABallCrossingAConvexRidgeIsHeldThroughout)
