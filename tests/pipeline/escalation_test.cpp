@@ -1,4 +1,5 @@
 // Escalation: what the solver would let fall is found, held, and let go again.
+#include "pipeline/energy_ledger.hpp"
 #include "tests/pipeline/small_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -91,6 +92,29 @@ TEST(Escalation, StopsWhatFallsOnSomethingLightWithoutThrowingItBack)
             }
             EXPECT_LT(fastest, 0.05 * 27) << ratio;
         }
+}
+
+// Each a little above the last, so that they come to meet one after another.
+TEST(Escalation, DoesNotThrowAColumnThatIsDropped)
+{
+    for (const int count : {50, 60, 80}) {
+        given::SceneOf made;
+        made.floor();
+        for (int i = 0; i < count; ++i)
+            made.box(Vec3::Constant(0.05), Vec3(0, 0, 0.07 + 0.12 * i)).mass = 2;
+        made.scene.settings.substeps = 16;
+        World world(made.scene);
+        EnergyLedger ledger;
+        std::uint64_t escalated = 0;
+        for (int i = 0; i < 80; ++i) {
+            ledger.before_step(world);
+            world.step();
+            ledger.after_step(world);
+            escalated += world.report().islands_escalated;
+        }
+        EXPECT_GT(escalated, 0u) << count;
+        EXPECT_LT(ledger.gained(), 0.01 * ledger.greatest_kinetic()) << count;
+    }
 }
 
 }  // namespace
