@@ -115,7 +115,7 @@ constexpr HardCase kCases[] = {
     {"H84", "plates that turn carry round what lies on them", case_carried_round, Fault::friction},
     {"H76", "heavy boxes on light ones, dice, cylinders and cards stand by the default dials",
      case_heavy_on_light, Fault::mass},
-    {"H85", "walls of bricks stand, as high as soft contacts bear", case_tall_walls, Fault::haste},
+    {"H85", "walls of bricks stand, as high as soft contacts bear", case_tall_walls, Fault::sink},
     {"H86", "who is driven has the speed that it is driven at, whatever friction bears",
      case_walkers, Fault::haste},
     {"H87", "thin solids that a fall drives through one another are thrown by nothing",

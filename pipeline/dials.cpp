@@ -294,7 +294,7 @@ std::vector<Dial> make_dials()
             "more substeps make contacts stiffer and motion finer, and cost a solve each"),
         whole_dial<&S::iterations, 1, 100000>("iterations", "auto, or a whole number: visits a substep (soft_step 1, pgs 20, factorisations of direct at most 200)",
             "", "more visits leave less error in the velocities, and cost a sweep of all rows each"),
-        whole_dial<&S::relax_iterations, 1, 100>("relax_iterations", "auto (2 where most contacts have three points or four, as in towers and walls, and from 17 substeps on, else 1), or a whole number: visits a substep after bodies have moved",
+        whole_dial<&S::relax_iterations, 1, 100>("relax_iterations", "auto (2 where most contacts have three points or four, as in towers and walls, and from 17 substeps on, else 1; up to 8 in escalated islands, one for twelve contacts), or a whole number: visits a substep after bodies have moved",
             "", "a second visit leaves towers a hundredth of their energy, and heaps no less; each is a sweep of all rows"),
         number_dial("contact_rate", "auto (0.25 a substep for manifolds, 0.5 for one point), a number, fixed:HERTZ",
             "a substep", set_contact_rate, get_contact_rate,
