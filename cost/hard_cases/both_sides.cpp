@@ -164,8 +164,8 @@ void stay_there_spinning(CaseBench& bench,
     bench.report(name, "come through", through, 0, "1");
 }
 
-// Four by four large cells that come together in a peak; the ground about is as uneven as chance
-// has it, and one of the ways down is a valley.
+// Four large cells that come together in a peak; the ground about is as uneven as chance has it,
+// and one of the ways down is a valley.
 MeshShape peak()
 {
     constexpr double kHeights[] = {0.33, 0.95, 1.71, 0.26, 2.15, 2.26, 1.15, 1.52, 0.37};  // m

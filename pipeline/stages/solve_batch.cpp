@@ -24,6 +24,11 @@ constexpr int kPushSweeps = 2, kRelaxSweeps = 1;
 
 constexpr int kInHeaps = 1, kInStructures = 2;  // see relax_visits()
 
+// With finer substeps: contacts for each relaxing visit, and visits at most. With two visits
+// columns of 50 to 100 boxes or balls that are dropped, each a little above the last, won up to 0.9
+// of their energy of motion as they were escalated; with four, of 80 boxes still a tenth.
+constexpr std::uint32_t kContactsARelax = 12, kMostRelaxes = 8;
+
 // From where on a push is more than what a contact bears in a substep: friction that it made, left
 // behind by a single visit, slows what rubs on its way down.
 constexpr int kManySubsteps = 16;
@@ -541,6 +546,14 @@ int relax_visits(const Settings& settings, const Batch& batch)
 {
     if (settings.relax_iterations > 0) return settings.relax_iterations;
     return lies_on_faces(batch) || settings.substeps > kManySubsteps ? kInStructures : kInHeaps;
+}
+
+int finer_relax_visits(const Settings& settings, const Batch& batch)
+{
+    const int usual = relax_visits(settings, batch);
+    if (settings.relax_iterations > 0) return usual;
+    return std::max(usual,
+                    static_cast<int>(std::min(kMostRelaxes, batch.contacts / kContactsARelax)));
 }
 
 double mean_relax_visits(const Settings& settings, const Layout& layout)

@@ -17,6 +17,9 @@ namespace throng {
 /// on one another by their faces, as in towers and walls, a second one leaves a hundredth of the
 /// energy. Where there are many substeps it keeps pushes from braking what rubs.
 int relax_visits(const Settings& settings, const Batch& batch);
+/// Those of an island with finer substeps, whose settings these are: what it gains by a push has a
+/// long way to go where many stand on one another.
+int finer_relax_visits(const Settings& settings, const Batch& batch);
 /// The mean of that over all contacts; 0 where there are none.
 double mean_relax_visits(const Settings& settings, const Layout& layout);
 

@@ -8,7 +8,6 @@
 #include "pipeline/stages/solve_batch.hpp"
 #include "pipeline/stages/solve_direct.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,12 +16,6 @@ namespace throng {
 namespace {
 
 constexpr std::size_t kBodies = 512;  // a block
-
-// Of an island that gets finer substeps: contacts for each relaxing visit, and visits at most. With
-// two visits columns of 50 to 100 boxes or balls that are dropped, each a little above the last,
-// won up to 0.9 of their energy of motion as they were escalated; with four, of 80 boxes still a
-// tenth.
-constexpr std::uint32_t kContactsARelax = 12, kMostRelaxes = 8;
 
 // What calls for forces that change as bodies go: see following_forces.hpp.
 constexpr Set<Effect> kFollowing = {Effect::springs, Effect::attractors, Effect::pivot};
@@ -184,11 +177,7 @@ void solve_impulses(const Conditions& conditions,
         finer.settings.substeps *= batch.times;
         // Its overlap is that of the usual ones, which these would push apart as much faster.
         finer.settings.push_limit /= batch.times;
-        // What it gains by that has a long way to go where many stand on one another.
-        if (finer.settings.relax_iterations == 0)
-            finer.settings.relax_iterations = std::max(
-                relax_visits(finer.settings, batch),
-                static_cast<int>(std::min(kMostRelaxes, batch.contacts / kContactsARelax)));
+        finer.settings.relax_iterations = finer_relax_visits(finer.settings, batch);
         const RowMaker<Real> with(finer, layout, active, convex, meshes, solids, rows);
         const Slice& slice = layout.slices[batch.first_slice];
         // Impulses are kept as of the substep that the settings say.
