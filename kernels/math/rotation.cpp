@@ -106,6 +106,11 @@ Quat turned(const Quat& orientation, const Vec3& angular_velocity, double time)
 
 Sym3 in_world_axes(const Sym3& local, const Quat& orientation)
 {
+    // A ball's and a cube's are the same about every axis, and so is that of who never turns.
+    const bool even = local.xx == local.yy && local.yy == local.zz && local.xy == 0 && local.xz == 0
+        && local.yz == 0;
+    if (even) return local;
+
     const Mat3 r = orientation.toRotationMatrix();
     const Sym3& s = local;
     // Rows of r times s, then what each row of that has in common with rows of r.

@@ -34,7 +34,8 @@ Real furthest_moved(const Vec3T<Real>& shift, const QuatT<Real>& turn, Real radi
     return shift.norm() + 2 * turn.vec().norm() * radius;
 }
 
-/// An inertia tensor (or its inverse) given in body axes, in world axes.
+/// An inertia tensor (or its inverse) given in body axes, in world axes. One that is the same about
+/// every axis stays as it is, to the last bit.
 Sym3 in_world_axes(const Sym3& local, const Quat& orientation);
 
 /// Angular velocity after the gyroscopic torque has acted for a time: one Newton step of implicit

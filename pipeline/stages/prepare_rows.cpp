@@ -94,25 +94,36 @@ bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
     });
 }
 
+template <class Real>
+void seat_drive(const DriveVelocity& velocity,
+                const SolverBody<Real>& body,
+                SolverDrive<Real>& drive)
+{
+    for (std::size_t k = 0; k < 3; ++k) {
+        const bool free = std::isnan(velocity[k]);
+        drive.number[k] = free ? Real(0) : static_cast<Real>(velocity[k]);
+        drive.number[4 + k] = free ? Real(0) : Real(1);
+    }
+    drive.number[3] = ease_of(body).of_turning > 0 ? Real(1) : Real(0);
+}
+
 // Drives of those that contacts push. Of nobody else does friction ask.
 template <class Real>
-void seat_drives(const Drives& drives, const Layout& layout, Rows<Real>& rows)
+void prepare_drives(const Drives& drives, const Layout& layout, Rows<Real>& rows)
 {
     rows.drives.clear();
-    for (std::size_t i = 0; i < drives.body.size(); ++i) {
-        const std::uint32_t body = drives.body[i];
-        const std::uint32_t slot = body < layout.slot.size() ? layout.slot[body] : Layout::kNoSlot;
-        if (slot == Layout::kNoSlot) continue;
-        if (rows.drives.empty()) rows.drives.assign(rows.bodies.size(), SolverDrive<Real>{});
-        Real(&number)[8] = rows.drives[slot].number;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double speed = drives.velocity[i][k];
-            const bool free = std::isnan(speed);
-            number[k] = free ? Real(0) : static_cast<Real>(speed);
-            number[4 + k] = free ? Real(0) : Real(1);
-        }
-        number[3] = ease_of(rows.bodies[slot]).of_turning > 0 ? Real(1) : Real(0);
-    }
+    const auto slot = [&](std::uint32_t body) {
+        return body < layout.slot.size() ? layout.slot[body] : Layout::kNoSlot;
+    };
+    if (std::none_of(drives.body.begin(), drives.body.end(),
+                     [&](std::uint32_t body) { return slot(body) != Layout::kNoSlot; }))
+        return;
+    rows.drives.assign(rows.bodies.size(), SolverDrive<Real>{});
+    for_each_block(drives.body.size(), kBodies, [&](auto begin, auto end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (const std::uint32_t at = slot(drives.body[i]); at != Layout::kNoSlot)
+                seat_drive(drives.velocity[i], rows.bodies[at], rows.drives[at]);
+    });
 }
 
 }  // namespace
@@ -160,7 +171,7 @@ void prepare_rows(const Conditions& conditions,
     rows.bounces.resize(conditions.has(Effect::restitution) ? blocks : 0);
     rows.carry_turns = anybody_carries(rows.bodies, conditions.settings.dt);
     if (conditions.has(Effect::drive))
-        seat_drives(drives, layout, rows);
+        prepare_drives(drives, layout, rows);
     else
         rows.drives.clear();
     rows.carries.resize(rows.carry_turns || !rows.drives.empty() ? blocks : 0);

@@ -34,19 +34,13 @@ constexpr double kSide = 0.1;
 // slope of one by the other is still seen as a rise.
 constexpr double kLevel = 2e-3, kBeyond = 0.1;
 
-// A contact of a shape that can be pushed with what may have a flush neighbor.
+// A contact of a shape that can be pushed with what may have a flush neighbor, seen from the shape.
 template <class Real>
-struct Borne {
+struct Seen {
     std::uint32_t mover = 0, other = 0;  // colliders
     std::uint32_t part = 0;              // triangle of a mesh
     bool mover_first = false;
     Contact<Real>* contact = nullptr;
-};
-
-// The same, seen from the mover.
-template <class Real>
-struct Seen : Borne<Real> {
-    explicit Seen(const Borne<Real>& borne) : Borne<Real>(borne) { }
 
     bool face = false;           // the other pushes along one of its faces
     bool hidden = false;         // it is a ghost
@@ -66,44 +60,61 @@ public:
                 const Velocities& velocities,
                 const BodyStates& states)
         : pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds), poses_(poses),
-          velocities_(velocities), states_(states), may_have_neighbors_(colliders.size())
+          velocities_(velocities), states_(states), roles_(colliders.size())
     {
-        for (std::size_t i = 0; i < may_have_neighbors_.size(); ++i) {
+        for (std::size_t i = 0; i < roles_.size(); ++i) {
             const std::uint32_t body = colliders.body[i];
-            may_have_neighbors_[i] =
-                body != kNobody && !(states.dynamic(body) && colliders.count[body] < 2);
-            if (may_have_neighbors_[i] != 0) end_ = static_cast<std::uint32_t>(i) + 1;
+            if (body == kNobody) continue;
+            if (states.movable(body)) roles_[i] = kPushed;
+            if (states.dynamic(body) && colliders.count[body] < 2) continue;
+            roles_[i] |= colliders.shape[i].kind == ShapeKind::plane ? kPlane : kRimmed;
+            end_ = static_cast<std::uint32_t>(i) + 1;
         }
     }
 
-    void gather(ConvexContacts<Real>& convex)
+    // Most lie on one floor, and on nothing else that stands still: who meets no ghost is told by
+    // marks, before anything is listed.
+    void gather(ConvexContacts<Real>& convex, ManyContacts<Real>& meshes)
     {
+        touches_.assign(colliders_.size(), 0);
         const std::size_t count = pairs_to_look_at();
-        BlockLists<Borne<Real>> rimmed, planes;
-        rimmed.start(block_count(count, kGrain));
-        planes.start(block_count(count, kGrain));
+        bool some = false;
+        const auto mark = [&](PairKey key) {
+            for_each_side(key, [&](std::uint32_t mover, std::uint32_t other, bool) {
+                std::uint8_t& touches = touches_[mover];
+                touches |= (touches & kOne) != 0 ? kMore : kOne;
+                touches |= roles_[other] & kRimmed;
+                some = some || meets_ghosts(mover);
+            });
+        };
+        for (std::size_t i = 0; i < count; ++i)
+            if (concerns(pairs_.keys[i]) && convex.of_pair[i].contact != PairState::kApart)
+                mark(pairs_.keys[i]);
+        for (const auto& entry : meshes.entries)
+            if (entry.contact.count > 0) mark(pairs_.keys[entry.pair]);
+        if (!some) return;
+
+        BlockLists<Seen<Real>> lists;
+        lists.start(block_count(count, kGrain));
         for_each_block(count, kGrain, [&](auto begin, auto end, auto block) {
-            for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t i = begin; i < end; ++i) {
+                const PairKey key = pairs_.keys[i];
+                if (!meets_ghosts(first_of(key)) && !meets_ghosts(second_of(key))) continue;
                 if (const std::uint32_t place = convex.of_pair[i].contact;
                     place != PairState::kApart)
-                    note(pairs_.keys[i], 0, convex.contacts[place], rimmed[block], planes[block]);
+                    note(key, 0, convex.contacts[place], lists[block]);
+            }
         });
-        rimmed.append_to(by_rimmed_);
-        planes.append_to(by_planes_);
-    }
-
-    void gather(ManyContacts<Real>& contacts)
-    {
-        for (auto& entry : contacts.entries)
+        lists.append_to(seen_);
+        for (auto& entry : meshes.entries)
             if (entry.contact.count > 0)
-                note(pairs_.keys[entry.pair], entry.part, entry.contact, by_rimmed_, by_planes_);
+                note(pairs_.keys[entry.pair], entry.part, entry.contact, seen_);
     }
 
     // Shape by shape: those of one come together. All are judged before any goes, as a contact of
     // two that can be pushed is seen from both.
     void remove()
     {
-        look_at_several();
         const auto before = [](const Seen<Real>& a, const Seen<Real>& b) {
             return a.mover < b.mover;
         };
@@ -118,6 +129,12 @@ public:
     }
 
 private:
+    // What a collider is: can be pushed; may lie flush with another, with a rim or, a plane,
+    // without.
+    static constexpr std::uint8_t kPushed = 1, kPlane = 2, kRimmed = 4;
+    // What touches one: something that may lie flush with another, more than one, one with a rim.
+    static constexpr std::uint8_t kOne = 1, kMore = 2, kMoreAndRim = kMore | kRimmed;
+
     // They ascend by their first, and what stands still is mostly made before what moves: behind
     // the last that may have neighbors, no pair has one.
     std::size_t pairs_to_look_at() const
@@ -129,38 +146,34 @@ private:
             - keys.begin());
     }
 
-    // Of shapes that have more than one, and most have not. Planes have no rims: what is borne by
-    // them alone meets no ghost, and most of what there is lies on a floor.
-    void look_at_several()
+    bool may_have_neighbors(std::uint32_t collider) const
     {
-        static thread_local std::vector<std::uint8_t> several;  // by collider; zero between calls
-        constexpr std::uint8_t kOne = 1, kMore = 2;
-        several.resize(std::max(several.size(), colliders_.size()), 0);
-        for (const Borne<Real>& borne : by_rimmed_)
-            several[borne.mover] = several[borne.mover] == 0 ? kOne : kMore;
-        for (const Borne<Real>& borne : by_planes_) {
-            if (several[borne.mover] == 0) continue;
-            several[borne.mover] = kMore;
-            seen_.emplace_back(borne);
-        }
-        for (const Borne<Real>& borne : by_rimmed_)
-            if (several[borne.mover] == kMore) seen_.emplace_back(borne);
-        for (const Borne<Real>& borne : by_rimmed_) several[borne.mover] = 0;
+        return (roles_[collider] & (kPlane | kRimmed)) != 0;
+    }
+    bool concerns(PairKey key) const
+    {
+        return may_have_neighbors(first_of(key)) || may_have_neighbors(second_of(key));
+    }
+    // Planes have no rims: what is borne by them alone meets none.
+    bool meets_ghosts(std::uint32_t mover) const
+    {
+        return (touches_[mover] & kMoreAndRim) == kMoreAndRim;
     }
 
-    // Those with what may have a flush neighbor, once for each side that can be pushed.
-    void
-    note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& rimmed, auto& planes) const
+    // Calls action(mover, other, mover_first) for each of the two that can be pushed, where the
+    // other may have a flush neighbor.
+    void for_each_side(PairKey key, const auto& action) const
     {
         const std::uint32_t a = first_of(key), b = second_of(key);
-        if ((may_have_neighbors_[a] | may_have_neighbors_[b]) == 0) return;
-        for (const bool first : {true, false}) {
-            const std::uint32_t mover = first ? a : b, other = first ? b : a;
-            if (may_have_neighbors_[other] == 0 || !states_.movable(colliders_.body[mover]))
-                continue;
-            const bool has_rim = colliders_.shape[other].kind != ShapeKind::plane;
-            (has_rim ? rimmed : planes).push_back({mover, other, part, first, &contact});
-        }
+        if ((roles_[a] & kPushed) != 0 && may_have_neighbors(b)) action(a, b, true);
+        if ((roles_[b] & kPushed) != 0 && may_have_neighbors(a)) action(b, a, false);
+    }
+
+    void note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& list) const
+    {
+        for_each_side(key, [&](std::uint32_t mover, std::uint32_t other, bool mover_first) {
+            if (meets_ghosts(mover)) list.push_back({mover, other, part, mover_first, &contact});
+        });
     }
 
     // Whether two colliders go on as they are to one another.
@@ -296,10 +309,8 @@ private:
     const Poses& poses_;
     const Velocities& velocities_;
     const BodyStates& states_;
-    std::vector<std::uint8_t>
-        may_have_neighbors_;  // 1 for colliders that may lie flush with another
-    std::uint32_t end_ = 0;   // behind the last of them
-    std::vector<Borne<Real>> by_rimmed_, by_planes_;
+    std::vector<std::uint8_t> roles_, touches_;  // [colliders]
+    std::uint32_t end_ = 0;                      // behind the last that may have neighbors
     std::vector<Seen<Real>> seen_;
 };
 
@@ -317,8 +328,7 @@ void remove_ghost_contacts(const Pairs& pairs,
                            MeshContacts<Real>& meshes)
 {
     GhostSearch<Real> search(pairs, shapes, colliders, bounds, poses, velocities, states);
-    search.gather(convex);
-    search.gather(meshes);
+    search.gather(convex, meshes);
     search.remove();
 }
 

@@ -175,6 +175,18 @@ TEST(InWorldAxes, AgreesWithTheBodySeenFromInside)
     }
 }
 
+TEST(InWorldAxes, OfABallOrACubeStaysAsItIs)
+{
+    std::mt19937_64 random(11);
+    for (int i = 0; i < 100; ++i) {
+        const Quat q = random_turn(random);
+        const double moment = std::ldexp(1.0 + 1e-3 * i, i - 50);
+        const Sym3 turned = in_world_axes({moment, moment, moment, 0, 0, 0}, q);
+        for (const double diagonal : {turned.xx, turned.yy, turned.zz}) ASSERT_EQ(diagonal, moment);
+        for (const double off : {turned.xy, turned.xz, turned.yz}) ASSERT_EQ(off, 0);
+    }
+}
+
 double momentum(const Vec3& spin, const Sym3& inertia, const Quat& orientation)
 {
     return Vec3(in_world_axes(inertia, orientation).matrix() * spin).norm();
