@@ -466,10 +466,20 @@ private:
             .restitution;
     }
 
-    // m/s2, of what pulls alike all along its way: gravity, attractors and what pushes it.
+    // m/s2, of the wind where it drives the body on: what it brakes is lost.
+    Vec3 wind_on(std::uint32_t body) const
+    {
+        if (body >= forces_.linear_drag.size()) return Vec3::Zero();
+        const Vec3& velocity = velocities_.linear[body];
+        const Vec3 past = forces_.wind - velocity;
+        if (!(past.dot(velocity) > 0)) return Vec3::Zero();
+        return masses_.inverse_mass[body] * forces_.linear_drag[body] * past;
+    }
+
+    // m/s2, of what pulls alike all along its way: gravity, attractors, wind and what pushes it.
     Vec3 pull_on(std::uint32_t body) const
     {
-        Vec3 pull = gravity_;
+        Vec3 pull = gravity_ + wind_on(body);
         for (const AttractorForce& attractor : forces_.attractors) {
             const Vec3 towards = attractor.position - poses_.position[body];
             const double square = towards.squaredNorm();
@@ -480,7 +490,8 @@ private:
     }
 
     // Who is kept from the rest of its way has not fallen down it: what its pull gave it for that
-    // goes, and what it took comes back. Else who is held high bounces higher than it fell.
+    // goes, also where it has been thrown back by the end of it, and what it took comes back. Else
+    // who is held high bounces higher than it fell.
     void take_back_fall(std::uint32_t body, const Vec3& held)
     {
         const Vec3 pulled = pull_on(body);
@@ -490,9 +501,27 @@ private:
         Vec3& velocity = velocities_.linear[body];
         const double falling = down.dot(velocity);
         const double gained = 2 * pulled.dot(held - poses_.position[body]);
-        if (!(falling * gained < 0)) return;
+        if (!(gained < 0 || falling < 0)) return;
         const double left = std::sqrt(std::max(0.0, falling * falling + gained));
         velocity += (std::copysign(left, falling) - falling) * down;
+    }
+
+    // J, of what pulls at the middle of one that goes round a pivot.
+    double hanging_energy_of(std::uint32_t body) const
+    {
+        if (body >= forces_.hangs.size() || forces_.hangs[body] == 0) return 0;
+        const Vec3 middle = poses_.at(body) * forces_.hang_of(body);
+        return attraction_of(forces_, masses_, poses_, body)
+            - masses_.mass[body] * gravity_.dot(middle);
+    }
+
+    // Nor has its weight turned it down that way. One that has not so much gives what it has: what
+    // pressed it in has stopped it, and it is held all the same.
+    void take_back_swing(std::uint32_t body, double gained)
+    {
+        if (!(gained > 0)) return;
+        const double had = kinetic_energy_of(body, masses_, poses_, velocities_);
+        velocities_.angular[body] *= had > gained ? std::sqrt(1 - gained / had) : 0;
     }
 
     // Nor have its springs drawn it down that way: what they hold the more for it goes. False for
@@ -513,12 +542,14 @@ private:
         const Pose went = poses_.at(way.body);
         const Vec3 velocity = velocities_.linear[way.body], spin = velocities_.angular[way.body];
         const double before = springs_energy_of(way.body, forces_, poses_);
+        const double hung = hanging_energy_of(way.body);
         // What goes by itself lifts and lowers who rides on it: there it is where he would have
         // been.
         const bool driven = way.rides != kNobody && !states_.dynamic(way.rides);
         take_back_fall(way.body, driven ? pose_on(way, way.since).position : end.position);
         poses_.position[way.body] = end.position;
         turn_back(way.body, end.orientation.normalized());
+        take_back_swing(way.body, hanging_energy_of(way.body) - hung);
         if (take_back_pull(way.body, springs_energy_of(way.body, forces_, poses_) - before))
             return fast_.held.push_back(way.body);
         poses_.position[way.body] = went.position;
