@@ -37,6 +37,14 @@ bool helps(const Settings& settings)
         && settings.solver != Solver::direct;
 }
 
+// How easily a body gives way, 1/kg. Who cannot be moved, only turned, gives way by levers about as
+// much as his mass would.
+double ease_of(const Masses& masses, std::uint32_t body)
+{
+    const double ease = masses.inverse_mass[body], mass = masses.mass[body];
+    return ease == 0 && mass > 0 ? 1 / mass : ease;
+}
+
 // N s, of all points; and times the ease with which the lesser mass gives way: m/s.
 template <class Real>
 double
@@ -44,7 +52,7 @@ speed_borne(const ActiveContacts::Entry& entry, const Contact<Real>& contact, co
 {
     double impulse = 0;
     for (std::size_t k = 0; k < entry.points; ++k) impulse += double{contact.points[k].impulse};
-    return impulse * (masses.inverse_mass[entry.body_a] + masses.inverse_mass[entry.body_b]);
+    return impulse * (ease_of(masses, entry.body_a) + ease_of(masses, entry.body_b));
 }
 
 template <class Real>

@@ -117,5 +117,32 @@ TEST(Escalation, DoesNotThrowAColumnThatIsDropped)
     }
 }
 
+// A column with a small one in it that stays where it is, but turns: levers press it in as its
+// mass would be. Its upper half rocks on it, and is not thrown higher from time to time.
+TEST(Escalation, HoldsTheHeavyOnWhoCanOnlyTurn)
+{
+    for (const double small : {0.04, 0.08})
+        for (const bool round : {false, true}) {
+            given::SceneOf made;
+            made.floor();
+            const auto add = [&](double half, double height) -> BodyDescription& {
+                if (!round) return made.box(Vec3(half, half, half), Vec3(0, 0, height));
+                return made.body(made.shape(CylinderShape{half, half}), Vec3(0, 0, height));
+            };
+            add(1, 1);
+            add(small, 2 + small).lock_position = true;
+            add(1, 3 + 2 * small);
+            World world(made.scene);
+            EnergyLedger ledger;
+            for (int step = 0; step < 600; ++step) {
+                ledger.before_step(world);
+                world.step();
+                ledger.after_step(world);
+            }
+            const double weight = world.mass(world.bodies()[3]) * 9.81;
+            EXPECT_LE(ledger.gained(), 1e-3 * weight) << small << ' ' << round;
+        }
+}
+
 }  // namespace
 }  // namespace throng
