@@ -1,6 +1,6 @@
 // Boxes of movers, written once over the width of the machine's registers.
 #include "broadphase/mover_bounds.hpp"
-#include "kernels/math/lane_rows.hpp"
+#include "kernels/simd/lane_rows.hpp"
 
 namespace throng::THRONG_LANES {
 

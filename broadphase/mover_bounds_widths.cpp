@@ -1,6 +1,6 @@
 // The widths that mover_bounds_lanes.cpp was compiled for.
 #include "broadphase/mover_bounds.hpp"
-#include "kernels/math/lane_width.hpp"
+#include "kernels/simd/lane_width.hpp"
 
 namespace throng {
 

@@ -1,10 +1,10 @@
 #include "cost/shared_in_heap.hpp"
 
+#include "cooking/repair/mesh_health.hpp"
 #include "kernels/geometry/mass.hpp"
-#include "kernels/geometry/mesh_health.hpp"
-#include "pipeline/convex_query.hpp"
-#include "pipeline/volume_query.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/queries/convex_query.hpp"
+#include "pipeline/queries/volume_query.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <map>

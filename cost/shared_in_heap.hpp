@@ -2,7 +2,7 @@
 // stepped.
 #pragma once
 
-#include "pipeline/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace throng {
 

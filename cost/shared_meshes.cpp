@@ -1,8 +1,8 @@
 #include "cost/shared_meshes.hpp"
 
+#include "cooking/repair/mesh_health.hpp"
 #include "cost/shared_data.hpp"
-#include "kernels/geometry/mesh_health.hpp"
-#include "scenes/mesh_file.hpp"
+#include "scene/files/mesh_file.hpp"
 
 #include <fstream>
 #include <sstream>

@@ -1,7 +1,7 @@
 // Shared meshes: scans and models from public projects, kept beside the project and not in it.
 #pragma once
 
-#include "scenes/closed_meshes.hpp"
+#include "scene/catalog/closed_meshes.hpp"
 
 #include <optional>
 #include <string>

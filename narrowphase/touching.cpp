@@ -1,9 +1,9 @@
 #include "narrowphase/touching.hpp"
 
+#include "kernels/geometry/gjk.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/nearest_point.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
-#include "narrowphase/methods/gjk.hpp"
 
 namespace throng {
 namespace {

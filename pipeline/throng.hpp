@@ -1,12 +1,12 @@
 // throng: all that a program includes.
 #pragma once
 
-#include "pipeline/convex_query.hpp"
-#include "pipeline/impact_query.hpp"
-#include "pipeline/level_set.hpp"
-#include "pipeline/queries.hpp"
-#include "pipeline/report.hpp"
-#include "pipeline/scene.hpp"
-#include "pipeline/settings.hpp"
-#include "pipeline/volume_query.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/queries/convex_query.hpp"
+#include "pipeline/queries/impact_query.hpp"
+#include "pipeline/queries/queries.hpp"
+#include "pipeline/queries/volume_query.hpp"
+#include "pipeline/world/report.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/scene.hpp"
+#include "scene/settings.hpp"
+#include "scene/shapes/level_set.hpp"

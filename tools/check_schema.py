@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks scenes/scene.schema.json against the dials of this build and against scene files.
+"""Checks scene/files/scene.schema.json against the dials of this build and against scene files.
 
     tools/check_schema.py [SCENE.json]...
 
@@ -18,13 +18,13 @@ except ImportError:
     sys.exit(77)
 
 root = pathlib.Path(__file__).resolve().parent.parent
-schema = json.loads((root / "scenes/scene.schema.json").read_text())
+schema = json.loads((root / "scene/files/scene.schema.json").read_text())
 jsonschema.Draft202012Validator.check_schema(schema)
 validator = jsonschema.Draft202012Validator(schema)
 trouble = []
 
 # Every dial of the table is in the schema, and none that is not.
-table = (root / "pipeline/dials.cpp").read_text()
+table = (root / "scene/dials.cpp").read_text()
 table = table[table.index("make_dials()"):]
 dials = set(re.findall(r'_(?:dial|number)(?:<[^;]*?>)?\(\s*"(\w+)"', table))
 listed = set(schema["$defs"]["settings"]["properties"])

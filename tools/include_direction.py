@@ -1,7 +1,18 @@
 #!/usr/bin/env python3
-"""Include direction: every include of the tree against the table of who may reach for what.
+"""Include direction: every include of the tree against the order in which its folders stand.
 
-Prints each include that breaks a rule as file:line and exits 1; prints nothing where all is well.
+Three rules, each held for every file:
+
+1. Between top folders `MAY_SEE` tells who may include whom. Of kernels and the pipeline, cost and
+   apps see the headers in `DOOR` alone: what a program of somebody else's could see.
+2. Within a folder, at every depth, its folders stand in the order that `INSIDE` gives, and each sees
+   those before it and no other. The files that stand directly in the folder count as one of them,
+   "." in its list: either its folders may use these files, or these files use its folders, never
+   both. A folder that has folders and is not listed (tests, perf) may have any order, but no cycle.
+3. No header includes itself, over however many others.
+
+Prints each include that breaks a rule as file:line and the header it names, and exits 1; prints
+nothing where all is well.
     tools/include_direction.py [ROOT]
 """
 import fnmatch
@@ -9,55 +20,167 @@ import pathlib
 import re
 import sys
 
-# Which folder may include which. Those named in `OPEN` may include everything.
-MAY_INCLUDE = {
-    "kernels": {"kernels"},
-    "broadphase": {"broadphase", "kernels"},
-    "narrowphase": {"narrowphase", "kernels"},
-    "pipeline": {"pipeline", "kernels", "broadphase", "narrowphase"},
-    "scenes": {"scenes", "pipeline", "kernels"},
-    "cost": {"cost", "scenes", "pipeline", "kernels"},
+# Which top folder may include which, itself besides. narrowphase never sees cooking: what is cooked
+# is data by the time of a step.
+BELOW = ["kernels", "cooking", "broadphase", "narrowphase", "scene", "pipeline"]
+MAY_SEE = {
+    "kernels": [],
+    "cooking": ["kernels"],
+    "broadphase": ["kernels"],
+    "narrowphase": ["kernels", "broadphase"],
+    "scene": ["kernels", "cooking", "narrowphase"],
+    "pipeline": ["kernels", "cooking", "broadphase", "narrowphase", "scene"],
+    "cost": ["cooking", "scene"],
+    "apps": ["cooking", "scene", "cost"],
+    "tests": BELOW + ["cost", "apps"],
+    "perf": BELOW + ["cost", "apps", "tests"],
 }
-OPEN = {"apps", "tests", "perf"}
 
-# Of the pipeline, scenes and cost see what a program may see, and not how a step is made.
-BEHIND_THE_DOOR = {
-    folder: ["pipeline/stages.hpp", "pipeline/stages/*", "pipeline/stage.hpp",
-             "pipeline/step_*", "pipeline/world_state.hpp"]
-    for folder in ("scenes", "cost")
+# What cost and apps see besides: the world, its queries and its records; and of kernels the
+# vocabulary that these speak.
+DOOR = [
+    "kernels/math/*", "kernels/geometry/mass.hpp", "kernels/simd/lane_width.hpp",
+    "pipeline/throng.hpp", "pipeline/world/world.hpp", "pipeline/world/report.hpp",
+    "pipeline/world/energy_ledger.hpp", "pipeline/step/inner_rows.hpp",
+    "pipeline/queries/queries.hpp", "pipeline/queries/*_query.hpp", "pipeline/queries/mesh_overlap.hpp",
+    "pipeline/records/*",
+]
+BEFORE_THE_DOOR = {"cost", "apps"}
+
+# The order of the folders within a folder; "." are its own files.
+INSIDE = {
+    "kernels": [".", "math", "simd", "parallel", "data", "geometry", "dynamics", "solver"],
+    "kernels/solver": ["direct", "."],
+    "cooking": [".", "cache", "repair", "hulls", "decomposition", "sphere_trees", "fields"],
+    "broadphase": ["."],
+    "narrowphase": ["manifold", "convex", "mesh", "solid", "ccd", "alternatives", "."],
+    "narrowphase/convex": ["wide", "."],
+    "scene": [".", "shapes", "rules", "files", "catalog"],
+    "pipeline": ["step", "forces", "contacts", "stages", "solvers", "event_driven", "world", "queries",
+                 "records", "."],
+    "cost": [".", "hard_cases"],
+    "apps": ["peers", "throng", "."],
+    "apps/throng": [".", "bench"],
 }
 
 # Which files may include a library: the one file that meets it hides its types. What the machine's
 # threads offer counts as one, so that a loop goes through blocks.hpp.
 LIBRARIES = {
     r"(tbb|oneapi)/": ["*_tbb.cpp", "broadphase/embree_tree.cpp", "kernels/parallel/sort_keys.cpp",
-                       "narrowphase/solids/voxel_field.cpp"],
+                       "cooking/fields/voxel_field.cpp"],
     r"embree\d*/": ["broadphase/embree_tree.cpp"],
-    r"(hdf5|H5)": ["pipeline/run_file*.cpp", "tests/pipeline/run_file*.cpp"],
-    r"(openvdb|nanovdb)/": ["narrowphase/solids/voxel_field.cpp", "perf/tree_samples.cpp"],
+    r"(hdf5|H5)": ["pipeline/records/run_file*.cpp", "tests/pipeline/records/run_file*.cpp"],
+    r"(openvdb|nanovdb)/": ["cooking/fields/voxel_field.cpp", "perf/cooking/tree_samples.cpp"],
     r"(gtest|gmock)/": ["tests/*"],
     r"benchmark/": ["perf/*"],
-    r"(hwy/|\w*intrin\.h)": ["kernels/math/lanes*"],
+    r"(hwy/|\w*intrin\.h)": ["kernels/simd/lanes*"],
     r"(thread|mutex|shared_mutex|condition_variable|future|atomic)>":
-        ["kernels/parallel/*", "broadphase/embree_tree.cpp", "pipeline/*", "apps/*", "tests/*",
-         "perf/*"],
+        ["kernels/parallel/*", "broadphase/embree_tree.cpp", "scene/shapes/kept_answers.hpp",
+         "pipeline/*", "apps/*", "tests/*", "perf/*"],
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"(?P<ours>[^"]*)"|<(?P<theirs>[^>]*>))')
 
 
-def complaint_of_ours(root, path, included):
-    """What is wrong with an include of our own, or None."""
-    folder, wanted = path.split("/")[0], included.split("/")[0]
-    if included.startswith((".", "/")) or not (root / included).is_file():
-        return "is no file, seen from the root"
-    if folder in OPEN:
+class Include:
+    """An include of ours: who, where, whom."""
+
+    def __init__(self, path, number, included):
+        self.path, self.number, self.included = path, number, included
+
+    def told(self, wrong):
+        return f"{self.path}:{self.number}: {self.included}: {wrong}"
+
+
+def listed(words):
+    return ", ".join(words) if words else "nothing else"
+
+
+def wrong_between_tops(include):
+    """What is wrong with an include from one top folder into another, or None."""
+    folder, wanted = include.path.split("/")[0], include.included.split("/")[0]
+    if folder == wanted or wanted in MAY_SEE[folder]:
         return None
-    if wanted not in MAY_INCLUDE[folder]:
-        return f"{folder} may include {', '.join(sorted(MAY_INCLUDE[folder]))} only"
-    if any(fnmatch.fnmatch(included, hidden) for hidden in BEHIND_THE_DOOR.get(folder, [])):
-        return f"{folder} may not look behind pipeline/throng.hpp"
+    if folder in BEFORE_THE_DOOR and wanted in BELOW:
+        if any(fnmatch.fnmatch(include.included, open_to_all) for open_to_all in DOOR):
+            return None
+        return f"is behind the door; {folder} sees {listed(MAY_SEE[folder])} and DOOR of include_direction.py"
+    return f"{folder} may include {listed(MAY_SEE[folder])}, besides itself"
+
+
+def parting(include):
+    """Where the ways to two files part: the folder that holds both, and the part of it that each
+    is in. None where they stand side by side."""
+    ours, theirs = include.path.split("/"), include.included.split("/")
+    depth = 0
+    while depth < min(len(ours), len(theirs)) - 1 and ours[depth] == theirs[depth]:
+        depth += 1
+    if depth == 0:
+        return None  # two top folders
+    a = ours[depth] if len(ours) > depth + 1 else "."
+    b = theirs[depth] if len(theirs) > depth + 1 else "."
+    return None if a == b else ("/".join(ours[:depth]), a, b)
+
+
+def wrong_inside(include):
+    """What is wrong with an include from one part of a folder into another, or None."""
+    parts = parting(include)
+    if parts is None or parts[0] not in INSIDE:
+        return None
+    folder, a, b = parts
+    order = INSIDE[folder]
+    for part in (a, b):
+        if part not in order:
+            return f"{folder}/{part} has no place in the order of {folder}: {listed(order)}"
+    if order.index(b) < order.index(a):
+        return None
+    theirs, ours = (f"what stands directly in {folder}" if part == "." else f"{folder}/{part}"
+                    for part in (b, a))
+    return f"{theirs} comes after {ours} (order of {folder}: {listed(order)})"
+
+
+def cycle_in(graph):
+    """Some cycle of a graph {node: {other: include}} as a list of includes, or None."""
+    done, way = set(), []
+
+    def visit(node):
+        done.add(node)
+        way.append(node)
+        for other, include in sorted(graph.get(node, {}).items()):
+            if other in way:
+                nodes = way[way.index(other):] + [other]
+                return [graph[a][b] for a, b in zip(nodes, nodes[1:])]
+            if other not in done and (found := visit(other)):
+                return found
+        way.pop()
+        return None
+
+    for node in sorted(graph):
+        if node not in done and (found := visit(node)):
+            return found
     return None
+
+
+def told_as_cycle(what, cycle):
+    first, rest = cycle[0], cycle[1:]
+    back = "; ".join(f"{i.path}:{i.number} includes {i.included}" for i in rest)
+    return first.told(f"a cycle of {what}" + (f": {back}" if rest else ": it includes itself"))
+
+
+def cycles(includes):
+    """Complaints about folders without an order that go round in a circle, and about headers."""
+    folders, headers = {}, {}
+    for include in includes:
+        parts = parting(include)
+        if parts is not None and parts[0] not in INSIDE:
+            folders.setdefault(parts[0], {}).setdefault(parts[1], {}).setdefault(parts[2], include)
+        if include.path.endswith(".hpp"):
+            headers.setdefault(include.path, {}).setdefault(include.included, include)
+    for folder in sorted(folders):
+        if cycle := cycle_in(folders[folder]):
+            yield told_as_cycle(f"folders in {folder}", cycle)
+    if cycle := cycle_in(headers):
+        yield told_as_cycle("headers", cycle)
 
 
 def complaint_of_theirs(path, included):
@@ -70,8 +193,8 @@ def complaint_of_theirs(path, included):
 
 def complaints(root):
     """Every broken rule of a tree, as one line each, in order."""
-    found = []
-    for folder in sorted({*MAY_INCLUDE, *OPEN}):
+    found, includes = [], []
+    for folder in sorted(MAY_SEE):
         for file in sorted((root / folder).rglob("*.[ch]pp")):
             path = file.relative_to(root).as_posix()
             text = file.read_text(encoding="utf-8")
@@ -81,12 +204,18 @@ def complaints(root):
                 match = INCLUDE.match(line)
                 if not match:
                     continue
-                ours, theirs = match["ours"], match["theirs"]
-                wrong = (complaint_of_theirs(path, theirs) if ours is None
-                         else complaint_of_ours(root, path, ours))
-                if wrong:
-                    found.append(f"{path}:{number}: {ours or theirs.rstrip('>')}: {wrong}")
-    return found
+                if match["ours"] is None:
+                    if wrong := complaint_of_theirs(path, match["theirs"]):
+                        found.append(f"{path}:{number}: {match['theirs'].rstrip('>')}: {wrong}")
+                    continue
+                include = Include(path, number, match["ours"])
+                if include.included.startswith((".", "/")) or not (root / include.included).is_file():
+                    found.append(include.told("is no file, seen from the root"))
+                elif wrong := wrong_between_tops(include) or wrong_inside(include):
+                    found.append(include.told(wrong))
+                else:
+                    includes.append(include)
+    return found + list(cycles(includes))
 
 
 def main():

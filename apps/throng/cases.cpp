@@ -1,13 +1,13 @@
 // Cases: runs the hard cases that throng claims, and prints each figure beside its bound.
-#include "cost/cases.hpp"
+#include "cost/hard_cases/cases.hpp"
 
 #include "apps/throng/commands.hpp"
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/output_file.hpp"
 #include "apps/throng/scene_argument.hpp"
-#include "pipeline/dials.hpp"
-#include "pipeline/names.hpp"
-#include "scenes/json.hpp"
+#include "scene/dials.hpp"
+#include "scene/files/json.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include "apps/throng/progress.hpp"
 #include "apps/throng/scene_argument.hpp"
 #include "apps/throng/step_times.hpp"
-#include "pipeline/stages.hpp"
-#include "pipeline/unused_dials.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/step/inner_rows.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/rules/unused_dials.hpp"
 
 #include <algorithm>
 #include <chrono>

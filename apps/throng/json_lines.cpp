@@ -1,8 +1,8 @@
 // JSON lines: what the command writes for programs, put together from its members.
 #include "apps/throng/json_lines.hpp"
 
-#include "pipeline/names.hpp"
-#include "scenes/json.hpp"
+#include "scene/files/json.hpp"
+#include "scene/names.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 // Main: finds the command, and turns whatever stops it into a sentence and an exit code.
 #include "apps/throng/commands.hpp"
-#include "kernels/solve/sweep.hpp"
-#include "pipeline/names.hpp"
-#include "scenes/scene_error.hpp"
+#include "kernels/simd/lane_width.hpp"
+#include "scene/files/scene_error.hpp"
+#include "scene/names.hpp"
 
 #include <csignal>
 #include <cstring>
@@ -62,7 +62,7 @@ const Command& find_command(std::string_view name)
 void check_environment()
 {
     try {
-        solve_kernels<float>();
+        lane_width();
     } catch (const std::runtime_error& error) {
         throw BadInput(error.what());
     }

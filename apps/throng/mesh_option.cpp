@@ -1,8 +1,8 @@
 // Mesh option: `--mesh FILE`, a mesh in place of those that throng makes for a scene.
 #include "apps/throng/mesh_option.hpp"
 
-#include "scenes/mesh_file.hpp"
-#include "scenes/scene_file.hpp"
+#include "scene/files/mesh_file.hpp"
+#include "scene/files/scene_file.hpp"
 
 #include <cmath>
 

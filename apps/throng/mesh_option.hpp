@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/throng/options.hpp"
-#include "scenes/catalog.hpp"
+#include "scene/catalog/catalog.hpp"
 
 namespace throng {
 

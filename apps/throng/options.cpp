@@ -1,7 +1,7 @@
 // Options: the words of a command line, checked against what a command takes.
 #include "apps/throng/options.hpp"
 
-#include "pipeline/names.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <charconv>

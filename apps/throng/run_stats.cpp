@@ -2,9 +2,9 @@
 #include "apps/throng/run_stats.hpp"
 
 #include "apps/throng/json_lines.hpp"
-#include "pipeline/dials.hpp"
-#include "pipeline/names.hpp"
-#include "scenes/json.hpp"
+#include "scene/dials.hpp"
+#include "scene/files/json.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <cmath>

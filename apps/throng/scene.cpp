@@ -2,9 +2,9 @@
 #include "apps/throng/commands.hpp"
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/scene_argument.hpp"
-#include "pipeline/names.hpp"
-#include "scenes/catalog.hpp"
-#include "scenes/scene_file.hpp"
+#include "scene/catalog/catalog.hpp"
+#include "scene/files/scene_file.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <filesystem>

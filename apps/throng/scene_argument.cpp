@@ -1,11 +1,11 @@
 // Scene argument: the SCENE of a command line, with the dials that the line sets.
 #include "apps/throng/scene_argument.hpp"
 
-#include "narrowphase/solids/kept_file.hpp"
-#include "pipeline/dials.hpp"
-#include "pipeline/names.hpp"
-#include "scenes/catalog.hpp"
-#include "scenes/scene_file.hpp"
+#include "cooking/cache/kept_file.hpp"
+#include "scene/catalog/catalog.hpp"
+#include "scene/dials.hpp"
+#include "scene/files/scene_file.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,8 +1,6 @@
 // Trace option: `--trace FILE`, which keeps what the last steps of a run did on each thread.
 #include "apps/throng/trace_option.hpp"
 
-#include "pipeline/world_state.hpp"
-
 namespace throng {
 
 TraceOption::TraceOption(const Options& options) : file_("--trace", options.text("--trace"))
@@ -16,7 +14,7 @@ TraceOption::TraceOption(const Options& options) : file_("--trace", options.text
 
 void TraceOption::watch(World& world)
 {
-    if (trace_) world.state().watch = trace_.get();
+    if (trace_) watch_steps(world, *trace_);
 }
 
 void TraceOption::begin_step(std::uint64_t number)

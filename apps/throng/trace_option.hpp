@@ -3,8 +3,8 @@
 
 #include "apps/throng/options.hpp"
 #include "apps/throng/output_file.hpp"
-#include "pipeline/trace.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/records/trace.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <memory>
 

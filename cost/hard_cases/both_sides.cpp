@@ -5,9 +5,9 @@
 // What leans over a peak of a terrain is thrown by none of the triangles round it.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/energy_ledger.hpp"
-#include "pipeline/names.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/energy_ledger.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // is at least tan(a) / 2. Houses of cards and arches of stones stand as they were built.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "cost/hard_cases/certified_pairs.hpp"
 
 #include "kernels/math/rotation.hpp"
-#include "scenes/parts.hpp"
+#include "scene/catalog/parts.hpp"
 
 #include <algorithm>
 #include <cmath>

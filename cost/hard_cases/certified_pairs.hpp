@@ -5,8 +5,8 @@
 // set up to be awkward: parallel, all but parallel, face to face, edge to edge, about one center.
 #pragma once
 
-#include "kernels/geometry/hull.hpp"
-#include "scenes/random.hpp"
+#include "cooking/hulls/hull.hpp"
+#include "scene/catalog/random.hpp"
 
 namespace throng {
 

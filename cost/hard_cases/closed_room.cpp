@@ -5,7 +5,7 @@
 // a single impact makes or loses adds up.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

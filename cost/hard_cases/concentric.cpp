@@ -5,7 +5,7 @@
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/names.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 

@@ -5,11 +5,11 @@
 // step with a face. An order is the slope of a line through the logarithms.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/hard_cases/solid_parts.hpp"
-#include "kernels/data/bounds.hpp"
+#include "kernels/math/box3.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
-#include "scenes/noisy_balls.hpp"
-#include "scenes/parts.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/catalog/noisy_balls.hpp"
+#include "scene/catalog/parts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Convex judge: what every method says of a pair, held against a truth that no method made.
 #pragma once
 
-#include "cost/cases.hpp"
+#include "cost/hard_cases/cases.hpp"
 #include "cost/hard_cases/quad_truth.hpp"
 
 #include <optional>

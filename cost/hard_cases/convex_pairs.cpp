@@ -6,7 +6,7 @@
 #include "cost/hard_cases/broken_pairs.hpp"
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/names.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <cmath>

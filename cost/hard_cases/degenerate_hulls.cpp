@@ -2,12 +2,12 @@
 // have corners.
 //
 // Answer: the first are refused in words; the others answer as the clean cube does, to 1e-12.
+#include "cooking/hulls/hull.hpp"
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/geometry/hull.hpp"
 #include "kernels/geometry/mass.hpp"
 #include "kernels/math/rotation.hpp"
-#include "scenes/random.hpp"
+#include "scene/catalog/random.hpp"
 
 #include <cmath>
 #include <set>

@@ -5,9 +5,9 @@
 //
 // Method: greedy rows, after Cohen, Dalal, Fredman & Patton, The AETG system (1997).
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/dials.hpp"
-#include "pipeline/world.hpp"
-#include "scenes/catalog.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/catalog/catalog.hpp"
+#include "scene/dials.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 // the cliff and falls whose middle is not; what slides without friction meets no seam and no crack.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
-#include "scenes/closed_meshes.hpp"
-#include "scenes/parts.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/catalog/closed_meshes.hpp"
+#include "scene/catalog/parts.hpp"
 
 #include <algorithm>
 #include <array>

@@ -13,8 +13,8 @@
 //         here. The coin is that of rigid-ipc (Ferguson and others, 2021): 24.26 by 1.75 mm.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/names.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 // makes energy, however stiff the spring is.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/energy_ledger.hpp"
+#include "pipeline/world/energy_ledger.hpp"
 
 #include <algorithm>
 #include <cmath>

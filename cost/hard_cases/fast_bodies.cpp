@@ -5,8 +5,8 @@
 // in which nothing may get through.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/dials.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/dials.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "cost/hard_cases/free_bodies.hpp"
 
-#include "pipeline/dials.hpp"
+#include "scene/dials.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,8 +1,8 @@
 // Free bodies: what the cases of motion without contact are built from.
 #pragma once
 
-#include "cost/cases.hpp"
-#include "pipeline/world.hpp"
+#include "cost/hard_cases/cases.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <initializer_list>
 #include <span>

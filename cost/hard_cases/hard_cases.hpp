@@ -1,7 +1,7 @@
 // Hard cases: the list, and the few shapes they are built from.
 #pragma once
 
-#include "cost/cases.hpp"
+#include "cost/hard_cases/cases.hpp"
 
 namespace throng {
 

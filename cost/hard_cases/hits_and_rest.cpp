@@ -5,7 +5,7 @@
 // stands where friction bears it, and what resists rolling brings heaps of balls to rest.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // keep momentum, and energy where e = 1; pair by pair in their order, or all that close together.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

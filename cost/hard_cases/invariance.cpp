@@ -4,7 +4,7 @@
 // or twice as large (and sqrt(2) times as slow), by any number of threads, once more.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 // threshold is tried 5 % either side; 3 % where it is solved exactly.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <cmath>
 

@@ -6,8 +6,8 @@
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/names.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 //         150 N, friction 0.4 below the box and 0.8 on it. The bowling ball of Drake's manual test.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 // that spreads over those and leaves the lowest out bears the hull at one point.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "cost/hard_cases/certified_pairs.hpp"
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
-#include "scenes/random.hpp"
+#include "scene/catalog/random.hpp"
 
 namespace throng {
 

@@ -3,7 +3,7 @@
 // presses it, what throws it back included. Where that is more than it takes, it rolls away.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <cmath>
 

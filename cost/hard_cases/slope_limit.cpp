@@ -5,7 +5,7 @@
 // is at an angle s to the way down, it is above 0.5 cos s that it sticks.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Solid parts: what the cases of shapes that are not convex share.
 #pragma once
 
-#include "cost/cases.hpp"
-#include "scenes/closed_meshes.hpp"
+#include "cost/hard_cases/cases.hpp"
+#include "scene/catalog/closed_meshes.hpp"
 
 #include <string_view>
 

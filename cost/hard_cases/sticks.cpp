@@ -5,9 +5,9 @@
 // about its length stays behind as it tips over, its greater moment makes energy of it.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/energy_ledger.hpp"
-#include "pipeline/world.hpp"
-#include "scenes/random.hpp"
+#include "pipeline/world/energy_ledger.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/catalog/random.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,16 +4,16 @@
 // of a chain are linked for ever, and with middles no further apart than where they touch. A bolt
 // comes down by its pitch a turn. Where all move as one body would, the bounds are what the ways
 // themselves say they are off by.
+#include "cooking/repair/build_mesh.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/hard_cases/solid_parts.hpp"
-#include "cost/mesh_overlap.hpp"
 #include "kernels/geometry/mass.hpp"
-#include "kernels/geometry/mesh.hpp"
-#include "pipeline/convex_query.hpp"
-#include "pipeline/world.hpp"
-#include "scenes/catalog.hpp"
-#include "scenes/parts.hpp"
-#include "scenes/threads.hpp"
+#include "pipeline/queries/convex_query.hpp"
+#include "pipeline/queries/mesh_overlap.hpp"
+#include "pipeline/world/world.hpp"
+#include "scene/catalog/catalog.hpp"
+#include "scene/catalog/parts.hpp"
+#include "scene/catalog/threads.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // v^2 / (2 mu g), as on one piece. A tile that stands out is a step: it is met.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world.hpp"
+#include "pipeline/world/world.hpp"
 
 #include <algorithm>
 #include <cmath>

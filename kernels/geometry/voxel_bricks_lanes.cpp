@@ -1,7 +1,7 @@
 // Voxel bricks at many points, written once over the width of the machine's registers; its plain
 // twin is sample_bricks(), whose arithmetic this is, operation by operation.
 #include "kernels/geometry/voxel_kernels.hpp"
-#include "kernels/math/lanes.hpp"
+#include "kernels/simd/lanes.hpp"
 
 namespace throng::THRONG_LANES {
 

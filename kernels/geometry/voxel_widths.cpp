@@ -2,7 +2,7 @@
 #include "kernels/check.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
 #include "kernels/geometry/voxel_kernels.hpp"
-#include "kernels/math/lane_width.hpp"
+#include "kernels/simd/lane_width.hpp"
 
 #include <limits>
 

@@ -2,8 +2,8 @@
 // whoever a contact may hold. What follows the bodies is asked within the step: see
 // following_forces.hpp.
 #include "kernels/parallel/blocks.hpp"
-#include "pipeline/stages.hpp"
-#include "pipeline/stages/rigid_law.hpp"
+#include "pipeline/forces/rigid_law.hpp"
+#include "pipeline/step/stages.hpp"
 
 namespace throng {
 

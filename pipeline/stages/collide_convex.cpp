@@ -4,17 +4,17 @@
 // contact that the pair had before. Kinds of pairs that crowds are made of take a way of their own:
 // boxes go side by side through the wide kernels, and two spheres need no frame. Hulls that touch
 // and have hardly moved against one another since are not collided anew: most of a heap at rest.
-#include "kernels/motion/travels.hpp"
+#include "kernels/dynamics/travels.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "kernels/solve/contact_rows.hpp"
-#include "narrowphase/box_pairs.hpp"
-#include "narrowphase/narrowphase.hpp"
-#include "pipeline/fast_bodies.hpp"
-#include "pipeline/stages/chosen_method.hpp"
-#include "pipeline/stages/collide.hpp"
-#include "pipeline/stages/contact_places.hpp"
-#include "pipeline/stages/known_apart.hpp"
-#include "pipeline/stages/recycled_manifolds.hpp"
+#include "kernels/solver/contact_rows.hpp"
+#include "narrowphase/convex/wide/box_pairs.hpp"
+#include "narrowphase/dispatch.hpp"
+#include "pipeline/contacts/chosen_method.hpp"
+#include "pipeline/contacts/collide.hpp"
+#include "pipeline/contacts/contact_places.hpp"
+#include "pipeline/contacts/known_apart.hpp"
+#include "pipeline/contacts/recycled_manifolds.hpp"
+#include "pipeline/step/fast_bodies.hpp"
 
 namespace throng {
 

@@ -1,7 +1,7 @@
 // Collide meshes: convex shapes against static triangle meshes, a contact for each triangle
 // touched.
-#include "narrowphase/mesh_sides.hpp"
-#include "pipeline/stages/many_contacts.hpp"
+#include "narrowphase/mesh/mesh_sides.hpp"
+#include "pipeline/contacts/many_contacts.hpp"
 
 namespace throng {
 

@@ -3,10 +3,10 @@
 //
 // What was found of a pair is told from where its points are now for as long as the two have hardly
 // moved against one another: most of a heap at rest.
-#include "narrowphase/narrowphase.hpp"
-#include "narrowphase/recycling.hpp"
-#include "narrowphase/solids/solid_pairs.hpp"
-#include "pipeline/stages/many_contacts.hpp"
+#include "narrowphase/dispatch.hpp"
+#include "narrowphase/manifold/recycling.hpp"
+#include "narrowphase/solid/solid_pairs.hpp"
+#include "pipeline/contacts/many_contacts.hpp"
 
 namespace throng {
 

@@ -1,5 +1,5 @@
 // Color rows: islands into batches, slices, colors and blocks.
-#include "pipeline/stages.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <limits>
 

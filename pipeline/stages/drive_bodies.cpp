@@ -1,5 +1,5 @@
 // Drive bodies: what the user wants to move at a given speed does, whatever pushed it.
-#include "pipeline/stages.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Find pairs: only colliders whose boxes changed are asked about; all other pairs live on.
 #include "broadphase/broadphase.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "pipeline/stages.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // Gather contacts: all kinds into one order, each by pair: convex ones, those on meshes, those of
 // solids.
 #include "kernels/parallel/blocks.hpp"
-#include "pipeline/stages.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,14 +1,14 @@
 // Integrate poses: bodies that touch nothing, and those that move by themselves.
 //
 // In double throughout: free flight is exact where the integrator is.
+#include "kernels/dynamics/flight.hpp"
+#include "kernels/dynamics/free_rotation.hpp"
+#include "kernels/dynamics/stiff_flight.hpp"
 #include "kernels/math/rotation.hpp"
-#include "kernels/motion/flight.hpp"
-#include "kernels/motion/free_rotation.hpp"
-#include "kernels/motion/stiff_flight.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "pipeline/stages.hpp"
-#include "pipeline/stages/following_forces.hpp"
-#include "pipeline/stages/rigid_law.hpp"
+#include "pipeline/forces/following_forces.hpp"
+#include "pipeline/forces/rigid_law.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 

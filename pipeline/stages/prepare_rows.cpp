@@ -1,8 +1,8 @@
 // Prepare rows: bodies into what the solver walks, and room for the rows of their contacts.
 #include "kernels/math/rotation.hpp"
-#include "kernels/motion/solver_bodies.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "pipeline/stages.hpp"
+#include "kernels/solver/solver_bodies.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <cmath>

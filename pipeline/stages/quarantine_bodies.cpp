@@ -1,5 +1,5 @@
 // Quarantine bodies: what turned non-finite stays where it last was finite, and stands still.
-#include "pipeline/stages.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 

@@ -13,8 +13,8 @@
 // is left.
 #include "kernels/geometry/nearest_point.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "narrowphase/mesh_sides.hpp"
-#include "pipeline/stages.hpp"
+#include "narrowphase/mesh/mesh_sides.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <cmath>

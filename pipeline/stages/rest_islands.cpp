@@ -1,5 +1,5 @@
 // Rest islands: an island whose every body has been quiet long enough falls asleep as a whole.
-#include "pipeline/stages.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 // Split islands: contacts into islands, with those that springs join to who is in one.
-#include "pipeline/stages.hpp"
+#include "pipeline/step/stages.hpp"
 
 namespace throng {
 

@@ -8,12 +8,12 @@
 //
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
+#include "kernels/dynamics/energy.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "narrowphase/impact/impact_time.hpp"
-#include "pipeline/fast_bodies.hpp"
-#include "pipeline/force_builder.hpp"
-#include "pipeline/stages.hpp"
+#include "narrowphase/ccd/impact_time.hpp"
+#include "pipeline/step/fast_bodies.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include "broadphase/mover_bounds.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "pipeline/fast_bodies.hpp"
-#include "pipeline/stages.hpp"
+#include "pipeline/step/fast_bodies.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <array>

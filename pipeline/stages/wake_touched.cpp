@@ -1,5 +1,5 @@
 // Wake touched: whoever somebody awake touches wakes, with all that fell asleep with it.
-#include "pipeline/stages.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 

@@ -4,9 +4,9 @@
 // grids, so that ties, repeats and exact alignments are as common as they are hard.
 #pragma once
 
-#include "kernels/geometry/hull.hpp"
-#include "narrowphase/methods/convex_methods.hpp"
-#include "pipeline/scene.hpp"
+#include "cooking/hulls/hull.hpp"
+#include "narrowphase/alternatives/convex_methods.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // Convex pair promises: what holds of every answer about two convex shapes.
 #pragma once
 
-#include "narrowphase/methods/separating_axes.hpp"
+#include "kernels/geometry/separating_axes.hpp"
 #include "tests/fuzz/convex_pair_input.hpp"
 #include "tests/fuzz/convex_pair_told.hpp"
-#include "tests/narrowphase/methods/polytope_pairs.hpp"
+#include "tests/support/polytope_pairs.hpp"
 
 namespace throng {
 

@@ -1,8 +1,8 @@
 // Convex pair told: what is being asked of a pair, and what is told where a promise is broken.
 #pragma once
 
-#include "narrowphase/methods/convex_methods.hpp"
-#include "pipeline/scene.hpp"
+#include "narrowphase/alternatives/convex_methods.hpp"
+#include "scene/scene.hpp"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,8 +1,8 @@
 // Convex pairs, fuzzed: whatever two convex shapes, however placed, and whatever is remembered of
 // them, all methods give finite answers that agree with one another.
-#include "narrowphase/methods/method_contacts.hpp"
-#include "narrowphase/narrowphase.hpp"
-#include "pipeline/convex_query.hpp"
+#include "narrowphase/alternatives/method_contacts.hpp"
+#include "narrowphase/dispatch.hpp"
+#include "pipeline/queries/convex_query.hpp"
 #include "tests/fuzz/convex_pair_promises.hpp"
 
 #include <optional>

@@ -2,9 +2,9 @@
 //
 // The part after "%%%" is what every file holds that the scene names; nothing is read from the
 // disk. What begins as a .vdb does is left out: OpenVDB, which reads it, does not expect any bytes.
-#include "scenes/scene_file.hpp"
+#include "scene/files/scene_file.hpp"
 
-#include "pipeline/scene_check.hpp"
+#include "scene/rules/scene_check.hpp"
 
 #include <cstdint>
 #include <cstdlib>

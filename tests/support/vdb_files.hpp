@@ -1,9 +1,9 @@
 // Vdb files: level sets of a formula, as the bytes of a file.
 #pragma once
 
+#include "cooking/cache/file_seal.hpp"
+#include "cooking/fields/voxel_field.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
-#include "narrowphase/solids/file_seal.hpp"
-#include "narrowphase/solids/voxel_field.hpp"
 
 #include <filesystem>
 #include <random>

@@ -1,7 +1,7 @@
 // Engine: throng as one of the engines that a benchmark runs.
 #include "apps/throng/bench/engine.hpp"
 
-#include "apps/throng/bench/peer_scene.hpp"
+#include "apps/throng/bench/peer_quality.hpp"
 #include "apps/throng/scene_argument.hpp"
 
 namespace throng::bench {

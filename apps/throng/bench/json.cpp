@@ -1,10 +1,10 @@
 // JSON: a benchmark's figures for programs, the time of every step included.
-#include "scenes/json.hpp"
+#include "scene/files/json.hpp"
 
+#include "apps/throng/bench/budget.hpp"
 #include "apps/throng/bench/report.hpp"
 #include "apps/throng/json_lines.hpp"
-#include "kernels/solve/sweep.hpp"
-#include "perf/budget.hpp"
+#include "kernels/simd/lane_width.hpp"
 
 #include <fstream>
 #include <thread>
@@ -200,7 +200,7 @@ void write_json(const Plan& plan, const std::vector<Case>& cases, bool complete,
              Members()
                  .add_text("processor", processor_name())
                  .add("cores", number(std::thread::hardware_concurrency()))
-                 .add_text("lanes", solve_kernels<float>().name)
+                 .add_text("lanes", lane_width())
                  .text());
     json.add("sleep", json_string("off"));
     json.add("steps", static_cast<std::uint64_t>(plan.steps));

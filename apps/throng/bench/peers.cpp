@@ -1,7 +1,8 @@
 // Peers: other engines, from the module beside the command.
 #include "apps/throng/bench/peers.hpp"
 
-#include "apps/throng/bench/peer_scene.hpp"
+#include "apps/peers/peer.hpp"
+#include "apps/throng/bench/peer_quality.hpp"
 #include "apps/throng/options.hpp"
 
 #include <dlfcn.h>

@@ -2,7 +2,7 @@
 #include "apps/throng/bench/plan.hpp"
 
 #include "apps/throng/scene_argument.hpp"
-#include "pipeline/names.hpp"
+#include "scene/names.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Table: a benchmark's figures for people, in columns that programs can read, too.
+#include "apps/throng/bench/budget.hpp"
 #include "apps/throng/bench/report.hpp"
-#include "perf/budget.hpp"
 
 #include <algorithm>
 #include <array>

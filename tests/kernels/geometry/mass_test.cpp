@@ -1,6 +1,7 @@
 #include "kernels/geometry/mass.hpp"
 
-#include "kernels/geometry/hull.hpp"
+#include "cooking/hulls/hull.hpp"
+#include "cooking/repair/build_mesh.hpp"
 #include "kernels/geometry/mesh.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Mesh distance: the tree against every triangle.
 #include "kernels/geometry/mesh_distance.hpp"
 
-#include "kernels/geometry/mesh.hpp"
-#include "scenes/closed_meshes.hpp"
+#include "cooking/repair/build_mesh.hpp"
+#include "scene/catalog/closed_meshes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 #include "kernels/geometry/mesh.hpp"
 
+#include "cooking/repair/build_mesh.hpp"
 #include "kernels/geometry/mass.hpp"
 #include "tests/support/shared_data.hpp"
 

@@ -1,8 +1,8 @@
 // Nearest point: certificates that nothing is nearer, and a search over points of the surface.
 #include "kernels/geometry/nearest_point.hpp"
 
-#include "kernels/geometry/hull.hpp"
-#include "kernels/geometry/mesh.hpp"
+#include "cooking/hulls/hull.hpp"
+#include "cooking/repair/build_mesh.hpp"
 #include "tests/support/dice.hpp"
 
 #include <gtest/gtest.h>

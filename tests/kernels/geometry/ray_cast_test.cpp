@@ -1,8 +1,8 @@
 // Ray cast: closed forms against a march through distances written down afresh, and the corners.
 #include "kernels/geometry/ray_cast.hpp"
 
-#include "kernels/geometry/hull.hpp"
-#include "kernels/geometry/mesh.hpp"
+#include "cooking/hulls/hull.hpp"
+#include "cooking/repair/build_mesh.hpp"
 #include "tests/support/dice.hpp"
 
 #include <Eigen/LU>

@@ -1,7 +1,7 @@
 #include "kernels/geometry/shape_bounds.hpp"
 
-#include "kernels/geometry/hull.hpp"
-#include "kernels/geometry/mesh.hpp"
+#include "cooking/hulls/hull.hpp"
+#include "cooking/repair/build_mesh.hpp"
 
 #include <gtest/gtest.h>
 

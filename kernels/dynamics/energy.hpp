@@ -1,0 +1,26 @@
+// Energy: what springs hold, what attractors have given up, and what motion is worth.
+#pragma once
+
+#include "kernels/data/bodies.hpp"
+#include "kernels/data/forces.hpp"
+
+namespace throng {
+
+/// J that a spring holds; and that attractors have given up for a body, negative.
+double spring_energy(const SpringForce& spring, const Forces& forces, const Poses& poses);
+double
+attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, std::uint32_t body);
+
+/// J that the springs of a body hold.
+double springs_energy_of(std::uint32_t body, const Forces& forces, const Poses& poses);
+
+/// J of a dynamic body.
+double kinetic_energy_of(std::uint32_t body,
+                         const Masses& masses,
+                         const Poses& poses,
+                         const Velocities& velocities);
+
+/// J that the springs hold, and that attractors have given up.
+double potential_of(const Forces& forces, const Masses& masses, const Poses& poses);
+
+}  // namespace throng

@@ -1,0 +1,72 @@
+// Coloring: contacts split so that no color moves a body twice, and laid out in blocks of 16.
+#pragma once
+
+#include "kernels/data/islands.hpp"
+#include "kernels/solver/slices.hpp"
+
+#include <array>
+
+namespace throng {
+
+/// Small islands share a batch until it holds this many contacts: enough to fill the lanes, few
+/// enough that the rows of a batch stay in one core's cache through all substeps.
+inline constexpr std::size_t kBatchContacts = 512;
+
+/// Gathers small islands into batches, cuts big ones into slices, colors each slice greedily in the
+/// order of its contacts, and lays the contacts out: slice by slice, color by color, those of more
+/// points before those of fewer. Ids and positions decide, and nothing of the step before.
+class Painter {
+public:
+    CutRule cut;
+    // Greatest island, in contacts and in bodies, that goes to the direct solver; above 0 each
+    // island is a batch of its own.
+    std::size_t direct_limit = 0;
+    std::span<const Effort> efforts;  // [islands]; empty where all are solved alike
+
+    void lay_out(const Islands& islands,
+                 const ActiveContacts& active,
+                 const BodyStates& states,
+                 std::span<const Vec3> positions,
+                 Layout& layout);
+
+private:
+    // Colors are bits of a word. A body that has used them all (a plate under a hundred things)
+    // puts its further contacts into a last color whose blocks go one after another.
+    static constexpr int kColors = 63;
+    static constexpr std::uint32_t kPoints = 4;  // a contact has at most
+    static constexpr std::size_t kBins = kPoints * (kColors + 1);
+
+    // What is known of a slice before all are painted.
+    struct Plan {
+        std::array<std::uint32_t, kBins> size;  // contacts by color and points
+        std::uint32_t blocks, colors, first_block;
+        std::vector<std::uint32_t> kinematic, conveyors;  // that it touches, ascending
+    };
+
+    void gather_slices(const Islands& islands,
+                       const ActiveContacts& active,
+                       const BodyStates& states,
+                       std::span<const Vec3> positions,
+                       Layout& layout);
+    void seat_bodies(const Slice& slice, Layout& layout);
+    void paint(const ActiveContacts& active,
+               const BodyStates& states,
+               const Layout& layout,
+               const Slice& slice,
+               Plan& plan);
+    void make_room(Layout& layout);
+    void place(const ActiveContacts& active,
+               const BodyStates& states,
+               const Plan& plan,
+               const Slice& slice,
+               Layout& layout);
+
+    Slicer slicer_;
+    std::vector<Plan> plans_;            // [slices]
+    std::vector<std::uint64_t> used_;    // by body: colors of the contacts of its slice
+    std::vector<std::uint64_t> before_;  // by body: of the contacts of the slice before
+    std::vector<std::uint8_t> bin_;      // [contacts] color and points
+    std::vector<std::uint32_t> rank_;    // [contacts] among those of its bin
+};
+
+}  // namespace throng

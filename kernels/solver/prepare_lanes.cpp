@@ -1,0 +1,346 @@
+// Contacts as they are kept, made into rows: written once over the width of the registers.
+#include "kernels/solver/solve_lanes.hpp"
+
+namespace throng::THRONG_LANES {
+
+namespace {
+
+// Loose contacts, their numbers side by side.
+template <class L>
+struct Loose {
+    struct Point {
+        L there;  // 1 where the lane has this point, else 0, and so is all the rest
+        V3<L> from_a;
+        L separation, impulse;
+    };
+    V3<L> normal, between, held, rolling;
+    L round_a, round_b, twist;
+    Point point[4];
+
+    Loose(const LooseBlock<typename L::Number>& block, int at, int points)
+    {
+        namespace of = contact_numbers;
+        using Real = typename L::Number;
+        const auto line = [&](int first, L(&out)[8]) {
+            gather_8<Real, L::kWidth>([&](int i) { return block.contact[at + i] + first; }, out);
+        };
+        L x[8], y[8];
+        line(0, x);
+        line(8, y);
+        const auto number = [&](int place) { return place < 8 ? x[place] : y[place - 8]; };
+        const auto three = [&](int place) -> V3<L> {
+            return {number(place), number(place + 1), number(place + 2)};
+        };
+        normal = three(of::kNormal);
+        between = three(of::kBetween);
+        held = three(of::kFriction);
+        rolling = three(of::kRolling);
+        round_a = number(of::kRoundA);
+        round_b = number(of::kRoundB);
+        twist = number(of::kTwist);
+        const L count = lane<L>(block.count, at), zero = Real(0);
+        for (int k = 0; k < points; ++k) {
+            // The last line ends where the contact does.
+            const int place = of::kPoints + of::kPoint * k, first = place < 32 ? place : 32;
+            line(first, x);
+            const auto has = count > L(Real(k));
+            const auto its = [&](int k_th) { return select(has, x[place - first + k_th], zero); };
+            point[k] = {select(has, L(Real(1)), zero),
+                        {its(of::kFromA), its(of::kFromA + 1), its(of::kFromA + 2)},
+                        its(of::kSeparation),
+                        its(of::kImpulse)};
+        }
+    }
+};
+
+// A tangent along the longest way between points, where there are several: on needles and plates
+// that keeps what turns easily apart from what does not.
+template <class L>
+V3<L> along_points(const Loose<L>& loose, int count, const V3<L>& n)
+{
+    using Real = typename L::Number;
+    const V3<L> first = loose.point[0].from_a;
+    const L zero = Real(0), one = Real(1);
+    V3<L> way{zero, zero, zero};
+    L longest = zero;
+    for (int k = 1; k < count; ++k) {
+        const V3<L> between = loose.point[k].from_a - first;
+        const V3<L> flat = (between - n * dot(n, between)) * loose.point[k].there;
+        const L length = dot(flat, flat);
+        const auto longer = length > longest;
+        way = {select(longer, flat.x, way.x), select(longer, flat.y, way.y),
+               select(longer, flat.z, way.z)};
+        longest = max(length, longest);
+    }
+    // What is short beside the arms is mostly rounding.
+    const auto found = longest > dot(first, first) * L(Real(1e-4)) + L(Real(1e-30));
+    const V3<L> any = across(n);
+    const V3<L> flat = way - n * dot(n, way);
+    const V3<L> unit = flat * (one / sqrt(select(found, dot(flat, flat), one)));
+    return {select(found, unit.x, any.x), select(found, unit.y, any.y),
+            select(found, unit.z, any.z)};
+}
+
+// What one side answers to pushes along the contact's axes at an arm: torques and spins.
+template <class L>
+struct Levers {
+    V3<L> torque[3], spin[3];
+
+    Levers(const Mobility<L, true>& how, const V3<L>& arm, const V3<L> (&axes)[3])
+    {
+        for (int k = 0; k < 3; ++k) {
+            torque[k] = cross(arm, axes[k]);
+            spin[k] = how.turned_by(torque[k]);
+        }
+    }
+};
+
+template <class L>
+void fill_response(ContactBlock<typename L::Number>& block,
+                   int at,
+                   bool spins,
+                   const Mobility<L, true>& a,
+                   const Mobility<L, true>& b)
+{
+    const Frame<L, true> frame(block, at);
+    const V3<L> axes[3] = {frame.normal, frame.tangent, frame.other};
+    const V3<L> spin_axes[3] = {frame.tangent, frame.other, frame.normal};
+    const Levers<L> from_a(a, frame.center_a, axes), from_b(b, frame.center_b, axes);
+    const L mass = a.inverse_mass + b.inverse_mass;
+    const auto put = [&](int place, L value) { value.store(block.response[place].at + at); };
+    const auto linear = [&](int i, int k) {
+        return dot(from_a.torque[i], from_a.spin[k]) + dot(from_b.torque[i], from_b.spin[k]);
+    };
+    put(response::nn, mass + linear(0, 0));
+    put(response::n1, linear(0, 1));
+    put(response::n2, linear(0, 2));
+    put(response::v11, mass + linear(1, 1));
+    put(response::v12, linear(1, 2));
+    put(response::v22, mass + linear(2, 2));
+    if (!spins) return;
+    for (int k = 0; k < 3; ++k) {
+        const V3<L> spin = from_a.spin[k] + from_b.spin[k];
+        for (int i = 0; i < 3; ++i) put(response::kSpin + 3 * i + k, dot(spin_axes[i], spin));
+    }
+    V3<L> turned[3];
+    for (int i = 0; i < 3; ++i) turned[i] = a.turned_by(spin_axes[i]) + b.turned_by(spin_axes[i]);
+    put(response::w11, dot(spin_axes[0], turned[0]));
+    put(response::w22, dot(spin_axes[1], turned[1]));
+    put(response::wnn, dot(spin_axes[2], turned[2]));
+    put(response::w12, dot(spin_axes[0], turned[1]));
+    put(response::w1n, dot(spin_axes[0], turned[2]));
+    put(response::w2n, dot(spin_axes[1], turned[2]));
+}
+
+// Without rotation only masses answer.
+template <class L>
+void fill_response(ContactBlock<typename L::Number>& block,
+                   int at,
+                   bool,
+                   const Mobility<L, false>& a,
+                   const Mobility<L, false>& b)
+{
+    using Real = typename L::Number;
+    const L mass = a.inverse_mass + b.inverse_mass, zero = Real(0);
+    const L values[6] = {mass, zero, zero, mass, zero, mass};
+    for (int k = 0; k < 6; ++k) values[k].store(block.response[k].at + at);
+}
+
+template <class L>
+void fill_friction(ContactBlock<typename L::Number>& block, int at)
+{
+    const auto mass = FrictionMass<L>::of(lane<L>(block.response[response::v11], at),
+                                          lane<L>(block.response[response::v22], at),
+                                          lane<L>(block.response[response::v12], at));
+    mass.m11.store(block.friction_mass[0].at + at);
+    mass.m22.store(block.friction_mass[1].at + at);
+    mass.m12.store(block.friction_mass[2].at + at);
+    mass.sliding_mass.store(block.sliding_mass.at + at);
+    mass.sliding_answer.store(block.sliding_answer.at + at);
+}
+
+// How a body gives way by turning to a push along the normal, and by how much of that counts: none
+// where the arm all but lies along the normal. Told by the arm alone: a needle, which turns so
+// easily about its own axis, has levers all the same.
+template <class L>
+struct Turning {
+    V3<L> torque;
+    L answer, by_lever;
+
+    Turning(const Mobility<L, true>& how, const V3<L>& arm, const V3<L>& normal)
+        : torque(cross(arm, normal)), answer(dot(torque, how.turned_by(torque)))
+    {
+        using Real = typename L::Number;
+        constexpr Real kLever = Real(1e-2);  // of the arm
+        const auto has_lever = dot(torque, torque) > dot(arm, arm) * L(kLever * kLever);
+        by_lever = select(has_lever, answer, L(Real(0)));
+    }
+};
+
+// The effective mass of a point along the normal. Where neither body can be moved, only turned, a
+// point next to below the center has no lever to speak of: pushed there, a body would spin without
+// end and part by nothing. Half of what it gives way or more has to come by levers.
+template <class L, bool turns>
+L normal_mass(const Mobility<L, turns>& a,
+              const Mobility<L, turns>& b,
+              const V3<L>& normal,
+              const V3<L>& arm_a,
+              const V3<L>& arm_b)
+{
+    using Real = typename L::Number;
+    const L mass = a.inverse_mass + b.inverse_mass;
+    if constexpr (!turns) {
+        return inverse_or_zero(mass);
+    } else {
+        const Turning<L> of_a(a, arm_a, normal), of_b(b, arm_b, normal);
+        const L answer = mass + of_a.answer + of_b.answer;
+        const L by_levers = of_a.by_lever + of_b.by_lever;
+        const L counts = select(mass > L(Real(0)), answer, by_levers + by_levers);
+        return inverse_or_zero(select(counts < answer, L(Real(0)), answer));
+    }
+}
+
+// The friction that carried over, within the cone of the impulses that did.
+template <class L, bool turns>
+void fill_held(ContactBlock<typename L::Number>& block,
+               int at,
+               const V3<L>& held,
+               const Frame<L, turns>& frame,
+               L load)
+{
+    using Real = typename L::Number;
+    const L one = Real(1);
+    // Measured in units of the greatest that may be held: squares leave float where bodies are
+    // huge.
+    const L most = lane<L>(block.friction, at) * load;
+    // Impulses that fade away pass through numbers too small to have an inverse.
+    constexpr Real kLeast = sizeof(Real) == 4 ? Real(1e-37) : Real(1e-307);
+    const L unit = select(most > L(kLeast), one / most, L(Real(0)));
+    const L held_1 = dot(held, frame.tangent) * unit, held_2 = dot(held, frame.other) * unit;
+    const L length = sqrt(held_1 * held_1 + held_2 * held_2);
+    const L shrink = most * select(length > one, one / select(length > one, length, one), one);
+    (held_1 * shrink).store(block.friction_impulse[0].at + at);
+    (held_2 * shrink).store(block.friction_impulse[1].at + at);
+}
+
+template <class L>
+void fill_bounce(BounceRows<typename L::Number>& bounce,
+                 int at,
+                 const LooseBlock<typename L::Number>& loose)
+{
+    using Real = typename L::Number;
+    const L zero = Real(0);
+    lane<L>(loose.restitution, at).store(bounce.restitution.at + at);
+    store3(V3<L>{zero, zero, zero}, bounce.impulse, at);
+}
+
+template <class L, bool turns>
+void fill_rolling(RollingRows<typename L::Number>& rolling,
+                  int at,
+                  const LooseBlock<typename L::Number>& block,
+                  const V3<L>& impulse,
+                  const Frame<L, turns>& frame,
+                  const Mobility<L, turns>& a,
+                  const Mobility<L, turns>& b)
+{
+    lane<L>(block.rolling_friction, at).store(rolling.rolling.at + at);
+    // The trace is at least the greatest eigenvalue: one number that never overshoots.
+    if constexpr (turns)
+        inverse_or_zero(a.xx + b.xx + a.yy + b.yy + a.zz + b.zz).store(rolling.mass.at + at);
+    store3(
+        V3<L>{dot(frame.tangent, impulse), dot(frame.other, impulse), dot(frame.normal, impulse)},
+        rolling.impulse, at);
+}
+
+template <class L, bool turns>
+[[gnu::flatten]] void prepare_lanes(const LooseBlock<typename L::Number>& from,
+                                    std::size_t place,
+                                    int at,
+                                    const RowsView<typename L::Number>& rows)
+{
+    using Real = typename L::Number;
+    ContactBlock<Real>& block = rows.blocks[place];
+    PointRows<Real>* const points = rows.points + block.first_point;
+    const L zero = Real(0);
+    const Mobility<L, turns> a(rows.bodies, block.a + at), b(rows.bodies, block.b + at);
+
+    const Loose<L> loose(from, at, block.points);
+    const V3<L> normal = loose.normal;
+    store3(normal, block.normal, at);
+    store3(along_points(loose, block.points, normal), block.tangent, at);
+    const auto copy = [at](const Lane16<Real>& number, Lane16<Real>& to) {
+        lane<L>(number, at).store(to.at + at);
+    };
+    copy(from.friction, block.friction);
+    copy(from.bias_rate, block.bias_rate);
+    copy(from.impulse_scale, block.impulse_scale);
+    inverse_or_zero(lane<L>(from.deep, at)).store(block.inverse_deep.at + at);
+    loose.round_a.store(block.round_a.at + at);
+    loose.round_b.store(block.round_b.at + at);
+    loose.twist.store(block.twist_impulse.at + at);
+
+    // The middle of the points, on either surface.
+    V3<L> middle{zero, zero, zero};
+    L gap = zero, count = zero, load = zero;
+    for (int k = 0; k < block.points; ++k) {
+        const auto& point = loose.point[k];
+        middle = middle + point.from_a;
+        gap += point.separation;
+        count += point.there;
+        load += point.impulse;
+    }
+    const L share = L(Real(1)) / count;
+    const V3<L> center_a = middle * share;
+    const V3<L> between = loose.between;
+    store3(center_a, block.center_a, at);
+    store3(center_a + normal * (gap * share) + between, block.center_b, at);
+
+    const Frame<L, turns> frame(block, at);
+    for (int k = 0; k < block.points; ++k) {
+        const auto& [there, arm, separation, impulse] = loose.point[k];
+        PointRows<Real>& to = points[k];
+        const V3<L> off = (arm - center_a) * there;
+        const L along = dot(off, frame.tangent), other = dot(off, frame.other);
+        other.store(to.lever[0].at + at);
+        (-along).store(to.lever[1].at + at);
+        sqrt(along * along + other * other).store(to.reach.at + at);
+        separation.store(to.gap.at + at);
+        impulse.store(to.impulse.at + at);
+        const L mass = normal_mass(a, b, normal, arm, arm + normal * separation + between);
+        (mass * there).store(to.mass.at + at);
+    }
+    // A single point has no lever: only what resists rolling asks what spins do, and friction of
+    // another kind than the usual, which goes one way for any number of points.
+    const bool asked = rows.rollings != nullptr || rows.grips != nullptr;
+    fill_response(block, at, block.points > 1 || asked, a, b);
+    if constexpr (turns)
+        inverse_or_zero(dot(normal, a.turned_by(normal)) + dot(normal, b.turned_by(normal)))
+            .store(block.twist_mass.at + at);
+    fill_friction<L>(block, at);
+    fill_held(block, at, loose.held, frame, load);
+
+    if (rows.rollings != nullptr)
+        fill_rolling(rows.rollings[place], at, from, loose.rolling, frame, a, b);
+    if (rows.bounces != nullptr) fill_bounce<L>(rows.bounces[place], at, from);
+}
+
+}  // namespace
+
+template <class Real>
+void prepare(const LooseBlock<Real>& loose,
+             std::size_t place,
+             const RowsView<Real>& rows,
+             bool turns)
+{
+    for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
+        if (turns)
+            prepare_lanes<Lanes<Real>, true>(loose, place, at, rows);
+        else
+            prepare_lanes<Lanes<Real>, false>(loose, place, at, rows);
+}
+
+template void prepare<float>(const LooseBlock<float>&, std::size_t, const RowsView<float>&, bool);
+template void
+prepare<double>(const LooseBlock<double>&, std::size_t, const RowsView<double>&, bool);
+
+}  // namespace throng::THRONG_LANES

@@ -1,0 +1,79 @@
+#include "kernels/solver/solver_bodies.hpp"
+
+#include "kernels/math/rotation.hpp"
+#include "kernels/solver/sweep.hpp"
+
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+template <class Real>
+Vec3 vector_of(const Real* numbers)
+{
+    return {double{numbers[0]}, double{numbers[1]}, double{numbers[2]}};
+}
+
+// The shortest turn that takes one unit vector to another.
+Quat shortest_turn(const Vec3& from, const Vec3& to)
+{
+    const Vec3 axis = from.cross(to);
+    const double half = std::max(1 + from.dot(to), 1e-12);
+    const Quat turn(half, axis.x(), axis.y(), axis.z());
+    return Quat(turn.coeffs() / std::sqrt(turn.squaredNorm()));
+}
+
+// A substep's turn of a body, split: what is applied before the turn so far, in world axes, and
+// after it, in those of the step's beginning.
+struct SplitTurn {
+    Vec3 before = Vec3::Zero(), after = Vec3::Zero();  // rad
+};
+
+template <class Real>
+SplitTurn split_turn(const SolverBody<Real>& body, const SpinInertia<Real>* inertia, double time)
+{
+    const Vec3 turn = vector_of(body.motion + 4) * time;
+    if (inertia == nullptr || !(inertia->share[6] > 0)) return {turn, Vec3::Zero()};
+    if (!(inertia->axis[3] > 0)) return {Vec3::Zero(), turn};
+    const Vec3 axis = vector_of(inertia->axis);
+    const Vec3 about = axis * axis.dot(turn);
+    return {spin_frame(body, inertia) * Vec3(turn - about), about};
+}
+
+}  // namespace
+
+template <class Real>
+Quat spin_frame(const SolverBody<Real>& body, const SpinInertia<Real>* inertia)
+{
+    if (inertia == nullptr || !(inertia->share[6] > 0)) return Quat::Identity();
+    const Quat turn = turn_of(body);
+    if (!(inertia->axis[3] > 0)) return turn;
+    const Vec3 axis = vector_of(inertia->axis);
+    return shortest_turn(axis, turn * axis);
+}
+
+template <class Real>
+void turn_fast(std::span<SolverBody<Real>> bodies, const SpinInertia<Real>* inertias, Real time)
+{
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        SolverBody<Real>& body = bodies[i];
+        const Real turn[3] = {body.motion[4] * time, body.motion[5] * time, body.motion[6] * time};
+        const Real squared = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
+        if (squared < static_cast<Real>(kFastTurn * kFastTurn)) continue;
+        const SplitTurn split =
+            split_turn(body, inertias == nullptr ? nullptr : inertias + i, double{time});
+        Quat after = exponential(split.before) * turn_of(body) * exponential(split.after);
+        after.coeffs() /= std::sqrt(after.squaredNorm());
+        for (int k = 0; k < 4; ++k) body.drift[4 + k] = static_cast<Real>(after.coeffs()[k]);
+    }
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template Quat spin_frame<Real>(const SolverBody<Real>&, const SpinInertia<Real>*);             \
+    template void turn_fast<Real>(std::span<SolverBody<Real>>, const SpinInertia<Real>*, Real);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng

@@ -1,0 +1,63 @@
+// Solver bodies: what a substep does to them besides contacts.
+#pragma once
+
+#include "kernels/data/rows.hpp"
+#include "kernels/math/types.hpp"
+#include "kernels/solver/carried_points.hpp"
+
+#include <span>
+
+namespace throng {
+
+/// The axes, as a turn since the step began, in which the solver has a body's angular velocity.
+///
+/// Contacts are solved with the inertia that bodies had when the step began. Of what turns equally
+/// easily about any axis that is always right. Of a needle it is not: a spin about its length that
+/// stayed behind as it tips over would become tumbling, with all the energy that its greater moment
+/// makes of it. So what has a SpinInertia has its spin in axes that go with it, in which its
+/// inertia stays the same: the body's own or, where that is symmetric about an axis, those that
+/// follow this axis on the shortest way and do not take part in the spin about it.
+///
+///   inertia  null: the body has none, and the axes are those of the world
+template <class Real>
+Quat spin_frame(const SolverBody<Real>& body, const SpinInertia<Real>* inertia);
+
+/// Turns the bodies that turn by kFastTurn and more in a time, and no other: the exponential map,
+/// exact for a constant angular velocity. The wide kernels turn the rest.
+///
+///   inertias  [bodies], or null
+template <class Real>
+void turn_fast(std::span<SolverBody<Real>> bodies, const SpinInertia<Real>* inertias, Real time);
+
+/// True for a body that begin_substep() stopped because its velocity could not be held.
+template <class Real>
+bool ran_away(const SolverBody<Real>& body)
+{
+    return body.drift[3] != 0;
+}
+
+template <class Real>
+Ease ease_of(const SolverBody<Real>& body)
+{
+    const Real* const inertia = body.inertia;
+    return {double{inertia[0]}, double{inertia[1]} + double{inertia[2]} + double{inertia[3]}};
+}
+
+/// Whether a body takes another along as it turns, in steps of dt: see carried_points.hpp.
+template <class Real>
+bool carries(const SolverBody<Real>& carrier, const Ease& carried, double dt)
+{
+    const Real* const motion = carrier.motion;
+    return carries(Vec3(double{motion[4]}, double{motion[5]}, double{motion[6]}), ease_of(carrier),
+                   carried, dt);
+}
+
+/// How far a body has turned since the step began.
+template <class Real>
+Quat turn_of(const SolverBody<Real>& body)
+{
+    return {double{body.drift[7]}, double{body.drift[4]}, double{body.drift[5]},
+            double{body.drift[6]}};
+}
+
+}  // namespace throng

@@ -1,0 +1,223 @@
+#include "narrowphase/ccd/moving_cores.hpp"
+
+#include "kernels/geometry/mesh.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace throng {
+
+namespace {
+
+constexpr double kNoLimit = 1e30;
+constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+
+// Greatest distance of a point of the core from its frame's origin.
+double reach_of(const Core<double>& core)
+{
+    if (core.kind == ShapeKind::sphere) return 0;
+    if (core.hull == nullptr && core.corners == nullptr) return core.extents.norm();
+    double most = 0;
+    const Vec3* const points = core.hull ? core.hull->vertices.data() : core.corners;
+    const std::size_t count = core.hull ? core.hull->vertices.size() : core.corner_count;
+    for (std::size_t i = 0; i < count; ++i) most = std::max(most, points[i].squaredNorm());
+    return std::sqrt(most);
+}
+
+double rounding_of(const MovingCore& a, const MovingCore& b, double round)
+{
+    const double reach = a.reach() + b.reach() + round;
+    return kRounding
+        * (reach + a.sweep().begin.position.norm() + b.sweep().begin.position.norm()
+           + a.sweep().shift.norm() + b.sweep().shift.norm());
+}
+
+// Whether a segment comes into a box.
+bool meets(const Vec3& from, const Vec3& way, const Vec3& lower, const Vec3& upper)
+{
+    double first = 0, last = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (way[axis] == 0) {
+            if (from[axis] < lower[axis] || from[axis] > upper[axis]) return false;
+            continue;
+        }
+        const double enters = (lower[axis] - from[axis]) / way[axis];
+        const double leaves = (upper[axis] - from[axis]) / way[axis];
+        first = std::max(first, std::min(enters, leaves));
+        last = std::min(last, std::max(enters, leaves));
+    }
+    return first <= last;
+}
+
+}  // namespace
+
+Core<double> moving_core(const Shapes& shapes, const MovingShape& moving)
+{
+    if (moving.ball > 0) {
+        Core<double> ball;
+        ball.radius = ball.size = moving.ball;
+        return ball;
+    }
+    if (const Mesh* const mesh = mesh_of(shapes, moving.shape))
+        return core_of_points(std::span<const Vec3>(mesh->vertices));
+    Core<double> core = core_of<double>(shapes, moving.shape);
+    core.extents *= moving.scale;
+    core.radius *= moving.scale;
+    core.size *= moving.scale;
+    return core;
+}
+
+MovingCore::MovingCore(const Core<double>& core, const MovingShape& moving, const Vec3& from)
+    : core_(core), sweep_(moving.sweep), local_(moving.local),
+      reach_(moving.local.position.norm() + reach_of(core))
+{
+    sweep_.begin.position -= from;
+}
+
+Gap MovingCore::extent(const Vec3& direction, double time) const
+{
+    const Vec3 furthest = furthest_along(direction, time);
+    return {direction.dot(furthest), direction.dot(speed_of(furthest, time))};
+}
+
+Vec3 MovingCore::furthest_along(const Vec3& direction, double time) const
+{
+    const Pose placed = placed_at(time);
+    return placed * support<double>(core_, placed.orientation.conjugate() * direction).position;
+}
+
+Vec3 MovingCore::speed_of(const Vec3& point, double time) const
+{
+    const Vec3 arm = point - (sweep_.begin.position + time * sweep_.shift);
+    return sweep_.shift + sweep_.turn.cross(arm);
+}
+
+GapLimits MovingCore::turning_limits(const Vec3& direction) const
+{
+    // A point at r moves by w x r: along n at most |n x w| r, and that changes by |w| |n x w| r.
+    const double speed = direction.cross(sweep_.turn).norm() * reach_;
+    return {sweep_.turn.norm() * speed, speed};
+}
+
+MovingCores::MovingCores(const Core<double>& core_a,
+                         const MovingShape& a,
+                         const Core<double>& core_b,
+                         const MovingShape& b)
+    : from_(a.sweep.begin.position), a_(core_a, a, from_), b_(core_b, b, from_),
+      round_(core_a.radius + core_b.radius), rounding_(rounding_of(a_, b_, round_))
+{ }
+
+Apart MovingCores::distance_at(double time) const
+{
+    const Pose a = a_.placed_at(time), b = b_.placed_at(time);
+    const Pose b_in_a{a.orientation.conjugate() * (b.position - a.position),
+                      a.orientation.conjugate() * b.orientation};
+    const Distance found = gjk(CorePair(a_.core(), b_.core(), b_in_a), kNoLimit);
+    Apart apart;
+    if (!found.apart) return apart;
+    apart.normal = a.orientation * found.normal;
+    apart.normal /= apart.normal.norm();
+    apart.gap = gap_along(apart.normal, time);
+    return apart;
+}
+
+Gap MovingCores::gap_along(const Vec3& normal, double time) const
+{
+    const Gap a = a_.extent(normal, time), b = b_.extent(-normal, time);
+    return {-b.value - a.value - round_ - rounding_, -b.slope - a.slope};
+}
+
+GapLimits MovingCores::limits_along(const Vec3& normal) const
+{
+    const GapLimits a = a_.turning_limits(normal), b = b_.turning_limits(normal);
+    const double nearing = normal.dot(a_.sweep().shift - b_.sweep().shift);
+    return {a.bend + b.bend, nearing + a.speed + b.speed};
+}
+
+OverPlane::OverPlane(const Shapes& shapes, const MovingShape& plane, const MovingShape& other)
+    : plane_(shapes.planes[plane.shape.index]), from_(other.sweep.begin.position),
+      sweep_(plane.sweep), local_(plane.local), other_(moving_core(shapes, other), other, from_)
+{
+    sweep_.begin.position -= from_;
+    rounding_ = kRounding
+        * (other_.reach() + other_.core().radius + sweep_.begin.position.norm()
+           + local_.position.norm() + std::abs(plane_.offset) + sweep_.shift.norm()
+           + other_.sweep().shift.norm());
+}
+
+Vec3 OverPlane::normal_at(double time) const
+{
+    return (sweep_.at(time) * local_).orientation * plane_.normal;
+}
+
+Apart OverPlane::distance_at(double time) const
+{
+    const Vec3 normal = normal_at(time);
+    return {gap_along(normal, time), normal};
+}
+
+Gap OverPlane::gap_along(const Vec3&, double time) const
+{
+    const Pose body = sweep_.at(time);
+    const Pose placed = body * local_;
+    const Vec3 normal = placed.orientation * plane_.normal;
+    const Vec3 lowest = other_.furthest_along(-normal, time);
+    // Against that point of the plane's body that is there now.
+    const Vec3 speed =
+        other_.speed_of(lowest, time) - sweep_.shift - sweep_.turn.cross(lowest - body.position);
+    return {normal.dot(lowest - placed.position) - plane_.offset - other_.core().radius - rounding_,
+            normal.dot(speed)};
+}
+
+GapLimits OverPlane::limits_along(const Vec3&) const
+{
+    const Vec3 normal = normal_at(0);
+    const GapLimits turning = other_.turning_limits(normal);
+    const Vec3 nearing = sweep_.shift - other_.sweep().shift;
+    if (sweep_.turn.isZero(0)) return {turning.bend, normal.dot(nearing) + turning.speed};
+    // In the frame of the plane, which turns with it about its body: nothing is further from there
+    // than `far`.
+    const double spin = sweep_.turn.norm(), spin_other = other_.sweep().turn.norm();
+    const double far = sweep_.begin.position.norm() + nearing.norm() + other_.reach();
+    const double speed = nearing.norm() + spin_other * other_.reach();
+    return {spin * spin * far + 2 * spin * speed + spin_other * spin_other * other_.reach(),
+            spin * far + speed};
+}
+
+void visit_triangles_in_way(const Mesh& mesh,
+                            const MovingShape& on,
+                            const Core<double>& core,
+                            const MovingShape& other,
+                            double begin,
+                            double end,
+                            double margin,
+                            const std::function<void(std::uint32_t)>& visit)
+{
+    const auto seen_at = [&](double time) {
+        return (on.sweep.at(time) * on.local).to_local(other.sweep.at(time).position);
+    };
+    double radius = other.local.position.norm() + reach_of(core) + core.radius + margin;
+    const Vec3 from = seen_at(begin);
+    Vec3 way = seen_at(end) - from;
+    if (!on.sweep.turn.isZero(0)) {
+        // As far as the mesh may turn under it, it may be anywhere.
+        const double most = (other.sweep.begin.position - on.sweep.begin.position).norm()
+            + other.sweep.shift.norm() + on.sweep.shift.norm();
+        radius += (other.sweep.shift - on.sweep.shift).norm()
+            + std::min(2.0, on.sweep.turn.norm()) * most;
+        way.setZero();
+    }
+    radius += kRounding * (from.norm() + way.norm() + radius);
+    const Vec3 grown = Vec3::Constant(radius);
+    visit_nodes(
+        mesh,
+        [&](const Mesh::Node& node) {
+            return meets(from, way, node.lower - grown, node.upper + grown);
+        },
+        [&](std::uint32_t triangle) {
+            const Box3 box = triangle_box(mesh, triangle);
+            if (meets(from, way, box.lower - grown, box.upper + grown)) visit(triangle);
+        });
+}
+
+}  // namespace throng

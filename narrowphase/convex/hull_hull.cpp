@@ -1,0 +1,377 @@
+// Hull against hull, and box against hull: separating axes, then clipping, as for two boxes.
+//
+// The wide kernels answer for float. What is too big, too thin or too unlike for them goes by the
+// plain arithmetic of double, and so do pairs in double. Where the vertices are many, GJK and EPA
+// tell which corners meet, and the axes of these are looked at alone.
+#include "kernels/geometry/polytope_contacts.hpp"
+#include "narrowphase/convex/ask_gjk.hpp"
+#include "narrowphase/convex/pair_functions.hpp"
+#include "narrowphase/convex/wide/hull_kernels.hpp"
+#include "narrowphase/convex/wide_shapes.hpp"
+#include "narrowphase/manifold/contact_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+namespace {
+
+// What the cache's features are: nothing, or a face of one and the vertex of the other under it.
+enum class Remembered : std::uint32_t { nothing, face_a, face_b };
+
+// A face leads unless another axis is better by this part of the balls inside both, so that the
+// normal of a body at rest does not jump between axes that are as good as one another.
+constexpr double kFaceBias = 1e-3;
+
+// Cosine below which an edge's normal is no stand-in for a face's: a fiftieth of a radian.
+constexpr double kAlike = 0.9998;
+
+void face_manifold(const PolytopePair& pair,
+                   const FaceAxis& axis,
+                   double reach,
+                   double slack,
+                   LocalManifold<double>& out,
+                   double& least)
+{
+    PolytopePoints found;
+    clip_faces(pair, axis, reach, slack, found);
+    least = found.count > 0 ? found.least : std::numeric_limits<double>::max();
+    out.normal = pair.a.normals[axis.face];
+    reduce_to_four<double>({found.points.data(), found.count}, out);
+}
+
+// The corner that is deepest under a face, over it or not.
+void touch_vertex(const PolytopePair& pair, const FaceAxis& axis, LocalManifold<double>& out)
+{
+    out.normal = pair.a.normals[axis.face];
+    const Vec3 corner = pair.turn * pair.b.vertices[axis.vertex] + pair.shift;
+    out.add(corner - out.normal * (axis.separation / 2), axis.separation,
+            1u << 30 | std::uint32_t{axis.face} << 16 | axis.vertex);
+}
+
+// Two polytopes seen from either, and what it costs a face to lead.
+struct Sides {
+    Sides(const PolytopePair& of, double within)
+        : pair(of), turned(of.mirrored()), reach(within),
+          bias(kFaceBias * (of.a.inner_radius + of.b.inner_radius))
+    { }
+
+    const PolytopePair& pair;
+    PolytopePair turned;
+    double reach, bias;
+};
+
+// A face axis to begin with: the one remembered, if any.
+struct Guess {
+    Guess(const Sides& sides, const PairCache& cache)
+    {
+        of_b = cache.kind == static_cast<std::uint32_t>(Remembered::face_b);
+        const PolytopePair& pair = of_b ? sides.turned : sides.pair;
+        known = (of_b || cache.kind == static_cast<std::uint32_t>(Remembered::face_a))
+            && cache.feature_a < pair.a.normals.size() && cache.feature_b < pair.b.vertices.size();
+        if (known)
+            axis = face_axis(pair, static_cast<std::uint16_t>(cache.feature_a),
+                             static_cast<std::uint16_t>(cache.feature_b));
+    }
+
+    FaceAxis axis;
+    bool known = false, of_b = false;
+};
+
+PairCache remember(Remembered kind, const FaceAxis& axis)
+{
+    const auto apart = static_cast<float>(std::max(0.0, axis.separation));
+    return {axis.face, axis.vertex, static_cast<std::uint32_t>(kind), apart};
+}
+
+// What leads to the points: the best face of each, and the edges whose axis is better than both.
+struct Axes {
+    FaceAxis face_a, face_b;
+    EdgeAxis edge;  // normal zero where there are none
+
+    double top() const { return std::max(face_a.separation, face_b.separation); }
+    bool b_leads(const Sides& sides) const
+    {
+        return face_b.separation > face_a.separation + sides.bias;
+    }
+};
+
+PairCache remember_leading(const Sides& sides, const Axes& axes)
+{
+    return axes.b_leads(sides) ? remember(Remembered::face_b, axes.face_b)
+                               : remember(Remembered::face_a, axes.face_a);
+}
+
+// Looks at all faces and edges. False where one shows the two to be out of reach.
+bool look_at_all(const Sides& sides, const Guess& guess, PairCache& cache, Axes& axes)
+{
+    const PolytopePair &pair = sides.pair, &turned = sides.turned;
+    const FaceAxis first = guess.known ? guess.axis : likely_face_axis(guess.of_b ? turned : pair);
+    cache.apart = static_cast<float>(std::max(0.0, first.separation));
+    if (first.separation > sides.reach) return false;
+
+    // What a guess has shown saves looking at faces that cannot lead any more.
+    axes.face_a = best_face_axis(pair, guess.of_b ? likely_face_axis(pair) : first,
+                                 first.separation - sides.bias);
+    if (axes.face_a.separation > sides.reach) {
+        cache = remember(Remembered::face_a, axes.face_a);
+        return false;
+    }
+    axes.face_b = best_face_axis(turned, guess.of_b ? first : likely_face_axis(turned),
+                                 axes.face_a.separation);
+    if (axes.face_b.separation > sides.reach) {
+        cache = remember(Remembered::face_b, axes.face_b);
+        return false;
+    }
+    cache = remember_leading(sides, axes);
+    axes.edge = best_edge_axis(pair, axes.top());
+    return axes.edge.separation <= sides.reach;
+}
+
+// Whose shapes they are, for GJK to look at.
+struct Shown {
+    const Shapes& shapes;
+    ShapeRef a, b;
+    const Pose& b_in_a;
+};
+
+std::uint16_t corner_along(const PolytopeView& shape, const Vec3& direction, std::uint32_t start)
+{
+    return support_vertex(shape, direction,
+                          static_cast<std::uint16_t>(start < shape.vertices.size() ? start : 0));
+}
+
+// GJK's memory, had it ended on the axis of a face: three of its corners against the other's
+// vertex, and what is furthest from there where these are likely to enclose 0.
+MethodMemory memory_of(const Sides& sides, const Guess& guess)
+{
+    MethodMemory memory;
+    if (!guess.known) return memory;
+    const PolytopePair& pair = guess.of_b ? sides.turned : sides.pair;
+    const Vec3& normal = pair.a.normals[guess.axis.face];
+    const auto corners = pair.a.face(guess.axis.face);
+    for (std::size_t i = 0; i < 3; ++i) {
+        memory.a[i] = corners[i * corners.size() / 3];
+        memory.b[i] = guess.axis.vertex;
+    }
+    memory.kind = 1;
+    memory.count = 3;
+    if (guess.axis.separation <= 0) {
+        memory.count = 4;
+        memory.a[3] = corner_along(pair.a, -normal, 0);
+        memory.b[3] = corner_along(pair.b, pair.turn.transpose() * normal, 0);
+    }
+    memory.axis = guess.of_b ? Vec3(-(sides.pair.turn * normal)) : normal;
+    if (guess.of_b) std::swap(memory.a, memory.b);
+    return memory;
+}
+
+enum class Found { apart, near, unsure };
+
+// Asks GJK which corners meet, and looks at their faces and edges alone. Unsure where it came to
+// its bound, which is told by the cache, or where other axes must be better.
+Found look_where_they_meet(
+    const Shown& shown, const Sides& sides, const Guess& guess, PairCache& cache, Axes& axes)
+{
+    MethodMemory memory = memory_of(sides, guess);
+    const ConvexPair cores(shown.shapes, shown.a, shown.b, shown.b_in_a);
+    const MethodAnswer met = ask_gjk(cores, sides.reach, MethodStart::cached, memory);
+    if (met.cut_short) {
+        cache.kind |= kFellBack;
+        return Found::unsure;
+    }
+    const PolytopePair& pair = sides.pair;
+    const std::uint16_t corner_a = corner_along(pair.a, met.normal, memory.a[0]);
+    const std::uint16_t corner_b =
+        corner_along(pair.b, -(pair.turn.transpose() * met.normal), memory.b[0]);
+    axes.face_a = best_face_axis_at(pair, corner_a, corner_b);
+    axes.face_b = best_face_axis_at(sides.turned, corner_b, corner_a);
+    cache = remember_leading(sides, axes);
+    if (met.separation > sides.reach) {
+        cache.apart = static_cast<float>(met.separation);
+        return Found::apart;
+    }
+    axes.edge = best_edge_axis_at(pair, corner_a, corner_b, axes.top());
+    const double shown_apart = std::max(axes.top(), axes.edge.separation);
+    return shown_apart < std::min(met.separation, 0.0) - sides.bias ? Found::unsure : Found::near;
+}
+
+// The points of touch by the axes found.
+void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& out)
+{
+    const PolytopePair &pair = sides.pair, &turned = sides.turned;
+    const double reach = sides.reach, bias = sides.bias;
+    const bool b_leads = axes.b_leads(sides);
+    const EdgeAxis& edge = axes.edge;
+    const FaceAxis& face = b_leads ? axes.face_b : axes.face_a;
+    const bool has_edge = !edge.normal.isZero(0);
+    const Vec3 normal =
+        b_leads ? Vec3(-(pair.turn * pair.b.normals[face.face])) : pair.a.normals[face.face];
+    const bool edge_better = has_edge && edge.separation > face.separation + bias;
+    const bool alike = has_edge && edge.normal.dot(normal) > kAlike;
+    if (edge_better && !alike) {
+        cross_edges(pair, edge, reach + bias, out);
+        return;
+    }
+    // A face that has lost its deepest corner over the other's side still tells the depth, if what
+    // is left of it agrees with the edges. Otherwise clipping has lost the very place of touch.
+    double least = 0;
+    face_manifold(b_leads ? turned : pair, face, reach, bias, out, least);
+    if (b_leads) turn_round(pair, out);
+    const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
+    const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
+    if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
+    // A face that leads by its bias alone may have nothing over it: then the best one has. Unless
+    // the two are deep its points are told far enough apart not to push: at rest others bear the
+    // body, and what pushes at times would rock it.
+    if (out.count > 0 || face.separation >= 0) return;
+    const double deep = 4 * bias;
+    const bool shallow = face.separation >= -deep;
+    const bool by_b = axes.face_b.separation >= axes.face_a.separation;
+    const FaceAxis& best = by_b ? axes.face_b : axes.face_a;
+    if (by_b != b_leads) face_manifold(by_b ? turned : pair, best, reach, bias, out, least);
+    if (shallow)
+        for (int i = 0; i < out.count; ++i)
+            out.points[static_cast<std::size_t>(i)].separation += deep;
+    if (out.count == 0 && !shallow) touch_vertex(by_b ? turned : pair, best, out);
+    if (by_b) turn_round(pair, out);
+}
+
+void collide_polytopes(const PolytopePair& pair,
+                       double reach,
+                       const Shown* shown,
+                       PairCache& cache,
+                       LocalManifold<double>& out)
+{
+    out.count = 0;
+    const Sides sides(pair, reach);
+    cache.kind &= ~kFellBack;
+    const Guess guess(sides, cache);
+    if (guess.known && guess.axis.separation > reach) {
+        cache.apart = static_cast<float>(guess.axis.separation);
+        return;
+    }
+    Axes axes;
+    Found found = shown ? look_where_they_meet(*shown, sides, guess, cache, axes) : Found::unsure;
+    if (found == Found::unsure) {
+        const std::uint32_t fell_back = cache.kind & kFellBack;
+        found = look_at_all(sides, guess, cache, axes) ? Found::near : Found::apart;
+        cache.kind |= fell_back;
+    }
+    if (found == Found::near) find_points(sides, axes, out);
+}
+
+// Of the size of both: where the balls inside are smaller, the bias of faces comes near rounding.
+constexpr float kUnlike = 2e-3F;
+
+// False where float will not do.
+bool meet_wide(const Shapes& shapes,
+               ShapeRef a,
+               ShapeRef b,
+               const PoseT<float>& b_in_a,
+               float reach,
+               PairCache& cache,
+               LocalManifold<float>& out)
+{
+    const WideShape wide_a(shapes, a), wide_b(shapes, b);
+    if (!wide_a.suited() || !wide_b.suited()) return false;
+    HullPair pair;
+    pair.a = wide_a.view();
+    pair.b = wide_b.view();
+    const float inner = pair.a.inner + pair.b.inner;
+    if (inner < kUnlike * (pair.a.outer + pair.b.outer)) return false;
+    const Mat3 turn = b_in_a.orientation.cast<double>().toRotationMatrix();
+    const Vec3 offset = turn * wide_b.center() + b_in_a.position.cast<double>() - wide_a.center();
+    for (int i = 0; i < 9; ++i) pair.turn[i] = static_cast<float>(turn(i / 3, i % 3));
+    for (int i = 0; i < 3; ++i) pair.offset[i] = static_cast<float>(offset[i]);
+    pair.reach = reach;
+    pair.bias = static_cast<float>(kFaceBias) * inner;
+
+    HullGuess guess{cache.kind, cache.feature_a, cache.feature_b};
+    HullTouch touch;
+    static const HullKernel meet = hull_kernel();
+    meet(pair, guess, touch);
+    cache = {guess.a, guess.b, guess.kind, touch.count == 0 ? touch.apart : 0};
+    out.count = 0;
+    if (touch.count == 0) return true;
+    out.normal = {touch.normal[0], touch.normal[1], touch.normal[2]};
+    std::array<LocalManifold<float>::Point, HullTouch::kMost> points;
+    const auto count = static_cast<std::size_t>(touch.count);
+    const Vec3T<float> center = wide_a.center().cast<float>();
+    for (std::size_t i = 0; i < count; ++i) {
+        const HullTouch::Point& point = touch.points[i];
+        points[i].position =
+            Vec3T<float>(point.position[0], point.position[1], point.position[2]) + center;
+        points[i].separation = point.separation;
+        points[i].feature = point.feature;
+    }
+    reduce_to_four<float>({points.data(), count}, out);
+    return true;
+}
+
+// Of both: from how many vertices on GJK takes less than all axes do.
+constexpr std::size_t kManyVertices = 192;
+
+// `searches` false looks at all axes however many they are.
+template <class Real>
+void meet_plain(const Shapes& shapes,
+                ShapeRef a,
+                ShapeRef b,
+                const PoseT<Real>& b_in_a,
+                bool searches,
+                Real reach,
+                PairCache& cache,
+                LocalManifold<Real>& out)
+{
+    const PolytopeShape shape_a(shapes, a), shape_b(shapes, b);
+    const Pose pose{b_in_a.position.template cast<double>(),
+                    b_in_a.orientation.template cast<double>()};
+    const PolytopePair pair(shape_a.view(), shape_b.view(), pose);
+    const bool many = pair.a.vertices.size() + pair.b.vertices.size() >= kManyVertices;
+    const Pose straight{pose.position, pose.orientation.normalized()};
+    const Shown shown{shapes, a, b, straight};
+    LocalManifold<double> found;
+    collide_polytopes(pair, reach, searches && many ? &shown : nullptr, cache, found);
+
+    out = found.cast<Real>();
+}
+
+}  // namespace
+
+template <>
+void hull_hull<float>(const Shapes& shapes,
+                      ShapeRef a,
+                      ShapeRef b,
+                      const PoseT<float>& b_in_a,
+                      float reach,
+                      PairCache& cache,
+                      LocalManifold<float>& out)
+{
+    if (!meet_wide(shapes, a, b, b_in_a, reach, cache, out))
+        meet_plain(shapes, a, b, b_in_a, true, reach, cache, out);
+}
+
+template <>
+void hull_hull<double>(const Shapes& shapes,
+                       ShapeRef a,
+                       ShapeRef b,
+                       const Pose& b_in_a,
+                       double reach,
+                       PairCache& cache,
+                       LocalManifold<double>& out)
+{
+    meet_plain(shapes, a, b, b_in_a, true, reach, cache, out);
+}
+
+void hull_hull_by_axes(const Shapes& shapes,
+                       ShapeRef a,
+                       ShapeRef b,
+                       const Pose& b_in_a,
+                       double reach,
+                       PairCache& cache,
+                       LocalManifold<double>& out)
+{
+    meet_plain(shapes, a, b, b_in_a, false, reach, cache, out);
+}
+
+}  // namespace throng

@@ -1,0 +1,267 @@
+// Plane pairs: a convex shape on a plane, up to four points.
+//
+// The plane is brought into the shape's frame, where the furthest points of every kind are known.
+#include "kernels/check.hpp"
+#include "kernels/geometry/support.hpp"
+#include "narrowphase/convex/pair_functions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+// The plane as the shape sees it: solid at x . into >= depth, so that `into` is the manifold's
+// normal and depth - x . into is how far x is above the plane.
+template <class Real>
+struct Ground {
+    Vec3T<Real> into;
+    Real depth;
+    Real reach;
+    LocalManifold<Real>& out;
+
+    Real height(const Vec3T<Real>& point) const { return depth - point.dot(into); }
+
+    // A point of the core whose surface is `radius` further on; left out when beyond reach.
+    void touch(const Vec3T<Real>& point, Real radius, std::uint32_t feature) const
+    {
+        const Real separation = height(point) - radius;
+        if (!(separation <= reach)) return;
+        out.add(point + into * (radius + separation / 2), separation, feature);
+    }
+};
+
+// The lowest corner, then the others of the side that faces the plane; where some of that is out of
+// reach, those reached along the edges that climb least.
+template <class Real>
+void touch_box(const Core<Real>& box, const Ground<Real>& ground)
+{
+    std::array<Real, 3> climb;
+    std::uint32_t lowest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Real along = ground.into[static_cast<int>(i)];
+        climb[i] = std::abs(along) * box.extents[static_cast<int>(i)];
+        if (along >= 0) lowest |= 1u << i;
+    }
+    std::array<std::size_t, 3> order = {0, 1, 2};
+    if (climb[order[1]] < climb[order[0]]) std::swap(order[0], order[1]);
+    if (climb[order[2]] < climb[order[1]]) std::swap(order[1], order[2]);
+    if (climb[order[1]] < climb[order[0]]) std::swap(order[0], order[1]);
+
+    // The side that faces the plane, where all of it is within reach: a thin box that leans a
+    // little climbs less along its thickness than along its length, and would be held at one end
+    // alone.
+    std::size_t facing = 0;
+    for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+        const auto along = [&](std::size_t axis) {
+            return std::abs(ground.into[static_cast<int>(axis)]);
+        };
+        if (along(i) > along(facing)) facing = i;
+    }
+    const Real highest = ground.depth - 2 * climb[facing] + climb[0] + climb[1] + climb[2];
+    const bool whole = highest <= ground.reach;
+    if (whole && order[2] != facing) {
+        if (order[0] == facing) std::swap(order[0], order[1]);
+        std::swap(order[1], order[2]);
+    }
+
+    const std::uint32_t first = 1u << order[0];
+    const std::uint32_t second = 1u << order[1];
+    const std::uint32_t third = 1u << order[2];
+    const bool face = whole || climb[order[0]] + climb[order[1]] <= climb[order[2]];
+    const std::uint32_t last = face ? first | second : third;
+    for (const std::uint32_t flipped : {0u, first, second, last}) {
+        const std::uint32_t corner = lowest ^ flipped;
+        Vec3T<Real> point = box.extents;
+        for (int i = 0; i < 3; ++i) {
+            if (!(corner >> i & 1u)) point[i] = -point[i];
+        }
+        ground.touch(point, Real(0), corner);
+    }
+}
+
+// A cap when the axis leans towards the plane, else the lower line of the side.
+template <class Real>
+void touch_cylinder(const Core<Real>& cylinder, const Ground<Real>& ground)
+{
+    const Vec3T<Real>& into = ground.into;
+    const Real across = std::sqrt(into.x() * into.x() + into.y() * into.y());
+    if (std::abs(into.z()) > across) {
+        const SupportFace<Real> cap = rim_points(cylinder, into);
+        for (std::size_t i = 0; i < 4; ++i) ground.touch(cap.corners[i], Real(0), cap.features[i]);
+        return;
+    }
+    const Real x = into.x() / across * cylinder.extents.x();
+    const Real y = into.y() / across * cylinder.extents.x();
+    ground.touch(Vec3T<Real>(x, y, -cylinder.extents.z()), Real(0), 32);
+    ground.touch(Vec3T<Real>(x, y, cylinder.extents.z()), Real(0), 33);
+}
+
+// Which vertices of a hull bear it on a plane.
+template <class Real>
+class HullFoot {
+public:
+    HullFoot(const Hull& hull, const Ground<Real>& ground)
+        : hull_(hull), ground_(ground), lowest_(std::numeric_limits<Real>::infinity())
+    {
+        for (const Vec3& vertex : hull.vertices)
+            lowest_ = std::min(lowest_, ground.height(vertex.cast<Real>()));
+    }
+
+    bool within_reach() const { return lowest_ <= ground_.reach; }
+
+    Real lowest() const { return lowest_; }
+
+    // Of the vertices that tilting by an angle may bring down to a height, four that span the most
+    // area: the lowest, the one furthest from it, and the furthest to either side of the line
+    // between them.
+    void spread(Real size, Real tilt, Real down)
+    {
+        const Real slack = std::min(Real(1e-4) * size, std::max(ground_.reach - lowest_, Real(0)));
+        tilt_ = tilt;
+        down_ = std::max(lowest_, down);
+        first_ = lowest_within(slack);
+        left_ = right_ = kNone;
+        const Vec3T<Real> from = at(first_);
+        const auto flat_from = [&](const Vec3T<Real>& vertex) -> Vec3T<Real> {
+            const Vec3T<Real> offset = vertex - from;
+            return offset - ground_.into * offset.dot(ground_.into);
+        };
+        second_ = first_down([&](const auto& vertex) { return flat_from(vertex).norm(); });
+        if (second_ == kNone) return;
+        const Vec3T<Real> along = flat_from(at(second_));
+        const Real length = along.norm();
+        const Vec3T<Real> left = ground_.into.cross(along) / length;
+        // Within a millionth of the line's own length, what is beside it is noise.
+        const auto beside = [&](Real sign) {
+            return first_down([&](const auto& vertex) {
+                return sign * left.dot(vertex - from) - Real(1e-6) * length;
+            });
+        };
+        left_ = beside(Real(1));
+        right_ = beside(Real(-1));
+    }
+
+    // Whether the hull would stand on these, its middle above what they span.
+    bool stands() const
+    {
+        if (second_ == kNone) return false;
+        const std::array<std::size_t, 4> round = {first_, right_, second_, left_};
+        const Vec3T<Real> middle = hull_.center.template cast<Real>();
+        Vec3T<Real> from = at(left_ == kNone ? second_ : left_);
+        for (const std::size_t i : round) {
+            if (i == kNone) continue;
+            const Vec3T<Real> to = at(i);
+            if (!(ground_.into.cross(to - from).dot(middle - from) > 0)) return false;
+            from = to;
+        }
+        return true;
+    }
+
+    void touch() const
+    {
+        for (const std::size_t i : {first_, second_, left_, right_})
+            if (i != kNone) ground_.touch(at(i), Real(0), static_cast<std::uint32_t>(i));
+    }
+
+private:
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
+    Vec3T<Real> at(std::size_t i) const { return hull_.vertices[i].template cast<Real>(); }
+
+    std::size_t lowest_within(Real slack) const
+    {
+        std::size_t i = 0;
+        while (!(ground_.height(at(i)) <= lowest_ + slack)) ++i;
+        return i;
+    }
+
+    // The one that the tilt would take furthest down, where distance(vertex) tells how far it is
+    // from the axis of tilting; none where all would stay above the lowest. Among near equals the
+    // first wins, so that noise in the pose does not swap points from step to step.
+    template <class Distance>
+    std::size_t first_down(const Distance& distance) const
+    {
+        std::size_t best = kNone;
+        Real most = 0;
+        for (std::size_t i = 0; i < hull_.vertices.size(); ++i) {
+            const Vec3T<Real> vertex = at(i);
+            const Real height = ground_.height(vertex);
+            if (!(height <= ground_.reach)) continue;
+            const Real below = tilt_ * distance(vertex) - (std::max(height, down_) - down_);
+            if (!(below > most * Real(1.001))) continue;
+            most = below;
+            best = i;
+        }
+        return best;
+    }
+
+    const Hull& hull_;
+    const Ground<Real>& ground_;
+    Real lowest_;
+    Real tilt_ = 0;  // rad
+    Real down_ = 0;  // m
+    std::size_t first_ = kNone, second_ = kNone, left_ = kNone, right_ = kNone;
+};
+
+// What a hull stands on by its lowest vertices is held there: corners of a finely rounded rim that
+// are a hair above the lowest would leave these to bear it one at a time. One that still comes down
+// is held by all that the step may bring down, and by what has sunk in.
+template <class Real>
+void touch_hull(const Hull& hull, Real size, const Ground<Real>& ground)
+{
+    HullFoot<Real> foot(hull, ground);
+    if (!foot.within_reach()) return;
+    // Of a ball, 1e-5 of its radius is within this of its lowest point.
+    constexpr Real kLevelTilt = Real(5e-3);
+    foot.spread(size, kLevelTilt, foot.lowest());
+    if (!foot.stands())
+        foot.spread(size, ground.reach / static_cast<Real>(hull.outer_radius), Real(0));
+    foot.touch();
+}
+
+}  // namespace
+
+template <class Real>
+void convex_plane(const Shapes& shapes,
+                  ShapeRef a,
+                  ShapeRef b,
+                  const PoseT<Real>& b_in_a,
+                  Real reach,
+                  PairCache&,
+                  LocalManifold<Real>& out)
+{
+    out.count = 0;
+    const Plane& plane = shapes.planes[b.index];
+    const Vec3T<Real> normal = b_in_a.orientation * plane.normal.template cast<Real>();
+    out.normal = -normal;
+    const Real depth = -(static_cast<Real>(plane.offset) + normal.dot(b_in_a.position));
+    const Ground<Real> ground = {out.normal, depth, reach, out};
+
+    const Core<Real> core = core_of<Real>(shapes, a);
+    switch (core.kind) {
+    case ShapeKind::sphere:
+        ground.touch(Vec3T<Real>::Zero(), core.radius, 0);
+        break;
+    case ShapeKind::capsule:
+        ground.touch(-core.extents, core.radius, 0);
+        ground.touch(core.extents, core.radius, 1);
+        break;
+    case ShapeKind::cylinder:
+        touch_cylinder(core, ground);
+        break;
+    case ShapeKind::box:
+        touch_box(core, ground);
+        break;
+    case ShapeKind::hull:
+        touch_hull(*core.hull, core.size, ground);
+        break;
+    default:
+        THRONG_CHECK(false, "a plane meets convex shapes of finite size");
+    }
+}
+
+THRONG_PAIR_INSTANCES(convex_plane)
+
+}  // namespace throng

@@ -1,0 +1,68 @@
+#include "narrowphase/convex/wide/box_pairs.hpp"
+
+#include "kernels/check.hpp"
+#include "kernels/simd/lane_width.hpp"
+
+#include <algorithm>
+
+namespace throng {
+
+namespace scalar {
+extern const BoxKernels kBoxes;
+}
+namespace avx2 {
+extern const BoxKernels kBoxes;
+}
+namespace avx512 {
+extern const BoxKernels kBoxes;
+}
+
+namespace {
+
+// Pairs that go through the steps together: 16 kB of them, so that they are still near by when the
+// last step asks for them.
+constexpr std::size_t kTogether = 256;
+
+// The kernels write manifolds as plain numbers.
+static_assert(sizeof(LocalManifold<float>) == kManifoldNumbers * sizeof(float));
+static_assert(sizeof(LocalManifold<float>::Point) == 5 * sizeof(float));
+static_assert(offsetof(LocalManifold<float>, points) == 3 * sizeof(float));
+static_assert(offsetof(LocalManifold<float>, count) == 23 * sizeof(float));
+
+}  // namespace
+
+const BoxKernels* box_kernels_of(const char* width)
+{
+    return of_width(width, &scalar::kBoxes, &avx2::kBoxes, &avx512::kBoxes);
+}
+
+const BoxKernels& box_kernels()
+{
+    static const BoxKernels& chosen = *box_kernels_of(lane_width());
+    return chosen;
+}
+
+void collide_boxes(const BoxKernels& kernels,
+                   std::span<const BoxPair> pairs,
+                   std::span<LocalManifold<float>> manifolds)
+{
+    THRONG_CHECK(pairs.size() == manifolds.size(), "as many manifolds as pairs");
+    for (std::size_t begin = 0; begin < pairs.size(); begin += kTogether) {
+        const std::size_t count = std::min(kTogether, pairs.size() - begin);
+        BoxAxes face_room[kTogether], edge_room[kTogether];
+        BoxList faces{face_room, 0}, edges{edge_room, 0};
+        for (std::size_t i = 0; i < count; ++i) manifolds[begin + i].count = 0;
+        const BoxPair* const from = pairs.data() + begin;
+        float* const to = reinterpret_cast<float*>(manifolds.data() + begin);
+        kernels.part(from, static_cast<std::int32_t>(count), faces, edges);
+        kernels.clip(from, faces, edges, to);
+        kernels.cross(from, edges, to);
+    }
+}
+
+void collide_boxes(std::span<const BoxPair> pairs, std::span<LocalManifold<float>> manifolds)
+{
+    collide_boxes(box_kernels(), pairs, manifolds);
+}
+
+}  // namespace throng

@@ -1,0 +1,256 @@
+// Triangle against polytope: the axis that leads, of those that the mesh sticks out to, and the
+// points that come of it.
+#include "kernels/geometry/polytope_contacts.hpp"
+#include "narrowphase/manifold/contact_points.hpp"
+#include "narrowphase/mesh/triangle_contacts.hpp"
+
+#include <algorithm>
+
+namespace throng {
+namespace {
+
+// Cosine beyond which faces are alike: a fiftieth of a radian.
+constexpr double kAlike = 0.9998;
+
+// A triangle leaves it to the next where the way out there is this much of its own. Were it to do
+// so for any shorter way, one in a few hundred shapes deep inside would be pushed by none.
+constexpr double kShorter = 0.2;
+
+// Cosine up to which a face of the shape looks at the triangle. Its sides do not: what is let in
+// from above is hardly beyond the triangles beside it.
+constexpr double kLooksAt = 0.5;
+
+// The best axis so far of a triangle against a polytope, of those that the mesh sticks out to.
+struct TriangleAxis {
+    enum class Kind { front, face, apart } kind = Kind::front;
+    double separation = 0;
+    double apart = 0;  // m, by the axis that parts the two most, whatever the mesh
+    FaceAxis face;
+};
+
+// b's faces: any may show that the two are apart; only those the mesh sticks out to may push.
+void try_faces(const MeshTriangle& triangle,
+               const PolytopePair& turned,
+               double reach,
+               double bias,
+               TriangleAxis& best)
+{
+    for (std::size_t i = 0; i < turned.a.normals.size(); ++i) {
+        const FaceAxis axis = face_axis(turned, static_cast<std::uint16_t>(i));
+        if (axis.separation > reach) {
+            best.kind = TriangleAxis::Kind::apart;
+            return;
+        }
+        best.apart = std::max(best.apart, axis.separation);
+        const double to_beat =
+            best.kind == TriangleAxis::Kind::front ? best.separation + bias : best.separation;
+        if (axis.separation <= to_beat) continue;
+        const Vec3 direction = -(turned.turn.transpose() * turned.a.normals[i]);
+        if (direction.dot(triangle.normal) < 0) continue;
+        if (!corner_sticks_out(triangle, axis.vertex, direction)) continue;
+        best.kind = TriangleAxis::Kind::face;
+        best.separation = axis.separation;
+        best.face = axis;
+    }
+}
+
+// Whether no axis parts the two by more than reach: b's faces and any two edges may; the front is
+// known.
+bool within_reach(const MeshTriangle& triangle,
+                  const PolytopePair& pair,
+                  const PolytopePair& turned,
+                  double reach,
+                  double bias,
+                  TriangleAxis& best)
+{
+    try_faces(triangle, turned, reach, bias, best);
+    if (best.kind == TriangleAxis::Kind::apart) return false;
+    // By how much the two are apart does not matter once they are.
+    const double floor = best.apart > bias ? reach : std::min(bias, reach);
+    const EdgeAxis any = best_edge_axis(pair, floor);
+    if (!any.normal.isZero(0)) best.apart = any.separation;
+    return best.apart <= reach;
+}
+
+// Where the polytope's face at its deepest corner is a sliver beside the triangle: the first that
+// is all but along it and has anything over the triangle.
+void clip_like_faces(const PolytopePair& pair,
+                     const FaceAxis& front,
+                     double reach,
+                     double slack,
+                     PolytopePoints& found)
+{
+    const Vec3 against = pair.turn.transpose() * -pair.a.normals[front.face];
+    for (std::size_t i = 0; i < pair.b.normals.size() && found.count == 0; ++i)
+        if (pair.b.normals[i].dot(against) > kAlike)
+            clip_faces(pair, front, static_cast<std::uint16_t>(i), reach, slack, found);
+}
+
+// Of two that are apart, what lies behind the triangle has gone past its rim, or past the back of
+// all that the mesh encloses: a far reach sees both.
+void drop_overlaps(PolytopePoints& found)
+{
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < found.count; ++i)
+        if (found.points[i].separation >= 0) found.points[kept++] = found.points[i];
+    found.count = kept;
+}
+
+// Points along the face that leads, of the triangle or of the polytope.
+void lay_face(const MeshTriangle& triangle,
+              const PolytopePair& pair,
+              const PolytopePair& turned,
+              const FaceAxis& front,
+              const TriangleAxis& best,
+              double reach,
+              double bias,
+              LocalManifold<double>& out)
+{
+    const bool by_front = best.kind == TriangleAxis::Kind::front;
+    PolytopePoints found;
+    clip_faces(by_front ? pair : turned, by_front ? front : best.face, reach, bias, found);
+    if (by_front) clip_like_faces(pair, front, reach, bias, found);
+    if (best.apart > bias) drop_overlaps(found);
+    out.normal = by_front ? triangle.normal : turned.a.normals[best.face.face];
+    reduce_to_four<double>({found.points.data(), found.count}, out);
+    if (!by_front) turn_round(pair, out);
+}
+
+// Whether the shape is before a triangle, or no further behind it than `most`, below 0.
+bool is_shallow(const MeshTriangle& triangle, const PolytopePair& pair, double most)
+{
+    const Vec3& normal = triangle.normal;
+    // Nothing pushes from behind.
+    if (triangle.height(pair.offset + pair.a.center) < 0) return false;
+    const auto lowest = support_vertex(pair.b, -(pair.turn.transpose() * normal), 0);
+    return triangle.height(pair.turn * pair.b.vertices[lowest] + pair.shift) > most;
+}
+
+// Whether over an edge that sticks out there is a triangle that the shape is hardly behind. It
+// pushes itself, and seen from this one what has just come past the edge may be deep inside.
+bool yields_over_edges(const MeshTriangle& triangle, const PolytopePair& pair, double most)
+{
+    for (std::size_t e = 0; e < 3; ++e) {
+        const std::int32_t next = triangle.beyond(e);
+        if (next < 0 || !triangle.is_convex(e)) continue;
+        const auto beyond = static_cast<std::uint32_t>(next);
+        if (is_shallow({triangle.mesh, beyond, triangle.behind}, pair, most)) return true;
+    }
+    return false;
+}
+
+// Whether one of the shape's faces that look at the triangle is hardly beyond it, or not at all,
+// and may not push: then another triangle sticks out further that way and pushes, as where a face
+// lies on a peak or on a ridge. By an edge of this one the same shape would be deep inside.
+bool yields_to_faces(const MeshTriangle& triangle, const PolytopePair& turned, double most)
+{
+    for (std::size_t i = 0; i < turned.a.normals.size(); ++i) {
+        const Vec3 direction = -(turned.turn.transpose() * turned.a.normals[i]);
+        if (direction.dot(triangle.normal) > kLooksAt
+            && face_axis(turned, static_cast<std::uint16_t>(i)).separation > most)
+            return true;
+    }
+    return false;
+}
+
+// The normal on the far side of an edge that sticks out: a rim pushes sideways too, and a little
+// further, so that directions straight out of it are well inside.
+Vec3 far_normal(const MeshTriangle& triangle, std::size_t edge, const Vec3& rim)
+{
+    const std::int32_t next = triangle.beyond(edge);
+    if (next >= 0) return triangle.normal_of(next);
+    return (rim - 0.05 * triangle.normal).normalized();
+}
+
+// The triangle with the edges that stick out alone; their arcs end where the next triangle's begin.
+struct OutwardEdges {
+    OutwardEdges(const MeshTriangle& triangle, const TrianglePolytope& flat, const PolytopePair& of)
+        : normals(flat.normals), offsets(flat.offsets), pair(of)
+    {
+        std::size_t count = 0;
+        for (std::size_t e = 0; e < 3; ++e) {
+            if (!triangle.is_convex(e)) continue;
+            normals[2 + e] = far_normal(triangle, e, flat.normals[2 + e]);
+            offsets[2 + e] = normals[2 + e].dot(triangle.corners[e]);
+            edges[count++] = of.a.edges[2 * e];
+        }
+        pair.a.normals = normals;
+        pair.a.offsets = offsets;
+        pair.a.edges = {edges.data(), count};
+    }
+    OutwardEdges(const OutwardEdges&) = delete;  // the pair looks at the arrays
+    OutwardEdges& operator=(const OutwardEdges&) = delete;
+
+    std::array<Vec3, 5> normals;
+    std::array<double, 5> offsets;
+    std::array<Hull::Edge, 3> edges{};
+    PolytopePair pair;
+};
+
+// By what tells them apart best, or least of all overlaps.
+void touch_along_best(const MeshTriangle& triangle,
+                      const TrianglePolytope& flat,
+                      const PolytopePair& pair,
+                      const PolytopePair& turned,
+                      const FaceAxis& front,
+                      double reach,
+                      double bias,
+                      LocalManifold<double>& out)
+{
+    TriangleAxis best;
+    best.separation = best.apart = front.separation;
+    if (!within_reach(triangle, pair, turned, reach, bias, best)) return;
+    const bool parted = best.apart > bias;
+
+    const OutwardEdges outward(triangle, flat, pair);
+    const double to_beat = best.separation + bias;
+    const EdgeAxis edge = best_edge_axis(outward.pair, parted ? std::max(to_beat, 0.0) : to_beat);
+    const double told = edge.normal.isZero(0) ? best.separation : edge.separation;
+    if (!parted && told < -bias) {
+        const double most = kShorter * told;
+        if (yields_over_edges(triangle, pair, most)) return;
+        if (!edge.normal.isZero(0) && yields_to_faces(triangle, turned, most)) return;
+    }
+    if (!edge.normal.isZero(0)) {
+        if (edge.separation <= reach) cross_edges(outward.pair, edge, reach + bias, out);
+        return;
+    }
+    lay_face(triangle, pair, turned, front, best, reach, bias, out);
+    // What leads by its bias alone may have nothing over it.
+    if (out.count > 0 || best.separation >= 0 || parted) return;
+    const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
+    if (!better.normal.isZero(0)) cross_edges(outward.pair, better, reach + bias, out);
+}
+
+}  // namespace
+
+void touch_polytope(const MeshTriangle& triangle,
+                    const PolytopeView& shape,
+                    const Pose& pose,
+                    double reach,
+                    LocalManifold<double>& out,
+                    bool through)
+{
+    out.count = 0;
+    const auto& corners = triangle.corners;
+    const TrianglePolytope flat(corners[0], corners[1], corners[2], triangle.normal);
+    const PolytopePair pair(flat.view(), shape, pose);
+    if (triangle.normal.dot(pair.offset) < 0 && !through) return;
+    const FaceAxis front = face_axis(pair, 0);
+    if (front.separation > reach) return;
+    const double bias = 1e-3 * shape.inner_radius;
+    const PolytopePair turned = pair.mirrored();
+    touch_along_best(triangle, flat, pair, turned, front, reach, bias, out);
+    if (!through || out.count > 0) return;
+    // Pressed all but out of the triangle on its other side it goes back the way it came; by its
+    // deepest corner where its lowest side is over another, for which this one pushes too.
+    TriangleAxis back;
+    back.separation = back.apart = front.separation;
+    lay_face(triangle, pair, turned, front, back, reach, bias, out);
+    if (out.count > 0) return;
+    const Vec3 deepest = pair.turn * shape.vertices[front.vertex] + pair.shift;
+    out.normal = triangle.normal;
+    out.add(deepest - triangle.normal * (front.separation / 2), front.separation, 0);
+}
+
+}  // namespace throng

@@ -1,0 +1,35 @@
+// Solid pairs: a solid against whatever else there is, as a few manifolds.
+#pragma once
+
+#include "kernels/data/shapes.hpp"
+#include "narrowphase/manifold/contact_patches.hpp"
+
+namespace throng {
+
+/// What else is told of a pair.
+///
+///   left_out  touches that overlap and that no manifold had room for (see make_patches())
+///   apart     m, where there is no touch: none will be within reach before points of the two have
+///             come closer by what this is more than the reach. At most their distance
+struct SolidAnswer {
+    std::size_t left_out = 0;
+    double apart = 0;
+};
+
+/// Where a solid touches another shape of any kind, out to `reach`: manifolds in the solid's frame,
+/// normals from the solid to the other, in order of patch.
+///
+///   other      sphere, capsule, cylinder, box, hull, plane, mesh (its front faces) or solid
+///   other_in_solid  its pose in the solid's frame
+///   out        appended to
+///
+/// Two solids go by depth images where either asks for them, else by the spheres of those that are
+/// spheres, else by voxels both ways. Never throws.
+SolidAnswer collide_solid(const Shapes& shapes,
+                          ShapeRef solid,
+                          ShapeRef other,
+                          const Pose& other_in_solid,
+                          double reach,
+                          std::vector<PatchManifold>& out);
+
+}  // namespace throng

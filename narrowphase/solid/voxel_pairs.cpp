@@ -1,0 +1,95 @@
+#include "narrowphase/solid/voxel_pairs.hpp"
+
+#include "narrowphase/solid/surface_walk.hpp"
+#include "narrowphase/solid/voxel_probes.hpp"
+
+#include <algorithm>
+
+namespace throng {
+namespace {
+
+std::vector<PointTouch>& scratch()
+{
+    thread_local std::vector<PointTouch> found;
+    found.clear();
+    return found;
+}
+
+// Points of a: out of the other shape is from b to a.
+template <class Other>
+double touch_points_of_a(const Solid& a,
+                         const Other& other,
+                         const Pose& other_in_a,
+                         double reach,
+                         std::vector<SurfaceTouch>& out)
+{
+    std::vector<PointTouch>& found = scratch();
+    const double apart = walk_surface(a.points, other, other_in_a, reach, found);
+    for (const PointTouch& touch : found)
+        out.push_back({touch.position - touch.outward * (touch.distance / 2), -touch.outward,
+                       touch.distance, touch_feature(TouchSide::a, touch.point)});
+    return apart;
+}
+
+double touch_points_of_b(const Solid& a,
+                         const Solid& b,
+                         const Pose& b_in_a,
+                         double reach,
+                         std::vector<SurfaceTouch>& out)
+{
+    std::vector<PointTouch>& found = scratch();
+    const double apart = walk_surface(b.points, FieldSide(a), b_in_a.inverse(), reach, found);
+    const Mat3 turn = b_in_a.orientation.toRotationMatrix();
+    for (const PointTouch& touch : found) {
+        const Vec3 between = touch.position - touch.outward * (touch.distance / 2);
+        out.push_back({turn * between + b_in_a.position, turn * touch.outward, touch.distance,
+                       touch_feature(TouchSide::b, touch.point)});
+    }
+    return apart;
+}
+
+// Behind a static mesh nothing says how thick it is: no deeper than half of the solid, and than
+// four of the distances between its points.
+double deepest_behind(const Solid& a, const FieldSide& field)
+{
+    return std::min(0.25 * (field.box().upper - field.box().lower).minCoeff(),
+                    4 * a.points.spacing);
+}
+
+}  // namespace
+
+double touch_by_voxels(const Shapes& shapes,
+                       const Solid& a,
+                       ShapeRef other,
+                       const Pose& other_in_a,
+                       double reach,
+                       std::vector<SurfaceTouch>& out)
+{
+    const bool has_field = !a.field.empty();
+    double apart = std::numeric_limits<double>::infinity();
+    switch (other.kind) {
+    case ShapeKind::solid: {
+        const Solid& b = shapes.solids[other.index];
+        if (!b.field.empty()) apart = touch_points_of_a(a, FieldSide(b), other_in_a, reach, out);
+        if (has_field) apart = std::min(apart, touch_points_of_b(a, b, other_in_a, reach, out));
+        return apart;
+    }
+    case ShapeKind::mesh: {
+        const Mesh& mesh = shapes.meshes[other.index];
+        const FieldSide field(a);
+        const MeshSide side(mesh, reach, deepest_behind(a, field));
+        apart = touch_points_of_a(a, side, other_in_a, reach, out);
+        if (has_field) probe_mesh(a, mesh, other_in_a, reach, out);
+        break;
+    }
+    default:
+        apart = touch_points_of_a(a, ConvexSide(shapes, other), other_in_a, reach, out);
+        // A plane has nothing of its own.
+        if (!has_field || other.kind == ShapeKind::plane) return apart;
+        probe_convex(shapes, a, other, other_in_a, reach, out);
+    }
+    // What sticks out of the other may be between the points, and is told by the field.
+    return apart - a.points.spacing - a.field.voxel;
+}
+
+}  // namespace throng

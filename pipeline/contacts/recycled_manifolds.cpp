@@ -1,0 +1,48 @@
+#include "pipeline/contacts/recycled_manifolds.hpp"
+
+#include "narrowphase/dispatch.hpp"
+#include "narrowphase/manifold/recycling.hpp"
+
+#include <algorithm>
+
+namespace throng {
+
+namespace {
+
+// A manifold is recycled until a point has moved by this share of the smaller shape's smallest half
+// extent, a sixth of the reach of bodies at rest. A third more overlaps no deeper, but saves
+// little.
+constexpr double kRecycled = 12e-3;
+
+}  // namespace
+
+template <class Real>
+bool find_or_recycle(const Shapes& shapes,
+                     const Colliders& colliders,
+                     const Bounds& bounds,
+                     const PairPlace& pair,
+                     const FoundManifold<Real>* kept,
+                     PairCache& cache,
+                     FoundManifold<Real>& out)
+{
+    const ShapeRef a = colliders.shape[pair.a], b = colliders.shape[pair.b];
+    out.b_in_a = rounded<Real>(seen_from_first(pair.a, pair.b, shapes, colliders, bounds));
+    out.reach = static_cast<Real>(pair.reach);
+    const double least = std::min(colliders.inner_extent[pair.a], colliders.inner_extent[pair.b]);
+    if (kept != nullptr
+        && recycle(*kept, out.b_in_a, out.reach, static_cast<Real>(colliders.outer_radius[pair.b]),
+                   static_cast<Real>(kRecycled * least), out.manifold))
+        return false;
+    collide(shapes, a, b, out.b_in_a, out.reach, cache, out.manifold);
+    return true;
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template bool find_or_recycle<Real>(const Shapes&, const Colliders&, const Bounds&,            \
+                                        const PairPlace&, const FoundManifold<Real>*, PairCache&,  \
+                                        FoundManifold<Real>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng

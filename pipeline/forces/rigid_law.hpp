@@ -1,0 +1,36 @@
+// Rigid law: the conditions of a step as the law of flight takes them.
+#pragma once
+
+#include "kernels/dynamics/rigid_motion.hpp"
+#include "pipeline/step/conditions.hpp"
+
+namespace throng {
+
+/// By which integrator a body goes; see chosen(). An explicit gyroscopic torque is the first
+/// order's.
+inline const IntegratorRow& integrator_of(const Settings& settings, bool acted_on)
+{
+    const bool kicked = settings.integrator == Integrator::auto_ && !acted_on
+        && settings.gyroscopic == Gyroscopic::explicit_;
+    return chosen(kicked ? Integrator::semi_implicit : settings.integrator, acted_on);
+}
+
+inline RigidRule rigid_rule(const Conditions& conditions)
+{
+    using Law = RigidRule::Gyroscopic;
+    RigidRule rule;
+    rule.gravity = conditions.gravity;
+    rule.time = conditions.time;
+    rule.turns = conditions.has(Effect::rotation);
+    rule.rotation = conditions.settings.rotation;
+    rule.gyroscopic = !conditions.has(Effect::gyroscopic)        ? Law::off
+        : conditions.settings.gyroscopic == Gyroscopic::implicit ? Law::implicit
+                                                                 : Law::direct;
+    // Methods of first order keep the damped gyroscopic torque, which never gains energy.
+    constexpr bool kActedOn = true;  // by its pivot
+    rule.momentum_on_pivots = conditions.settings.gyroscopic != Gyroscopic::off
+        && chosen(conditions.settings.integrator, kActedOn).order > 1;
+    return rule;
+}
+
+}  // namespace throng

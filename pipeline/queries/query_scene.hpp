@@ -1,0 +1,95 @@
+// Query scene: a world's colliders as they were at one time, laid out for questions.
+//
+// Boxes name candidates, closed forms in double decide. Planes have no box and are asked one by
+// one.
+#pragma once
+
+#include "broadphase/box_queries.hpp"
+#include "pipeline/queries/queries.hpp"
+#include "pipeline/world/world_state.hpp"
+
+#include <algorithm>
+
+namespace throng {
+
+/// Answers what Queries asks, once the questions are known to be good.
+class QueryScene {
+public:
+    explicit QueryScene(const World::State& state);
+
+    void cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits);
+    void find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_t> blocked);
+    void find_overlaps(std::span<const ShapeQuery> queries, std::span<std::vector<BodyId>> found);
+    void find_nearest(std::span<const PointQuery> points, std::span<NearestHit> nearest);
+
+private:
+    struct Collider {
+        std::uint32_t body = 0, generation = 0, part = 0, group = 0;
+        ShapeRef shape;
+        Pose placed;
+    };
+    /// The best answer so far: a collider and, in its own frame, the normal where a ray meets it or
+    /// the point of it that is nearest.
+    struct Best {
+        double distance = std::numeric_limits<double>::infinity();
+        std::uint32_t collider = kNobody;
+        Vec3 local = Vec3::Zero();
+    };
+    struct Search;
+    using Order = std::vector<std::pair<double, std::uint32_t>>;  // m along a ray, collider
+
+    static constexpr std::size_t kGrain = 64;    // questions a block
+    static constexpr std::size_t kBatch = 8192;  // questions whose candidates are held at one time
+
+    /// Calls work(first, count) for one batch after another, on the world's threads.
+    template <class Work>
+    void run_in_batches(std::size_t questions, const Work& work)
+    {
+        pool_->run([&](std::size_t, std::size_t, std::size_t) {
+            for (std::size_t first = 0; first < questions; first += kBatch)
+                work(first, std::min(kBatch, questions - first));
+        });
+    }
+    BodyId id(std::uint32_t collider) const;
+    bool beats(double distance, std::uint32_t collider, const Best& best) const;
+
+    void meet(const RayQuery& query, const Ray& ray, std::uint32_t collider, Best& best) const;
+    void meet_candidates(const RayQuery& query,
+                         const Search& search,
+                         std::span<const std::uint32_t> candidates,
+                         Order& order,
+                         Best& best) const;
+    Search search_for(const RayQuery& query) const;
+    void search_met(std::span<const RayQuery> rays, std::span<Best> best, bool any);
+
+    void overlap(const ShapeQuery& query,
+                 std::span<const std::uint32_t> candidates,
+                 Shapes& asked,
+                 std::vector<BodyId>& found) const;
+
+    void approach(const PointQuery& query, std::uint32_t collider, Best& best) const;
+    void search_nearest(std::span<const PointQuery> points, std::span<Best> best);
+
+    RayHit hit_of(const RayQuery& ray, const Best& best) const;
+    NearestHit hit_of(const PointQuery& query, const Best& best) const;
+
+    ThreadPool* pool_;
+    const Shapes* shapes_;
+
+    // By collider, in order of body and part.
+    std::vector<Collider> colliders_;
+    std::vector<Box3> boxes_;  // empty for planes
+
+    std::vector<std::uint32_t> planes_;
+    EmbreeRays tree_;
+    Box3 bounds_;            // of all boxes
+    double usual_size_ = 0;  // m, of a box
+
+    // Of the questions asked last.
+    std::vector<Ray> rays_;
+    std::vector<Box3> regions_;
+    std::vector<Best> best_;
+    Candidates candidates_;
+};
+
+}  // namespace throng

@@ -1,0 +1,68 @@
+// Escalate islands: stubborn ones get what they need, as far as a step's budget goes.
+#include "pipeline/solvers/escalation.hpp"
+#include "pipeline/step/stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+// Strain that a quarter of the substep brings down to kStrained; a sixteenth does up to
+// kExactStrain. Finer ones are lost in the digits of float: what is yet more stubborn is solved
+// exactly, where that is small.
+constexpr double kByFour = 16 * kStrained;
+constexpr double kFinestSubstep = 5e-5;  // s
+
+// Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 8 ms
+// of one core. An exact solve is counted as so many substeps.
+constexpr std::size_t kBudget = 1 << 15, kExactCost = 128;
+
+}  // namespace
+
+Effort effort_for(double strain)
+{
+    if (!(strain > 0)) return {};
+    return strain <= kByFour ? Effort{4} : strain <= kExactStrain ? Effort{16} : Effort{16, true};
+}
+
+void escalate_islands(const Conditions& conditions, const Islands& islands, Stubborn& stubborn)
+{
+    stubborn.efforts.assign(islands.size(), {});
+    stubborn.escalated = stubborn.missed = 0;
+    const auto substeps = static_cast<std::size_t>(conditions.settings.substeps);
+    std::size_t left = kBudget;
+    for (std::size_t island = 0; island < islands.size(); ++island) {
+        double strain = 0;
+        bool exactly = false;
+        for (std::uint32_t k = islands.body_begin[island]; k < islands.body_begin[island + 1];
+             ++k) {
+            const double of_body = stubborn.of(islands.bodies[k]);
+            if (!is_stubborn(of_body)) continue;
+            strain = std::max(strain, std::abs(of_body));
+            exactly = exactly || of_body < 0;
+        }
+        if (!(strain > 0)) continue;
+        const std::size_t contacts =
+            islands.contact_begin[island + 1] - islands.contact_begin[island];
+        const Effort wanted = effort_for(strain);
+        Effort effort{wanted.times, wanted.direct || exactly};
+        if (contacts > kExactContacts) effort.direct = false;
+        const auto cost = [&] {
+            return contacts * (effort.direct ? kExactCost : substeps * (effort.times - 1u));
+        };
+        while (effort.times > 1
+               && (cost() > left
+                   || (!effort.direct && conditions.substep() / effort.times < kFinestSubstep))) {
+            effort.times /= 4;
+            effort.direct = false;
+        }
+        left -= cost();
+        stubborn.efforts[island] = effort;
+        stubborn.escalated += effort.times > 1 ? 1 : 0;
+        stubborn.missed += effort.times < wanted.times || (wanted.direct && !effort.direct) ? 1 : 0;
+    }
+}
+
+}  // namespace throng

@@ -1,0 +1,53 @@
+// Escalation: islands whose loads are too much for the solver, found by what their contacts bear.
+//
+// A soft contact gives way under its load. Where it gives way so far that it turns rigid, one visit
+// a substep no longer settles it, and the less the higher a body stands on others: that is what a
+// heavy box on a light one, a tower, a column of dice and a house of cards have in common.
+#pragma once
+
+#include "kernels/solver/direct/direct.hpp"
+#include "pipeline/solvers/row_maker.hpp"
+
+namespace throng {
+
+/// Strain from which an island is stubborn, and below which it is no more. Equal boxes, heavy ones
+/// on light ones and uneven columns of any size, by the default dials with sleep off, stand for
+/// 20 s up to a strain of 1.8; the first fall at 2.4.
+inline constexpr double kStrained = 2, kRelieved = 1.2;
+
+/// Whether a body of that strain belongs to a stubborn island, and not to one on the way there.
+inline bool is_stubborn(double strain) { return strain < 0 || strain > 1; }
+
+/// Strain beyond which the finest substeps do not do.
+inline constexpr double kExactStrain = 256 * kStrained;
+
+/// What an island of that strain needs. Strain goes with the square of the substep.
+Effort effort_for(double strain);
+
+/// Contacts up to which an island may be solved exactly.
+inline constexpr std::size_t kExactContacts = 48;
+/// What is put into a solve of an island that is escalated: what float tells of its speeds.
+inline constexpr DirectEffort kExactEffort = {.steps = 24, .enough = 1e-7, .pivots = false};
+
+/// Tells who is stubborn after this step.
+///
+/// The strain of an island is the greatest, over its contacts, of how far their load presses them
+/// in over where they turn rigid; times the height of the island, in bodies above what stands
+/// still. Loads are those that the contacts bear now, so that it does not matter how the island was
+/// solved. A strain has to last, with the island at rest, before that counts as stubborn: until
+/// then what is told is how far it is on the way, from 0 to 1. It is told below 0 where the next
+/// step should be exact: where an island has only become stubborn, or is pressed in further than
+/// finer substeps would hold it, which would throw it off; or where a blow drives somebody light in
+/// before somebody heavy, and while he is as deep. Islands of more than a batch of contacts
+/// are not looked at: what is so great holds itself up sideways, or is beyond the budget.
+template <class Real>
+void note_strain(const Conditions& conditions,
+                 const Islands& islands,
+                 const Layout& layout,
+                 const ActiveContacts& active,
+                 const Masses& masses,
+                 const Velocities& velocities,
+                 const RowMaker<Real>& maker,
+                 Stubborn& stubborn);
+
+}  // namespace throng

@@ -1,0 +1,96 @@
+// Kinematic pushes: bodies that overlap are put side by side as they are, and none turns. Places
+// change no faster than the push limit lets a pair part.
+//
+// Of each velocity the part along the normal that closes is taken away, half of it from each of two
+// that can move, whatever their masses; the part across is slowed by friction. Nothing is
+// conserved.
+#include "pipeline/solvers/whole_island.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr int kSweeps = 8;
+
+}  // namespace
+
+// kg, what a change of the speed of b against a takes: the mean over those that can move, as each
+// is changed by its share whatever it weighs.
+double WholeIsland::mass_of(const DirectPoint& point) const
+{
+    double sum = 0;
+    int movers = 0;
+    const auto [a, b] = shares_of(point);
+    for (const auto& [seat, share] : {std::pair(point.a, a), std::pair(point.b, b)}) {
+        if (!(share > 0)) continue;
+        sum += share / after_[static_cast<std::size_t>(seat)].inverse_mass;
+        ++movers;
+    }
+    return movers > 0 ? sum / movers : 0;
+}
+
+// How much of a push falls to each: half, or all of it where the other cannot move.
+std::pair<double, double> WholeIsland::shares_of(const DirectPoint& point) const
+{
+    const auto moves = [&](std::int32_t seat) {
+        return seat >= 0 && after_[static_cast<std::size_t>(seat)].inverse_mass > 0;
+    };
+    const bool a = moves(point.a), b = moves(point.b);
+    return {a ? b ? 0.5 : 1.0 : 0.0, b ? a ? 0.5 : 1.0 : 0.0};
+}
+
+void WholeIsland::stop_approach(std::size_t at)
+{
+    DirectPoint& point = points_[at];
+    const double closing = -approach(at, after_);
+    if (gaps_[at] > 0 || !(closing > 0)) return;
+    const auto velocity = [&](std::int32_t seat) -> Vec3 {
+        return seat < 0 ? Vec3(Vec3::Zero()) : after_[static_cast<std::size_t>(seat)].velocity;
+    };
+    const Vec3 between = velocity(point.b) - velocity(point.a) - point.walk;
+    const Vec3 sliding = between - point.normal * point.normal.dot(between);
+    const double fast = std::sqrt(sliding.squaredNorm());
+    Vec3 change = point.normal * closing;
+    if (fast > 0) change -= sliding * std::min(1.0, point.friction * closing / fast);
+    point.impulse += change * mass_of(point);
+    const auto [a, b] = shares_of(point);
+    if (a > 0) after_[static_cast<std::size_t>(point.a)].velocity -= a * change;
+    if (b > 0) after_[static_cast<std::size_t>(point.b)].velocity += b * change;
+}
+
+// By so much at most from where place_points() found the two.
+void WholeIsland::push_apart(std::size_t at, double most)
+{
+    if (!(gaps_[at] < -touches_[at].tolerance)) return;
+    const double way = std::min(0.0, gaps_[at] + most) - gap_now(at);
+    if (!(way > 0)) return;
+    const DirectPoint& point = points_[at];
+    const auto [a, b] = shares_of(point);
+    if (a > 0) seats_[static_cast<std::size_t>(point.a)].moved -= a * way * point.normal;
+    if (b > 0) seats_[static_cast<std::size_t>(point.b)].moved += b * way * point.normal;
+}
+
+void WholeIsland::separate(const Conditions& conditions)
+{
+    const double time = conditions.substep(), most = conditions.settings.push_limit * time;
+    const int sweeps =
+        conditions.settings.iterations > 0 ? conditions.settings.iterations : kSweeps;
+    place_points();
+    move_freely(conditions, time);
+    for (DirectPoint& point : points_) point.impulse = point.torque = Vec3::Zero();
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+        for (std::size_t i = 0; i < touches_.size(); ++i) stop_approach(i);
+    going_ = after_;
+    advance(time);
+    place_points();
+    if (end_following())
+        for (int sweep = 0; sweep < sweeps; ++sweep)
+            for (std::size_t i = 0; i < touches_.size(); ++i) stop_approach(i);
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+        for (std::size_t i = 0; i < touches_.size(); ++i) push_apart(i, most);
+}
+
+}  // namespace throng

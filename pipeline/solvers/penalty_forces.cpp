@@ -1,0 +1,249 @@
+// Penalty forces: each point that overlaps is a spring with a damper, and all act at once. What
+// strikes is thrown back first, by its restitution.
+//
+// Overlap under a load is the load over the stiffness. Friction is a spring with a damper across
+// the normal that gives way at Coulomb's limit: what sticks comes to rest where the spring bears
+// it, and stays. Rolling friction is a damper between the spins that gives way likewise, so that
+// what should not roll creeps.
+//
+// Source: Cundall and Strack, A discrete numerical model for granular assemblies (1979).
+#include "pipeline/solvers/whole_island.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+// Rounds of impacts a part of a substep; springs stop what comes in after so many.
+constexpr int kImpactRounds = 16;
+// Slower than this, of the greatest speed, nobody closes.
+constexpr double kRounding = 1e-11;
+
+// Of auto: by how many radians it swings in a substep, and the share of critical damping where
+// nothing bounces; together half of what a semi-implicit step bears.
+constexpr double kSwing = 0.5, kDamped = 0.7;
+// A substep is cut to this share of the limit; to that of springs that join bodies.
+constexpr double kWithin = 0.9, kWithinSprings = 0.5;
+// Of what slides, the share that friction's damper stops in a substep.
+constexpr double kSlidingDamped = 0.5;
+
+// What presses a spring in is seen by the load that it bore and by how fast the two go on closing;
+// this many times as deep as both say it may be, for the load is that of a whole substep.
+constexpr double kPressed = 3;
+// So much of a shape's extent is looked at no further: swings near the limit of the step go by
+// neither.
+constexpr double kShallow = 1e-3;
+// Steps that what nobody pressed in takes to part. It keeps the speed that it parts at.
+constexpr double kStepsToPart = 4;
+
+}  // namespace
+
+// What a point is to the step.
+struct WholeIsland::Give {
+    double stiffness = 0, damping = 0;  // N/m, N s/m
+    double longest = 0;                 // s, of a step that keeps it from growing
+    std::uint32_t share = 1;            // of how many points what it bears is a part
+};
+
+// Whether the two overlap, or come to within that time: a spring that they fall into for a whole
+// substep holds more than they bring with them.
+bool WholeIsland::presses(std::size_t at, const Conditions& conditions, double ahead) const
+{
+    const double closing = conditions.gravity.norm() * ahead - approach(at, after_);
+    return gaps_[at] < std::max(0.0, closing) * ahead;
+}
+
+// Who bears how many points that overlap, or come to within that time.
+void WholeIsland::count_touching(const Conditions& conditions, double ahead)
+{
+    pressed_.assign(seats_.size(), 0);
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        if (!presses(i, conditions, ahead)) continue;
+        for (const std::int32_t seat : {touches_[i].a, touches_[i].b})
+            if (seat >= 0) ++pressed_[static_cast<std::size_t>(seat)];
+    }
+}
+
+// Points that share a body add up: each takes its part of what the step bears.
+WholeIsland::Give WholeIsland::give_of(std::size_t at, const Settings& settings, double time) const
+{
+    const IslandTouch& touch = touches_[at];
+    std::uint32_t share = 1;
+    for (const std::int32_t seat : {touch.a, touch.b})
+        if (seat >= 0) share = std::max(share, pressed_[static_cast<std::size_t>(seat)]);
+    const double ease = ease_along(points_[at], touch.normal, after_) * share;
+    if (!(ease > 0)) return {};
+    Give give;
+    give.stiffness = settings.penalty_stiffness > 0 ? settings.penalty_stiffness
+                                                    : kSwing * kSwing / (time * time * ease);
+    const double frequency = std::sqrt(give.stiffness * ease);
+    const double damped = kDamped * (1 - touch.restitution);
+    give.damping =
+        settings.penalty_damping >= 0 ? settings.penalty_damping : 2 * damped * frequency / ease;
+    const double ratio = 0.5 * give.damping * ease / frequency;
+    give.longest = 2 * (std::sqrt(1 + ratio * ratio) - ratio) / frequency;
+    give.share = share;
+    return give;
+}
+
+// Overlap that nothing pressed in was found as it is: made so, or come to beside what contacts had
+// looked for. Its spring would give back what nobody put in; it is let go at the push limit.
+void WholeIsland::find_unearned(const Conditions& conditions)
+{
+    // As the step begins: later substeps see on their way what presses, and would take what a part
+    // of such a spring gives for a load that had pressed the rest of it in.
+    for (std::size_t i = 0; i < unearned_.size(); ++i)
+        unearned_[i] = std::min(unearned_[i], std::max(0.0, -gaps_[i]));
+    if (!unearned_.empty()) return;
+    const double time = conditions.substep();
+    unearned_.assign(touches_.size(), 0);
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        if (!(gaps_[i] < -kShallow * touches_[i].extent)) continue;
+        const double stiffness = give_of(i, conditions.settings, time).stiffness;
+        if (!(stiffness > 0)) continue;
+        const Vec3& normal = points_[i].normal;
+        const double borne = normal.dot(points_[i].impulse) / (time * stiffness);
+        const double speed = approach(i, after_);
+        const double ease = ease_along(points_[i], touches_[i].normal, after_);
+        double pressed = kPressed * std::sqrt(borne * borne + speed * speed / (stiffness * ease));
+        // Who bore nothing yet has come in since, and no further than he closes.
+        if (!(borne > 0)) pressed = std::min(pressed, std::max(0.0, -speed * time));
+        unearned_[i] = std::max(0.0, -gaps_[i] - pressed);
+    }
+}
+
+// What friction held as the step began, N.
+void WholeIsland::find_held(double time)
+{
+    if (!held_.empty()) return;
+    for (const DirectPoint& point : points_)
+        held_.emplace_back((point.impulse - point.normal * point.normal.dot(point.impulse)) / time);
+}
+
+// A spring that holds what has slid since the two stick, with a damper that stops half of the
+// sliding in a substep, all their points together, up to what friction bears under a push, N s.
+void WholeIsland::resist_sliding(std::size_t at, double push, double time, std::uint32_t share)
+{
+    DirectPoint& point = points_[at];
+    const auto across = [&](const Vec3& v) { return Vec3(v - point.normal * point.normal.dot(v)); };
+    const Vec3 sliding = across(velocity_between(point, before_));
+    const double ease = widest_ease(point, before_) * share;
+    if (!(ease > 0)) return;
+    const double most = point.friction * push;
+    const auto within = [&](const Vec3& impulse) -> Vec3 {
+        const double size = std::sqrt(impulse.squaredNorm());
+        return size > most ? Vec3(impulse * (most / size)) : impulse;
+    };
+    const Vec3 spring = across(held_[at]) * time - sliding * (kSwing * kSwing / ease);
+    held_[at] = within(spring) / time;
+    const Vec3 impulse = within(spring - sliding * (kSlidingDamped / ease));
+    point.impulse += impulse;
+    apply_impulse(point, impulse, after_);
+}
+
+// Dampers that stop half of the turning between two, likewise.
+void WholeIsland::damp_turning(DirectPoint& point, double push, std::uint32_t share)
+{
+    const Vec3 turning = spin_between(point, before_);
+    const double fast = std::sqrt(turning.squaredNorm());
+    if (!(fast > 0)) return;
+    const double ease = ease_about(point, turning / fast, before_) * share;
+    if (!(ease > 0)) return;
+    const Vec3 torque = turning * (-std::min(0.5 / ease, point.rolling * push / fast));
+    point.torque += torque;
+    apply_torque(point, torque, after_);
+}
+
+// What comes in faster than what rests may, and touches within that time, goes by the law of
+// impacts: a spring of auto, which a few parts of a substep turn round, gives back by its damper
+// and the step more or less than restitution has it. A spring that is asked for is what it is.
+void WholeIsland::throw_back(const Conditions& conditions, double time)
+{
+    const Settings& settings = conditions.settings;
+    if (settings.penalty_stiffness > 0 || settings.penalty_damping >= 0) return;
+    // Slower than what gravity gives in two steps is resting, not bouncing.
+    double greatest = 0;
+    for (std::size_t i = 0; i < touches_.size(); ++i)
+        greatest = std::max(greatest, -approach(i, after_));
+    const double least =
+        std::max(2 * conditions.gravity.norm() * settings.dt, kRounding * greatest);
+    if (!(greatest > least)) return;
+    struck_ = after_;
+    for (int round = 0; round < kImpactRounds; ++round) {
+        touching_.clear();
+        for (std::size_t i = 0; i < touches_.size(); ++i) {
+            const double speed = approach(i, struck_);
+            if (speed < -least && gaps_[i] + speed * time < 0) touching_.push_back(i);
+        }
+        if (touching_.empty()) break;
+        struck_impulse_.assign(touches_.size(), 0);
+        reflect_in_order(least);
+        for (const std::size_t at : touching_) {
+            points_[at].impulse += points_[at].normal * struck_impulse_[at];
+            if (struck_impulse_[at] > 0) rub(struck_impulse_[at], points_[at], struck_);
+        }
+    }
+    after_ = struck_;
+}
+
+// All forces are of the velocities before, so that no order of touches has a say.
+void WholeIsland::push_by_forces(const Conditions& conditions, double time)
+{
+    place_points();
+    throw_back(conditions, time);
+    // The velocities before are those that took the bodies here: of the middle of the last part.
+    carry_arms(-time / 2, conditions.settings.dt);
+    move_freely(conditions, time);
+    count_touching(conditions, 0);
+    // What is too stiff for the cut, with those who came to press in the middle of a substep, gives
+    // way as far as that bears.
+    Settings softened = conditions.settings;
+    softened.penalty_stiffness = softened.penalty_damping = -1;
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        const double pressed = -gaps_[i] - unearned_[i];
+        const double let_go = unearned_[i] / (kStepsToPart * conditions.settings.dt);
+        unearned_[i] -= std::min(let_go, conditions.settings.push_limit) * time;
+        if (!(pressed > 0)) {
+            held_[i].setZero();
+            continue;
+        }
+        DirectPoint& point = points_[i];
+        Give give = give_of(i, conditions.settings, time);
+        if (give.longest < time) give = give_of(i, softened, time);
+        const double force =
+            std::max(0.0, give.stiffness * pressed - give.damping * approach(i, before_));
+        const Vec3 impulse = point.normal * (force * time);
+        point.impulse += impulse;
+        apply_impulse(point, impulse, after_);
+        if (point.friction > 0) resist_sliding(i, force * time, time, give.share);
+        if (point.rolling > 0) damp_turning(point, force * time, give.share);
+    }
+    going_ = after_;
+    advance(time);
+}
+
+void WholeIsland::penalise(const Conditions& conditions)
+{
+    const double time = conditions.substep();
+    place_points();
+    turn_inertias();
+    count_touching(conditions, time);
+    find_unearned(conditions);
+    find_held(time);
+    double longest = time;
+    if (following_) longest = std::min(longest, kWithinSprings * following_->longest_step());
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+        points_[i].impulse = points_[i].torque = Vec3::Zero();
+        if (!presses(i, conditions, time)) continue;
+        const double bears = give_of(i, conditions.settings, time).longest;
+        if (bears > 0 && bears < time) longest = std::min(longest, kWithin * bears);
+    }
+    const int cuts = static_cast<int>(
+        std::min(std::ceil(time / longest), static_cast<double>(kMostPenaltyCuts)));
+    cuts_ = std::max(cuts_, cuts);
+    for (int cut = 0; cut < cuts; ++cut) push_by_forces(conditions, time / cuts);
+}
+
+}  // namespace throng

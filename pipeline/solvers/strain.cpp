@@ -1,0 +1,311 @@
+// Strain: how much too great the loads of islands are for their contacts.
+#include "kernels/parallel/blocks.hpp"
+#include "kernels/solver/coloring.hpp"
+#include "pipeline/solvers/escalation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kIslands = 8;  // a block
+// How much of what a step shows counts: a strain of twice what is too great is believed after three
+// steps, one of four times at once.
+constexpr double kShare = 0.25;
+// s, in which gravity makes what still counts as rest: no impact, no walk.
+constexpr double kResting = 1.0 / 15;
+// A strain is let go once it is this much less: loads that tremble, and an impact as something was
+// set down, do not change from step to step how they are borne. Nor does what is too great to be
+// solved exactly at first, is tossed by its contacts as they turn stiffer, and bears nothing for a
+// moment: how stubborn it is fades.
+constexpr double kLasting = 3, kFading = 0.95;
+// Overlap from which an island is not left to finer substeps, as a share of what its load makes
+// with the usual ones.
+constexpr double kDeep = 0.5;
+// A blow is too much where somebody so much lighter than who he touches is driven in by such a
+// share of the extent in a step; and what is small enough to be solved exactly at once.
+constexpr double kHeavy = 8, kDriven = 0.1, kCrushed = 2 * kExactStrain;
+constexpr std::size_t kCrushedContacts = 16;
+constexpr double kAllBut = 0.999999;  // for the last digits of a product in another order
+
+// The direct solver needs no help, and pushes and forces go island by island.
+bool helps(const Settings& settings)
+{
+    return settings.escalation == Escalation::auto_ && settings.response == Response::impulse
+        && settings.solver != Solver::direct;
+}
+
+// How easily a body gives way, 1/kg. Who cannot be moved, only turned, gives way by levers about as
+// much as his mass would.
+double ease_of(const Masses& masses, std::uint32_t body)
+{
+    const double ease = masses.inverse_mass[body], mass = masses.mass[body];
+    return ease == 0 && mass > 0 ? 1 / mass : ease;
+}
+
+// N s, of all points; and times the ease with which the lesser mass gives way: m/s.
+template <class Real>
+double
+speed_borne(const ActiveContacts::Entry& entry, const Contact<Real>& contact, const Masses& masses)
+{
+    double impulse = 0;
+    for (std::size_t k = 0; k < entry.points; ++k) impulse += double{contact.points[k].impulse};
+    return impulse * (ease_of(masses, entry.body_a) + ease_of(masses, entry.body_b));
+}
+
+template <class Real>
+class Gauge {
+public:
+    Gauge(const Conditions& conditions,
+          const Islands& islands,
+          const Layout& layout,
+          const ActiveContacts& active,
+          const Masses& masses,
+          const Velocities& velocities,
+          const RowMaker<Real>& maker,
+          Stubborn& stubborn)
+        : islands_(islands), layout_(layout), active_(active), masses_(masses),
+          velocities_(velocities), maker_(maker), stubborn_(stubborn),
+          resting_(kResting * conditions.gravity.norm()), step_(conditions.settings.dt)
+    {
+        for (int points = 1; points <= 4; ++points) {
+            const double omega = contact_frequency(conditions, points);
+            per_speed_[points - 1] =
+                1 / (omega * omega * conditions.substep() * rigid_overlap(1, points));
+        }
+    }
+
+    // 0 for an island that is not stubborn; below 0 for one to be solved exactly in the next step.
+    double strain_of(std::size_t island) const
+    {
+        const std::size_t bodies = islands_.body_begin[island + 1] - islands_.body_begin[island];
+        const auto contacts = contacts_of(island);
+        // Who lies on what stands still, by one contact, has nobody to wait for.
+        if (contacts.size() < 2 || contacts.size() > kBatchContacts) return 0;
+        const double before = strain_before(island);
+        // What is loaded by so little that no height makes it too much is most of what there is.
+        if (before == 0 && !gives_more_than(kRelieved / double(bodies), contacts)) return 0;
+        double most = 0;
+        for (const std::uint32_t contact : contacts) most = std::max(most, give_of(contact));
+        // Pushed apart otherwise, what was driven in is thrown.
+        if (before >= kCrushed && overlaps(contacts, kDriven)) return -kCrushed;
+        if (!(std::max(most * double(bodies), before) > kRelieved)) return 0;
+        const double strain = most * height_of(island);
+        const bool rests = is_resting(island);
+        if (!(before > 1))
+            return rests ? begun(strain, before) : is_crushed(island) ? -kCrushed : 0;
+        const double faded =
+            contacts.size() > kExactContacts ? kFading * std::min(before, kStrained) : 0;
+        if (!(std::max(strain, faded) > kRelieved)) return 0;
+        const double lasting =
+            std::max({strain, faded, std::min({before, kLasting * strain, kExactStrain})});
+        return rests && is_deep(contacts) ? -lasting : lasting;
+    }
+
+private:
+    // A heap that settles trembles.
+    static double begun(double strain, double before)
+    {
+        const double now = before + kShare * (strain / kStrained - before);
+        return now >= 1 && strain > kStrained ? -strain : std::min(now, 1.0);
+    }
+
+    std::span<const std::uint32_t> contacts_of(std::size_t island) const
+    {
+        const std::uint32_t begin = islands_.contact_begin[island];
+        return std::span(islands_.contacts)
+            .subspan(begin, islands_.contact_begin[island + 1] - begin);
+    }
+    std::span<const std::uint32_t> bodies_of(std::size_t island) const
+    {
+        const std::uint32_t begin = islands_.body_begin[island];
+        return std::span(islands_.bodies).subspan(begin, islands_.body_begin[island + 1] - begin);
+    }
+
+    // How far its load presses a contact in, over where it turns rigid. The lesser of the two
+    // masses is what its points have to hold it by.
+    double give_of(std::uint32_t place) const
+    {
+        const ActiveContacts::Entry& entry = active_.entries[place];
+        if (!(entry.extent > 0)) return 0;
+        return speed_borne(entry, maker_.contact_of(entry), masses_) * per_speed_[entry.points - 1u]
+            / double{entry.extent};
+    }
+
+    // Whether any contact does; give_of() without its division.
+    bool gives_more_than(double least, std::span<const std::uint32_t> contacts) const
+    {
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            const double held = speed_borne(entry, maker_.contact_of(entry), masses_)
+                * per_speed_[entry.points - 1u];
+            return held > kAllBut * least * double{entry.extent};
+        });
+    }
+
+    // By mass, as a light body between heavy ones may tremble.
+    bool is_resting(std::size_t island) const
+    {
+        double mass = 0, twice_energy = 0;
+        for (const std::uint32_t body : bodies_of(island)) {
+            mass += masses_.mass[body];
+            twice_energy += masses_.mass[body] * velocities_.linear[body].squaredNorm();
+        }
+        return twice_energy < mass * resting_ * resting_;
+    }
+
+    // Whether a contact still overlaps about as it did before it was escalated.
+    bool is_deep(std::span<const std::uint32_t> contacts) const
+    {
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            const double overlap{maker_.contact_of(entry).overlap(entry.points)};
+            const double held = give_of(place) * rigid_overlap(double{entry.extent}, entry.points);
+            return overlap > kDeep * held;
+        });
+    }
+
+    // Whether somebody light who touches somebody heavy is still driven in after the step.
+    bool is_crushed(std::size_t island) const
+    {
+        const auto contacts = contacts_of(island);
+        if (contacts.size() > kCrushedContacts) return false;
+        const auto entry = [&](std::uint32_t place) -> const ActiveContacts::Entry& {
+            return active_.entries[place];
+        };
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            if (!(approach(entry(place)) * step_ > kDriven * double{entry(place).extent}))
+                return false;
+            const std::uint32_t light = lighter(entry(place));
+            return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t other) {
+                const std::uint32_t a = entry(other).body_a, b = entry(other).body_b;
+                return (a == light && is_heavy_for(b, light))
+                    || (b == light && is_heavy_for(a, light));
+            });
+        });
+    }
+
+    std::uint32_t lighter(const ActiveContacts::Entry& entry) const
+    {
+        const auto& ease = masses_.inverse_mass;
+        return ease[entry.body_a] > ease[entry.body_b] ? entry.body_a : entry.body_b;
+    }
+    // Of who can be moved.
+    bool is_heavy_for(std::uint32_t body, std::uint32_t light) const
+    {
+        return masses_.inverse_mass[body] > 0 && masses_.mass[body] > kHeavy * masses_.mass[light];
+    }
+
+    // m/s, of the middles of two bodies.
+    double approach(const ActiveContacts::Entry& entry) const
+    {
+        const Vec3T<Real>& normal = maker_.contact_of(entry).normal;
+        return (velocities_.linear[entry.body_a] - velocities_.linear[entry.body_b])
+            .dot(normal.template cast<double>());
+    }
+
+    // Whether a contact overlaps by more than a share of the extent.
+    bool overlaps(std::span<const std::uint32_t> contacts, double share) const
+    {
+        if (contacts.size() > kExactContacts) return false;
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            const double overlap{maker_.contact_of(entry).overlap(entry.points)};
+            return overlap > share * double{entry.extent};
+        });
+    }
+
+    // Bodies on the shortest way down to what stands still, of the one furthest from it.
+    int height_of(std::size_t island) const
+    {
+        constexpr int kUnreached = 0xffff;
+        const auto height = [&](std::uint32_t body) -> int {
+            const std::uint32_t slot = layout_.slot[body];
+            return slot == Layout::kNoSlot ? 0 : stubborn_.height[slot];
+        };
+        const auto lower = [&](std::uint32_t body, int below) {
+            if (height(body) <= below + 1) return false;
+            stubborn_.height[layout_.slot[body]] = static_cast<std::uint16_t>(below + 1);
+            return true;
+        };
+        for (const std::uint32_t body : bodies_of(island))
+            stubborn_.height[layout_.slot[body]] = kUnreached;
+        for (bool lowered = true; lowered;) {
+            lowered = false;
+            for (const std::uint32_t contact : contacts_of(island)) {
+                const ActiveContacts::Entry& entry = active_.entries[contact];
+                lowered = lower(entry.body_a, height(entry.body_b)) || lowered;
+                lowered = lower(entry.body_b, height(entry.body_a)) || lowered;
+            }
+        }
+        int highest = 1;
+        for (const std::uint32_t body : bodies_of(island))
+            if (height(body) != kUnreached) highest = std::max(highest, height(body));
+        return highest;
+    }
+
+    double strain_before(std::size_t island) const
+    {
+        if (stubborn_.strained.empty()) return 0;
+        double most = 0;
+        for (const std::uint32_t body : bodies_of(island))
+            most = std::max(most, std::abs(double{stubborn_.of(body)}));
+        return most;
+    }
+
+    const Islands& islands_;
+    const Layout& layout_;
+    const ActiveContacts& active_;
+    const Masses& masses_;
+    const Velocities& velocities_;
+    const RowMaker<Real>& maker_;
+    Stubborn& stubborn_;
+    double resting_;       // m/s
+    double step_;          // s
+    double per_speed_[4];  // s, by points, less one: overlap over the rigid share of the extent
+};
+
+}  // namespace
+
+template <class Real>
+void note_strain(const Conditions& conditions,
+                 const Islands& islands,
+                 const Layout& layout,
+                 const ActiveContacts& active,
+                 const Masses& masses,
+                 const Velocities& velocities,
+                 const RowMaker<Real>& maker,
+                 Stubborn& stubborn)
+{
+    const std::size_t count = helps(conditions.settings) ? islands.size() : 0;
+    stubborn.of_island.resize(count);
+    stubborn.height.resize(layout.body_of_slot.size());
+    const Gauge<Real> gauge(conditions, islands, layout, active, masses, velocities, maker,
+                            stubborn);
+    for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) stubborn.of_island[i] = float(gauge.strain_of(i));
+    });
+
+    for (const std::uint32_t body : stubborn.strained) stubborn.forget(body);
+    stubborn.strained.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (stubborn.of_island[i] == 0) continue;
+        stubborn.strain.resize(layout.slot.size(), 0);
+        for (std::uint32_t k = islands.body_begin[i]; k < islands.body_begin[i + 1]; ++k) {
+            stubborn.strain[islands.bodies[k]] = stubborn.of_island[i];
+            stubborn.strained.push_back(islands.bodies[k]);
+        }
+    }
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void note_strain<Real>(const Conditions&, const Islands&, const Layout&,              \
+                                    const ActiveContacts&, const Masses&, const Velocities&,       \
+                                    const RowMaker<Real>&, Stubborn&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng

@@ -1,0 +1,221 @@
+// Stages: the step as a list of signatures, in the order in which one thread would run them.
+//
+// This is the wiring. A const parameter is read, the others are written, and a stage can reach
+// nothing else. step_table.cpp says which effects call for each.
+#pragma once
+
+#include "pipeline/step/step_data.hpp"
+
+namespace throng {
+
+/// Sets the velocities that the user drives.
+void drive_bodies(const Drives&, const BodyStates&, Velocities&);
+
+/// Boxes round the shapes of what moves: a body within its margin costs no more than a look.
+void update_bounds(const Conditions&,
+                   const Shapes&,
+                   const Colliders&,
+                   const Poses&,
+                   const Velocities&,
+                   const BodyStates&,
+                   Bounds&);
+
+/// Boxes into pairs; those that live on keep what they know.
+void find_pairs(const Bounds&, const Shapes&, const Colliders&, const PairFilter&, Finder&, Pairs&);
+
+/// Pairs of convex shapes into contacts, impulses carried over.
+template <class Real>
+void collide_convex(const Conditions&,
+                    const Pairs&,
+                    const Shapes&,
+                    const Colliders&,
+                    const Bounds&,
+                    const Poses&,
+                    const BodyStates&,
+                    ConvexContacts<Real>&,
+                    MethodPairs&);
+
+/// Pairs with a solid: several contacts each, or what they had while they hardly moved.
+template <class Real>
+void collide_solids(const Conditions&,
+                    const Pairs&,
+                    const Shapes&,
+                    const Colliders&,
+                    const Bounds&,
+                    const Poses&,
+                    const BodyStates&,
+                    SolidContacts<Real>&);
+
+/// Convex shapes against triangle meshes.
+template <class Real>
+void collide_meshes(const Conditions&,
+                    const Pairs&,
+                    const Shapes&,
+                    const Colliders&,
+                    const Bounds&,
+                    const Poses&,
+                    const BodyStates&,
+                    MeshContacts<Real>&);
+
+/// Wakes whoever is touched by somebody awake, with all that fell asleep with it.
+template <class Real>
+void wake_touched(const Pairs&,
+                  const Colliders&,
+                  const Velocities&,
+                  const ConvexContacts<Real>&,
+                  const SolidContacts<Real>&,
+                  Beds&,
+                  BodyStates&,
+                  Rest&);
+
+/// Contacts with edges and sides of colliders that lie flush with one that bears the body end here.
+template <class Real>
+void remove_ghost_contacts(const Pairs&,
+                           const Shapes&,
+                           const Colliders&,
+                           const Bounds&,
+                           const Poses&,
+                           const Velocities&,
+                           const BodyStates&,
+                           ConvexContacts<Real>&,
+                           MeshContacts<Real>&);
+
+/// All kinds of contact into one order: those that this step has to solve.
+template <class Real>
+void gather_contacts(const Pairs&,
+                     const Colliders&,
+                     const Surfaces&,
+                     const BodyStates&,
+                     const ConvexContacts<Real>&,
+                     const MeshContacts<Real>&,
+                     const SolidContacts<Real>&,
+                     ActiveContacts&);
+
+/// Contacts into islands, with those that springs join to who is in one.
+void split_islands(
+    const ActiveContacts&, const BodyStates&, const Forces&, IslandFinder&, Islands&);
+
+/// Stubborn islands by how stubborn they are: who gets more substeps, who the direct solver.
+void escalate_islands(const Conditions&, const Islands&, Stubborn&);
+
+/// Islands into batches, slices, colors and blocks.
+void color_rows(const Conditions&,
+                const Islands&,
+                const Stubborn&,
+                const ActiveContacts&,
+                const BodyStates&,
+                const Poses&,
+                Painter&,
+                Layout&);
+
+/// Forces that stay as they are through the step into what they do to the velocities of bodies that
+/// touch something. Those that follow the bodies are asked in each substep; and who is in flight
+/// asks for itself, as often as its integrator does.
+void apply_forces(const Conditions&,
+                  const Forces&,
+                  const Rest&,
+                  const Poses&,
+                  const Velocities&,
+                  const Masses&,
+                  const BodyStates&,
+                  Pulls&);
+
+/// Bodies into solver bodies, and room for the rows of their contacts.
+template <class Real>
+void prepare_rows(const Conditions&,
+                  const Layout&,
+                  const Poses&,
+                  const Velocities&,
+                  const Masses&,
+                  const BodyStates&,
+                  const Pulls&,
+                  const Drives&,
+                  Rows<Real>&);
+
+/// Contacts into rows, rows into impulses, velocities and poses. Substeps live here: see
+/// solve_table().
+template <class Real>
+void solve_impulses(const Conditions&,
+                    const Islands&,
+                    const Layout&,
+                    const ActiveContacts&,
+                    const Colliders&,
+                    const Masses&,
+                    const Forces&,
+                    const Pulls&,
+                    const Drives&,
+                    Rows<Real>&,
+                    ConvexContacts<Real>&,
+                    MeshContacts<Real>&,
+                    SolidContacts<Real>&,
+                    Poses&,
+                    Velocities&,
+                    Parting&,
+                    Stubborn&,
+                    Trouble&);
+
+/// Dynamic bodies in place of all stages of contact, each with those that it may meet in this step:
+/// carried from touch to touch, so that none ever overlap (back_up), or by halves, where what would
+/// end in overlap is done again as two pieces, down to the least (subdivide).
+void carry_groups(const Conditions&,
+                  const Shapes&,
+                  const Surfaces&,
+                  const PairFilter&,
+                  const Colliders&,
+                  const BodyStates&,
+                  const Masses&,
+                  const Forces&,
+                  const Drives&,
+                  Poses&,
+                  Velocities&,
+                  Flights&,
+                  Islands&,
+                  CarriedContacts&,
+                  Trouble&);
+
+/// Bodies that touch nothing: velocities into poses.
+void integrate_poses(const Conditions&,
+                     const Islands&,
+                     const Masses&,
+                     const BodyStates&,
+                     const Forces&,
+                     Flights&,
+                     Poses&,
+                     Velocities&,
+                     Trouble&);
+
+/// Bodies that turned non-finite stand still from now on.
+void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
+
+/// Bodies that go so far in a step that they could pass through something: held where they first
+/// meet it, for the contacts of the next step.
+template <class Real>
+void sweep_fast(const Conditions&,
+                const Shapes&,
+                const Colliders&,
+                const Surfaces&,
+                const PairFilter&,
+                const Forces&,
+                const Masses&,
+                const Bounds&,
+                const Pairs&,
+                const BodyStates&,
+                const Rest&,
+                const ConvexContacts<Real>&,
+                const MeshContacts<Real>&,
+                Poses&,
+                Velocities&,
+                FastBodies&);
+
+/// Islands that have been quiet long enough fall asleep.
+void rest_islands(const Conditions&,
+                  const Drives&,
+                  const Forces&,
+                  const Islands&,
+                  const Parting&,
+                  BodyStates&,
+                  Beds&,
+                  Velocities&,
+                  Rest&);
+
+}  // namespace throng

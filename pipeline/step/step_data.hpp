@@ -1,0 +1,147 @@
+// Step data: everything that travels down the step, each kind once.
+#pragma once
+
+#include "broadphase/broadphase.hpp"
+#include "broadphase/pair_filter.hpp"
+#include "kernels/data/bodies.hpp"
+#include "kernels/data/bounds.hpp"
+#include "kernels/data/contacts.hpp"
+#include "kernels/data/forces.hpp"
+#include "kernels/data/islands.hpp"
+#include "kernels/data/pairs.hpp"
+#include "kernels/data/rows.hpp"
+#include "kernels/solver/coloring.hpp"
+#include "kernels/solver/islands.hpp"
+#include "narrowphase/alternatives/method_contacts.hpp"
+#include "pipeline/step/conditions.hpp"
+
+#include <tuple>
+
+namespace throng {
+
+/// A substep is cut no finer than this for penalty forces.
+inline constexpr int kMostPenaltyCuts = 1000;
+
+/// What a step has to tell of trouble.
+struct Trouble {
+    std::vector<std::uint32_t>
+        quarantined;             // bodies that turned non-finite in this step, ascending
+    double direct_residual = 0;  // greatest of the islands that were solved directly in this step
+    std::uint64_t direct_left = 0;       // islands in it that were too great for that
+    std::vector<double> residual_of;     // scratch: [batches]
+    std::uint64_t held_groups = 0;       // in it that could not be carried on without overlap
+    std::uint64_t deep_pieces = 0;       // of it that ended too deep, with no halving left
+    double deepest = 0;                  // m, overlap at the end of any piece of it
+    int penalty_cuts = 1;                // most that penalty forces cut a substep into
+    std::vector<int> cuts_of;            // scratch: [batches]
+    BlockLists<std::uint32_t> of_block;  // scratch
+};
+
+/// Who is moved apart from what it was made deep in (see solvers/parting.hpp), from step to step.
+struct Parting {
+    static constexpr std::uint16_t kPlaced = 0x4000;
+
+    std::vector<std::uint16_t> steps;   // [bodies] for which it may go on, and kPlaced: see place()
+    std::vector<std::uint8_t> batches;  // scratch: [batches] 1: somebody in it is moved apart
+    bool some = false;                  // somebody is, or was placed
+
+    /// Notes that a body was put where it is by the program, since the last step.
+    void place(std::size_t body)
+    {
+        if (steps.size() <= body) steps.resize(body + 1, 0);
+        steps[body] |= kPlaced;
+        some = true;
+    }
+    bool parts(std::size_t body) const
+    {
+        return body < steps.size() && (steps[body] & ~kPlaced) != 0;
+    }
+};
+
+/// Islands whose loads are too much for the solver (see solvers/escalation.hpp), from step to step.
+///
+///   strain    [bodies] that of a stubborn island in the last step, else 0; may be shorter
+///   strained  bodies whose strain may be above 0
+///   efforts   [islands] of this step; empty while nobody is stubborn
+///   escalated, missed  islands of this step that were, and that the budget did not reach
+struct Stubborn {
+    std::vector<float> strain;
+    std::vector<std::uint32_t> strained;
+    std::vector<Effort> efforts;
+    std::size_t escalated = 0, missed = 0;
+    std::vector<float> of_island;       // scratch: [islands] strain
+    std::vector<std::uint16_t> height;  // scratch: [solver bodies] above what stands still
+
+    float of(std::uint32_t body) const { return body < strain.size() ? strain[body] : 0; }
+    void forget(std::uint32_t body)
+    {
+        if (body < strain.size()) strain[body] = 0;
+    }
+};
+
+/// Who awoke and who fell asleep in this step.
+struct Rest {
+    std::vector<std::uint32_t> awoken, rested;
+};
+
+/// Who was swept in this step, and who was held.
+///
+///   held  bodies, ascending
+struct FastBodies {
+    std::vector<std::uint32_t> held;
+    std::vector<std::uint8_t> flags;  // [bodies] scratch, all 0 between stages
+};
+
+/// What contacts of bodies that are carried from touch to touch came to in this step.
+///
+///   force     [bodies] N on each, friction included, the mean over the step
+///   pairs     that may have met in the last span or piece of it
+///   touching  of those, that touched
+///   points    of those
+///   groups    of bodies of which some touched
+struct CarriedContacts {
+    std::vector<Vec3> force;
+    std::size_t pairs = 0, touching = 0, points = 0, groups = 0;
+};
+
+// The finder of pairs, as one thing among the data: it remembers from step to step.
+struct Finder {
+    AnyPairFinder finder;
+};
+
+template <class Real>
+using StepData = std::tuple<Conditions,
+                            Shapes,
+                            Surfaces,
+                            PairFilter,
+                            Drives,
+                            Forces,
+                            Poses,
+                            Velocities,
+                            Masses,
+                            BodyStates,
+                            Beds,
+                            Colliders,
+                            Bounds,
+                            Finder,
+                            Pairs,
+                            ConvexContacts<Real>,
+                            MethodPairs,
+                            MeshContacts<Real>,
+                            SolidContacts<Real>,
+                            Pulls,
+                            Flights,
+                            ActiveContacts,
+                            IslandFinder,
+                            Islands,
+                            Stubborn,
+                            Painter,
+                            Layout,
+                            Rows<Real>,
+                            Parting,
+                            CarriedContacts,
+                            Trouble,
+                            Rest,
+                            FastBodies>;
+
+}  // namespace throng

@@ -1,0 +1,19 @@
+// Step table: the stages as rows, in order, each with the effects that call for it.
+#pragma once
+
+#include "pipeline/step/stage.hpp"
+
+#include <span>
+#include <vector>
+
+namespace throng {
+
+/// All rows, in the order in which one thread runs them.
+template <class Real>
+std::span<const Stage<Real>> step_table();
+
+/// The rows that a set of effects calls for, in the same order.
+template <class Real>
+std::vector<Stage<Real>> stages_for(Set<Effect> effects);
+
+}  // namespace throng

@@ -1,0 +1,235 @@
+#include "pipeline/world/energy_ledger.hpp"
+
+#include "kernels/dynamics/energy.hpp"
+#include "kernels/dynamics/integrators.hpp"
+#include "pipeline/world/world_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+// Roundings of a velocity in a substep: what is added to it, a few times over.
+constexpr double kRoundings = 8;
+
+template <class Number>
+Number of_body(const std::vector<Number>& list, std::uint32_t body, const Number& none)
+{
+    return body < list.size() ? list[body] : none;
+}
+
+// Whether a body goes its own way, whatever pushes it. A driven one may be dynamic.
+bool moves_by_itself(const World::State& state, std::uint32_t body)
+{
+    const BodyStates& states = state.get<BodyStates>();
+    if (states.carries(body)) return true;
+    if (states.kind[body] != BodyKind::kinematic) return false;
+    const Velocities& velocities = state.get<Velocities>();
+    return !velocities.linear[body].isZero(0) || !velocities.angular[body].isZero(0);
+}
+
+// s, by which velocities of what only falls are behind its places. Kicked, then moved, it has in
+// each place the velocity of half a substep before: beside the height of that time its energy stays
+// what it is, beside that of now it is less on the way down than on the way up, and whoever bounces
+// would seem to win by it.
+double lag_of(const Conditions& conditions)
+{
+    const bool kicked = falls_by_kicks(conditions.settings.integrator);
+    return kicked && !conditions.effects.meets(kCarried) ? conditions.substep() / 2 : 0;
+}
+
+// W, the most that drag in the wind gives at a velocity between two.
+double wind_power(double drag, const Vec3& wind, const Vec3& from, const Vec3& to)
+{
+    double most = 0;
+    for (const Vec3& v : {from, Vec3((from + to) / 2), to})
+        most = std::max(most, drag * (wind - v).dot(v));
+    return most;
+}
+
+// The same of what goes round a pivot, which may go any way in between, no faster than at either
+// end.
+double wind_power_round(double drag, const Vec3& wind, const Vec3& from, const Vec3& to)
+{
+    const double fastest = std::sqrt(std::max(from.squaredNorm(), to.squaredNorm()));
+    const double blows = wind.norm(), speed = std::min(fastest, blows / 2);
+    return drag * speed * (blows - speed);
+}
+
+}  // namespace
+
+void EnergyLedger::look(const World& world, Look& look) const
+{
+    const World::State& state = world.state();
+    const Masses& masses = state.get<Masses>();
+    const BodyStates& states = state.get<BodyStates>();
+    const Poses& poses = state.get<Poses>();
+    const Velocities& velocities = state.get<Velocities>();
+    const Forces& forces = state.get<Forces>();
+    const Vec3 gravity = world.gravity();
+    const double lag = lag_of(state.get<Conditions>());
+    look.bodies.assign(states.kind.size(), {});
+    for (std::uint32_t body = 0; body < look.bodies.size(); ++body) {
+        if (!states.dynamic(body)) continue;
+        OfBody& of = look.bodies[body];
+        of.place = state.center_of_mass(body);
+        of.velocity = state.velocity(body);
+        of.spin = velocities.angular[body];
+        of.kinetic = kinetic_energy_of(body, masses, poses, velocities);
+        const Vec3 then = forces.act_on(body) ? of.place : Vec3(of.place - lag * of.velocity);
+        of.potential =
+            attraction_of(forces, masses, poses, body) - masses.mass[body] * gravity.dot(then);
+        if (!forces.field) continue;
+        const Wrench wrench =
+            forces.field({body, state.get<Conditions>().time, masses.mass[body],
+                          Pose{of.place, poses.orientation[body]}, of.velocity, of.spin});
+        of.power = wrench.force.dot(of.velocity) + wrench.torque.dot(of.spin);
+    }
+    look.springs.clear();
+    for (const SpringForce& spring : forces.springs)
+        look.springs.push_back(spring_energy(spring, forces, poses));
+}
+
+// What cannot be moved joins nobody.
+void EnergyLedger::join_groups(const World& world)
+{
+    const World::State& state = world.state();
+    const BodyStates& states = state.get<BodyStates>();
+    const auto count = static_cast<std::uint32_t>(states.kind.size());
+    sets_.reset(count);
+    for (std::uint32_t body = 0; body < count; ++body) sets_.add(body);
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+        if (a != kNobody && b != kNobody && states.dynamic(a) && states.dynamic(b))
+            sets_.join(a, b);
+    };
+    for (const auto& entry : state.get<ActiveContacts>().entries) join(entry.body_a, entry.body_b);
+    for (const SpringForce& spring : state.get<Forces>().springs) join(spring.a, spring.b);
+}
+
+void EnergyLedger::mark_groups(const World& world)
+{
+    const World::State& state = world.state();
+    const BodyStates& states = state.get<BodyStates>();
+    const auto mark = [&](std::uint32_t body) {
+        if (body != kNobody && states.dynamic(body)) groups_[sets_.find(body)].driven = true;
+    };
+    const auto meet = [&](std::uint32_t a, std::uint32_t b) {
+        if (a != kNobody && moves_by_itself(state, a)) mark(b);
+        if (b != kNobody && moves_by_itself(state, b)) mark(a);
+    };
+    for (const std::uint32_t body : state.get<Drives>().body) mark(body);
+    for (const auto& entry : state.get<ActiveContacts>().entries) {
+        meet(entry.body_a, entry.body_b);
+        for (const std::uint32_t body : {entry.body_a, entry.body_b})
+            if (states.dynamic(body)) groups_[sets_.find(body)].touches = true;
+    }
+    for (const SpringForce& spring : state.get<Forces>().springs) meet(spring.a, spring.b);
+    // Who touches whom is not kept where the step is cut at touches.
+    if (!state.get<Conditions>().effects.meets(kCarried)) return;
+    bool any = !state.get<Drives>().body.empty();
+    for (std::uint32_t body = 0; body < states.kind.size(); ++body)
+        any = any || moves_by_itself(state, body);
+    for (OfGroup& group : groups_) {
+        group.driven = group.driven || any;
+        group.touches = true;
+    }
+}
+
+double EnergyLedger::work_on(const World& world, std::uint32_t body) const
+{
+    const Forces& forces = world.state().get<Forces>();
+    const double dt = world.settings().dt;
+    const OfBody &from = before_.bodies[body], &to = after_.bodies[body];
+    const Vec3 none = Vec3::Zero();
+    const Vec3 torque = of_body(forces.torque, body, none);
+    const auto power = of_body(forces.hangs, body, {}) != 0 ? wind_power_round : wind_power;
+    return of_body(forces.force, body, none).dot(to.place - from.place)
+        + dt
+        * (std::max(torque.dot(from.spin), torque.dot(to.spin))
+           + power(of_body(forces.linear_drag, body, 0.0), forces.wind, from.velocity, to.velocity)
+           + std::max(from.power, to.power));
+}
+
+void EnergyLedger::add_up(const World& world)
+{
+    const World::State& state = world.state();
+    const Settings& settings = world.settings();
+    const double digit = settings.precision == Precision::float_ ? 0x1p-24 : 0x1p-53;
+    for (std::uint32_t body = 0; body < groups_.size(); ++body) {
+        if (!state.get<BodyStates>().dynamic(body)) continue;
+        const OfBody &from = before_.bodies[body], &to = after_.bodies[body];
+        OfGroup& group = groups_[sets_.find(body)];
+        group.before += from.kinetic + from.potential;
+        group.after += to.kinetic + to.potential;
+        group.faster += to.kinetic - from.kinetic;
+        group.work += work_on(world, body);
+        group.rounding +=
+            kRoundings * settings.substeps * digit * std::max(from.kinetic, to.kinetic)
+            + kRoundings * 0x1p-53 * (std::abs(from.potential) + std::abs(to.potential));
+    }
+    const std::vector<SpringForce>& springs = state.get<Forces>().springs;
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+        const bool on_a = springs[i].a != kNobody && state.get<BodyStates>().dynamic(springs[i].a);
+        const std::uint32_t body = on_a ? springs[i].a : springs[i].b;
+        if (body == kNobody) continue;
+        OfGroup& group = groups_[sets_.find(body)];
+        group.before += before_.springs[i];
+        group.after += after_.springs[i];
+        group.rounding += kRoundings * 0x1p-53 * (before_.springs[i] + after_.springs[i]);
+    }
+}
+
+void EnergyLedger::enter(double change, std::uint64_t step)
+{
+    account_ += change;
+    if (account_ < lowest_) {
+        lowest_ = account_;
+        lowest_step_ = step;
+    }
+    if (account_ - lowest_ <= gained_) return;
+    gained_ = account_ - lowest_;
+    from_step_ = lowest_step_;
+    to_step_ = step;
+}
+
+// What is left of a rise after what contacts have taken lately.
+double EnergyLedger::pay_back(double rise)
+{
+    double lent = 0;
+    for (const double taken : taken_) lent += taken;
+    const double paid = std::min(rise, lent);
+    if (!(paid > 0)) return rise;
+    for (double& taken : taken_) taken *= 1 - paid / lent;
+    return rise - paid;
+}
+
+void EnergyLedger::before_step(const World& world) { look(world, before_); }
+
+void EnergyLedger::after_step(const World& world)
+{
+    look(world, after_);
+    join_groups(world);
+    groups_.assign(after_.bodies.size(), {});
+    mark_groups(world);
+    add_up(world);
+    double change = 0, by_contacts = 0, taken = 0;
+    for (const OfGroup& group : groups_) {
+        double rise = group.after - group.before - group.work;
+        if (group.driven || !std::isfinite(rise)) continue;
+        net_ += rise;
+        if (group.touches && rise > 0) rise = std::min(rise, std::max(0.0, group.faster));
+        if (rise > 0) rise = std::max(0.0, rise - group.rounding);
+        if (group.touches) (rise > 0 ? by_contacts : taken) += std::abs(rise);
+        if (!group.touches || rise < 0) change += rise;
+    }
+    change += pay_back(by_contacts);
+    taken_[world.report().step % taken_.size()] = taken;
+    double kinetic = 0;
+    for (const OfBody& body : after_.bodies) kinetic += body.kinetic;
+    greatest_kinetic_ = std::max(greatest_kinetic_, kinetic);
+    enter(change, world.report().step);
+}
+
+}  // namespace throng

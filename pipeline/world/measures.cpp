@@ -1,0 +1,259 @@
+// Measures: what a state is worth, from geometry and velocities alone.
+//
+// Nothing the solver believes goes in: overlaps are found afresh on the poses as they are.
+#include "kernels/dynamics/energy.hpp"
+#include "kernels/geometry/shape_bounds.hpp"
+#include "kernels/math/hash.hpp"
+#include "kernels/math/rotation.hpp"
+#include "narrowphase/dispatch.hpp"
+#include "narrowphase/solid/solid_pairs.hpp"
+#include "pipeline/contacts/recycled_manifolds.hpp"
+#include "pipeline/solvers/escalation.hpp"
+#include "pipeline/world/world_state.hpp"
+
+#include <algorithm>
+
+namespace throng {
+
+namespace {
+
+// Solids before meshes before all that is convex, and planes last.
+int comes_first(ShapeKind kind)
+{
+    return kind == ShapeKind::solid ? 3
+        : kind == ShapeKind::mesh   ? 2
+        : kind == ShapeKind::plane  ? 0
+                                    : 1;
+}
+
+double mesh_depth(const Shapes& shapes, ShapeRef mesh, ShapeRef other, const Pose& other_in_mesh)
+{
+    std::vector<TriangleManifold<double>> found;
+    collide_mesh<double>(shapes, mesh, other, other_in_mesh, 0.0, found);
+    double depth = 0;
+    for (const auto& touch : found)
+        for (int k = 0; k < touch.manifold.count; ++k)
+            depth = std::max(depth, -touch.manifold.points[static_cast<std::size_t>(k)].separation);
+    return depth;
+}
+
+double solid_depth(const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pose& other_in_solid)
+{
+    std::vector<PatchManifold> found;
+    collide_solid(shapes, solid, other, other_in_solid, 0.0, found);
+    double depth = 0;
+    for (const PatchManifold& patch : found)
+        for (int k = 0; k < patch.manifold.count; ++k)
+            depth = std::max(depth, -patch.manifold.points[static_cast<std::size_t>(k)].separation);
+    return depth;
+}
+
+void measure_overlaps(const World::State& state, Measures& measures)
+{
+    const Colliders& colliders = state.get<Colliders>();
+    const Shapes& shapes = state.get<Shapes>();
+    const BodyStates& states = state.get<BodyStates>();
+    const std::size_t count = colliders.size();
+    std::vector<Pose> placed(count);
+    std::vector<Box3> boxes(count);
+    std::vector<std::uint8_t> moving(count, 0);
+    std::vector<std::uint32_t> asked;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t body = colliders.body[i];
+        if (body == kNobody) continue;
+        placed[i] = state.get<Poses>().at(body) * colliders.local[i];
+        boxes[i] = shape_bounds(shapes, colliders.shape[i], placed[i]);
+        moving[i] = states.dynamic(body) ? 1 : 0;
+        asked.push_back(i);
+    }
+    std::vector<PairKey> pairs;
+    AnyPairFinder finder = make_finder(choose_finder(boxes, moving));
+    find_overlaps({boxes, moving, asked, true, &state.get<PairFilter>()}, finder, pairs);
+
+    std::vector<double> depth(pairs.size(), 0);
+    for_each_block(pairs.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::uint32_t a = first_of(pairs[i]), b = second_of(pairs[i]);
+            if (comes_first(colliders.shape[b].kind) > comes_first(colliders.shape[a].kind))
+                std::swap(a, b);
+            const ShapeRef shape_a = colliders.shape[a], shape_b = colliders.shape[b];
+            const Pose b_in_a = pose_seen_from_a(shapes, shape_b, placed[a], placed[b]);
+            depth[i] = shape_a.kind == ShapeKind::solid
+                ? solid_depth(shapes, shape_a, shape_b, b_in_a)
+                : shape_a.kind == ShapeKind::mesh ? mesh_depth(shapes, shape_a, shape_b, b_in_a)
+                                                  : overlap_depth(shapes, shape_a, shape_b, b_in_a);
+        }
+    });
+    double sum = 0;
+    for (const double d : depth) {
+        if (!(d > 0)) continue;
+        ++measures.overlapping_pairs;
+        sum += d;
+        measures.greatest_overlap = std::max(measures.greatest_overlap, d);
+    }
+    if (measures.overlapping_pairs > 0)
+        measures.mean_overlap = sum / static_cast<double>(measures.overlapping_pairs);
+}
+
+}  // namespace
+
+Measures World::measure() const
+{
+    Measures measures;
+    // Measuring changes nothing that a step would notice, so it may use the world's own threads.
+    auto& pool = const_cast<State&>(*state_).pool;  // NOLINT: threads are no part of the state
+    pool.run([&](std::size_t, std::size_t, std::size_t) { measure_overlaps(*state_, measures); });
+    const Masses& masses = state_->get<Masses>();
+    const BodyStates& states = state_->get<BodyStates>();
+    const Poses& poses = state_->get<Poses>();
+    const Velocities& velocities = state_->get<Velocities>();
+    for (std::uint32_t body = 0; body < states.kind.size(); ++body) {
+        if (!states.dynamic(body)) continue;
+        const Vec3 v = state_->velocity(body);
+        const Vec3& w = velocities.angular[body];
+        const Vec3 spin = in_world_axes(masses.inertia[body], poses.orientation[body]).matrix() * w;
+        measures.kinetic_energy += kinetic_energy_of(body, masses, poses, velocities);
+        measures.potential_energy -=
+            masses.mass[body] * gravity().dot(state_->center_of_mass(body));
+        measures.momentum += masses.mass[body] * v;
+        measures.angular_momentum += masses.mass[body] * poses.position[body].cross(v) + spin;
+    }
+    measures.potential_energy += potential_of(state_->get<Forces>(), masses, poses);
+    return measures;
+}
+
+std::string World::state_hash() const
+{
+    Hash hash;
+    const Poses& poses = state_->get<Poses>();
+    const Velocities& velocities = state_->get<Velocities>();
+    const BodyStates& states = state_->get<BodyStates>();
+    const auto add3 = [&](const auto& v) {
+        for (int k = 0; k < 3; ++k) hash.add(v[k]);
+    };
+    for (std::size_t body = 0; body < states.kind.size(); ++body) {
+        hash.add(std::uint64_t{static_cast<std::uint8_t>(states.kind[body])});
+        if (states.kind[body] == BodyKind::gone) continue;
+        add3(poses.position[body]);
+        for (int k = 0; k < 4; ++k) hash.add(poses.orientation[body].coeffs()[k]);
+        add3(velocities.linear[body]);
+        add3(velocities.angular[body]);
+        hash.add(std::uint64_t{states.awake[body]});
+        hash.add(states.quiet_time[body]);
+    }
+    const Stubborn& stubborn = state_->get<Stubborn>();
+    for (const std::uint32_t body : stubborn.strained) {
+        if (!is_stubborn(stubborn.of(body))) continue;
+        hash.add(std::uint64_t{body});
+        hash.add(stubborn.of(body));
+    }
+    const auto add_contact = [&](std::uint64_t key, const auto& contact) {
+        if (contact.count == 0) return;
+        hash.add(key);
+        for (int k = 0; k < contact.count; ++k) {
+            const auto& point = contact.points[static_cast<std::size_t>(k)];
+            hash.add(std::uint64_t{point.feature});
+            hash.add(point.impulse);
+        }
+        add3(contact.friction);
+        hash.add(contact.twist);
+        add3(contact.rolling);
+    };
+    const auto kind_of = [&](std::uint32_t collider) {
+        return state_->get<Colliders>().shape[collider].kind;
+    };
+    // What a contact will be told from as long as its pair hardly moves.
+    const auto add_found = [&](const auto& found) {
+        hash.add(found.reach);
+        add3(found.b_in_a.position);
+        for (int k = 0; k < 4; ++k) hash.add(found.b_in_a.orientation.coeffs()[k]);
+        add3(found.manifold.normal);
+        for (int k = 0; k < found.manifold.count; ++k) {
+            const auto& point = found.manifold.points[static_cast<std::size_t>(k)];
+            add3(point.position);
+            hash.add(point.separation);
+            hash.add(std::uint64_t{point.feature});
+        }
+    };
+    // Where a method of choice will begin, which may show in the last bits of what it finds.
+    for (const MethodMemory& memory : state_->get<MethodPairs>().of_pair) {
+        add3(memory.axis);
+        for (std::size_t i = 0; i < 4; ++i)
+            hash.add(std::uint64_t{memory.a[i]} << 32 | memory.b[i]);
+        hash.add(std::uint64_t{memory.count} << 32 | memory.kind);
+    }
+    std::visit(
+        [&](const auto& chosen) {
+            using Real =
+                std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
+                                   float, double>;
+            const Pairs& pairs = std::get<Pairs>(chosen.data);
+            const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
+            for (std::size_t i = 0; i < convex.of_pair.size(); ++i) {
+                const Contact<Real>* const contact = convex.at(i);
+                if (contact == nullptr) continue;
+                add_contact(pairs.keys[i], *contact);
+                if (convex.recycles
+                    && is_recycled(kind_of(first_of(pairs.keys[i])),
+                                   kind_of(second_of(pairs.keys[i]))))
+                    add_found(convex.found[convex.of_pair[i].contact]);
+            }
+            const auto add_many = [&](const ManyContacts<Real>& many) {
+                for (const auto& entry : many.entries) {
+                    hash.add(std::uint64_t{entry.part});
+                    add_contact(pairs.keys[entry.pair], entry.contact);
+                }
+            };
+            add_many(std::get<MeshContacts<Real>>(chosen.data));
+            const auto& solids = std::get<SolidContacts<Real>>(chosen.data);
+            add_many(solids);
+            for (const auto& found : solids.found.pairs)
+                for (std::uint32_t k = 0; k < found.count; ++k)
+                    add_found(FoundManifold<double>{solids.found.patches[found.first + k].manifold,
+                                                    found.b_in_a, found.reach});
+        },
+        state_->step);
+    return hash.text();
+}
+
+std::size_t World::memory_bytes() const
+{
+    const auto bytes = [](const auto&... arrays) {
+        return (std::size_t{0} + ... + (arrays.capacity() * sizeof(arrays[0])));
+    };
+    const Poses& p = state_->get<Poses>();
+    const Velocities& v = state_->get<Velocities>();
+    const Masses& m = state_->get<Masses>();
+    const BodyStates& s = state_->get<BodyStates>();
+    const Colliders& c = state_->get<Colliders>();
+    const Bounds& b = state_->get<Bounds>();
+    const Shapes& shapes = state_->get<Shapes>();
+    std::size_t sum =
+        bytes(p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass, m.inertia,
+              m.inverse_inertia, s.kind, s.awake, s.quiet_time, s.bed, c.body, c.shape, c.local,
+              c.material, c.inner_extent, c.outer_radius, b.boxes, b.reach, b.placed, b.near,
+              b.half[0], b.half[1], b.half[2], b.round, b.form, b.flags, shapes.boxes,
+              shapes.spheres, state_->center, state_->names, state_->generation);
+    std::visit(
+        [&](const auto& chosen) {
+            using Real =
+                std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
+                                   float, double>;
+            const Pairs& pairs = std::get<Pairs>(chosen.data);
+            const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
+            const auto& rows = std::get<Rows<Real>>(chosen.data);
+            const auto& methods = std::get<MethodPairs>(chosen.data);
+            sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.asked, convex.of_pair,
+                         convex.contacts, convex.free, convex.astray, convex.gathered, convex.order,
+                         convex.found, convex.found_gathered, convex.apart_until,
+                         convex.travels.placed, convex.travels.traveled, convex.travels.approach,
+                         methods.of_pair, methods.bounds, methods.fallbacks,
+                         std::get<ActiveContacts>(chosen.data).entries, rows.blocks, rows.points,
+                         rows.bounces, rows.rollings, rows.carries, rows.drives, rows.bodies,
+                         rows.inertias);
+        },
+        state_->step);
+    return sum;
+}
+
+}  // namespace throng

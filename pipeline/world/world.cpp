@@ -1,0 +1,532 @@
+#include "pipeline/world/world.hpp"
+
+#include "broadphase/margins.hpp"
+#include "kernels/solver/contact_rows.hpp"
+#include "kernels/solver/direct/direct.hpp"
+#include "pipeline/solvers/escalation.hpp"
+#include "pipeline/solvers/solve_batch.hpp"
+#include "pipeline/step/step_table.hpp"
+#include "pipeline/world/force_builder.hpp"
+#include "pipeline/world/world_state.hpp"
+#include "scene/dials.hpp"
+#include "scene/names.hpp"
+#include "scene/rules/scene_check.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+namespace throng {
+
+namespace {
+
+void check_settings(const Settings& settings, const char* caller)
+{
+    Scene scene;
+    scene.settings = settings;
+    if (const std::string trouble = check_scene(scene); !trouble.empty())
+        throw std::invalid_argument(std::string(caller) + ": " + trouble);
+}
+
+// N s, what the impacts of the last step gave a body. Islands that the direct solver took have it
+// among what their contacts hold.
+template <class Real>
+Vec3 impacts_on(std::uint32_t body,
+                const Layout& layout,
+                const ActiveContacts& active,
+                const Rows<Real>& rows)
+{
+    Vec3 impulse = Vec3::Zero();
+    if (rows.bounces.empty()) return impulse;
+    for (const Batch& batch : layout.batches) {
+        if (batch.direct) continue;
+        const Slice &first = layout.slices[batch.first_slice],
+                    &last = layout.slices[batch.first_slice + batch.slices - 1];
+        for (std::size_t i = first.first_contact; i < last.first_contact + last.contacts; ++i) {
+            const auto& entry = active.entries[layout.contacts[i]];
+            if (entry.body_a != body && entry.body_b != body) continue;
+            const std::size_t lane = layout.lane[i];
+            const Vec3 on_b = impact_impulse(rows, lane / kBlock, static_cast<int>(lane % kBlock))
+                                  .template cast<double>();
+            impulse += entry.body_b == body ? on_b : Vec3(-on_b);
+        }
+    }
+    return impulse;
+}
+
+}  // namespace
+
+World::State::State(const Settings& settings, int thread_count) : pool(thread_count)
+{
+    check_settings(settings, "world");
+    // Throws here and not in a step where the environment asks for lanes that cannot be had.
+    solve_kernels<float>();
+    if (settings.precision == Precision::double_) step.emplace<Step<double>>();
+    get<Conditions>().settings = settings;
+}
+
+std::uint32_t World::State::place_of(BodyId body, const char* caller) const
+{
+    if (body.index < generation.size() && generation[body.index] == body.generation
+        && get<BodyStates>().kind[body.index] != BodyKind::gone)
+        return body.index;
+    throw std::invalid_argument(std::string(caller) + ": body " + std::to_string(body.index)
+                                + " was removed or never was; give one that is alive");
+}
+
+void World::State::choose_broad_phase()
+{
+    const BroadPhase asked = get<Conditions>().settings.broadphase;
+    const Colliders& colliders = get<Colliders>();
+    const auto kind = [&] {
+        switch (asked) {
+        case BroadPhase::embree:
+            return FinderKind::embree;
+        case BroadPhase::grid:
+            return FinderKind::grid;
+        case BroadPhase::sweep:
+            return FinderKind::sweep;
+        case BroadPhase::all_pairs:
+            return FinderKind::all_pairs;
+        default:
+            break;
+        }
+        std::vector<Box3> boxes(colliders.size());
+        std::vector<std::uint8_t> moving(colliders.size(), 0);
+        const BodyStates& states = get<BodyStates>();
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const std::uint32_t body = colliders.body[i];
+            if (body == kNobody) continue;
+            const Vec3 middle = (get<Poses>().at(body) * colliders.local[i]).position;
+            boxes[i] = {middle.array() - colliders.outer_radius[i],
+                        middle.array() + colliders.outer_radius[i]};
+            moving[i] = states.kind[body] != BodyKind::still ? 1 : 0;
+        }
+        return choose_finder(boxes, moving);
+    }();
+    AnyPairFinder& finder = get<Finder>().finder;
+    if (finder.index() == make_finder(kind).index() && !get<Pairs>().keys.empty()) return;
+    finder = make_finder(kind);
+    // A new finder has to be asked about everybody.
+    Bounds& bounds = get<Bounds>();
+    bounds.touched.clear();
+    for (std::uint32_t i = 0; i < colliders.size(); ++i) bounds.touched.push_back(i);
+}
+
+bool World::State::nothing_to_do() const
+{
+    const Conditions& conditions = get<Conditions>();
+    return idle && !effects_stale && !movers_stale && get<Bounds>().touched.empty()
+        && conditions.last_substep == conditions.substep();
+}
+
+void World::State::follow_stubborn()
+{
+    Stubborn& stubborn = get<Stubborn>();
+    report.islands_escalated += stubborn.escalated;
+    report.escalation_missed += stubborn.missed;
+    stubborn.escalated = stubborn.missed = 0;
+    for (const std::uint32_t body : get<Rest>().rested) stubborn.forget(body);
+    std::uint32_t first = kNobody;
+    for (const std::uint32_t body : stubborn.strained)
+        if (is_stubborn(stubborn.of(body))) first = std::min(first, body);
+    const bool any = first != kNobody;
+    if (any == effects.on.has(Effect::escalation)) return;
+    requests.first[static_cast<std::size_t>(Effect::escalation)].clear();
+    if (any) requests.ask(Effect::escalation, called(first));
+    effects_stale = true;
+}
+
+std::string World::State::called(std::uint32_t body) const
+{
+    const bool named = body < names.size() && !names[body].empty();
+    return "body " + std::to_string(body) + (named ? " " + names[body] : "");
+}
+
+void World::State::follow_step()
+{
+    follow_stubborn();
+    Trouble& trouble = get<Trouble>();
+    Rest& rest = get<Rest>();
+    if (!trouble.quarantined.empty() || !rest.awoken.empty() || !rest.rested.empty())
+        follow_movers(rest.awoken, get<BodyStates>());
+    const Movers& movers = get<BodyStates>().movers;
+    get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size(), movers.dynamic.size());
+    // A body that has become fast calls for what looks after it from the next step on.
+    if (const std::uint32_t hurried = get<Bounds>().hurried;
+        hurried != kNobody && !effects.on.has(Effect::fast_motion)) {
+        requests.ask(Effect::fast_motion, called(hurried));
+        effects_stale = true;
+    }
+    if (trouble.quarantined.empty()) return;
+    report.bodies_quarantined += trouble.quarantined.size();
+    for (const std::uint32_t body : trouble.quarantined) touch(body);
+    effects_stale = true;
+    trouble.quarantined.clear();
+}
+
+void World::State::report_state()
+{
+    report.pairs = get<Pairs>().keys.size();
+    const auto& active = get<ActiveContacts>().entries;
+    report.manifolds = active.size();
+    report.contacts = 0;
+    for (const auto& entry : active) report.contacts += entry.points;
+    report.islands = get<Islands>().size();
+    report.colors = 0;
+    for (const Slice& slice : get<Layout>().slices)
+        report.colors = std::max<std::size_t>(report.colors, slice.colors);
+    const Settings& settings = get<Conditions>().settings;
+    const bool relaxes =
+        settings.solver == Solver::soft_step && settings.response == Response::impulse;
+    report.relax_visits = relaxes ? mean_relax_visits(settings, get<Layout>()) : 0;
+    report.bodies_awake = get<BodyStates>().movers.dynamic.size();
+    if (!effects.on.meets(kCarried)) return;
+    const CarriedContacts& carried = get<CarriedContacts>();
+    report.pairs = carried.pairs;
+    report.manifolds = carried.touching;
+    report.contacts = carried.points;
+    report.islands = carried.groups;
+}
+
+void World::State::refresh()
+{
+    if (effects_stale) refresh_effects();
+    if (movers_stale) list_movers(get<BodyStates>());
+    movers_stale = false;
+}
+
+void World::State::warn_of_cuts(int cuts)
+{
+    if (cuts <= most_cuts) return;
+    most_cuts = cuts;
+    const Settings& settings = get<Conditions>().settings;
+    remarks.push_back(
+        "penalty_stiffness: " + dial_value(settings, "penalty_stiffness")
+        + " N/m swings wider at a substep of " + number_text(settings.dt / settings.substeps)
+        + " s, so each is cut in " + std::to_string(cuts)
+        + (cuts >= kMostPenaltyCuts ? ", and contacts give way as far as that bears" : "")
+        + "; take substeps=" + std::to_string(settings.substeps * cuts) + ", or auto");
+}
+
+Vec3 World::State::arm(std::uint32_t body) const
+{
+    const auto& hang = get<Forces>().hang;
+    return body < hang.size() ? Vec3(get<Poses>().orientation[body] * hang[body])
+                              : Vec3(Vec3::Zero());
+}
+
+Vec3 World::State::center_of_mass(std::uint32_t body) const
+{
+    return get<Poses>().position[body] + arm(body);
+}
+
+Vec3 World::State::velocity(std::uint32_t body) const
+{
+    const Velocities& velocities = get<Velocities>();
+    return velocities.linear[body] + velocities.angular[body].cross(arm(body));
+}
+
+void World::State::warn_of_substeps()
+{
+    const Settings& settings = get<Conditions>().settings;
+    std::vector<std::string> warnings = unstable_springs(get<Forces>(), get<Masses>(), settings);
+    // What weight adds in one has few digits left beside a speed of some m/s.
+    constexpr double kShortest = 1e-5;
+    if (settings.precision == Precision::float_ && settings.dt / settings.substeps < kShortest)
+        warnings.push_back("a substep of " + number_text(settings.dt / settings.substeps)
+                           + " s is too short for float, which takes 1e-05 s and more: what weight"
+                             " adds in it is lost in the digits of a speed; take"
+                             " precision=double");
+    for (std::string& warning : warnings)
+        if (std::find(remarks.begin(), remarks.end(), warning) == remarks.end())
+            remarks.push_back(std::move(warning));
+}
+
+void World::State::refresh_effects()
+{
+    effects_stale = false;
+    movers_stale = true;
+    Conditions& conditions = get<Conditions>();
+    const Set<Effect> before = conditions.effects;
+    effects =
+        find_effects({conditions, get<BodyStates>(), get<Poses>(), get<Velocities>(), get<Masses>(),
+                      get<Drives>(), get<Forces>(), get<Shapes>(), get<Colliders>(),
+                      get<Surfaces>(), get<PairFilter>(), requests, names, material_names});
+    conditions.effects = effects.on;
+    empty_unused();
+    if (effects.on.has(Effect::contact)) choose_broad_phase();
+    std::visit(
+        [&](auto& chosen) {
+            using Graph = typename std::remove_reference_t<decltype(chosen.graph)>::element_type;
+            if (chosen.graph && before == effects.on) return;
+            using Real = std::conditional_t<std::is_same_v<Graph, StepGraph<float>>, float, double>;
+            pool.run([&](std::size_t, std::size_t, std::size_t) {
+                chosen.graph = std::make_unique<Graph>(stages_for<Real>(effects.on), chosen.data);
+            });
+        },
+        step);
+}
+
+static_assert(kMissedResidual == kDirectResidual);
+
+World::World(const Settings& settings, int threads)
+    : state_(std::make_unique<State>(settings, threads))
+{ }
+
+World::World(const Scene& scene, int threads) : World(scene.settings, threads)
+{
+    set_gravity(scene.gravity);
+    add(scene);
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+std::vector<BodyId> World::add(const Scene& scene)
+{
+    if (std::optional<SceneTrouble> trouble = find_trouble(scene))
+        throw SceneRefused(std::move(*trouble));
+    return SceneBuilder(*state_).add(scene);
+}
+
+void World::step(int steps)
+{
+    State& state = *state_;
+    using Clock = std::chrono::steady_clock;
+    for (int i = 0; i < steps; ++i) {
+        const auto begin = Clock::now();
+        if (state.nothing_to_do()) {
+            std::visit([](auto& chosen) { chosen.graph->rest(); }, state.step);
+        } else {
+            state.refresh();
+            state.idle =
+                state.get<BodyStates>().movers.none() && state.get<Bounds>().touched.empty();
+            state.pool.run([&](std::size_t, std::size_t, std::size_t) {
+                std::visit(
+                    [&](auto& chosen) {
+                        chosen.graph->watch(state.watch);
+                        chosen.graph->count(&state.work);
+                        if (state.in_order)
+                            chosen.graph->run_in_order();
+                        else
+                            chosen.graph->run();
+                    },
+                    state.step);
+            });
+            Conditions& conditions = state.get<Conditions>();
+            conditions.last_substep = conditions.substep();
+            state.report.contacts_dropped += std::visit(
+                [](const auto& chosen) {
+                    using Real = typename std::decay_t<decltype(chosen)>::Number;
+                    return std::get<SolidContacts<Real>>(chosen.data).left_out;
+                },
+                state.step);
+            state.report.fallbacks += state.get<MethodPairs>().fell_back;
+            const Trouble& trouble = state.get<Trouble>();
+            state.report.fallbacks +=
+                trouble.direct_left + trouble.held_groups + trouble.deep_pieces;
+            state.report.deepest = std::max(state.report.deepest, trouble.deepest);
+            state.warn_of_cuts(trouble.penalty_cuts);
+            state.report.direct_residual =
+                std::max(state.report.direct_residual, trouble.direct_residual);
+            state.follow_step();
+        }
+        state.get<Conditions>().time += settings().dt;
+        ++state.report.step;
+        state.report.time_ms =
+            std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    }
+    state.report_state();
+}
+
+const Settings& World::settings() const { return state_->get<Conditions>().settings; }
+
+void World::set_settings(const Settings& settings)
+{
+    if (settings.precision != this->settings().precision)
+        throw std::invalid_argument(
+            "set_settings: precision cannot change in a world; make another");
+    check_settings(settings, "set_settings");
+    state_->get<Flights>() = {};  // numbers of another rotation, or of another law
+    state_->get<Conditions>().settings = settings;
+    state_->effects_stale = true;
+    state_->warn_of_substeps();
+}
+
+Vec3 World::gravity() const { return state_->get<Conditions>().gravity; }
+
+void World::set_gravity(const Vec3& gravity)
+{
+    if (!gravity.allFinite()) throw std::invalid_argument("set_gravity: give finite numbers, m/s2");
+    state_->get<Conditions>().gravity = gravity;
+    state_->effects_stale = true;
+    state_->wake_all();
+}
+
+std::size_t World::body_count() const { return state_->alive; }
+
+std::vector<BodyId> World::bodies() const
+{
+    std::vector<BodyId> ids;
+    ids.reserve(state_->alive);
+    const BodyStates& states = state_->get<BodyStates>();
+    for (std::uint32_t body = 0; body < states.kind.size(); ++body)
+        if (states.kind[body] != BodyKind::gone) ids.push_back({body, state_->generation[body]});
+    return ids;
+}
+
+bool World::alive(BodyId body) const
+{
+    return body.index < state_->generation.size()
+        && state_->generation[body.index] == body.generation
+        && state_->get<BodyStates>().kind[body.index] != BodyKind::gone;
+}
+
+const std::string& World::name(BodyId body) const
+{
+    static const std::string kUnnamed;
+    const std::uint32_t at = state_->place_of(body, "name");
+    return at < state_->names.size() ? state_->names[at] : kUnnamed;
+}
+
+Motion World::motion(BodyId body) const { return state_->motion[state_->place_of(body, "motion")]; }
+
+bool World::awake(BodyId body) const
+{
+    return state_->get<BodyStates>().awake[state_->place_of(body, "awake")] != 0;
+}
+
+bool World::quarantined(BodyId body) const
+{
+    return state_->get<BodyStates>().quarantined[state_->place_of(body, "quarantined")] != 0;
+}
+
+double World::mass(BodyId body) const
+{
+    return state_->get<Masses>().mass[state_->place_of(body, "mass")];
+}
+
+Pose World::pose(BodyId body) const
+{
+    const std::uint32_t at = state_->place_of(body, "pose");
+    const Pose center = state_->get<Poses>().at(at);
+    return {center * Vec3(-state_->center[at]), center.orientation};
+}
+
+Vec3 World::center_of_mass(BodyId body) const
+{
+    return state_->center_of_mass(state_->place_of(body, "center_of_mass"));
+}
+
+Vec3 World::velocity(BodyId body) const
+{
+    return state_->velocity(state_->place_of(body, "velocity"));
+}
+
+Vec3 World::angular_velocity(BodyId body) const
+{
+    return state_->get<Velocities>().angular[state_->place_of(body, "angular_velocity")];
+}
+
+Mat3 World::rotation_matrix(BodyId body) const
+{
+    const std::uint32_t at = state_->place_of(body, "rotation_matrix");
+    const Quat& orientation = state_->get<Poses>().orientation[at];
+    const auto& memory = state_->get<Flights>().memory;
+    const bool held =
+        at < memory.size() && memory[at].shown_orientation.coeffs() == orientation.coeffs();
+    return held ? matrix_of(settings().rotation, memory[at].orientation.data())
+                : orientation.toRotationMatrix();
+}
+
+Vec3 World::contact_force(BodyId body) const
+{
+    const std::uint32_t at = state_->place_of(body, "contact_force");
+    const double substep = state_->get<Conditions>().last_substep;
+    if (substep <= 0) return Vec3::Zero();
+    if (state_->effects.on.meets(kCarried)) {
+        const std::vector<Vec3>& force = state_->get<CarriedContacts>().force;
+        return at < force.size() ? force[at] : Vec3(Vec3::Zero());
+    }
+    Vec3 impulse = Vec3::Zero();
+    std::visit(
+        [&](const auto& chosen) {
+            const auto& data = chosen.data;
+            const Colliders& colliders = std::get<Colliders>(data);
+            const Pairs& pairs = std::get<Pairs>(data);
+            const auto add = [&](std::size_t pair, const auto& contact) {
+                const bool is_a = colliders.body[first_of(pairs.keys[pair])] == at;
+                const bool is_b = colliders.body[second_of(pairs.keys[pair])] == at;
+                if (!is_a && !is_b) return;
+                Vec3 on_b = contact.friction.template cast<double>();
+                for (int k = 0; k < contact.count; ++k)
+                    on_b += contact.normal.template cast<double>()
+                        * double{contact.points[static_cast<std::size_t>(k)].impulse};
+                impulse += is_b ? on_b : Vec3(-on_b);
+            };
+            using Real =
+                std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
+                                   float, double>;
+            const auto& convex = std::get<ConvexContacts<Real>>(data);
+            for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
+                if (const Contact<Real>* contact = convex.at(i)) add(i, *contact);
+            for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
+                if (entry.contact.count > 0) add(entry.pair, entry.contact);
+            for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
+                if (entry.contact.count > 0) add(entry.pair, entry.contact);
+            if (state_->effects.on.has(Effect::restitution))
+                impulse += impacts_on(at, std::get<Layout>(data), std::get<ActiveContacts>(data),
+                                      std::get<Rows<Real>>(data));
+        },
+        state_->step);
+    return impulse / substep;
+}
+
+const StepReport& World::report() const { return state_->report; }
+
+const std::vector<std::string>& World::remarks() const { return state_->remarks; }
+
+const std::vector<std::string>& World::solids() const { return state_->solids; }
+
+std::vector<StageReport> World::stages() const
+{
+    std::vector<StageReport> reports;
+    std::visit(
+        [&](const auto& chosen) {
+            if (!chosen.graph) return;
+            for (std::size_t i = 0; i < chosen.graph->stages().size(); ++i)
+                reports.push_back({chosen.graph->stages()[i].name, chosen.graph->times()[i]});
+        },
+        state_->step);
+    return reports;
+}
+
+const Effects& World::effects()
+{
+    state_->refresh();
+    return state_->effects;
+}
+
+std::vector<World::StageInfo> World::step_stages()
+{
+    state_->refresh();
+    std::vector<StageInfo> infos;
+    std::visit(
+        [&](const auto& chosen) {
+            for (const auto& stage : chosen.graph->stages()) infos.push_back({stage.name, {}});
+            for (const auto& [earlier, later] : waits(chosen.graph->stages()))
+                infos[later].waits_for.push_back(earlier);
+        },
+        state_->step);
+    for (StageInfo& info : infos) std::sort(info.waits_for.begin(), info.waits_for.end());
+    return infos;
+}
+
+int World::threads() const { return state_->pool.threads(); }
+int World::threads_met() const { return state_->pool.threads_met(); }
+int World::threads_used() const { return state_->work.threads(); }
+void World::run_in_order(bool in_order) { state_->in_order = in_order; }
+
+}  // namespace throng

@@ -1,0 +1,127 @@
+// World: bodies, what holds between them, and the step.
+//
+// Bodies are added and removed in batches, between steps. A BodyId stays good until its body is
+// removed; using one after that throws. One thread calls a world at a time; the step itself runs on
+// the world's own threads, and its result is the same bits for any number of them.
+#pragma once
+
+#include "kernels/data/forces.hpp"
+#include "pipeline/step/effects.hpp"
+#include "pipeline/world/report.hpp"
+#include "scene/scene.hpp"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace throng {
+
+/// Names a body: its place, and how many held that place before it.
+struct BodyId {
+    std::uint32_t index = 0;
+    std::uint32_t generation = 0;
+    bool operator==(const BodyId&) const = default;
+};
+
+class World {
+public:
+    /// An empty world. threads: 0 for as many as the machine has cores.
+    explicit World(const Settings& settings = {}, int threads = 1);
+    /// The world of a scene. Throws std::invalid_argument, naming the part that is refused and what
+    /// was wanted, when the scene is impossible.
+    explicit World(const Scene& scene, int threads = 1);
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    /// Adds all that a scene holds to this world; its settings and gravity are not taken. Ids come
+    /// in the scene's order: bodies, then instances.
+    std::vector<BodyId> add(const Scene& scene);
+    /// Springs go with either of their bodies, a scene's attractors and wind with the last of its
+    /// bodies.
+    void remove(std::span<const BodyId> bodies);
+
+    /// Advances by `steps` times settings().dt.
+    void step(int steps = 1);
+
+    const Settings& settings() const;
+    /// Takes effect with the next step. `precision` cannot change in a world that has bodies.
+    void set_settings(const Settings& settings);
+    Vec3 gravity() const;
+    void set_gravity(const Vec3& gravity);
+    /// A force and torque of the program's own on every dynamic body that is awake, at every
+    /// evaluation of the integrator; none to take it away. Called from any of the world's threads.
+    /// Bodies in a field do not sleep.
+    void set_force_field(ForceField field);
+
+    std::size_t body_count() const;      // alive
+    std::vector<BodyId> bodies() const;  // alive, by index
+    bool alive(BodyId body) const;
+    const std::string& name(BodyId body) const;
+    Motion motion(BodyId body) const;
+    bool awake(BodyId body) const;
+    bool quarantined(BodyId body) const;
+    double mass(BodyId body) const;  // kg; 0 when it is not dynamic
+
+    /// Of the body's own frame, where its shape was placed.
+    Pose pose(BodyId body) const;
+    Vec3 center_of_mass(BodyId body) const;
+    Vec3 velocity(BodyId body) const;          // of the center of mass
+    Vec3 angular_velocity(BodyId body) const;  // world axes
+
+    /// These wake the body and what it rests with.
+    void set_pose(BodyId body, const Pose& pose);
+    void set_velocity(BodyId body, const Vec3& linear, const Vec3& angular);
+    /// N s, at the center of mass: what turns about a pivot gets its torque.
+    void add_impulse(BodyId body, const Vec3& impulse);
+
+    /// What turns body axes into world axes as the `rotation` that is chosen holds it: with the
+    /// textbook's forms no rotation after a while.
+    Mat3 rotation_matrix(BodyId body) const;
+
+    /// Force of the contacts on a body over the last substep, N, friction included, and all impacts
+    /// of the step as if they had been in it; by overlap back_up and subdivide the mean over the
+    /// last step, impacts included.
+    Vec3 contact_force(BodyId body) const;
+
+    const StepReport& report() const;
+    /// What was found wrong with shapes that were added and what was done about it, a sentence
+    /// each.
+    const std::vector<std::string>& remarks() const;
+    /// How each moving mesh and level set that was added is taken, and how exactly, a line each.
+    const std::vector<std::string>& solids() const;
+    std::vector<StageReport> stages() const;
+    /// Measured afresh on each call; takes about as long as a step.
+    Measures measure() const;
+    /// Fingerprint of poses, velocities, cached impulses and sleep state in order of id: 16 hex
+    /// digits.
+    std::string state_hash() const;
+
+    const Effects& effects();
+    /// The stages of this world's step and what each waits for, in order.
+    struct StageInfo {
+        std::string_view name;
+        std::vector<std::size_t> waits_for;
+    };
+    std::vector<StageInfo> step_stages();
+
+    int threads() const;
+    int threads_met() const;   // that really run
+    int threads_used() const;  // that had a share in any step so far
+    std::size_t memory_bytes() const;
+
+    /// Runs the stages top to bottom on the calling thread from now on: the reference for the
+    /// graph.
+    void run_in_order(bool in_order);
+
+    struct State;
+    /// For the parts of throng that need more than the door shows.
+    State& state() { return *state_; }
+    const State& state() const { return *state_; }
+
+private:
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace throng

@@ -1,0 +1,248 @@
+// World edit: bodies removed, moved and pushed from outside, between steps.
+//
+// The step keeps much from one step to the next; what a change from outside makes stale is put
+// right here, so that no stage has to wonder.
+#include "kernels/math/rotation.hpp"
+#include "pipeline/step/stages.hpp"
+#include "pipeline/world/force_builder.hpp"
+#include "pipeline/world/world_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace throng {
+
+void World::State::wake(std::uint32_t body)
+{
+    BodyStates& states = get<BodyStates>();
+    states.quiet_time[body] = 0;
+    const std::uint32_t bed = states.bed[body];
+    if (bed == kNobody) return;
+    movers_stale = true;
+    Beds& beds = get<Beds>();
+    for (const std::uint32_t sleeper : beds.sleepers[bed]) {
+        states.awake[sleeper] = 1;
+        states.quiet_time[sleeper] = 0;
+        states.bed[sleeper] = kNobody;
+    }
+    beds.sleepers[bed].clear();
+    beds.free.push_back(bed);
+}
+
+void World::State::touch(std::uint32_t body)
+{
+    const Colliders& colliders = get<Colliders>();
+    Bounds& bounds = get<Bounds>();
+    for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
+        bounds.touched.push_back(colliders.begin[body] + i);
+    get<Parting>().place(body);
+    get<Stubborn>().forget(body);
+}
+
+void World::State::wake_neighbors(const std::vector<std::uint8_t>& of)
+{
+    const Colliders& colliders = get<Colliders>();
+    for (const PairKey key : get<Pairs>().keys) {
+        const std::uint32_t a = colliders.body[first_of(key)], b = colliders.body[second_of(key)];
+        if (of[a] != 0) wake(b);
+        if (of[b] != 0) wake(a);
+    }
+}
+
+void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
+{
+    Pairs& pairs = get<Pairs>();
+    const Colliders& colliders = get<Colliders>();
+    std::vector<std::uint32_t> kept_as(pairs.keys.size(), Pairs::kNewPair);
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
+        const PairKey key = pairs.keys[i];
+        if (of[colliders.body[first_of(key)]] != 0 || of[colliders.body[second_of(key)]] != 0)
+            continue;
+        pairs.keys[kept] = key;
+        kept_as[i] = kept++;
+    }
+    pairs.keys.resize(kept);
+
+    const auto gone = [&](std::uint32_t pair) { return kept_as[pair] == Pairs::kNewPair; };
+    for (auto* const list : {&pairs.on_mesh, &pairs.on_solid}) {
+        std::erase_if(*list, gone);
+        for (std::uint32_t& pair : *list) pair = kept_as[pair];
+    }
+    std::visit(
+        [&](auto& chosen) {
+            using Real = typename std::decay_t<decltype(chosen)>::Number;
+            auto& contacts = std::get<ConvexContacts<Real>>(chosen.data);
+            auto& states = contacts.of_pair;
+            for (std::size_t i = 0; i < states.size(); ++i)
+                if (kept_as[i] != Pairs::kNewPair)
+                    states[kept_as[i]] = states[i];
+                else if (states[i].contact != PairState::kApart)
+                    contacts.free.push_back(states[i].contact);
+            states.resize(std::min<std::size_t>(states.size(), kept));
+            auto& until = contacts.apart_until;
+            for (std::size_t i = 0; i < until.size(); ++i)
+                if (kept_as[i] != Pairs::kNewPair) until[kept_as[i]] = until[i];
+            until.resize(std::min<std::size_t>(until.size(), kept));
+            auto& memories = std::get<MethodPairs>(chosen.data).of_pair;
+            for (std::size_t i = 0; i < memories.size(); ++i)
+                if (kept_as[i] != Pairs::kNewPair) memories[kept_as[i]] = memories[i];
+            memories.resize(std::min<std::size_t>(memories.size(), kept));
+            const auto keep = [&](auto& list) {
+                std::erase_if(list, [&](const auto& item) { return gone(item.pair); });
+                for (auto& item : list) item.pair = kept_as[item.pair];
+            };
+            keep(std::get<MeshContacts<Real>>(chosen.data).entries);
+            keep(std::get<SolidContacts<Real>>(chosen.data).entries);
+            keep(std::get<SolidContacts<Real>>(chosen.data).found.pairs);
+        },
+        step);
+}
+
+void World::State::wake_all()
+{
+    for (std::uint32_t body = 0; body < generation.size(); ++body) wake(body);
+}
+
+void World::State::quarantine(std::uint32_t body)
+{
+    Trouble trouble;
+    trouble.quarantined = {body};
+    quarantine_bodies(trouble, get<BodyStates>(), get<Masses>(), get<Velocities>());
+    ++report.bodies_quarantined;
+    touch(body);
+    effects_stale = true;
+}
+
+void World::State::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular)
+{
+    const BodyStates& states = get<BodyStates>();
+    const Masses& masses = get<Masses>();
+    Velocities& velocities = get<Velocities>();
+    wake(body);
+    if (states.kind[body] == BodyKind::still) return;
+    // What is locked stays locked.
+    const bool moves = !states.dynamic(body) || masses.inverse_mass[body] > 0;
+    const bool turns = !states.dynamic(body) || masses.inverse_inertia[body] != Sym3{};
+    velocities.linear[body] = moves ? linear : Vec3(Vec3::Zero());
+    velocities.angular[body] = turns ? angular : Vec3(Vec3::Zero());
+    if (!holdable(velocities.linear[body]) || !holdable(velocities.angular[body])) quarantine(body);
+    effects_stale = true;
+}
+
+void World::State::empty_unused()
+{
+    const Set<Effect> on = effects.on;
+    if (!on.has(Effect::sleeping)) wake_all();
+    if (!on.has(Effect::escalation)) get<Stubborn>().efforts.clear();
+    if (!on.meets(kCarried)) {
+        Trouble& trouble = get<Trouble>();
+        trouble.held_groups = trouble.deep_pieces = 0;
+        trouble.deepest = 0;
+        get<CarriedContacts>() = {};
+    }
+    std::visit(
+        [&](auto& chosen) {
+            using Real = typename std::decay_t<decltype(chosen)>::Number;
+            const auto empty = [&](auto... kinds) {
+                ((std::get<decltype(kinds)>(chosen.data) = {}), ...);
+            };
+            if (!on.has(Effect::mesh_contact)) empty(MeshContacts<Real>{});
+            if (!on.meets(kSolidContact)) empty(SolidContacts<Real>{});
+            if (on.has(Effect::contact)) return;
+            empty(Pairs{}, ConvexContacts<Real>{}, MethodPairs{}, ActiveContacts{}, Islands{},
+                  Layout{}, Rows<Real>{}, Pulls{});
+        },
+        step);
+}
+
+void World::remove(std::span<const BodyId> bodies)
+{
+    State& state = *state_;
+    for (const BodyId id : bodies) state.place_of(id, "remove");
+    BodyStates& states = state.get<BodyStates>();
+    Colliders& colliders = state.get<Colliders>();
+    // What rested on them has to notice; and whoever takes their places next is somebody else.
+    std::vector<std::uint8_t> going(state.generation.size(), 0);
+    for (const BodyId id : bodies) going[id.index] = 1;
+    state.wake_neighbors(going);
+    state.forget_pairs(going);
+    for (const BodyId id : bodies) {
+        const std::uint32_t body = id.index;
+        if (states.kind[body] == BodyKind::gone) continue;
+        state.wake(body);
+        state.touch(body);
+        states.kind[body] = BodyKind::gone;
+        states.awake[body] = 0;
+        const std::uint32_t first = colliders.begin[body], count = colliders.count[body];
+        for (std::uint32_t i = 0; i < count; ++i) {
+            colliders.body[first + i] = kNobody;
+            state.get<PairFilter>().mask[first + i] = 0;
+        }
+        if (count > 0) state.free_colliders[count].push_back(first);
+        Drives& drives = state.get<Drives>();
+        const auto at = std::lower_bound(drives.body.begin(), drives.body.end(), body);
+        if (at != drives.body.end() && *at == body) {
+            drives.velocity.erase(drives.velocity.begin() + (at - drives.body.begin()));
+            drives.body.erase(at);
+        }
+        if (body < state.names.size()) state.names[body].clear();
+        ++state.generation[body];
+        state.free_bodies.push_back(body);
+        --state.alive;
+    }
+    std::sort(state.free_bodies.rbegin(), state.free_bodies.rend());
+    drop_forces(going, states, state.get<Forces>());
+    if (state.fields.remove(going, state.get<Forces>())) state.wake_all();
+    state.effects_stale = true;
+}
+
+void World::set_force_field(ForceField field)
+{
+    State& state = *state_;
+    state.get<Forces>().field = std::move(field);
+    state.wake_all();
+    state.effects_stale = true;
+}
+
+void World::set_pose(BodyId body, const Pose& pose)
+{
+    const std::uint32_t at = state_->place_of(body, "set_pose");
+    const double length = std::sqrt(pose.orientation.squaredNorm());
+    if (!holdable(pose.position) || !(std::abs(length - 1) < 1e-6))
+        throw std::invalid_argument("set_pose: give a finite position and a unit quaternion");
+    Poses& poses = state_->get<Poses>();
+    poses.orientation[at] = Quat(pose.orientation.coeffs() / length);
+    poses.position[at] = poses.orientation[at] * state_->center[at] + pose.position;
+    std::vector<std::uint8_t> moved(state_->generation.size(), 0);
+    moved[at] = 1;
+    state_->wake_neighbors(moved);
+    state_->wake(at);
+    state_->touch(at);
+}
+
+void World::set_velocity(BodyId body, const Vec3& linear, const Vec3& angular)
+{
+    const std::uint32_t at = state_->place_of(body, "set_velocity");
+    if (!linear.allFinite() || !angular.allFinite())
+        throw std::invalid_argument("set_velocity: give finite numbers, m/s and rad/s");
+    state_->set_motion(at, linear, angular);
+}
+
+void World::add_impulse(BodyId body, const Vec3& impulse)
+{
+    const std::uint32_t at = state_->place_of(body, "add_impulse");
+    if (!impulse.allFinite()) throw std::invalid_argument("add_impulse: give finite numbers, N s");
+    const Velocities& velocities = state_->get<Velocities>();
+    const Masses& masses = state_->get<Masses>();
+    Vec3 angular = velocities.angular[at];
+    // What hangs on a pivot, about which its inertia is, turns by what reaches its center of mass.
+    if (const Vec3 arm = state_->arm(at); !arm.isZero(0))
+        angular +=
+            in_world_axes(masses.inverse_inertia[at], state_->get<Poses>().orientation[at]).matrix()
+            * arm.cross(impulse);
+    state_->set_motion(at, velocities.linear[at] + impulse * masses.inverse_mass[at], angular);
+}
+
+}  // namespace throng

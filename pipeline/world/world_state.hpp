@@ -1,0 +1,149 @@
+// World state: what a world keeps, for the parts of the pipeline that work on it.
+#pragma once
+
+#include "kernels/geometry/mass.hpp"
+#include "kernels/parallel/blocks.hpp"
+#include "pipeline/step/step_graph.hpp"
+#include "pipeline/world/scene_fields.hpp"
+#include "pipeline/world/world.hpp"
+
+#include <map>
+#include <variant>
+
+namespace throng {
+
+/// A step over one kind of number.
+template <class Real>
+struct Step {
+    using Number = Real;
+    StepData<Real> data;
+    std::unique_ptr<StepGraph<Real>> graph;
+};
+
+/// Where the parts of a stated shape went.
+struct PlacedShape {
+    std::vector<ShapeRef> parts;
+    std::vector<Pose> poses;  // in the frame of the shape
+    MassProperties mass;      // of unit density
+};
+
+struct World::State {
+    explicit State(const Settings& settings, int thread_count);
+
+    ThreadPool pool;
+    WorkCount work;  // of all steps
+    std::variant<Step<float>, Step<double>> step;
+    Effects effects;
+    Requests requests;
+    bool effects_stale = true;
+    bool movers_stale = true;  // somebody awoke between steps
+    bool idle = false;         // the last step found nobody awake and left all as it was
+    bool in_order = false;
+    StepWatch* watch = nullptr;  // sees the stages run; null for nobody
+    StepReport report;
+
+    // By body.
+    std::vector<std::uint32_t> generation;
+    std::vector<std::string> names;  // may be shorter: the rest have none
+    std::vector<Vec3> center;        // of mass, in the body's own frame
+    std::vector<Motion> motion;
+    std::vector<std::uint32_t> free_bodies;  // descending, so the least goes first
+    std::map<std::uint32_t, std::vector<std::uint32_t>> free_colliders;  // by how many in a row
+    std::size_t alive = 0;
+
+    SceneFields fields;
+
+    std::vector<std::string> material_names;
+    std::vector<std::string> remarks, solids;  // see World
+    int most_cuts = 1;                         // that were remarked on
+
+    template <class Data>
+    Data& get()
+    {
+        return std::visit([](auto& s) -> Data& { return std::get<Data>(s.data); }, step);
+    }
+    template <class Data>
+    const Data& get() const
+    {
+        return std::visit([](const auto& s) -> const Data& { return std::get<Data>(s.data); },
+                          step);
+    }
+
+    /// The body's index. Throws std::invalid_argument for one that is gone.
+    std::uint32_t place_of(BodyId body, const char* caller) const;
+    /// Where the center of mass is of a body that may hang from a pivot, m, and how fast, m/s.
+    Vec3 center_of_mass(std::uint32_t body) const;
+    Vec3 velocity(std::uint32_t body) const;
+    Vec3 arm(std::uint32_t body) const;  // from its position there, world axes
+
+    /// A body by its number and name, for what is told of it.
+    std::string called(std::uint32_t body) const;
+
+    /// Wakes a body with all that sleeps with it.
+    void wake(std::uint32_t body);
+    void wake_all();
+    /// The broad phase has to look at a body's colliders again, and it may lie deep in others.
+    void touch(std::uint32_t body);
+    /// Wakes whoever is in a pair with one of some bodies (by body: 1 for those).
+    void wake_neighbors(const std::vector<std::uint8_t>& of);
+    /// Drops the pairs of some bodies with all they remember.
+    void forget_pairs(const std::vector<std::uint8_t>& of);
+    /// Sets velocities as far as the body is free to have them, and wakes it. Beyond what a step
+    /// can hold it is quarantined.
+    void set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular);
+    void quarantine(std::uint32_t body);
+    /// Effects, graph and the list of movers, brought up to date.
+    void refresh();
+    void refresh_effects();
+    /// True where a step would change nothing: nobody is awake, and nothing was touched.
+    bool nothing_to_do() const;
+    /// After a step: who fell asleep, who awoke, who was quarantined.
+    void follow_step();
+    /// Whether anybody awake is stubborn, and so calls for escalation.
+    void follow_stubborn();
+    /// The report on the state that the last step left.
+    void report_state();
+    /// Empties what no stage writes any more, and wakes all where nobody may sleep.
+    void empty_unused();
+    void choose_broad_phase();
+    /// Remarks on substeps that are too long for springs or too short for float, and on penalty
+    /// forces that had a substep cut.
+    void warn_of_substeps();
+    void warn_of_cuts(int cuts);
+};
+
+struct MadeSolid;  // solid_maker.hpp
+
+/// Adds the shapes, materials and bodies of a scene.
+class SceneBuilder {
+public:
+    explicit SceneBuilder(World::State& state) : state_(state) { }
+    std::vector<BodyId> add(const Scene& scene);
+
+private:
+    void make_room(std::size_t bodies);
+    void make_room_for(ShapeKind kind, std::size_t count);
+    void add_materials(const Scene& scene);
+    PlacedShape add_shape(const Scene& scene, const ShapeDescription& description);
+    PlacedShape add_solid(const Scene& scene, const std::string& name, const MeshShape& mesh);
+    PlacedShape add_solid(const std::string& name, const VoxelsShape& voxels);
+    PlacedShape add_made(const std::string& name, MadeSolid made);
+    ShapeRef sized(ShapeKind kind, const double* sizes);
+    BodyId add_body(const BodyDescription& body, const PlacedShape* shape);
+    std::uint32_t take_body();
+    std::uint32_t take_colliders(std::uint32_t count);
+    void
+    place_colliders(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
+    void weigh(std::uint32_t body, const BodyDescription& stated, const PlacedShape* shape);
+    void add_forces(const Scene& scene, std::span<const BodyId> ids);
+    void note_requests(std::uint32_t body, const BodyDescription& stated);
+
+    World::State& state_;
+    std::uint32_t first_material_ = 0;
+    std::uint32_t default_material_ = kNone;
+    std::vector<double> density_;
+    std::vector<PlacedShape> shapes_;  // as what stands still has them
+    std::vector<PlacedShape> moving_;  // as what moves has them, where that is something else
+};
+
+}  // namespace throng

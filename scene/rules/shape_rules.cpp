@@ -1,0 +1,213 @@
+// Shape rules: what a shape of a scene must be, and what it then weighs.
+#include "kernels/geometry/mesh.hpp"
+#include "scene/dials.hpp"
+#include "scene/names.hpp"
+#include "scene/rules/scene_rules.hpp"
+#include "scene/shapes/level_set.hpp"
+#include "scene/shapes/moving_mesh.hpp"
+#include "scene/shapes/stated_hull.hpp"
+
+#include <cmath>
+#include <set>
+
+namespace throng {
+namespace {
+
+// Of the volume of its box, the least that a mesh which moves must enclose.
+constexpr double kThinnest = 1e-9;
+
+MassProperties turned_inside_out(const MassProperties& mass)
+{
+    const Sym3& of = mass.inertia;
+    return {-mass.volume, mass.center, {-of.xx, -of.yy, -of.zz, -of.xy, -of.xz, -of.yz}};
+}
+
+/// Checks one shape; a compound's parts are checked as shapes of their own.
+struct ShapeChecker {
+    const Scene& scene;
+    const SceneChecker& checker;
+    bool moves;        // a body with it is dynamic
+    Shapes scratch{};  // for mass_of()
+
+    void need_size(std::string_view kind, std::string_view key, double size) const
+    {
+        const SceneChecker here = checker.at(kind);
+        here.at(key).need_range(size, kLeastLength, kGreatestLength, "a length above 0 m");
+    }
+
+    template <class Shape>
+    MassProperties weigh(std::vector<Shape>& kind, ShapeKind name, Shape shape)
+    {
+        kind.push_back(std::move(shape));
+        return mass_of(scratch, {name, 0});
+    }
+
+    // What a shape states for itself is held to what the scene's dial takes.
+    void need_dial(const SceneChecker& mesh, std::string_view dial, std::string_view value) const
+    {
+        Settings unread;
+        const std::string trouble = find_dial(dial)->set(unread, value);
+        mesh.at(dial).need(trouble.empty(), trouble);
+    }
+    void need_own_dials(const SceneChecker& here, const MeshShape& mesh) const
+    {
+        if (!mesh.nonconvex.empty()) need_dial(here, "nonconvex", mesh.nonconvex);
+        if (mesh.voxel_size != 0) need_dial(here, "voxel_size", number_text(mesh.voxel_size));
+        for (const auto& [dial, value] : {std::pair("image_resolution", mesh.image_resolution),
+                                          std::pair("sphere_levels", mesh.sphere_levels),
+                                          std::pair("max_parts", mesh.max_parts)})
+            if (value != 0) need_dial(here, dial, std::to_string(value));
+    }
+
+    MassProperties operator()(const SphereShape& sphere)
+    {
+        need_size("sphere", "radius", sphere.radius);
+        return weigh(scratch.spheres, ShapeKind::sphere, {sphere.radius});
+    }
+    MassProperties operator()(const CapsuleShape& capsule)
+    {
+        need_size("capsule", "radius", capsule.radius);
+        need_size("capsule", "half_length", capsule.half_length);
+        return weigh(scratch.capsules, ShapeKind::capsule, {capsule.radius, capsule.half_length});
+    }
+    MassProperties operator()(const CylinderShape& cylinder)
+    {
+        need_size("cylinder", "radius", cylinder.radius);
+        need_size("cylinder", "half_length", cylinder.half_length);
+        return weigh(scratch.cylinders, ShapeKind::cylinder,
+                     {cylinder.radius, cylinder.half_length});
+    }
+    MassProperties operator()(const BoxShape& box)
+    {
+        const SceneChecker here = checker.at("box");
+        here.at("half_extents")
+            .need_range(box.half_extents, kLeastLength, kGreatestLength, "a length above 0 m");
+        return weigh(scratch.boxes, ShapeKind::box, {box.half_extents});
+    }
+    MassProperties operator()(const HullShape& hull)
+    {
+        const SceneChecker here = checker.at("hull"), points = here.at("points");
+        for (std::size_t i = 0; i < hull.points.size(); ++i)
+            points.at(i).need_place(hull.points[i]);
+        const std::shared_ptr<const HullResult> built = stated_hull(hull);
+        points.need(built->trouble.empty(), "wanted a hull; " + built->trouble);
+        return mass_of(built->hull);
+    }
+    MassProperties operator()(const PlaneShape& plane)
+    {
+        const SceneChecker here = checker.at("plane");
+        here.at("normal").need(std::abs(plane.normal.norm() - 1) <= kUnitTolerance,
+                               "wanted a direction of unit length");
+        here.at("offset").need_range(plane.offset, -kGreatestLength, kGreatestLength,
+                                     "an offset in m");
+        return {};
+    }
+    MassProperties operator()(const MeshShape& mesh)
+    {
+        const SceneChecker here = checker.at("mesh");
+        here.at("scale").need_range(mesh.scale, kLeastLength, kGreatestLength, "a factor above 0");
+        need_own_dials(here, mesh);
+        const SceneChecker file = here.at("file");
+        file.need(!mesh.triangles.empty(), "wanted a mesh with triangles, not an empty one");
+        for (const Vec3& vertex : mesh.vertices)
+            file.need((vertex.cwiseAbs().array() <= kGreatestLength).all(),
+                      "wanted vertices of a size that a step can hold, once scaled");
+        for (const auto& triangle : mesh.triangles)
+            for (const std::uint32_t corner : triangle)
+                file.need(corner < mesh.vertices.size(), "wanted triangles between vertices");
+        if (!moves) return {};
+        const std::shared_ptr<const MovingMesh> moving = moving_mesh(mesh);
+        const MendedMesh& mended = moving->mended;
+        file.need(mended.trouble.empty(), "wanted a mesh that can move; it " + mended.trouble);
+        MassProperties mass = mass_as_if_closed(mended.mesh);
+        if (mass.volume < 0) mass = turned_inside_out(mass);
+        mass.center += moving->at;
+        const Box3 box = box_of(mended.mesh);
+        file.need(mass.volume > kThinnest * (box.upper - box.lower).prod(),
+                  "wanted a mesh that encloses a volume, for a body that moves");
+        return mass;
+    }
+    MassProperties operator()(const VoxelsShape& voxels)
+    {
+        const SceneChecker here = checker.at("voxels"), file = here.at("file");
+        file.need(voxels.level_set != nullptr && !voxels.level_set->field.empty()
+                      && !voxels.level_set->surface.tree.empty(),
+                  "wanted a level set with a surface, not an empty one");
+        const LevelSet& level_set = *voxels.level_set;
+        file.need_range(level_set.field.voxel, kLeastLength, kGreatestLength, "voxels above 0 m");
+        const Box3 box = box_of(level_set.surface);
+        file.need_place(box.lower);
+        file.need_place(box.upper);
+        if (!moves) return {};
+        file.need(level_set.whole,
+                  "wanted a level set whose surface is closed, for a body that moves; this one is "
+                  "cut off where its values end");
+        const MassProperties mass = mass_of(level_set.surface);
+        file.need(mass.volume > kThinnest * (box.upper - box.lower).prod(),
+                  "wanted a level set that encloses a volume, for a body that moves");
+        return mass;
+    }
+    MassProperties operator()(const CompoundShape& compound)
+    {
+        const SceneChecker parts = checker.at("compound");
+        parts.need(!compound.parts.empty(), "wanted at least one part");
+        for (std::size_t i = 0; i < compound.parts.size(); ++i) {
+            const CompoundShape::Part& part = compound.parts[i];
+            const SceneChecker here = parts.at(i);
+            here.at("position").need_place(part.pose.position);
+            here.at("orientation").need_unit(part.pose.orientation);
+            here.at("shape").need(part.shape < scene.shapes.size(), "wanted a shape of the scene");
+            const auto& shape = scene.shapes[part.shape].shape;
+            const bool good = !std::holds_alternative<CompoundShape>(shape)
+                && !std::holds_alternative<PlaneShape>(shape)
+                && !std::holds_alternative<MeshShape>(shape)
+                && !std::holds_alternative<VoxelsShape>(shape);
+            here.at("shape").need(
+                good, "wanted a sphere, capsule, cylinder, box or hull as part of a compound");
+        }
+        return {};
+    }
+};
+
+}  // namespace
+
+ShapeUses shape_uses(const Scene& scene)
+{
+    const std::vector<bool> none(scene.shapes.size(), false);
+    ShapeUses uses{none, none};
+    const auto note = [&](const BodyDescription& body) {
+        if (body.shape >= scene.shapes.size()) return;
+        (body.motion == Motion::dynamic ? uses.dynamic : uses.other)[body.shape] = true;
+    };
+    for (const BodyDescription& body : scene.bodies) note(body);
+    for (const Instances& group : scene.instances) note(group.common);
+    return uses;
+}
+
+std::vector<MassProperties> check_shapes(const Scene& scene)
+{
+    std::vector<MassProperties> masses;
+    const SceneChecker whole, shapes = whole.at("shapes");
+    std::set<std::string_view> names;
+    const std::vector<bool> moving = shape_uses(scene).dynamic;
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const ShapeDescription& shape = scene.shapes[i];
+        const SceneChecker checker = shapes.at(shape.name, i);
+        checker.need(shape.name.empty() || names.insert(shape.name).second,
+                     "wanted a name of its own for each shape");
+        masses.push_back(std::visit(ShapeChecker{scene, checker, moving[i]}, shape.shape));
+    }
+
+    // Compounds last: their parts may be named before or after them.
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const auto* compound = std::get_if<CompoundShape>(&scene.shapes[i].shape);
+        if (!compound) continue;
+        std::vector<PlacedMass> parts;
+        for (const CompoundShape::Part& part : compound->parts)
+            parts.push_back({masses[part.shape], part.pose});
+        masses[i] = combine(parts);
+    }
+    return masses;
+}
+
+}  // namespace throng

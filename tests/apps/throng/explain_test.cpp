@@ -1,0 +1,134 @@
+// Explain: what is said of scenes whose effects are known.
+#include "tests/apps/throng/command.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+// The lines under a heading.
+std::string part_of(const std::string& text, const std::string& heading)
+{
+    const auto begin = text.find("\n" + heading + "\n");
+    if (begin == std::string::npos) return {};
+    return text.substr(begin, text.find("\n\n", begin + 1) - begin);
+}
+
+std::string effect_line(const std::string& text, const std::string& effect)
+{
+    const std::string part = part_of(text, "effects");
+    const auto begin = part.find("\n  " + effect + "  ");
+    if (begin == std::string::npos) return {};
+    return part.substr(begin + 1, part.find('\n', begin + 1) - begin - 1);
+}
+
+bool is_on(const std::string& text, const std::string& effect)
+{
+    return effect_line(text, effect).find("  on ") != std::string::npos;
+}
+
+constexpr const char* kIce = R"({
+  "throng": 1, "gravity": [0, 0, 0],
+  "materials": {"ice": {"friction": 0}},
+  "shapes": {"ball": {"sphere": {"radius": 0.5}}},
+  "bodies": [
+    {"name": "left", "shape": "ball", "material": "ice", "position": [0, 0, 0],
+     "velocity": [1, 0, 0]},
+    {"name": "right", "shape": "ball", "material": "ice", "position": [3, 0, 0]}
+  ]
+})";
+
+TEST(Explain, SmoothBallsInSpaceHaveNoFrictionRotationOrGravity)
+{
+    const TestFolder folder;
+    const Outcome said = run_throng({"explain", folder.write("ice.json", kIce)});
+    ASSERT_EQ(said.code, 0) << said.err;
+    EXPECT_TRUE(is_on(said.out, "contact"));
+    for (const char* effect : {"gravity", "rotation", "friction", "gyroscopic", "restitution"})
+        EXPECT_NE(effect_line(said.out, effect).find("  off"), std::string::npos) << effect;
+    const std::string stages = part_of(said.out, "stages");
+    EXPECT_NE(stages.find("push_contacts"), std::string::npos);
+    for (const char* word : {"friction", "turn", "gravity", "bounce", "roll"})
+        EXPECT_EQ(stages.find(word), std::string::npos) << word << " is in " << stages;
+}
+
+TEST(Explain, APileHasWhatAPileNeeds)
+{
+    const Outcome said = run_throng({"explain", "pile:20"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    for (const char* effect :
+         {"gravity", "rotation", "gyroscopic", "contact", "friction", "sleeping"})
+        EXPECT_TRUE(is_on(said.out, effect)) << effect;
+    const std::string stages = part_of(said.out, "stages");
+    for (const char* word : {"\n  find_pairs ", "waits for update_bounds", "\n      add_gravity ",
+                             "\n          hold_friction ", "turn_bodies"})
+        EXPECT_NE(stages.find(word), std::string::npos) << word;
+}
+
+TEST(Explain, TheSubstepIsThatOfTheResponseAndTheSolver)
+{
+    const auto inner_of = [](const std::string& dial) {
+        const Outcome said = run_throng({"explain", "pile:20", "--set", dial});
+        EXPECT_EQ(said.code, 0) << said.err;
+        return part_of(said.out, "stages");
+    };
+    const std::vector<std::pair<std::string, std::string>> wanted = {
+        {"solver=soft_step", "relax_contacts"},
+        {"solver=direct", "solve_exactly"},
+        {"response=penalty", "push_by_forces"},
+        {"response=kinematic", "push_apart"}};
+    for (const auto& [dial, row] : wanted) {
+        const std::string inner = inner_of(dial);
+        for (const auto& [other, others] : wanted)
+            EXPECT_EQ(inner.find(others) != std::string::npos, row == others) << dial << inner;
+    }
+}
+
+TEST(Explain, ATopOnAPivotFalls)
+{
+    const TestFolder folder;
+    const Outcome said = run_throng(
+        {"explain",
+         folder.write("top.json",
+                      R"({"throng": 1, "shapes": {"top": {"box": {"half_extents": [1, 1, 2]}}},
+                                      "bodies": [{"shape": "top", "pivot": [0, 0, -2]}]})")});
+    ASSERT_EQ(said.code, 0) << said.err;
+    for (const char* effect : {"gravity", "pivot", "rotation", "gyroscopic"})
+        EXPECT_TRUE(is_on(said.out, effect)) << effect;
+}
+
+TEST(Explain, ALoneBallOnlyFalls)
+{
+    const TestFolder folder;
+    const Outcome said = run_throng(
+        {"explain",
+         folder.write("lone.json", R"({"throng": 1, "shapes": {"ball": {"sphere": {"radius": 1}}},
+                                       "bodies": [{"name": "lone", "shape": "ball"}]})")});
+    ASSERT_EQ(said.code, 0) << said.err;
+    EXPECT_NE(effect_line(said.out, "motion").find("lone"), std::string::npos);
+    EXPECT_TRUE(is_on(said.out, "gravity"));
+    EXPECT_FALSE(is_on(said.out, "contact"));
+    EXPECT_EQ(part_of(said.out, "stages").find("find_pairs"), std::string::npos);
+}
+
+TEST(Explain, StepsGiveTheStagesTheirTimes)
+{
+    const Outcome said = run_throng({"explain", "pile:20", "--steps", "5", "--threads", "1"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    EXPECT_NE(said.out.find("\nsteps: 5\n"), std::string::npos);
+    EXPECT_NE(part_of(said.out, "stages").find("ms/step"), std::string::npos);
+}
+
+TEST(Explain, TheGraphHasEveryStage)
+{
+    const TestFolder folder;
+    ASSERT_EQ(run_throng({"explain", "pile:20", "--dot", folder / "step.dot"}).code, 0);
+    const std::string dot = folder.read("step.dot");
+    EXPECT_EQ(dot.find("digraph"), 0u);
+    EXPECT_NE(dot.find("find_pairs -> collide_convex;"), std::string::npos);
+    EXPECT_NE(dot.find("add_gravity"), std::string::npos);
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"step.dot"});
+}
+
+}  // namespace
+}  // namespace throng

@@ -1,0 +1,140 @@
+// The hard cases that are claimed, run as the command runs them, and shown able to fail.
+#include "cost/hard_cases/cases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace throng {
+namespace {
+
+class HardCases : public testing::TestWithParam<HardCase> { };
+
+std::vector<CaseResult> run(const HardCase& which, Fault fault = Fault::none, int threads = 1)
+{
+    return run_case(which, {}, fault, threads, Extent::brief);
+}
+
+std::string told(const CaseResult& result)
+{
+    return result.name + ", " + result.setting + ": " + result.quantity + " is "
+        + std::to_string(result.figure) + ", bound " + std::to_string(result.bound);
+}
+
+TEST_P(HardCases, KeepsItsBounds)
+{
+    const std::vector<CaseResult> results = run(GetParam());
+    ASSERT_FALSE(results.empty());
+    for (const CaseResult& result : results) {
+        EXPECT_NE(result.verdict, Verdict::fail) << told(result);
+        EXPECT_TRUE(result.verdict == Verdict::pass || !result.why.empty()) << told(result);
+    }
+}
+
+// A method that measures, and whose lines a fault leaves alone, is not looked at by its case.
+TEST_P(HardCases, NoticesAPlantedFaultInEveryMethod)
+{
+    const std::vector<CaseResult> results = run(GetParam(), GetParam().shown_by);
+    std::size_t failed = 0, skipped = 0;
+    std::map<std::string, bool> measures, noticed;
+    for (const CaseResult& result : results) {
+        failed += result.verdict == Verdict::fail ? 1 : 0;
+        skipped += result.verdict == Verdict::skipped ? 1 : 0;
+        measures[result.method] |=
+            result.bound > 0 && result.quantity.find("rounds") == std::string::npos;
+        noticed[result.method] |= result.verdict == Verdict::fail;
+    }
+    if (skipped == results.size()) GTEST_SKIP() << results.front().why;
+    EXPECT_GT(failed, 0u) << GetParam().name << " passes with a fault in it";
+    if (GetParam().shown_by != Fault::nudge) return;
+    for (const auto& [method, has_figures] : measures)
+        if (!method.empty() && has_figures) {
+            EXPECT_TRUE(noticed[method]) << GetParam().name << " passes with a fault in " << method;
+        }
+}
+
+TEST_P(HardCases, GivesTheSameFiguresOnThreeThreads)
+{
+    const std::vector<CaseResult> one = run(GetParam());
+    const std::vector<CaseResult> three = run(GetParam(), Fault::none, 3);
+    ASSERT_EQ(one.size(), three.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        if (one[i].unit == "ns") continue;  // a time is never the same twice
+        EXPECT_EQ(one[i].figure, three[i].figure);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue,
+                         HardCases,
+                         testing::ValuesIn(hard_cases().begin(), hard_cases().end()),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+// What a case's own fault leaves alone, and the fault that it is noticed by.
+struct OtherFault {
+    const char* name;
+    Fault fault;
+    const char* quantity;
+};
+
+class OtherFaults : public testing::TestWithParam<OtherFault> { };
+
+TEST_P(OtherFaults, AreNoticedInTheQuantityThatTheyChange)
+{
+    const OtherFault& one = GetParam();
+    bool looked_at = false, noticed = false;
+    for (const CaseResult& result : run(*find_case(one.name), one.fault)) {
+        if (result.quantity != one.quantity) continue;
+        looked_at = true;
+        noticed |= result.verdict == Verdict::fail;
+    }
+    EXPECT_TRUE(looked_at) << one.name << " has no line of " << one.quantity;
+    EXPECT_TRUE(noticed) << one.name << " passes with a fault in " << one.quantity;
+}
+
+// clang-format off
+constexpr OtherFault kOtherFaults[] = {
+    {"H7",  Fault::skew, "way apart of equal bodies"},
+    {"H7",  Fault::haste, "velocity error"},
+    {"H8",  Fault::haste, "greatest overlap"},
+    {"H8",  Fault::skew, "speed after 10 s"},
+    {"H9",  Fault::sink, "greatest overlap over the smallest box"},
+    {"H9",  Fault::sink, "way that the top one sank"},
+    {"H10", Fault::grip, "falls: wrong outcomes"},
+    {"H12", Fault::haste, "way off the line over the way"},
+    {"H15", Fault::sink, "overlap"},
+    {"H15", Fault::restitution, "error of the time to rest"},
+    {"H16", Fault::sink, "greatest overlap"},
+    {"H16", Fault::sink, "mean over steps of the squared overlaps"},
+    {"H17", Fault::restitution, "error of the velocities"},
+    {"H17", Fault::skew, "difference of the mirror images"},
+    {"H18", Fault::haste, "error of the energy"},
+    {"H18", Fault::skew, "difference of the mirror images"},
+    {"H18", Fault::skew, "difference by the order of bodies"},
+    {"H21", Fault::sink, "greatest overlap"},
+    {"H21", Fault::haste, "growth of energy in a step over the first"},
+    {"H21", Fault::skew, "speed at the end"},
+    {"H22", Fault::grip, "falls: wrong outcomes"},
+    {"H23", Fault::haste, "error of the wedge's acceleration"},
+    {"H24", Fault::grip, "stays: wrong outcomes"},
+    {"H24", Fault::skew, "off its straight way"},
+};
+// clang-format on
+
+// By case and place in the list: a fault has no name that a test's may have.
+INSTANTIATE_TEST_SUITE_P(Planted,
+                         OtherFaults,
+                         testing::ValuesIn(kOtherFaults),
+                         [](const auto& info) {
+                             return std::string(info.param.name) + "_" + std::to_string(info.index);
+                         });
+
+TEST(HardCaseNames, AreFoundWhateverTheCaseOfLetters)
+{
+    EXPECT_EQ(find_case("h8")->name, "H8");
+    EXPECT_EQ(find_case("H33")->name, "H33");
+    EXPECT_EQ(find_case("H"), nullptr);
+    EXPECT_EQ(find_case(""), nullptr);
+}
+
+}  // namespace
+}  // namespace throng

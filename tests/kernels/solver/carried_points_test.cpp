@@ -1,0 +1,200 @@
+// Carried points: the law of one point, and the wide kernel against it.
+#include "kernels/solver/carried_points.hpp"
+
+#include "tests/kernels/solver/random_contacts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace throng {
+namespace {
+
+using given::BlockCase;
+using given::BlockWish;
+
+// A point that a plate carries from the start of each substep to its end, by the velocity that the
+// plate has where the point is in the middle: how far from the plate's axis it then is.
+double radius_after_a_turn(double angle_of_a_step)
+{
+    const int steps = static_cast<int>(std::lround(6.283185307179586 / angle_of_a_step));
+    DirectBody plate, rider;
+    plate.spin = Vec3(0, 0, 1);
+    rider.velocity = Vec3(0, 1, 0);
+    Vec3 at(1, 0, 0);
+    for (int step = 0; step < steps; ++step) {
+        // Arms as they are: of the plate to the point, of the rider to what it stands on.
+        DirectPoint point;
+        point.a = 0, point.b = 1;
+        point.arm_a = at;
+        const double half = angle_of_a_step / 2;
+        carry_arms(carried_side(Vec3::Zero(), Quat::Identity(), plate, point.arm_a, half),
+                   carried_side(Vec3::Zero(), Quat::Identity(), rider, point.arm_b, half), 1,
+                   point);
+        rider.velocity = plate.spin.cross(point.arm_a);
+        at += rider.velocity * angle_of_a_step;
+    }
+    return std::sqrt(at.squaredNorm());
+}
+
+TEST(CarriedPoints, StayAtTheirRadius)
+{
+    // Arms of the beginning lead out by pi times the angle in a turn.
+    EXPECT_NEAR(radius_after_a_turn(0.1), 1, 2e-2);
+    EXPECT_NEAR(radius_after_a_turn(0.01), 1, 2e-4);
+    EXPECT_NEAR(radius_after_a_turn(0.001), 1, 2e-6);
+}
+
+TEST(CarriedPoints, NeverTellMoreThanTheSpeedOfTheRim)
+{
+    for (const double spin : {1.0, 1e2, 1e4, 1e6}) {
+        DirectBody wheel;
+        wheel.spin = Vec3(0, 0, spin);
+        const Vec3 arm(1, 0, 0);
+        const CarriedSide side =
+            carried_side(Vec3::Zero(), Quat::Identity(), wheel, arm, 1.0 / 480);
+        EXPECT_NEAR((arm + side.material).norm(), 1, 1e-12);
+    }
+}
+
+TEST(CarriedPoints, AreThoseOfWhatTurnsByItselfOrIsHeavy)
+{
+    const Vec3 spin(0, 0, 2), sway(0, 0, 1e-3), none = Vec3::Zero();
+    const Ease driven{0, 0}, one{1, 6}, heavy{0.1, 0.6}, half{0.5, 3};
+    EXPECT_TRUE(carries(spin, driven, one, 0.01));
+    EXPECT_TRUE(carries(sway, driven, driven, 0.01));
+    EXPECT_FALSE(carries(none, driven, one, 0.01));
+    EXPECT_TRUE(carries(spin, heavy, one, 0.01));
+    EXPECT_FALSE(carries(spin, half, one, 0.01));
+    EXPECT_FALSE(carries(sway, heavy, one, 0.01));
+    // On an axle it is how hard it is to turn that counts.
+    EXPECT_TRUE(carries(sway, {0, 0.6}, one, 0.01));
+    EXPECT_FALSE(carries(spin, {0, 3}, one, 0.01));
+}
+
+TEST(CarriedPoints, GoWithTheRounderSide)
+{
+    EXPECT_EQ(goes_with_b(0, 0.1, true), 1);
+    EXPECT_EQ(goes_with_b(0.1, 0, true), 0);
+    EXPECT_EQ(goes_with_b(0, 0, true), 1);
+    EXPECT_EQ(goes_with_b(0, 0, false), 0);
+    EXPECT_DOUBLE_EQ(goes_with_b(3, 1, false), 0.75);
+}
+
+template <class Real>
+Vec3 vector_of(const Real* from)
+{
+    return {double{from[0]}, double{from[1]}, double{from[2]}};
+}
+
+template <class Real>
+Vec3 vector_of(const Lane16<Real> (&from)[3], std::size_t lane)
+{
+    return {double{from[0].at[lane]}, double{from[1].at[lane]}, double{from[2].at[lane]}};
+}
+
+struct PlainSide {
+    DirectBody body;
+    CarriedSide goes;
+
+    template <class Real>
+    PlainSide(const SolverBody<Real>& from, const Vec3& core, double half)
+    {
+        body.velocity = vector_of(from.motion);
+        body.spin = vector_of(from.motion + 4);
+        const Quat turn(double{from.drift[7]}, double{from.drift[4]}, double{from.drift[5]},
+                        double{from.drift[6]});
+        goes = carried_side(vector_of(from.drift), turn, body, core, half);
+    }
+};
+
+// What the kernel should tell of a lane, by the law of one point.
+template <class Real>
+Vec3 plain_slip(BlockCase<Real>& made, std::size_t lane, double half)
+{
+    const ContactBlock<Real>& block = made.block();
+    const Vec3 normal = vector_of(block.normal, lane);
+    const Vec3 arm_a = vector_of(block.center_a, lane), arm_b = vector_of(block.center_b, lane);
+    const PlainSide a(made.body_a(lane), arm_a - normal * double{block.round_a.at[lane]}, half);
+    const PlainSide b(made.body_b(lane), arm_b + normal * double{block.round_b.at[lane]}, half);
+    DirectPoint point;
+    point.a = 0, point.b = 1;
+    point.arm_a = arm_a;
+    point.arm_b = arm_b;
+    const DirectBody bodies[2] = {a.body, b.body};
+    const Vec3 before = velocity_between(point, bodies);
+    carry_arms(a.goes, b.goes, double{made.rows.carries[given::kPlace].by_b.at[lane]}, point);
+    return velocity_between(point, bodies) - before;
+}
+
+template <class Real>
+void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
+{
+    const double half = 1.0 / 480;
+    for (unsigned seed = 0; seed < 50; ++seed) {
+        std::mt19937 random(seed);
+        BlockCase<Real> made = given::random_block<Real>(random, BlockWish{});
+        made.rows.carries.assign(made.rows.blocks.size(), {});
+        CarryRows<Real>& carried = made.rows.carries[given::kPlace];
+        for (std::size_t lane = 0; lane < kBlock; ++lane) {
+            const double share = given::random_number(random, 0, 1);
+            if (lane % 3 == 0) continue;
+            carried.by_a.at[lane] = static_cast<Real>(1 - share);
+            carried.by_b.at[lane] = static_cast<Real>(share);
+        }
+        BlockCase<Real> narrow = made;
+        kernels.carry(made.view(), given::kPlace, given::kPlace + 1, static_cast<Real>(half));
+        solve_kernels_of<Real>("scalar")->carry(narrow.view(), given::kPlace, given::kPlace + 1,
+                                                static_cast<Real>(half));
+        ASSERT_EQ(std::memcmp(&narrow.rows.carries[given::kPlace], &carried, sizeof carried), 0);
+        for (std::size_t lane = 0; lane < kBlock; ++lane) {
+            const Vec3 slip = lane % 3 == 0 ? Vec3(Vec3::Zero()) : plain_slip(made, lane, half);
+            const Vec3 normal = vector_of(made.block().normal, lane);
+            const Vec3 tangent = vector_of(made.block().tangent, lane);
+            ASSERT_NEAR(double{carried.speed[0].at[lane]}, tangent.dot(slip), tolerance);
+            ASSERT_NEAR(double{carried.speed[1].at[lane]}, normal.cross(tangent).dot(slip),
+                        tolerance);
+        }
+    }
+}
+
+TEST(CarriedPoints, OfBlocksFollowTheSameLawOnEveryWidth)
+{
+    for (const char* width : {"scalar", "avx2", "avx512"}) {
+        if (const auto* kernels = solve_kernels_of<float>(width)) check_kernel(*kernels, 3e-6);
+        if (const auto* kernels = solve_kernels_of<double>(width)) check_kernel(*kernels, 1e-13);
+    }
+}
+
+// What slides by the carried speed and no other is brought to rest against it.
+TEST(CarriedPoints, FrictionAimsAtThem)
+{
+    for (const bool at_points : {false, true}) {
+        std::mt19937 random(7);
+        BlockWish wish;
+        wish.points = 1;
+        wish.bounces = wish.rolls = false;
+        wish.at_points = at_points;
+        BlockCase<double> made = given::random_block<double>(random, wish);
+        BlockCase<double> other = made;
+        made.rows.carries.assign(made.rows.blocks.size(), {});
+        for (Lane16<double>& speed : made.rows.carries[given::kPlace].speed)
+            for (double& lane : speed.at) lane = 1e-3;
+        Visit<double> visit;
+        visit.inverse_substep = 240;
+        visit.push_limit = 3;
+        const SolveKernels<double>& kernels = *solve_kernels_of<double>("scalar");
+        made.sweep(kernels, visit);
+        other.sweep(kernels, visit);
+        int changed = 0;
+        for (std::size_t lane = 0; lane < kBlock; ++lane)
+            changed += made.block().friction_impulse[0].at[lane]
+                    != other.block().friction_impulse[0].at[lane]
+                ? 1
+                : 0;
+        EXPECT_GT(changed, 3);
+    }
+}
+
+}  // namespace
+}  // namespace throng

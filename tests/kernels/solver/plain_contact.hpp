@@ -1,0 +1,421 @@
+// Plain contact: one contact solved by the formulas of the textbook, in double and in world axes,
+// everything computed afresh from the bodies after every impulse.
+#pragma once
+
+#include "kernels/data/contacts.hpp"
+#include "kernels/data/rows.hpp"
+#include "kernels/solver/contact_rows.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace throng::given {
+
+/// A body as a textbook has it. Where nothing turns, it has neither spin nor inertia.
+struct PlainBody {
+    Vec3 velocity, spin, moved;
+    Mat3 turn;
+    double inverse_mass = 0;
+    Mat3 inverse_inertia;
+    bool written = false;
+
+    template <class Real>
+    PlainBody(const SolverBody<Real>& body, bool may_write, bool turns = true) : written(may_write)
+    {
+        const auto vec = [](const Real* from) {
+            return Vec3(double{from[0]}, double{from[1]}, double{from[2]});
+        };
+        velocity = vec(body.motion);
+        spin = vec(body.motion + 4);
+        moved = vec(body.drift);
+        turn = Quat(double{body.drift[7]}, double{body.drift[4]}, double{body.drift[5]},
+                    double{body.drift[6]})
+                   .toRotationMatrix();
+        inverse_mass = double{body.inertia[0]};
+        inverse_inertia =
+            Sym3{double{body.inertia[1]}, double{body.inertia[2]}, double{body.inertia[3]},
+                 double{body.inertia[4]}, double{body.inertia[5]}, double{body.inertia[6]}}
+                .matrix();
+        if (turns) return;
+        spin.setZero();
+        turn.setIdentity();
+        inverse_inertia.setZero();
+    }
+    Vec3 velocity_at(const Vec3& arm) const { return velocity + spin.cross(arm); }
+    /// Where a point of the body has gone since the step began, less where it was.
+    Vec3 moved_at(const Vec3& arm) const { return moved + turn * arm - arm; }
+    void push(const Vec3& impulse, const Vec3& arm)
+    {
+        velocity += inverse_mass * impulse;
+        spin += inverse_inertia * arm.cross(impulse);
+    }
+    void twist(const Vec3& impulse) { spin += inverse_inertia * impulse; }
+};
+
+struct PlainVisit {
+    double substep = 0, push_limit = 0;
+    bool push = false, grips = true, rolls = false;
+    bool at_points = false, pyramid = false;  // friction of another kind
+    bool together = true;                     // the points are first pushed all at once
+    int normal_sweeps = 1;
+    bool bounces = false;  // what comes in faster than `slow` is left to its impact
+    double slow = 0;
+    Vec3 fall = Vec3::Zero();
+};
+
+class PlainContact {
+public:
+    template <class Real>
+    PlainContact(const Contact<Real>& contact,
+                 const ContactTerms<Real>& terms,
+                 const PlainBody& body_a,
+                 const PlainBody& body_b)
+        : a(body_a), b(body_b), normal(contact.normal.template cast<double>()),
+          friction_impulse(contact.friction.template cast<double>()),
+          rolling_impulse(contact.rolling.template cast<double>()), twist_impulse(contact.twist),
+          round_a(contact.round_a), round_b(contact.round_b), friction(terms.friction),
+          restitution(terms.restitution), rolling(terms.rolling_friction),
+          bias_rate(terms.softness.bias_rate), impulse_scale(terms.softness.impulse_scale),
+          deep(terms.deep)
+    {
+        const Vec3 between = contact.between.template cast<double>();
+        double total = 0;
+        for (int k = 0; k < contact.count; ++k) {
+            const auto& from = contact.points[static_cast<std::size_t>(k)];
+            Point point;
+            point.separation = from.separation;
+            point.arm_a = from.from_a.template cast<double>();
+            point.arm_b = point.arm_a + normal * point.separation + between;
+            point.impulse = from.impulse;
+            center_a += point.arm_a / contact.count;
+            center_b += point.arm_b / contact.count;
+            total += point.impulse;
+            points.push_back(point);
+        }
+        held_uncut = friction_impulse;
+        // What was carried over stays within the cone.
+        if (friction_impulse.norm() > friction * total)
+            friction_impulse *= friction * total / friction_impulse.norm();
+        // Seen from the center, points lie in the plane of the contact.
+        for (Point& point : points) {
+            point.off = point.arm_a - center_a;
+            point.off -= normal * normal.dot(point.off);
+        }
+    }
+
+    void warm_start(const PlainVisit& visit)
+    {
+        for (const Point& point : points) apply(point.impulse * normal, point.arm_a, point.arm_b);
+        if (!visit.grips) return;
+        if (visit.pyramid) friction_impulse = held_uncut;
+        if (visit.at_points) {
+            share_friction(visit);
+        } else if (visit.pyramid) {
+            double total = 0;
+            for (const Point& point : points) total += point.impulse;
+            friction_impulse = within_pyramid(friction_impulse, friction * total);
+        }
+        apply(friction_impulse, center_a, center_b);
+        twist(twist_impulse * normal);
+        if (visit.rolls) twist(rolling_impulse);
+    }
+
+    void sweep(const PlainVisit& visit)
+    {
+        // Aims are those of the visit's beginning; friction comes before the last round of pushes.
+        int overlapping = 0;
+        for (const Point& point : points)
+            overlapping += separation_of(point) < 0 && mass_of(point) > 0 ? 1 : 0;
+        for (Point& point : points) aim(point, visit, overlapping);
+        if (visit.together) push_together();
+        for (int i = 1; i < visit.normal_sweeps; ++i)
+            for (Point& point : points) push(point);
+        if (visit.grips) hold(visit);
+        for (Point& point : points) push(point);
+    }
+
+    // An impact is a contact of its own that holds nothing yet: of the points that strike, seen in
+    // the middle of what gravity does.
+    void bounce(const PlainVisit& visit)
+    {
+        PlainContact struck = *this;
+        const double falls = (b.inverse_mass > 0 ? 1 : 0) - (a.inverse_mass > 0 ? 1 : 0);
+        const Vec3 half = visit.fall * falls / 2;
+        struck.b.velocity += half;
+        struck.friction_impulse = struck.rolling_impulse = Vec3::Zero();
+        struck.twist_impulse = 0;
+        std::vector<std::size_t> strikes;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            Point& point = struck.points[k];
+            point.impulse = 0;
+            point.friction = Vec3::Zero();
+            const double speed = struck.speed_of(point);
+            const double then = separation_of(point) / visit.substep + speed + normal.dot(half);
+            if (restitution > 0 && speed < -visit.slow && then < 0 && mass_of(point) > 0)
+                strikes.push_back(k);
+        }
+        if (strikes.empty()) return;
+        struck.throw_back(strikes);
+        if (visit.grips) struck.hold(visit);
+        a = struck.a;
+        b = struck.b;
+        b.velocity -= half;
+        for (const Point& point : struck.points) impact_impulse += normal * point.impulse;
+        impact_impulse += struck.friction_impulse;
+    }
+
+    struct Point {
+        Vec3 arm_a, arm_b, off = Vec3::Zero();
+        double separation = 0, impulse = 0, bias = 0, leak = 0;
+        bool left = false;  // to its impact
+        Vec3 friction = Vec3::Zero();
+    };
+    PlainBody a, b;
+    Vec3 normal;
+    std::vector<Point> points;
+    Vec3 center_a = Vec3::Zero(), center_b = Vec3::Zero();
+    Vec3 friction_impulse, held_uncut, rolling_impulse, impact_impulse = Vec3::Zero();
+    double twist_impulse;
+    double held_by = 0, held_at = 0;  // load and its lever, by which friction went last
+
+    /// How far apart the surfaces are by now. Within a round side there is a core that turns with
+    /// the body; the skin round it does not.
+    double separation_of(const Point& point) const
+    {
+        const Vec3 core_a = center_a + point.off - round_a * normal;
+        const Vec3 core_b = center_b + point.off + round_b * normal;
+        return point.separation + normal.dot(b.moved_at(core_b) - a.moved_at(core_a));
+    }
+
+private:
+    void apply(const Vec3& impulse, const Vec3& arm_a, const Vec3& arm_b)
+    {
+        a.push(-impulse, arm_a);
+        b.push(impulse, arm_b);
+    }
+    void twist(const Vec3& impulse)
+    {
+        a.twist(-impulse);
+        b.twist(impulse);
+    }
+    double speed_of(const Point& point) const
+    {
+        return normal.dot(b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
+    }
+    // What answers an impulse p at the arms with velocity: the matrix of the textbook.
+    Mat3 response(const Vec3& arm_a, const Vec3& arm_b) const
+    {
+        const auto cross = [](const Vec3& v) {
+            Mat3 m;
+            m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+            return m;
+        };
+        return (a.inverse_mass + b.inverse_mass) * Mat3::Identity()
+            - cross(arm_a) * a.inverse_inertia * cross(arm_a)
+            - cross(arm_b) * b.inverse_inertia * cross(arm_b);
+    }
+    // None where neither body can be moved and the point has no lever to turn one by: at least half
+    // of what it gives way has to come by arms that lie a hundredth aside of the normal.
+    double mass_of(const Point& point) const
+    {
+        const double answer = normal.dot(response(point.arm_a, point.arm_b) * normal);
+        if (a.inverse_mass + b.inverse_mass > 0) return 1 / answer;
+        double by_levers = 0;
+        for (const auto& [body, arm] : {std::pair(&a, point.arm_a), std::pair(&b, point.arm_b)}) {
+            const Vec3 torque = arm.cross(normal);
+            if (torque.norm() > 1e-2 * arm.norm())
+                by_levers += torque.dot(body->inverse_inertia * torque);
+        }
+        return 2 * by_levers < answer || answer <= 0 ? 0 : 1 / answer;
+    }
+    void aim(Point& point, const PlainVisit& visit, int overlapping) const
+    {
+        const double separation = separation_of(point);
+        point.leak = 0;
+        point.bias = separation > 0 ? separation / visit.substep : 0;
+        point.left =
+            visit.bounces && !visit.push && restitution > 0 && speed_of(point) < -visit.slow;
+        if (separation > 0 || !visit.push) return;
+        // Three points share a load: they may go three times as deep before they turn rigid.
+        const double turns_rigid = deep * (overlapping >= 3 ? 3 : 1);
+        const double depth = deep > 0 ? -separation / turns_rigid : 0;
+        point.leak = impulse_scale * std::clamp(2 - depth, 0.0, 1.0);
+        point.bias = std::max(bias_rate * separation, -visit.push_limit);
+    }
+    void push(Point& point)
+    {
+        if (point.left) return;
+        const double before = point.impulse;
+        const double change = -mass_of(point) * (1 - point.leak) * (speed_of(point) + point.bias)
+            - point.leak * before;
+        point.impulse = std::max(before + change, 0.0);
+        apply((point.impulse - before) * normal, point.arm_a, point.arm_b);
+    }
+    // The impulses with which each point gives way by its share and no other comes in between, by
+    // a full system of equations; only where nobody pulls. A rigid point gives way by a little.
+    void push_together()
+    {
+        const auto count = static_cast<Eigen::Index>(points.size());
+        Eigen::MatrixXd system(count, count);
+        Eigen::VectorXd right(count);
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const Point& at = points[static_cast<std::size_t>(i)];
+            const double keep = at.left ? 0 : mass_of(at) * (1 - at.leak);
+            for (Eigen::Index k = 0; k < count; ++k)
+                system(i, k) = keep * answer_at(at, points[static_cast<std::size_t>(k)]);
+            system(i, i) += std::max(at.leak, double{0.03f});
+            right[i] = -keep * (speed_of(at) + at.bias) - at.leak * at.impulse;
+        }
+        Eigen::VectorXd more = system.fullPivLu().solve(right);
+        for (Eigen::Index i = 0; i < count; ++i)
+            if (points[static_cast<std::size_t>(i)].left) more[i] = 0;
+        for (Eigen::Index i = 0; i < count; ++i)
+            if (points[static_cast<std::size_t>(i)].impulse + more[i] < 0) return;
+        for (Eigen::Index i = 0; i < count; ++i) {
+            Point& at = points[static_cast<std::size_t>(i)];
+            at.impulse += more[i];
+            apply(more[i] * normal, at.arm_a, at.arm_b);
+        }
+    }
+    // Stops the points by sweeps; then as much of those impulses as leaves 1 - e2 of the energy
+    // that it took behind.
+    void throw_back(const std::vector<std::size_t>& strikes)
+    {
+        PlainContact stopped = *this;
+        for (int visit = 0; visit < kBounceVisits; ++visit)
+            for (const std::size_t k : strikes) stopped.push(stopped.points[k]);
+        double in = 0, change = 0;
+        for (const std::size_t k : strikes) {
+            const double came = speed_of(points[k]);
+            in -= stopped.points[k].impulse * came;
+            change += stopped.points[k].impulse * (stopped.speed_of(stopped.points[k]) - came);
+        }
+        for (const std::size_t k : strikes) {
+            points[k].impulse = stopped.points[k].impulse * (1 + restitution) * in / change;
+            apply(points[k].impulse * normal, points[k].arm_a, points[k].arm_b);
+        }
+    }
+    // The normal speed that an impulse of one on a point gives at another.
+    double answer_at(const Point& at, const Point& pushed) const
+    {
+        PlainContact after = *this;
+        after.a.velocity.setZero(), after.a.spin.setZero();
+        after.b.velocity.setZero(), after.b.spin.setZero();
+        after.apply(normal, pushed.arm_a, pushed.arm_b);
+        return after.speed_of(at);
+    }
+    void hold(const PlainVisit& visit)
+    {
+        double total = 0, lever = 0;
+        for (const Point& point : points) {
+            total += point.impulse;
+            lever += point.impulse * point.off.norm();
+        }
+        held_by = total;
+        held_at = lever;
+        const Mat3 turning = a.inverse_inertia + b.inverse_inertia;
+        if (visit.rolls && turning.trace() > 0) {
+            const Vec3 before = rolling_impulse;
+            rolling_impulse -= (b.spin - a.spin) / turning.trace();
+            const double most = rolling * total;
+            if (rolling_impulse.norm() > most) rolling_impulse *= most / rolling_impulse.norm();
+            twist(rolling_impulse - before);
+        }
+        if (visit.at_points) return grip_each(visit);
+        if (points.size() > 1 && turning.trace() > 0) {
+            const double before = twist_impulse;
+            const double mass = 1 / normal.dot(turning * normal);
+            twist_impulse -= mass * normal.dot(b.spin - a.spin);
+            twist_impulse = std::clamp(twist_impulse, -friction * lever, friction * lever);
+            twist((twist_impulse - before) * normal);
+        }
+        grip(visit, Vec3::Zero(), friction * total, friction_impulse);
+    }
+    void grip_each(const PlainVisit& visit)
+    {
+        for (Point& point : points)
+            grip(visit, point.off, friction * point.impulse, point.friction);
+        add_up_friction();
+    }
+    void add_up_friction()
+    {
+        friction_impulse.setZero();
+        twist_impulse = 0;
+        for (const Point& point : points) {
+            friction_impulse += point.friction;
+            twist_impulse += normal.dot(point.off.cross(point.friction));
+        }
+    }
+    // The friction of least weighted squares that has the force and torque that are held.
+    void share_friction(const PlainVisit& visit)
+    {
+        double load = 0, spread = 0, extent = 0;
+        Vec3 middle = Vec3::Zero();
+        for (const Point& point : points) load += point.impulse;
+        for (const Point& point : points) {
+            if (load > 0) middle += point.off * point.impulse / load;
+            extent = std::max(extent, point.off.squaredNorm());
+        }
+        for (const Point& point : points)
+            spread += point.impulse * (point.off - middle).squaredNorm();
+        const double rest = twist_impulse - normal.dot(middle.cross(friction_impulse));
+        const double turn = spread > 1e-3 * load * extent ? rest / spread : 0;
+        for (Point& point : points) {
+            const double most = friction * point.impulse;
+            Vec3 share = Vec3::Zero();
+            if (load > 0)
+                share = point.impulse
+                    * (friction_impulse / load + turn * normal.cross(point.off - middle));
+            if (visit.pyramid)
+                share = within_pyramid(share, most);
+            else if (share.norm() > most)
+                share *= most / share.norm();
+            point.friction = share;
+        }
+        add_up_friction();
+    }
+    // The first side of the pyramid: across the normal and an axis of the world far from it.
+    Vec3 side() const
+    {
+        const bool flat = std::abs(normal.x()) < 0.6;
+        return normal.cross(flat ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitY())).normalized();
+    }
+    Vec3 within_pyramid(const Vec3& held, double most) const
+    {
+        const Vec3 u = side(), v = normal.cross(u);
+        return u * std::clamp(u.dot(held), -most, most) + v * std::clamp(v.dot(held), -most, most);
+    }
+    // Sticking with the full matrix of the tangent plane, else sliding within the cone or pyramid.
+    void grip(const PlainVisit& visit, const Vec3& off, double most, Vec3& held)
+    {
+        const Vec3 arm_a = center_a + off, arm_b = center_b + off;
+        const Vec3 u = side(), v = normal.cross(u);
+        Eigen::Matrix<double, 3, 2> plane;
+        plane << u, v;
+        const Eigen::Matrix2d k = plane.transpose() * response(arm_a, arm_b) * plane;
+        const Eigen::Vector2d slip =
+            plane.transpose() * (b.velocity_at(arm_b) - a.velocity_at(arm_a));
+        const Eigen::Vector2d before = plane.transpose() * held;
+        Eigen::Vector2d after = before - k.inverse() * slip;
+        if (visit.pyramid && after.cwiseAbs().maxCoeff() > most) {
+            after[0] = std::clamp(before[0] - slip[0] / k(0, 0), -most, most);
+            const double then = slip[1] + k(0, 1) * (after[0] - before[0]);
+            after[1] = std::clamp(before[1] - then / k(1, 1), -most, most);
+        } else if (!visit.pyramid && after.norm() > most) {
+            // The greater eigenvalue.
+            const double stiffest = k.trace() / 2 + std::hypot((k(0, 0) - k(1, 1)) / 2, k(0, 1));
+            after = before - slip / stiffest;
+            if (after.norm() > most) after *= most / after.norm();
+        }
+        held = plane * after;
+        apply(plane * (after - before), arm_a, arm_b);
+    }
+
+    double round_a, round_b;
+    double friction, restitution, rolling, bias_rate, impulse_scale, deep;
+};
+
+}  // namespace throng::given

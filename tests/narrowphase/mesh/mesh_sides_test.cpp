@@ -1,0 +1,218 @@
+// Mesh sides: an open mesh pushes from the side that a shape is on, and keeps it there.
+#include "narrowphase/mesh/mesh_sides.hpp"
+
+#include "cooking/hulls/hull.hpp"
+#include "cooking/repair/build_mesh.hpp"
+#include "cooking/repair/mesh_health.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace throng {
+namespace {
+
+using Soup = std::pair<std::vector<Vec3>, std::vector<std::array<std::uint32_t, 3>>>;
+
+// A floor of 4 m by 4 m at 0, in squares of 1 m.
+Soup floor_soup()
+{
+    Soup soup;
+    for (int i = 0; i <= 4; ++i)
+        for (int j = 0; j <= 4; ++j) soup.first.emplace_back(i - 2, j - 2, 0);
+    for (std::uint32_t i = 0; i < 4; ++i)
+        for (std::uint32_t j = 0; j < 4; ++j) {
+            const std::uint32_t a = 5 * i + j, b = a + 5;
+            soup.second.push_back({a, b, b + 1});
+            soup.second.push_back({a, b + 1, a + 1});
+        }
+    return soup;
+}
+
+// A cube of 2 m about its origin; wound outward or inward.
+Soup cube_soup(bool inward)
+{
+    Soup soup;
+    for (const double z : {-1.0, 1.0})
+        for (const double y : {-1.0, 1.0})
+            for (const double x : {-1.0, 1.0}) soup.first.emplace_back(x, y, z);
+    soup.second = {{4, 5, 7}, {4, 7, 6}, {0, 3, 1}, {0, 2, 3}, {0, 1, 5}, {0, 5, 4},
+                   {2, 7, 3}, {2, 6, 7}, {0, 6, 2}, {0, 4, 6}, {1, 3, 7}, {1, 7, 5}};
+    if (inward)
+        for (auto& triangle : soup.second) std::swap(triangle[1], triangle[2]);
+    return soup;
+}
+
+struct Guest {
+    const char* name;
+    ShapeRef shape;
+    double height;  // m, of its center over its lowest point
+};
+
+struct Stage {
+    Shapes shapes;
+    std::vector<Guest> guests;
+
+    explicit Stage(const Soup& soup)
+    {
+        shapes.meshes = {build_mesh(soup.first, soup.second).mesh};
+        shapes.spheres = {{0.4}};
+        shapes.capsules = {{0.3, 0.2}};
+        shapes.cylinders = {{0.4, 0.5}};
+        shapes.boxes = {{{0.5, 0.4, 0.3}}};
+        std::vector<Vec3> points;
+        for (const double x : {-0.5, 0.5})
+            for (const double y : {-0.4, 0.4})
+                for (const double z : {-0.4, 0.4}) points.emplace_back(x, y, z);
+        shapes.hulls = {build_hull(points).hull};
+        guests = {{"sphere", {ShapeKind::sphere, 0}, 0.4},
+                  {"capsule", {ShapeKind::capsule, 0}, 0.5},
+                  {"cylinder", {ShapeKind::cylinder, 0}, 0.5},
+                  {"box", {ShapeKind::box, 0}, 0.3},
+                  {"hull", {ShapeKind::hull, 0}, 0.4}};
+    }
+
+    using Found = std::vector<TriangleManifold<double>>;
+    Found meet(const Guest& guest,
+               const Vec3& at,
+               const Found& before = {},
+               const Quat& turn = Quat::Identity()) const
+    {
+        std::vector<std::uint32_t> held;
+        for (const auto& one : before) held.push_back(one.triangle);
+        Found found;
+        collide_mesh<double>(shapes, {ShapeKind::mesh, 0}, guest.shape, {at, turn}, 0.01, held,
+                             found);
+        return found;
+    }
+};
+
+double deepest(const Stage::Found& found)
+{
+    double least = 1;
+    for (const auto& one : found)
+        for (int k = 0; k < one.manifold.count; ++k)
+            least = std::min(least, one.manifold.points[static_cast<std::size_t>(k)].separation);
+    return least;
+}
+
+void expect_push(const Stage::Found& found, const Vec3& along, double depth)
+{
+    ASSERT_FALSE(found.empty());
+    for (const auto& one : found) EXPECT_NEAR(one.manifold.normal.dot(along), 1, 1e-9);
+    EXPECT_NEAR(deepest(found), -depth, 1e-9);
+}
+
+TEST(MeshSides, AnOpenMeshPushesFromBothSides)
+{
+    const Stage stage(floor_soup());
+    for (const Guest& guest : stage.guests)
+        for (const double side : {1.0, -1.0}) {
+            SCOPED_TRACE(std::string(guest.name) + (side > 0 ? " in front" : " behind"));
+            const auto found = stage.meet(guest, Vec3(0.3, 0.2, side * (guest.height - 0.05)));
+            expect_push(found, side * Vec3::UnitZ(), 0.05);
+            for (const auto& one : found) EXPECT_EQ((one.triangle & kBehind) != 0, side < 0);
+        }
+}
+
+TEST(MeshSides, WhatTouchedOnOneSideIsPushedBackThereFromThrough)
+{
+    const Stage stage(floor_soup());
+    for (const Guest& guest : stage.guests)
+        for (const double side : {1.0, -1.0}) {
+            SCOPED_TRACE(std::string(guest.name) + (side > 0 ? " in front" : " behind"));
+            auto found = stage.meet(guest, Vec3(0.3, 0.2, side * guest.height));
+            for (const double height : {0.1, -0.02, -0.1}) {
+                found = stage.meet(guest, Vec3(0.32, 0.2, side * height), found);
+                expect_push(found, side * Vec3::UnitZ(), guest.height - height);
+            }
+        }
+}
+
+TEST(MeshSides, WhatWasPressedAllTheWayThroughIsPushedBackToo)
+{
+    const Stage stage(floor_soup());
+    for (const Guest& guest : stage.guests)
+        for (const double side : {1.0, -1.0}) {
+            SCOPED_TRACE(std::string(guest.name) + (side > 0 ? " in front" : " behind"));
+            auto found = stage.meet(guest, Vec3(0.3, 0.2, side * 0.5 * guest.height));
+            for (const double share : {-0.8, -1.2, -1.6}) {
+                const double height = share * guest.height;
+                found = stage.meet(guest, Vec3(0.32, 0.2, side * height), found);
+                expect_push(found, side * Vec3::UnitZ(), guest.height - height);
+            }
+        }
+}
+
+// A plate that leans: its middle is over one triangle, and all that is lowest over the next.
+TEST(MeshSides, WhatLeansIsPushedBackByTheTriangleThatItsMiddleIsOver)
+{
+    Stage stage(floor_soup());
+    stage.shapes.boxes.push_back({{0.8, 0.1, 0.02}});
+    const Guest plate{"plate", {ShapeKind::box, 1}, 0};
+    for (const double lean : {0.1, 0.5}) {
+        SCOPED_TRACE(lean);
+        const Quat turn(Eigen::AngleAxisd(lean, Vec3::UnitY()));
+        auto found = stage.meet(plate, Vec3(-0.1, 0.45, 0.001), {}, turn);
+        ASSERT_FALSE(found.empty());
+        for (const double height : {-0.01, -0.03, -0.1}) {
+            found = stage.meet(plate, Vec3(-0.1, 0.45, height), found, turn);
+            ASSERT_FALSE(found.empty()) << height;
+            for (const auto& one : found) EXPECT_GT(one.manifold.normal.z(), 0) << height;
+        }
+    }
+}
+
+TEST(MeshSides, WhatGoesRoundARimIsLetGo)
+{
+    const Stage stage(floor_soup());
+    const Guest& ball = stage.guests[0];
+    const auto above = stage.meet(ball, Vec3(2.1, 0.3, 0.1));
+    ASSERT_FALSE(above.empty());
+    const auto below = stage.meet(ball, Vec3(2.1, 0.3, -0.1), above);
+    ASSERT_FALSE(below.empty());
+    for (const auto& one : below) EXPECT_LT(one.manifold.normal.z(), 0);
+}
+
+TEST(MeshSides, AClosedMeshHasAnInside)
+{
+    const Stage stage(cube_soup(false));
+    for (const Guest& guest : stage.guests) {
+        SCOPED_TRACE(guest.name);
+        // By the nearest face, whose inside its center is in.
+        expect_push(stage.meet(guest, Vec3(0.1, 0.2, 0.9)), Vec3::UnitZ(), guest.height + 0.1);
+        expect_push(stage.meet(guest, Vec3(0.1, 0.2, 0.95 + guest.height)), Vec3::UnitZ(), 0.05);
+    }
+}
+
+TEST(MeshSides, AStillMeshWoundInwardIsTurnedOverAndToldOf)
+{
+    const auto [vertices, triangles] = cube_soup(true);
+    const MendedMesh mended = mend_still(vertices, triangles);
+    EXPECT_EQ(mended.health.inside_out, 1u);
+    ASSERT_EQ(mended.remarks.size(), 1u);
+    EXPECT_NE(mended.remarks[0].find("inside out"), std::string::npos);
+    for (std::size_t t = 0; t < mended.mesh.triangles.size(); ++t)
+        EXPECT_GT(mended.mesh.normals[t].dot(mended.mesh.vertices[mended.mesh.triangles[t][0]]), 0);
+}
+
+TEST(MeshSides, AStillMeshWithNothingWrongStaysAsItIs)
+{
+    for (const Soup& soup : {floor_soup(), cube_soup(false)}) {
+        const MendedMesh mended = mend_still(soup.first, soup.second);
+        EXPECT_TRUE(mended.remarks.empty());
+        EXPECT_EQ(mended.mesh.triangles, build_mesh(soup.first, soup.second).mesh.triangles);
+    }
+}
+
+TEST(MeshSides, OneTriangleWoundAgainstTheOthersIsTurned)
+{
+    auto [vertices, triangles] = floor_soup();
+    std::swap(triangles[7][0], triangles[7][1]);
+    const MendedMesh mended = mend_still(vertices, triangles);
+    EXPECT_EQ(mended.health.turned, 1u);
+    for (const Vec3& normal : mended.mesh.normals) EXPECT_GT(normal.z(), 0.9);
+}
+
+}  // namespace
+}  // namespace throng

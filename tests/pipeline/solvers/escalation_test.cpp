@@ -1,0 +1,148 @@
+// Escalation: what the solver would let fall is found, held, and let go again.
+#include "pipeline/world/energy_ledger.hpp"
+#include "tests/support/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace throng {
+namespace {
+
+// A box on a box, so many times as heavy.
+Scene heavy_on_light(double ratio)
+{
+    given::SceneOf made;
+    made.floor();
+    for (const int i : {0, 1}) {
+        BodyDescription& box = made.box(Vec3::Constant(0.5), Vec3(0, 0, 0.5 + i));
+        box.mass = i == 0 ? 1 : ratio;
+        box.name = i == 0 ? "light" : "heavy";
+    }
+    made.scene.settings.sleep = false;
+    return made.scene;
+}
+
+double height_of_top(const World& world) { return world.pose(world.bodies().back()).position.z(); }
+
+TEST(Escalation, HoldsAHeavyBoxOnALightOneThatFallsWithoutIt)
+{
+    Scene scene = heavy_on_light(1000);
+    World held(scene);
+    scene.settings.escalation = Escalation::off;
+    World left(scene);
+    held.step(180);
+    left.step(180);
+    EXPECT_NEAR(height_of_top(held), 1.5, 0.02);
+    EXPECT_LT(height_of_top(left), 1);
+    EXPECT_GT(held.report().islands_escalated, 100u);
+    EXPECT_EQ(left.report().islands_escalated, 0u);
+}
+
+TEST(Escalation, IsCalledForByWhoIsStubbornAndByNobodyElse)
+{
+    World equal(heavy_on_light(1));
+    equal.step(30);
+    EXPECT_FALSE(equal.effects().on.has(Effect::escalation));
+    World world(heavy_on_light(1000));
+    EXPECT_FALSE(world.effects().on.has(Effect::escalation));
+    world.step(30);
+    EXPECT_TRUE(world.effects().on.has(Effect::escalation));
+    EXPECT_EQ(world.effects().cause_of(Effect::escalation), "body 1 light");
+    // Taken apart it is stubborn no more.
+    world.set_pose(world.bodies().back(), {Vec3(5, 0, 0.5), Quat::Identity()});
+    world.step(30);
+    EXPECT_FALSE(world.effects().on.has(Effect::escalation));
+}
+
+TEST(Escalation, GivesTheSameBitsOnAnyNumberOfThreads)
+{
+    const auto hash_of = [](int threads) {
+        World world(heavy_on_light(1000), threads);
+        world.step(30);
+        return world.state_hash();
+    };
+    EXPECT_EQ(hash_of(1), hash_of(2));
+    EXPECT_EQ(hash_of(1), hash_of(3));
+}
+
+// A ball that weighs so many times as much falls on a small one, 0.3 m above it.
+Scene heavy_falls_on_light(double ratio, double speed)
+{
+    given::SceneOf made;
+    made.floor();
+    made.ball(0.1, Vec3(0, 0, 0.1)).mass = 1;
+    BodyDescription& heavy = made.ball(1, Vec3(0, 0, 1.5));
+    heavy.mass = ratio;
+    heavy.velocity = Vec3(0, 0, -speed);
+    return made.scene;
+}
+
+TEST(Escalation, StopsWhatFallsOnSomethingLightWithoutThrowingItBack)
+{
+    for (const double ratio : {10.0, 30.0, 1000.0})
+        for (const Solver solver : {Solver::soft_step, Solver::pgs}) {
+            Scene scene = heavy_falls_on_light(ratio, 27);
+            scene.settings.solver = solver;
+            World world(scene);
+            double fastest = 0;
+            for (int i = 0; i < 60; ++i) {
+                world.step();
+                fastest = std::max(fastest, world.velocity(world.bodies().back()).z());
+            }
+            EXPECT_LT(fastest, 0.05 * 27) << ratio;
+        }
+}
+
+// Each a little above the last, so that they come to meet one after another.
+TEST(Escalation, DoesNotThrowAColumnThatIsDropped)
+{
+    for (const int count : {50, 60, 80}) {
+        given::SceneOf made;
+        made.floor();
+        for (int i = 0; i < count; ++i)
+            made.box(Vec3::Constant(0.05), Vec3(0, 0, 0.07 + 0.12 * i)).mass = 2;
+        made.scene.settings.substeps = 16;
+        World world(made.scene);
+        EnergyLedger ledger;
+        std::uint64_t escalated = 0;
+        for (int i = 0; i < 80; ++i) {
+            ledger.before_step(world);
+            world.step();
+            ledger.after_step(world);
+            escalated += world.report().islands_escalated;
+        }
+        EXPECT_GT(escalated, 0u) << count;
+        EXPECT_LT(ledger.gained(), 0.01 * ledger.greatest_kinetic()) << count;
+    }
+}
+
+// A column with a small one in it that stays where it is, but turns: levers press it in as its
+// mass would be. Its upper half rocks on it, and is not thrown higher from time to time.
+TEST(Escalation, HoldsTheHeavyOnWhoCanOnlyTurn)
+{
+    for (const double small : {0.04, 0.08})
+        for (const bool round : {false, true}) {
+            given::SceneOf made;
+            made.floor();
+            const auto add = [&](double half, double height) -> BodyDescription& {
+                if (!round) return made.box(Vec3(half, half, half), Vec3(0, 0, height));
+                return made.body(made.shape(CylinderShape{half, half}), Vec3(0, 0, height));
+            };
+            add(1, 1);
+            add(small, 2 + small).lock_position = true;
+            add(1, 3 + 2 * small);
+            World world(made.scene);
+            EnergyLedger ledger;
+            for (int step = 0; step < 600; ++step) {
+                ledger.before_step(world);
+                world.step();
+                ledger.after_step(world);
+            }
+            const double weight = world.mass(world.bodies()[3]) * 9.81;
+            EXPECT_LE(ledger.gained(), 1e-3 * weight) << small << ' ' << round;
+        }
+}
+
+}  // namespace
+}  // namespace throng

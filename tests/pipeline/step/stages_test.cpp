@@ -1,0 +1,330 @@
+// Stages: each called with a few arrays, no world needed.
+#include "pipeline/step/stages.hpp"
+
+#include "pipeline/step/inner_rows.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace throng {
+namespace {
+
+// Some dynamic bodies of unit mass and one ball each, awake, in a row along x.
+struct Bodies {
+    Conditions conditions;
+    Poses poses;
+    Velocities velocities;
+    Masses masses;
+    BodyStates states;
+    Shapes shapes;
+    Colliders colliders;
+    PairFilter filter;
+    Bounds bounds;
+
+    explicit Bodies(std::uint32_t count, double apart = 1.0)
+    {
+        conditions.effects = {Effect::motion, Effect::gravity, Effect::contact};
+        shapes.spheres.push_back({0.5});
+        for (std::uint32_t i = 0; i < count; ++i) {
+            poses.position.emplace_back(apart * i, 0, 0);
+            poses.orientation.push_back(Quat::Identity());
+            velocities.linear.emplace_back(Vec3::Zero());
+            velocities.angular.emplace_back(Vec3::Zero());
+            masses.mass.push_back(1);
+            masses.inverse_mass.push_back(1);
+            masses.inertia.push_back({1, 1, 1, 0, 0, 0});
+            masses.inverse_inertia.push_back({1, 1, 1, 0, 0, 0});
+            masses.spins_unevenly.push_back(0);
+            states.kind.push_back(BodyKind::dynamic);
+            states.awake.push_back(1);
+            states.quarantined.push_back(0);
+            states.quiet_time.push_back(0);
+            states.bed.push_back(kNobody);
+            states.radius.push_back(0.5);
+            states.movers.dynamic.push_back(i);
+            colliders.body.push_back(i);
+            colliders.shape.push_back({ShapeKind::sphere, 0});
+            colliders.local.emplace_back();
+            colliders.material.push_back(0);
+            colliders.inner_extent.push_back(0.5);
+            colliders.outer_radius.push_back(0.5);
+            colliders.begin.push_back(i);
+            colliders.count.push_back(1);
+            filter.add(i);
+            bounds.touched.push_back(i);
+        }
+    }
+    void update()
+    {
+        update_bounds(conditions, shapes, colliders, poses, velocities, states, bounds);
+    }
+};
+
+TEST(UpdateBounds, AsksAboutWhatLeftItsMarginAlone)
+{
+    Bodies b(4, 10);
+    b.update();
+    EXPECT_EQ(b.bounds.asked, (std::vector<std::uint32_t>{0, 1, 2, 3}));
+    b.update();
+    EXPECT_TRUE(b.bounds.asked.empty());
+    b.poses.position[2].x() += 100;
+    b.poses.position[1].x() += 1e-4;
+    b.update();
+    EXPECT_EQ(b.bounds.asked, (std::vector<std::uint32_t>{2}));
+}
+
+TEST(UpdateBounds, WhoComesToRestGetsATighterBoxOnce)
+{
+    Bodies b(2, 10);
+    for (Vec3& velocity : b.velocities.linear) velocity = Vec3(0, 0, -10);
+    b.colliders.local[1].position = Vec3(0.1, 0, 0);  // goes the long way
+    b.update();
+    const double deep = b.bounds.boxes[0].lower.z();
+    for (Vec3& velocity : b.velocities.linear) velocity.setZero();
+    b.update();
+    EXPECT_EQ(b.bounds.asked, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_GT(b.bounds.boxes[0].lower.z(), deep + 0.4);
+    b.update();
+    EXPECT_TRUE(b.bounds.asked.empty());
+}
+
+TEST(UpdateBounds, ABoxHoldsAllThatTheBodyMayReachInTheStep)
+{
+    Bodies b(1);
+    b.velocities.linear[0] = Vec3(30, -60, 0);
+    b.update();
+    const double dt = b.conditions.settings.dt;
+    const Box3 there{Vec3(30 * dt - 0.5, -60 * dt - 0.5, -0.5),
+                     Vec3(30 * dt + 0.5, -60 * dt + 0.5, 0.5)};
+    EXPECT_TRUE(b.bounds.boxes[0].contains(there));
+    EXPECT_GE(b.bounds.reach[0], b.velocities.linear[0].norm() * dt);
+}
+
+TEST(UpdateBounds, SleepersCostNothingAndRemovedOnesHaveNoBox)
+{
+    Bodies b(2, 10);
+    b.update();
+    b.states.awake[0] = 0;
+    b.poses.position[0].x() += 50;  // it would be seen if it were looked at
+    b.colliders.body[1] = kNobody;
+    b.bounds.touched = {1};
+    b.update();
+    EXPECT_EQ(b.bounds.asked, (std::vector<std::uint32_t>{1}));
+    EXPECT_TRUE(b.bounds.boxes[1].empty());
+}
+
+TEST(UpdateBounds, NearHoldsTheTightBoxAndTheReachHoweverFarOut)
+{
+    Bodies b(4, 10);
+    b.poses.position[1] = Vec3(1e7, -1e7, 0.1);
+    b.poses.position[2] = Vec3(-1e-7, 1e12, 3);
+    b.velocities.linear[3] = Vec3(40, 0, 0);
+    b.update();
+    for (std::size_t i = 0; i < 4; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const double reach = 0.5 + b.bounds.reach[i], at = b.poses.position[i][k];
+            EXPECT_LE(double{b.bounds.near[i].lower[k]}, at - reach);
+            EXPECT_GE(double{b.bounds.near[i].upper[k]}, at + reach);
+            const double rounding = 1e-6 * (std::abs(at) + 1);
+            EXPECT_NEAR(double{b.bounds.near[i].lower[k]}, at - reach, rounding);
+            EXPECT_NEAR(double{b.bounds.near[i].upper[k]}, at + reach, rounding);
+        }
+    EXPECT_TRUE(b.bounds.near[0].overlaps(b.bounds.near[0]));
+    EXPECT_FALSE(b.bounds.near[0].overlaps(b.bounds.near[1]));
+    b.colliders.body[0] = kNobody;
+    b.bounds.touched = {0};
+    b.update();
+    EXPECT_FALSE(b.bounds.near[0].overlaps(b.bounds.near[0]));
+}
+
+TEST(FindPairs, PairsLiveOnUntilTheirBoxesPart)
+{
+    Bodies b(3, 0.9);
+    Finder finder;
+    finder.finder = make_finder(FinderKind::all_pairs);
+    Pairs pairs;
+    b.update();
+    find_pairs(b.bounds, b.shapes, b.colliders, b.filter, finder, pairs);
+    EXPECT_EQ(pairs.keys, (std::vector<PairKey>{pair_key(0, 1), pair_key(1, 2)}));
+    EXPECT_TRUE(pairs.changed);
+    EXPECT_EQ(pairs.from, (std::vector<std::uint32_t>{Pairs::kNewPair, Pairs::kNewPair}));
+    b.update();
+    find_pairs(b.bounds, b.shapes, b.colliders, b.filter, finder, pairs);
+    EXPECT_FALSE(pairs.changed);
+    b.poses.position[0].x() -= 5;
+    b.update();
+    find_pairs(b.bounds, b.shapes, b.colliders, b.filter, finder, pairs);
+    EXPECT_EQ(pairs.keys, (std::vector<PairKey>{pair_key(1, 2)}));
+    EXPECT_EQ(pairs.from, (std::vector<std::uint32_t>{1}));
+}
+
+TEST(FindPairs, APlaneMeetsOnlyWhatComesDownToIt)
+{
+    Bodies b(3, 5);
+    b.shapes.planes.push_back({Vec3::UnitX(), 6});
+    b.colliders.shape[0] = {ShapeKind::plane, 0};
+    b.states.kind[0] = BodyKind::still;
+    b.states.awake[0] = 0;
+    Finder finder;
+    finder.finder = make_finder(FinderKind::all_pairs);
+    Pairs pairs;
+    b.update();
+    find_pairs(b.bounds, b.shapes, b.colliders, b.filter, finder, pairs);
+    EXPECT_EQ(pairs.keys, (std::vector<PairKey>{pair_key(0, 1)}));
+}
+
+TEST(IntegratePoses, MovesTheLoneAndLeavesTheOthersToTheSolver)
+{
+    Bodies b(3);
+    b.velocities.linear.assign(3, Vec3(1, 0, 0));
+    b.states.awake[2] = 0;
+    Islands islands;
+    islands.lone = {1, 2};
+    Trouble trouble;
+    Flights flights;
+    integrate_poses(b.conditions, islands, b.masses, b.states, {}, flights, b.poses, b.velocities,
+                    trouble);
+    EXPECT_EQ(b.poses.position[0], Vec3(0, 0, 0));
+    EXPECT_NEAR(b.poses.position[1].x(), 1 + 1.0 / 60, 1e-15);
+    EXPECT_LT(b.poses.position[1].z(), 0);
+    EXPECT_EQ(b.poses.position[2], Vec3(2, 0, 0));
+    EXPECT_TRUE(trouble.quarantined.empty());
+}
+
+TEST(IntegratePoses, LeavesWhatAStepCannotHoldWhereItWasAndReportsIt)
+{
+    Bodies b(2);
+    b.velocities.linear[1] = Vec3(1e300, 0, 0);
+    Islands islands;
+    islands.lone = {0, 1};
+    Trouble trouble;
+    Flights flights;
+    integrate_poses(b.conditions, islands, b.masses, b.states, {}, flights, b.poses, b.velocities,
+                    trouble);
+    EXPECT_EQ(trouble.quarantined, (std::vector<std::uint32_t>{1}));
+    EXPECT_EQ(b.poses.position[1], Vec3(1, 0, 0));
+    quarantine_bodies(trouble, b.states, b.masses, b.velocities);
+    EXPECT_EQ(b.states.kind[1], BodyKind::still);
+    EXPECT_EQ(b.velocities.linear[1], Vec3(Vec3::Zero()));
+    EXPECT_EQ(b.states.quarantined[1], 1);
+    EXPECT_EQ(b.states.quarantined[0], 0);
+}
+
+TEST(RestIslands, PutsAnIslandToBedOnceAllOfItIsQuiet)
+{
+    Bodies b(4);
+    Islands islands;
+    islands.body_begin = {0, 2, 4};
+    islands.bodies = {0, 1, 2, 3};
+    islands.contact_begin = {0, 0, 0};
+    Beds beds;
+    Rest rest;
+    b.velocities.linear[3] = Vec3(0.1, 0, 0);  // keeps its whole island up
+    b.velocities.linear[0] = Vec3(0.01, 0, 0);
+    int steps = 0;
+    while (b.states.awake[0] != 0 && ++steps < 100)
+        rest_islands(b.conditions, {}, {}, islands, {}, b.states, beds, b.velocities, rest);
+    EXPECT_NEAR(steps, 30, 1);
+    EXPECT_EQ(rest.rested, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(b.states.bed[0], b.states.bed[1]);
+    EXPECT_NE(b.states.bed[0], kNobody);
+    EXPECT_EQ(b.velocities.linear[0], Vec3(Vec3::Zero()));
+    EXPECT_EQ(b.states.awake[2], 1);
+}
+
+TEST(WakeTouched, WakesTheWholeBedOfWhoeverIsTouched)
+{
+    Bodies b(4, 0.9);
+    Beds beds;
+    beds.sleepers = {{1, 3}};
+    for (const std::uint32_t body : {1u, 3u}) {
+        b.states.awake[body] = 0;
+        b.states.bed[body] = 0;
+    }
+    Pairs pairs;
+    pairs.keys = {pair_key(0, 1), pair_key(2, 3)};
+    ConvexContacts<float> contacts;
+    contacts.of_pair.resize(2);
+    SolidContacts<float> solids;
+    Rest rest;
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
+    EXPECT_TRUE(rest.awoken.empty());
+    contacts.contacts.resize(1);
+    contacts.of_pair[0].contact = 0;
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
+    EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1, 3}));
+    EXPECT_EQ(b.states.awake[3], 1);
+    EXPECT_EQ(beds.free, (std::vector<std::uint32_t>{0}));
+}
+
+TEST(WakeTouched, SolidsWakeWhomTheyTouchAndNobodyNear)
+{
+    Bodies b(2, 0.9);
+    b.states.awake[1] = 0;
+    b.states.bed[1] = 0;
+    Beds beds;
+    beds.sleepers = {{1}};
+    Pairs pairs;
+    pairs.keys = {pair_key(0, 1)};
+    pairs.on_solid = {0};
+    ConvexContacts<float> contacts;
+    contacts.of_pair.resize(1);
+    SolidContacts<float> solids;
+    solids.entries.resize(1);
+    Rest rest;
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
+    EXPECT_TRUE(rest.awoken.empty()) << "a contact without points";
+    solids.entries[0].contact.count = 1;
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
+    EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1}));
+}
+
+TEST(WakeTouched, WhatMovesByItselfWakesOnlyWhileItMoves)
+{
+    Bodies b(2, 0.9);
+    b.states.kind[0] = BodyKind::kinematic;
+    b.states.awake[1] = 0;
+    b.states.bed[1] = 0;
+    Beds beds;
+    beds.sleepers = {{1}};
+    Pairs pairs;
+    pairs.keys = {pair_key(0, 1)};
+    ConvexContacts<double> contacts;
+    contacts.contacts.resize(1);
+    contacts.of_pair.push_back({{}, 0});
+    const SolidContacts<double> solids;
+    Rest rest;
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
+    EXPECT_TRUE(rest.awoken.empty());
+    b.velocities.angular[0] = Vec3(0, 0, 1);
+    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
+    EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1}));
+}
+
+TEST(SolveTable, ListsWhatASubstepDoes)
+{
+    Settings direct, penalty, kinematic;
+    direct.solver = Solver::direct;
+    penalty.response = Response::penalty;
+    kinematic.response = Response::kinematic;
+    for (const Settings& settings : {Settings{}, direct, penalty, kinematic}) {
+        EXPECT_FALSE(solve_table(settings).empty());
+        for (const InnerRow& row : solve_table(settings))
+            EXPECT_FALSE(row.when.empty()) << row.name;
+    }
+    EXPECT_NE(solve_table(direct).data(), solve_table(penalty).data());
+    EXPECT_NE(solve_table(kinematic).data(), solve_table(penalty).data());
+}
+
+TEST(CarryTable, ListsWhatASpanOrAPieceDoes)
+{
+    for (const char* stage : {"back_up", "subdivide"}) {
+        EXPECT_FALSE(carry_table(stage).empty()) << stage;
+        for (const InnerRow& row : carry_table(stage)) EXPECT_FALSE(row.when.empty()) << row.name;
+    }
+    EXPECT_TRUE(carry_table("solve_impulses").empty());
+}
+
+}  // namespace
+}  // namespace throng
