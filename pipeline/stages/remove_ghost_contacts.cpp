@@ -82,8 +82,9 @@ public:
         const auto mark = [&](PairKey key) {
             for_each_side(key, [&](std::uint32_t mover, std::uint32_t other, bool) {
                 std::uint8_t& touches = touches_[mover];
-                touches |= (touches & kOne) != 0 ? kMore : kOne;
-                touches |= roles_[other] & kRimmed;
+                const std::uint8_t number = (touches & kOne) != 0 ? kMore : kOne;
+                const std::uint8_t rim = roles_[other] & kRimmed;
+                touches = static_cast<std::uint8_t>(touches | number | rim);
                 some = some || meets_ghosts(mover);
             });
         };
