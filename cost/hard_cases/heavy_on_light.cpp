@@ -1,9 +1,11 @@
 // Heavy on light: H76, what stands by the default dials though its load is too much for soft
-// contacts: heavy boxes on light ones, uneven columns, dice, cylinders and houses of cards.
+// contacts: heavy boxes on light ones, uneven columns, dice, cylinders and houses of cards; and
+// slabs on what can only turn.
 //
 // Answer: they stand as they were put, and the floor bears the weight of all.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/math/rotation.hpp"
+#include "pipeline/world/energy_ledger.hpp"
 #include "pipeline/world/world.hpp"
 
 #include <algorithm>
@@ -162,6 +164,62 @@ void judge_thrown(CaseBench& bench, Stand stand, double time)
                  std::max(0.0, top / highest - 1), 0.05, "1");
 }
 
+// Slabs of 500 kg on three balls of half a kilogram that stay where they are, and turn. Neither a
+// ball nor the floor gives way to the other, and turned their contact has levers of rounding alone.
+Scene slabs_on_balls(const CaseBench& bench, const Quat& turn)
+{
+    SceneParts parts(bench.scene());
+    parts.scene().gravity = turn * Vec3(0, 0, -kGravity);
+    parts.plane(parts.material(0.5), turn * Vec3::UnitZ(), 0);
+    for (int i = 0; i < 3; ++i) {
+        const double angle = 2.1 * i;
+        const Vec3 at(0.4 * std::cos(angle), 0.4 * std::sin(angle), 0.05);
+        parts.body(parts.ball(0, 0.5, 0.05, turn * at)).pivot = Vec3::Zero();
+    }
+    for (int i = 0; i < 4; ++i)
+        parts.box(0, 500, Vec3(0.5, 0.5, 0.1), {turn * Vec3(0, 0, 0.2 + 0.2 * i), turn});
+    return parts.scene();
+}
+
+// Who bears them is spun by nothing.
+void judge_spun(CaseBench& bench, const std::string& name, const Scene& scene, double time)
+{
+    double weight = 0, fastest = 0;
+    for (const BodyDescription& body : scene.bodies) weight += body.mass.value_or(0) * kGravity;
+    EnergyLedger ledger;
+    bench.run(
+        scene, time,
+        [&](World& world, double) {
+            for (const BodyId body : world.bodies())
+                fastest = std::max(fastest, world.angular_velocity(body).norm());
+            return true;
+        },
+        &ledger);
+    bench.report(name, "energy gained over the weight times a metre", ledger.gained() / weight,
+                 1e-3, "1");
+    bench.report(name, "fastest spin", fastest, 0.5, "rad/s");
+}
+
+void judge_who_only_turns(CaseBench& bench, double time)
+{
+    const std::pair<const char*, Quat> turns[] = {
+        {"", Quat::Identity()}, {", turned", exponential(Vec3(0.29, 0.59, 0.88))}};
+    for (const auto& [turned, turn] : turns) {
+        Scene scene = slabs_on_balls(bench, turn);
+        scene.settings.sleep = false;
+        const std::string name = std::string("slabs on balls that only turn") + turned;
+        judge_spun(bench, name, scene, time);
+        Scene exact = scene;
+        exact.settings.precision = Precision::double_;
+        judge_spun(bench, name + ", double", exact, time);
+        if (bench.brief()) continue;
+        scene.settings.dt = 1.0 / 240;
+        judge_spun(bench, name + ", dt 1/240", scene, time);
+        ask_exactly(scene.settings);
+        judge_spun(bench, name + ", direct", scene, time);
+    }
+}
+
 }  // namespace
 
 void case_heavy_on_light(CaseBench& bench)
@@ -183,6 +241,7 @@ void case_heavy_on_light(CaseBench& bench)
         ask_exactly(stand.scene.settings);
         judge(bench, stand.name + ", direct", stand, time);
     }
+    judge_who_only_turns(bench, time);
     for (Stand& stand : stands(bench)) {
         if (bench.brief() && stand.scene.bodies.size() > 7) continue;
         stand.scene.settings.solver = Solver::pgs;

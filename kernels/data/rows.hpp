@@ -20,6 +20,12 @@ inline constexpr double kSteepestWalk = 0.7;
 /// Least square of the share of a normal that is free of the drive, for a walk up a slope.
 inline constexpr double kLeastFreeWalk = 0.25;
 
+/// Least lever of a contact, as a share of its arm, by which who cannot be moved, only turned,
+/// gives way to a push along the normal. Next to below its center there is none to speak of: pushed
+/// there, a body would spin without end and part by nothing. Where neither can be moved, half of
+/// what a point gives way or more has to come by levers.
+inline constexpr double kLeastLever = 1e-2;
+
 /// What the solver knows of one body, in four lines of eight numbers.
 ///
 ///   motion   velocity, 0, angular velocity, 0; the latter of what has a SpinInertia in axes that

@@ -171,15 +171,14 @@ struct Turning {
         : torque(cross(arm, normal)), answer(dot(torque, how.turned_by(torque)))
     {
         using Real = typename L::Number;
-        constexpr Real kLever = Real(1e-2);  // of the arm
+        constexpr Real kLever = Real(kLeastLever);
         const auto has_lever = dot(torque, torque) > dot(arm, arm) * L(kLever * kLever);
         by_lever = select(has_lever, answer, L(Real(0)));
     }
 };
 
-// The effective mass of a point along the normal. Where neither body can be moved, only turned, a
-// point next to below the center has no lever to speak of: pushed there, a body would spin without
-// end and part by nothing. Half of what it gives way or more has to come by levers.
+// The effective mass of a point along the normal; 0 where it gives way by no lever: see
+// kLeastLever.
 template <class L, bool turns>
 L normal_mass(const Mobility<L, turns>& a,
               const Mobility<L, turns>& b,

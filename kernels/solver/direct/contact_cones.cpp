@@ -1,5 +1,7 @@
 #include "kernels/solver/direct/contact_cones.hpp"
 
+#include "kernels/data/rows.hpp"
+
 #include <limits>
 
 namespace throng {
@@ -50,6 +52,22 @@ void choose_rows(const DirectPoint& point, ContactCone& cone)
         }
     if (point.rolling > 0)
         for (const Vec3& axis : {tangent, other, point.normal}) add(axis, point.rolling, true);
+}
+
+// Whether a push along the normal does anything but spin what cannot be moved: see kLeastLever.
+bool gives_way(const DirectPoint& point, const ContactCone& cone)
+{
+    double moves = 0, turns = 0, by_levers = 0;
+    const auto add = [&](const ConeBlock& rows, const Vec3& arm) {
+        const double turned = rows.row(0).tail<3>().squaredNorm();
+        const double lever = arm.cross(point.normal).squaredNorm();
+        moves += rows.row(0).head<3>().squaredNorm();
+        turns += turned;
+        if (lever > kLeastLever * kLeastLever * arm.squaredNorm()) by_levers += turned;
+    };
+    add(cone.of_a, point.arm_a);
+    add(cone.of_b, point.arm_b);
+    return moves > 0 || (turns > 0 && 2 * by_levers >= turns);
 }
 
 }  // namespace
@@ -114,7 +132,7 @@ bool ContactCones::take(std::span<const DirectBody> bodies, std::span<const Dire
             std::sqrt(cone.of_a.row(0).squaredNorm() + cone.of_b.row(0).squaredNorm());
         // Where neither can be moved along the normal, no impulse helps.
         constexpr double kNone = 1e-150;
-        if ((cone.tie.a < 0 && cone.tie.b < 0) || !(answer > kNone)) continue;
+        if (!(answer > kNone) || !gives_way(points[i], cone)) continue;
         cone.free[0] -= points[i].least;
         cone.unit = 1 / answer;
         cone.of_a *= cone.unit;

@@ -1,10 +1,12 @@
 // Escalation: what the solver would let fall is found, held, and let go again.
+#include "kernels/math/rotation.hpp"
 #include "pipeline/world/energy_ledger.hpp"
 #include "tests/support/small_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace throng {
 namespace {
@@ -142,6 +144,37 @@ TEST(Escalation, HoldsTheHeavyOnWhoCanOnlyTurn)
             const double weight = world.mass(world.bodies()[3]) * 9.81;
             EXPECT_LE(ledger.gained(), 1e-3 * weight) << small << ' ' << round;
         }
+}
+
+// Of a ball on a pivot and the floor neither gives way to the other; where the whole is turned
+// their contact has levers of rounding alone, by which the exact solve once spun the ball.
+TEST(Escalation, SpinsNobodyWhoCanOnlyTurn)
+{
+    for (const Precision precision : {Precision::float_, Precision::double_}) {
+        const Quat turn = exponential(Vec3(0.29, 0.59, 0.88));
+        given::SceneOf made;
+        made.scene.settings.precision = precision;
+        made.scene.gravity = turn * Vec3(0, 0, -9.81);
+        made.floor().orientation = turn;
+        const auto add = [&](auto shape, double mass, const Vec3& at) -> BodyDescription& {
+            BodyDescription& body = made.body(made.shape(shape), turn * at);
+            body.orientation = turn;
+            body.mass = mass;
+            return body;
+        };
+        for (int i = 0; i < 3; ++i)
+            add(SphereShape{0.05}, 0.5,
+                Vec3(0.4 * std::cos(2.1 * i), 0.4 * std::sin(2.1 * i), 0.05))
+                .pivot = Vec3::Zero();
+        for (int i = 0; i < 4; ++i)
+            add(BoxShape{Vec3(0.5, 0.5, 0.1)}, 500, Vec3(0, 0, 0.2 + 0.2 * i));
+        World world(made.scene);
+        for (int step = 0; step < 60; ++step) {
+            world.step();
+            for (const BodyId body : world.bodies())
+                ASSERT_LE(world.angular_velocity(body).norm(), 0.5) << step;
+        }
+    }
 }
 
 }  // namespace

@@ -317,6 +317,38 @@ TEST(Direct, BoxOnASlopeSticksAtExactlyTheTangentAndSlidesBelow)
     EXPECT_LT((drop(0.49) - Vec3(wanted, 0, 0)).norm(), 1e-12);
 }
 
+// A ball that stays where it is, and turns, between the floor and a slab. Towards the floor neither
+// gives way, but for the rounding of a lever: taken for one it would be the measure of all speeds.
+TEST(Direct, WhoCanOnlyTurnIsSpunByNoLeverOfRounding)
+{
+    Dice dice(31);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 normal = dice.direction();
+        const double radius = 0.05, half = 0.1;
+        Problem problem;
+        DirectBody ball;
+        ball.inverse_inertia = {2000, 2000, 2000};
+        ball.spin = 1e-5 * dice.direction();
+        DirectBody slab = box(500, Vec3(1, 1, 0.2));
+        slab.velocity = -kFall * normal;
+        problem.bodies = {ball, slab};
+        DirectPoint below, above;
+        below.b = above.a = 0;
+        above.b = 1;
+        below.normal = above.normal = normal;
+        below.arm_b = -radius * normal + 1e-17 * dice.direction();
+        above.arm_a = radius * normal + 1e-17 * dice.direction();
+        above.arm_b = -half * normal;
+        below.friction = above.friction = 0.5;
+        below.least = dice.between(-1e-4, 1e-4);
+        problem.points = {below, above};
+
+        EXPECT_LE(problem.solve().residual, kDirectResidual);
+        EXPECT_LE(problem.bodies[0].spin.norm(), 1.001 * ball.spin.norm());
+        EXPECT_NEAR(problem.bodies[1].velocity.dot(normal), 0, 1e-6 * kFall);
+    }
+}
+
 TEST(Direct, FrictionSlowsASlidingBallAndTurnsIt)
 {
     Problem problem;
