@@ -72,14 +72,14 @@ struct Forces {
         return body + std::size_t{1} < first_spring.size()
             && first_spring[body] != first_spring[body + 1];
     }
+    bool on_pivot(std::size_t body) const { return body < hangs.size() && hangs[body] != 0; }
     /// Whether a body is held by something that may move it from rest at any time.
     bool stirs(std::uint32_t body) const { return field || has_springs(body); }
     /// Whether what acts on a body changes as it goes: to take it as it was when the step began
     /// would make energy.
     bool follow(std::uint32_t body) const
     {
-        return field || !attractors.empty() || has_springs(body)
-            || (body < hangs.size() && hangs[body] != 0);
+        return field || !attractors.empty() || has_springs(body) || on_pivot(body);
     }
     /// Whether anything but gravity acts on a body.
     bool act_on(std::uint32_t body) const

@@ -47,8 +47,7 @@ RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) c
     body.turns = rule_.turns && masses.inverse_inertia[id] != Sym3{};
     body.precesses = body.turns && masses.spins_unevenly[id] != 0
         && rule_.gyroscopic != RigidRule::Gyroscopic::off;
-    const std::vector<std::uint8_t>& hangs = facts_.forces.hangs;
-    body.by_momentum = rule_.momentum_on_pivots && body.turns && id < hangs.size() && hangs[id] != 0
+    body.by_momentum = rule_.momentum_on_pivots && body.turns && facts_.forces.on_pivot(id)
         && of(facts_.forces.linear_drag, id, 0.0) == 0
         && of(facts_.forces.angular_drag, id, 0.0) == 0;
     body.ease = masses.inverse_inertia[id].matrix();

@@ -33,8 +33,7 @@ bool is_fed(const Forces& forces, std::uint32_t body)
         return body < of_bodies.size() && !of_bodies[body].isZero(0);
     };
     return forces.field || !forces.attractors.empty() || has(forces.force) || has(forces.torque)
-        || (body < forces.hangs.size() && forces.hangs[body] != 0)
-        || (!forces.linear_drag.empty() && !forces.wind.isZero(0));
+        || forces.on_pivot(body) || (!forces.linear_drag.empty() && !forces.wind.isZero(0));
 }
 
 }  // namespace

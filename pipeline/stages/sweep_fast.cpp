@@ -509,24 +509,21 @@ private:
     // J, of what pulls at the middle of one that goes round a pivot.
     double hanging_energy_of(std::uint32_t body) const
     {
-        if (body >= forces_.hangs.size() || forces_.hangs[body] == 0) return 0;
+        if (!forces_.on_pivot(body)) return 0;
         const Vec3 middle = poses_.at(body) * forces_.hang_of(body);
         return attraction_of(forces_, masses_, poses_, body)
             - masses_.mass[body] * gravity_.dot(middle);
     }
 
-    // Nor has its weight turned it down that way. One that has not so much gives what it has: what
-    // pressed it in has stopped it, and it is held all the same.
+    // Nor has its weight turned it down that way about a pivot. One that has not so much gives what
+    // it has: what pressed it in has stopped it, and it is held all the same.
     void take_back_swing(std::uint32_t body, double gained)
     {
-        if (!(gained > 0)) return;
-        const double had = kinetic_energy_of(body, masses_, poses_, velocities_);
-        velocities_.angular[body] *= had > gained ? std::sqrt(1 - gained / had) : 0;
+        if (!take_back_energy(body, gained)) velocities_.angular[body] *= 0;
     }
 
-    // Nor have its springs drawn it down that way: what they hold the more for it goes. False for
-    // one that has not so much: it is left to contacts.
-    bool take_back_pull(std::uint32_t body, double gained)
+    // J, of its motion. False for one that has not so much, which keeps it.
+    bool take_back_energy(std::uint32_t body, double gained)
     {
         if (!(gained > 0)) return true;
         const double had = kinetic_energy_of(body, masses_, poses_, velocities_);
@@ -550,8 +547,10 @@ private:
         poses_.position[way.body] = end.position;
         turn_back(way.body, end.orientation.normalized());
         take_back_swing(way.body, hanging_energy_of(way.body) - hung);
-        if (take_back_pull(way.body, springs_energy_of(way.body, forces_, poses_) - before))
-            return fast_.held.push_back(way.body);
+        // Nor have its springs drawn it down that way: what they hold the more for it goes. One
+        // that has not so much is left to contacts.
+        const double drawn = springs_energy_of(way.body, forces_, poses_) - before;
+        if (take_back_energy(way.body, drawn)) return fast_.held.push_back(way.body);
         poses_.position[way.body] = went.position;
         poses_.orientation[way.body] = went.orientation;
         velocities_.linear[way.body] = velocity;

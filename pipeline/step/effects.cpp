@@ -119,7 +119,7 @@ private:
         if (!movable(body)) return false;
         if (facts_.masses.inverse_mass[body] > 0) return true;
         const Forces& forces = facts_.forces;
-        return body < forces.hangs.size() && forces.hangs[body] != 0 && !forces.hang[body].isZero(0)
+        return forces.on_pivot(body) && !forces.hang[body].isZero(0)
             && facts_.masses.inverse_inertia[body] != Sym3{};
     }
 
@@ -159,7 +159,7 @@ private:
             return forces.linear_drag[b] > 0 || forces.angular_drag[b] > 0;
         });
         call_for(Effect::pivot, forces.hangs.size(),
-                 [&](std::size_t b) { return forces.hangs[b] != 0; });
+                 [&](std::size_t b) { return forces.on_pivot(b); });
         if (!forces.springs.empty()) call(Effect::springs, "spring 0");
         if (!forces.attractors.empty()) call(Effect::attractors, "attractor 0");
         if (!forces.wind.isZero(0)) call(Effect::wind, "wind of the scene");
@@ -282,7 +282,7 @@ private:
     bool turned_by_forces(std::uint32_t body) const
     {
         const Forces& forces = facts_.forces;
-        if (forces.field || (body < forces.hangs.size() && forces.hangs[body] != 0)) return true;
+        if (forces.field || forces.on_pivot(body)) return true;
         if (body < forces.torque.size() && !forces.torque[body].isZero(0)) return true;
         if (body + std::size_t{1} >= forces.first_spring.size()) return false;
         for (std::uint32_t k = forces.first_spring[body]; k < forces.first_spring[body + 1]; ++k) {

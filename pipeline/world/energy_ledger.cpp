@@ -144,7 +144,7 @@ double EnergyLedger::work_on(const World& world, std::uint32_t body) const
     const OfBody &from = before_.bodies[body], &to = after_.bodies[body];
     const Vec3 none = Vec3::Zero();
     const Vec3 torque = of_body(forces.torque, body, none);
-    const auto power = of_body(forces.hangs, body, {}) != 0 ? wind_power_round : wind_power;
+    const auto power = forces.on_pivot(body) ? wind_power_round : wind_power;
     return of_body(forces.force, body, none).dot(to.place - from.place)
         + dt
         * (std::max(torque.dot(from.spin), torque.dot(to.spin))
