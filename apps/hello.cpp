@@ -1,7 +1,6 @@
 // Hello: boxes fall on the ground, and come to rest.
-#include "pipeline/throng.hpp"
-
 #include <cstdio>
+#include <throng/throng.hpp>
 
 int main()
 {

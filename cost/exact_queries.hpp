@@ -1,7 +1,7 @@
 // Exact queries: what public sets ask of corners and triangles, edges and edges, with the answers.
 #pragma once
 
-#include "pipeline/queries/impact_query.hpp"
+#include "throng/impact_query.hpp"
 
 #include <filesystem>
 #include <vector>

@@ -2,9 +2,9 @@
 
 #include "cooking/repair/mesh_health.hpp"
 #include "kernels/geometry/mass.hpp"
-#include "pipeline/queries/convex_query.hpp"
-#include "pipeline/queries/volume_query.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/convex_query.hpp"
+#include "throng/volume_query.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <map>

@@ -2,7 +2,7 @@
 // stepped.
 #pragma once
 
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 namespace throng {
 

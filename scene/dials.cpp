@@ -1,5 +1,5 @@
 // Dials: every choice that trades accuracy for time, by name.
-#include "scene/dials.hpp"
+#include "throng/dials.hpp"
 
 #include "scene/names.hpp"
 

@@ -42,7 +42,7 @@ def unnamed(text):
 @functools.cache
 def header_names(name):
     """What a header of ours defines, and those that it includes."""
-    path = ROOT / name
+    path = ROOT / "include" / name if name.startswith("throng/") else ROOT / name
     if not path.is_file():
         return frozenset()
     text = path.read_text()

@@ -5,9 +5,9 @@
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/output_file.hpp"
 #include "apps/throng/scene_argument.hpp"
-#include "scene/dials.hpp"
 #include "scene/files/json.hpp"
 #include "scene/names.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 #include <cmath>

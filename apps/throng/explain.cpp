@@ -6,8 +6,8 @@
 #include "apps/throng/scene_argument.hpp"
 #include "apps/throng/step_times.hpp"
 #include "pipeline/step/inner_rows.hpp"
-#include "pipeline/world/world.hpp"
-#include "scene/rules/unused_dials.hpp"
+#include "throng/dials.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <chrono>

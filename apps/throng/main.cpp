@@ -1,8 +1,8 @@
 // Main: finds the command, and turns whatever stops it into a sentence and an exit code.
 #include "apps/throng/commands.hpp"
-#include "kernels/simd/lane_width.hpp"
 #include "scene/files/scene_error.hpp"
 #include "scene/names.hpp"
+#include "throng/version.hpp"
 
 #include <csignal>
 #include <cstring>
@@ -84,7 +84,7 @@ int run_command(std::span<const std::string_view> arguments)
         return kDone;
     }
     if (first == "--version") {
-        std::cout << "throng " THRONG_VERSION "\n";
+        std::cout << "throng " << version() << "\n";
         return kDone;
     }
     const Command& command = find_command(first);

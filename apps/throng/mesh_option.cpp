@@ -2,7 +2,7 @@
 #include "apps/throng/mesh_option.hpp"
 
 #include "scene/files/mesh_file.hpp"
-#include "scene/files/scene_file.hpp"
+#include "throng/scene_file.hpp"
 
 #include <cmath>
 

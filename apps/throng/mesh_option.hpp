@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/throng/options.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 namespace throng {
 

@@ -7,10 +7,10 @@
 #include "apps/throng/run_stats.hpp"
 #include "apps/throng/scene_argument.hpp"
 #include "apps/throng/trace_option.hpp"
-#include "pipeline/records/final_csv.hpp"
-#include "pipeline/records/run_file.hpp"
 #include "scene/names.hpp"
-#include "scene/rules/unused_dials.hpp"
+#include "throng/dials.hpp"
+#include "throng/final_csv.hpp"
+#include "throng/run_file.hpp"
 
 #include <chrono>
 #include <cmath>

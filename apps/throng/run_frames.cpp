@@ -1,6 +1,7 @@
 #include "apps/throng/run_frames.hpp"
 
 #include "apps/throng/options.hpp"
+#include "throng/version.hpp"
 
 namespace throng {
 
@@ -13,7 +14,7 @@ RunFrames::RunFrames(OutputFile& file,
     if (!file.asked_for()) return;
     try {
         writer_.emplace(file.growing_path(), argument.scene, world,
-                        RunFacts{argument.label, THRONG_VERSION, argument.seed, every});
+                        RunFacts{argument.label, version(), argument.seed, every});
     } catch (const RunFileError& error) {
         throw BadInput("--out: " + file.path() + ": " + error.what());
     }

@@ -3,7 +3,7 @@
 
 #include "apps/throng/output_file.hpp"
 #include "apps/throng/scene_argument.hpp"
-#include "pipeline/records/run_file.hpp"
+#include "throng/run_file.hpp"
 
 #include <optional>
 

@@ -2,9 +2,10 @@
 #include "apps/throng/run_stats.hpp"
 
 #include "apps/throng/json_lines.hpp"
-#include "scene/dials.hpp"
 #include "scene/files/json.hpp"
 #include "scene/names.hpp"
+#include "throng/dials.hpp"
+#include "throng/version.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +90,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     const TimeSample& steps = stats.times.steps();
     const double bodies = static_cast<double>(std::max<std::size_t>(stats.bodies, 1));
     JsonLines json(out);
-    json.add("throng", json_string(THRONG_VERSION));
+    json.add("throng", json_string(version()));
     json.add("scene", json_string(stats.scene));
     json.add("seed", stats.seed);
     json.add("bodies", std::uint64_t{stats.bodies});

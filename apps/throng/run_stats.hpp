@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/throng/step_times.hpp"
-#include "pipeline/world/energy_ledger.hpp"
+#include "throng/energy_ledger.hpp"
 
 #include <ostream>
 #include <string>

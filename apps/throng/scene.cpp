@@ -2,9 +2,9 @@
 #include "apps/throng/commands.hpp"
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/scene_argument.hpp"
-#include "scene/catalog/catalog.hpp"
-#include "scene/files/scene_file.hpp"
 #include "scene/names.hpp"
+#include "throng/catalog.hpp"
+#include "throng/scene_file.hpp"
 
 #include <algorithm>
 #include <filesystem>

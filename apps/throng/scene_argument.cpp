@@ -2,10 +2,11 @@
 #include "apps/throng/scene_argument.hpp"
 
 #include "cooking/cache/kept_file.hpp"
-#include "scene/catalog/catalog.hpp"
-#include "scene/dials.hpp"
-#include "scene/files/scene_file.hpp"
+#include "scene/files/scene_error.hpp"
 #include "scene/names.hpp"
+#include "throng/catalog.hpp"
+#include "throng/dials.hpp"
+#include "throng/scene_file.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -3,7 +3,7 @@
 
 #include "apps/throng/mesh_option.hpp"
 #include "apps/throng/options.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <cstdint>
 

@@ -1,7 +1,7 @@
 // Step times: what steps and their stages took, over a run of any length.
 #pragma once
 
-#include "pipeline/world/report.hpp"
+#include "throng/report.hpp"
 
 #include <cstdint>
 #include <deque>

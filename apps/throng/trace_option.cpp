@@ -14,7 +14,7 @@ TraceOption::TraceOption(const Options& options) : file_("--trace", options.text
 
 void TraceOption::watch(World& world)
 {
-    if (trace_) watch_steps(world, *trace_);
+    if (trace_) trace_->watch(world);
 }
 
 void TraceOption::begin_step(std::uint64_t number)

@@ -4,7 +4,7 @@
 #include "apps/throng/options.hpp"
 #include "apps/throng/output_file.hpp"
 #include "pipeline/records/trace.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <memory>
 

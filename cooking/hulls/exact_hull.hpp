@@ -5,7 +5,7 @@
 // built is therefore convex, closed and of one piece, whatever the points.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 #include <span>

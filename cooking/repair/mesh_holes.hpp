@@ -1,7 +1,7 @@
 // Mesh holes: where triangles are missing from a surface that is otherwise closed.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 #include <cstdint>

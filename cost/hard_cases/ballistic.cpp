@@ -147,7 +147,7 @@ void case_ballistic(CaseBench& bench)
         Vec3(0.5, 0, 0), 5.001041625, Quat(std::cos(half_turn), std::sin(half_turn), 0, 0)};
     const Throw complex{"complex", 9.8, Vec3(-2, 2, 8), Vec3(0.1, 5, 0.1), 368.5464125, kTurned};
     for (const Throw& box : {simple, complex})
-        for (const IntegratorRow& row : integrators()) {
+        for (const KnownOrder& row : kIntegrators) {
             Errors errors;
             for (int tenths = 10; tenths >= (bench.brief() ? 10 : 1); --tenths)
                 errors.worst(fly(bench, box, row.which, 1e-4 * tenths, 1));

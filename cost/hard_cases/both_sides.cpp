@@ -4,10 +4,10 @@
 // away, whichever way the triangles are wound; a closed mesh keeps out what comes from outside.
 // What leans over a peak of a terrain is thrown by none of the triangles round it.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/energy_ledger.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/names.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

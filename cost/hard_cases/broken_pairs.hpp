@@ -2,7 +2,7 @@
 // from an exhaustive test in four times the digits.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <optional>
 #include <span>

@@ -3,8 +3,8 @@
 // A tent of two cards leaning at an angle a from upright stands by itself when the floor's friction
 // is at least tan(a) / 2. Houses of cards and arches of stones stand as they were built.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // Answer: who needs less than friction bears stays where he is on the plate, by any step; a ball
 // that rolls on it goes round a circle at two sevenths of its rate.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

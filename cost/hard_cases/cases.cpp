@@ -1,11 +1,11 @@
 #include "cost/hard_cases/cases.hpp"
 
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/energy_ledger.hpp"
-#include "pipeline/world/world.hpp"
-#include "scene/dials.hpp"
 #include "scene/names.hpp"
+#include "throng/dials.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cctype>

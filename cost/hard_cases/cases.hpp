@@ -5,9 +5,9 @@
 // cases.cpp.
 #pragma once
 
-#include "pipeline/queries/convex_query.hpp"
-#include "pipeline/queries/impact_query.hpp"
-#include "pipeline/queries/volume_query.hpp"
+#include "throng/convex_query.hpp"
+#include "throng/impact_query.hpp"
+#include "throng/volume_query.hpp"
 
 #include <functional>
 #include <map>

@@ -1,7 +1,7 @@
 #include "cost/hard_cases/certified_pairs.hpp"
 
-#include "kernels/math/rotation.hpp"
 #include "scene/catalog/parts.hpp"
+#include "throng/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>

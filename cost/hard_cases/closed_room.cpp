@@ -4,8 +4,8 @@
 // Each strikes another a hundred times, fast enough to pass through a wall in a step, so that what
 // a single impact makes or loses adds up.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 // face; those that are turned in four times the digits.
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
 #include "scene/names.hpp"
+#include "throng/rotation.hpp"
 
 #include <algorithm>
 

@@ -5,11 +5,11 @@
 // step with a face. An order is the slope of a line through the logarithms.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/hard_cases/solid_parts.hpp"
-#include "kernels/math/box3.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/catalog/noisy_balls.hpp"
 #include "scene/catalog/parts.hpp"
+#include "throng/box3.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

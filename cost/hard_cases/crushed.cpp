@@ -3,8 +3,8 @@
 // Answer: the heavy one is stopped by the floor, through the light one, and stays there: what gives
 // nothing back throws nobody, whatever it weighs.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/energy_ledger.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

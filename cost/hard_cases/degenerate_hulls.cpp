@@ -6,8 +6,8 @@
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "kernels/geometry/mass.hpp"
-#include "kernels/math/rotation.hpp"
 #include "scene/catalog/random.hpp"
+#include "throng/rotation.hpp"
 
 #include <cmath>
 #include <set>

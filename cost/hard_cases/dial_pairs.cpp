@@ -5,9 +5,9 @@
 //
 // Method: greedy rows, after Cohen, Dalal, Fredman & Patton, The AETG system (1997).
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
-#include "scene/dials.hpp"
+#include "throng/catalog.hpp"
+#include "throng/dials.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // No closed form is claimed. What holds whatever the row: all fall, one after the other; away from
 // both ends the wave runs at one speed; and a step half as long changes the time by little.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/names.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,10 +4,10 @@
 // Answers: what fits into its hole comes to lie at its bottom; a cube stands whose middle is over
 // the cliff and falls whose middle is not; what slides without friction meets no seam and no crack.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/catalog/parts.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <array>

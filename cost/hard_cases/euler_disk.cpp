@@ -12,9 +12,9 @@
 // Source: the closed form for a thin disk is in textbooks of mechanics, with a thickness worked out
 //         here. The coin is that of rigid-ipc (Ferguson and others, 2021): 24.26 by 1.75 mm.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/names.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "cost/exact_queries.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/shared_data.hpp"
-#include "scene/dials.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -4,8 +4,8 @@
 // things that it strikes; a bar on a pivot lies on a ball, and others strike it. Nothing of it
 // makes energy, however stiff the spring is.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/energy_ledger.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 // whose error is at most the time in which the tolerance is crossed; then a world is run with it,
 // in which nothing may get through.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
-#include "scene/dials.hpp"
+#include "throng/dials.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

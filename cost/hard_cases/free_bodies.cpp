@@ -1,11 +1,19 @@
 #include "cost/hard_cases/free_bodies.hpp"
 
-#include "scene/dials.hpp"
+#include "throng/dials.hpp"
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace throng {
+
+int order_of(Integrator integrator)
+{
+    for (const KnownOrder& known : kIntegrators)
+        if (known.which == integrator) return known.order;
+    throw std::logic_error("an integrator without an order");
+}
 
 std::string name_of(Integrator integrator, Rotation rotation)
 {

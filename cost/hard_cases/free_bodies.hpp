@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cost/hard_cases/cases.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <initializer_list>
 #include <span>
@@ -21,6 +21,18 @@ struct MotionChoice {
 
 /// "rk4, rotation_vector"
 std::string name_of(Integrator integrator, Rotation rotation);
+
+/// The integrators that have an order, of the error after a fixed time, and the order that the
+/// textbook promises.
+struct KnownOrder {
+    Integrator which;
+    int order;
+};
+inline constexpr KnownOrder kIntegrators[] = {
+    {Integrator::semi_implicit, 1}, {Integrator::euler, 1}, {Integrator::midpoint, 2},
+    {Integrator::splitting, 2},     {Integrator::rk4, 4},
+};
+int order_of(Integrator integrator);
 
 /// An empty scene without gravity, in double, at that choice.
 Scene motion_scene(const CaseBench& bench, const MotionChoice& choice);

@@ -5,7 +5,7 @@
 // the same steps; below 1e-11 rad rounding is all there is.
 #include "cost/hard_cases/free_bodies.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
+#include "throng/rotation.hpp"
 
 #include <algorithm>
 #include <array>
@@ -121,7 +121,7 @@ void hold_to_known(CaseBench& bench, const KnownErrors& known, Rotation rotation
 
 void fit_order(CaseBench& bench, const Top& top, Integrator integrator, Rotation rotation)
 {
-    const int order = chosen(integrator, true).order;
+    const int order = order_of(integrator);
     if (order == 1 && &top == &tops()[1]) return;  // far off at every step that can be afforded
     const std::vector<double> steps = steps_to_fit(order);
     std::vector<double> errors;
@@ -209,7 +209,9 @@ void turn_once(CaseBench& bench, Rotation rotation, double turn)
         angle = angle_between(Quat::Identity(), world.pose(world.bodies()[0]).orientation);
         return true;
     });
-    const double law = !adds_rates(rotation)     ? turn
+    const bool adds_rates = rotation == Rotation::quaternion_euler
+        || rotation == Rotation::matrix_euler || rotation == Rotation::matrix_euler_repaired;
+    const double law = !adds_rates               ? turn
         : rotation == Rotation::quaternion_euler ? 2 * std::atan(0.5 * turn)
                                                  : std::atan(turn);
     bench.report("one turn of " + std::string(turn < 0.5 ? "0.1" : "1") + " rad, "
@@ -309,7 +311,7 @@ void case_free_top(CaseBench& bench)
     miss_without_torque(bench);
     if (bench.brief()) return;
     for (std::size_t rotation = 0; rotation < 6; ++rotation)
-        for (const IntegratorRow& row : integrators()) {
+        for (const KnownOrder& row : kIntegrators) {
             for (const Top& top : tops())
                 fit_order(bench, top, row.which, static_cast<Rotation>(rotation));
             time_step(bench, row.which, static_cast<Rotation>(rotation));
@@ -336,8 +338,8 @@ void case_high_spin(CaseBench& bench)
         for (std::size_t rotation = 0; rotation < 6; ++rotation)
             turn_once(bench, static_cast<Rotation>(rotation), turn);
     for (const Rotation rotation : kExponentialRotations)
-        for (const IntegratorRow& row : integrators()) spin_fast(bench, row.which, rotation);
-    for (const IntegratorRow& row : integrators()) spin_off_axis(bench, row.which);
+        for (const KnownOrder& row : kIntegrators) spin_fast(bench, row.which, rotation);
+    for (const KnownOrder& row : kIntegrators) spin_off_axis(bench, row.which);
     spin_off_axis(bench, Integrator::auto_);
 }
 

@@ -4,9 +4,9 @@
 //
 // Answer: they stand as they were put, and the floor bears the weight of all.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/energy_ledger.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 // touch was seen; friction takes energy in a hit and never gives any; a pyramid of four balls
 // stands where friction bears it, and what resists rolling brings heaps of balls to rest.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // No gravity and no time to speak of: each answer is that of the impact alone. Both laws of impact
 // keep momentum, and energy where e = 1; pair by pair in their order, or all that close together.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

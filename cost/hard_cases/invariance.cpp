@@ -3,8 +3,8 @@
 // Needs no reference: bodies in another order, the world turned, mirrored, moved by a power of two
 // or twice as large (and sqrt(2) times as slow), by any number of threads, once more.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

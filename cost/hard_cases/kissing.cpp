@@ -4,8 +4,8 @@
 // the places as rounded; and what is told never falls while the gap grows.
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
 #include "scene/names.hpp"
+#include "throng/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>

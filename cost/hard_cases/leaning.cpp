@@ -5,8 +5,8 @@
 // least (horizontal way from foot to center) / (height of the upper contact above the foot). Each
 // threshold is tried 5 % either side; 3 % where it is solved exactly.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 // heavy as the one below gives way by about r times as much as under an equal one; solved exactly
 // none gives way.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

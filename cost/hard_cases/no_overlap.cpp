@@ -4,13 +4,13 @@
 // it is halved until what overlaps is within the tolerance.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/hard_cases/quad_truth.hpp"
-#include "kernels/math/box3.hpp"
-#include "pipeline/queries/convex_query.hpp"
 #include "pipeline/queries/mesh_overlap.hpp"
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/catalog/random.hpp"
+#include "throng/box3.hpp"
+#include "throng/catalog.hpp"
+#include "throng/convex_query.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 // one another, so that pairs come and go; states that are the same to the last bit have had the
 // same contacts all along.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/catalog/random.hpp"
+#include "throng/world.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 // semi-implicit step beyond 2 / w it would swing wider and wider. Beyond that the substep is cut,
 // which is told. What rests on n points overlaps by m g / (n k).
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

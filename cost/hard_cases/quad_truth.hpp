@@ -6,7 +6,7 @@
 // some thirty digits, so that what is compared with it is compared with the truth.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 #include <span>

@@ -4,7 +4,7 @@
 // to that of all of them at that speed; they push one another, so momentum stays 0; and they come
 // to rest, apart.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 // Source: the rolling test of SimBenchmark (leggedrobotics): 25 balls of 1 kg on a box of 10 kg,
 //         150 N, friction 0.4 below the box and 0.8 on it. The bowling ball of Drake's manual test.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 // thousandth of its size. A finely rounded rim has many corners a hair above the lowest: a contact
 // that spreads over those and leaves the lowest out bears the hull at one point.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include "cost/hard_cases/certified_pairs.hpp"
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
+#include "throng/rotation.hpp"
 
 #include <algorithm>
 #include <array>

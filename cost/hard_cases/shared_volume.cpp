@@ -4,7 +4,7 @@
 // by hand: of a box, of an octagonal prism, of an octahedron.
 #include "cost/hard_cases/convex_judge.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
+#include "throng/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 // Answer: a bar that swings down on something that stands still comes to lie on it, however slender
 // it is: where it touches it is never deeper than half its radius.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 //
 // Source: Painleve 1895; Stewart, "Rigid-body dynamics with friction and impact", 2000.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

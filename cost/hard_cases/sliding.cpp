@@ -4,8 +4,8 @@
 // of angle s it slides v^2 / (2 g (sin s + mu cos s)), then comes back. With a pyramid for a cone
 // it slides that way along each of its sides by itself, which bends the path.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

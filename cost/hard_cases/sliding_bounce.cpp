@@ -2,8 +2,8 @@
 // speed along it, v the speed that it came down with: friction is within the cone of all that
 // presses it, what throws it back included. Where that is more than it takes, it rolls away.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <cmath>
 

@@ -4,8 +4,8 @@
 // g (sin - mu cos) below. g is 9.8 here, as in the published setting. Within a pyramid whose side
 // is at an angle s to the way down, it is above 0.5 cos s that it sticks.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

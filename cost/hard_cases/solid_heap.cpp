@@ -6,9 +6,9 @@
 #include "cost/hard_cases/solid_parts.hpp"
 #include "cost/shared_in_heap.hpp"
 #include "cost/shared_meshes.hpp"
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "scene/catalog/noisy_balls.hpp"
+#include "throng/catalog.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <stdexcept>

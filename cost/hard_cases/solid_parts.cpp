@@ -1,7 +1,7 @@
 #include "cost/hard_cases/solid_parts.hpp"
 
-#include "pipeline/world/world.hpp"
-#include "scene/dials.hpp"
+#include "throng/dials.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 

@@ -11,8 +11,8 @@
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/hard_cases/quad_truth.hpp"
 #include "cost/shared_data.hpp"
-#include "pipeline/world/energy_ledger.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // springs hold together, however stiff they are, and nothing that touches something makes energy of
 // it.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

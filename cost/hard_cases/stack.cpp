@@ -4,7 +4,7 @@
 // gives way by 2 j g / (2 pi rate)^2, which sets the bound on the overlap. Solved exactly it does
 // not give way.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

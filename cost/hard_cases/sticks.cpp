@@ -4,10 +4,10 @@
 // than they began with, whatever their shape; what cannot roll comes to rest. Where a body's spin
 // about its length stays behind as it tips over, its greater moment makes energy of it.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/energy_ledger.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/catalog/random.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

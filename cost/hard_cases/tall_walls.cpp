@@ -6,8 +6,8 @@
 // With d = 0.12 mm, as by the default dials at 1/60 s, that are 10 m; d goes with the square of the
 // substep.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

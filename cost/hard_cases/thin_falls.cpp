@@ -4,8 +4,8 @@
 // Answer: nothing puts energy in. Of what it falls by, motion and height never win back more than
 // a hundredth from one time to any later one.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

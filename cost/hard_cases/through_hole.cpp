@@ -8,12 +8,12 @@
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/hard_cases/solid_parts.hpp"
 #include "kernels/geometry/mass.hpp"
-#include "pipeline/queries/convex_query.hpp"
 #include "pipeline/queries/mesh_overlap.hpp"
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "scene/catalog/parts.hpp"
 #include "scene/catalog/threads.hpp"
+#include "throng/catalog.hpp"
+#include "throng/convex_query.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

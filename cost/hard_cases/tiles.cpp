@@ -3,8 +3,8 @@
 // Answers: a smooth floor takes no speed, whatever it is laid of; with friction a box slides
 // v^2 / (2 mu g), as on one piece. A tile that stands out is a step: it is met.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

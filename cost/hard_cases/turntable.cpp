@@ -3,8 +3,8 @@
 // A block at radius r on a disc that turns at w stays with it when w^2 r is at most mu g. A tower
 // of planks laid crosswise stands as long as one cares to look.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // Answer: they have the speed that they are driven at; a wall is pressed by the drive, m v / dt at
 // most, and by what friction bears, and nobody climbs.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 // speed; a heap has never more energy than it began with, but for what it is lifted by.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "cost/hard_cases/solid_parts.hpp"
-#include "pipeline/world/energy_ledger.hpp"
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/world.hpp"
 
 #include <cmath>
 

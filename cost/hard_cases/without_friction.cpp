@@ -5,8 +5,8 @@
 // from upright turns at w with w^2 = 12 g (1 - cos t) / (L (1 + 3 sin^2 t)), t its angle from
 // upright; nothing moves its center sideways.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>

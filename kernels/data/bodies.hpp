@@ -6,7 +6,7 @@
 
 #include "kernels/data/shapes.hpp"
 #include "kernels/math/principal_inertia.hpp"
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <algorithm>
 #include <array>

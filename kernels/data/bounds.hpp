@@ -1,7 +1,7 @@
 // Bounds: a box round each collider, with a margin for what it may do before it is looked at again.
 #pragma once
 
-#include "kernels/math/box3.hpp"
+#include "throng/box3.hpp"
 
 #include <limits>
 #include <vector>

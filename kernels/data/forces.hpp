@@ -3,33 +3,12 @@
 // Every list by body may be shorter than the bodies, or empty: the rest have nothing of the kind.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/force_field.hpp"
 
 #include <array>
-#include <functional>
 #include <vector>
 
 namespace throng {
-
-/// A force at the center of mass, N, and a torque about it, N m; world axes.
-struct Wrench {
-    Vec3 force = Vec3::Zero();
-    Vec3 torque = Vec3::Zero();
-};
-
-/// What a force field is asked about.
-struct FieldPlace {
-    std::uint32_t body = 0;
-    double time = 0;                       // s, since the world began
-    double mass = 0;                       // kg
-    Pose center;                           // of mass, with the body's axes
-    Vec3 velocity = Vec3::Zero();          // of the center of mass, m/s
-    Vec3 angular_velocity = Vec3::Zero();  // world axes, rad/s
-};
-
-/// Called for every dynamic body that is awake, as often as the integrator evaluates forces, from
-/// any thread: the answer may depend on the place alone.
-using ForceField = std::function<Wrench(const FieldPlace&)>;
 
 /// Holds two points at a distance: stiffness (distance - length) + damping d distance / dt.
 struct SpringForce {

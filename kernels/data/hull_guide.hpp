@@ -2,7 +2,7 @@
 // it is still worth looking.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // features touch, so that impulses carry over from step to step.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 

@@ -1,7 +1,7 @@
 // Mesh: triangles that know their neighbors, in a tree.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 #include <vector>

@@ -7,7 +7,7 @@
 #include "kernels/data/hull_guide.hpp"
 #include "kernels/data/solids.hpp"
 #include "kernels/data/wide_hull.hpp"
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 #include <vector>

@@ -2,7 +2,7 @@
 // the two could have met.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <vector>
 

@@ -13,7 +13,7 @@
 #pragma once
 
 #include "kernels/math/rotation.hpp"
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 namespace throng {
 

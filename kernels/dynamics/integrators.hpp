@@ -5,6 +5,8 @@
 // page, and a new one is another row of the table.
 #pragma once
 
+#include "throng/settings.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,9 +14,6 @@
 #include <vector>
 
 namespace throng {
-
-/// auto_: splitting for what forces act on, something cheaper for what only falls; see chosen().
-enum class Integrator : std::uint8_t { auto_, semi_implicit, euler, midpoint, splitting, rk4 };
 
 /// The law by which a state moves.
 ///

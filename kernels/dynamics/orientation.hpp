@@ -5,21 +5,13 @@
 // show what that costs.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
+#include "throng/settings.hpp"
 
 #include <array>
 #include <cstdint>
 
 namespace throng {
-
-enum class Rotation : std::uint8_t {
-    quaternion,
-    rotation_vector,
-    matrix,
-    quaternion_euler,
-    matrix_euler,
-    matrix_euler_repaired
-};
 
 /// A quaternion x, y, z, w; a rotation vector, rad; or a matrix, column after column.
 using OrientationNumbers = std::array<double, 9>;

@@ -16,7 +16,7 @@
 //         preserve energy and momentum (1991), for a midpoint in axes halfway.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 namespace throng {
 

@@ -1,7 +1,7 @@
 // Ball: a center and a radius.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 namespace throng {
 

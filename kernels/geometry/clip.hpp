@@ -5,7 +5,7 @@
 // for as long as the same features touch, however the corner moves.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 

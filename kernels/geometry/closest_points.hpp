@@ -4,7 +4,7 @@
 // Results are in the frame the arguments are given in. Instantiated for float and double.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 namespace throng {
 

@@ -1,7 +1,7 @@
 // Hash: a fingerprint of a state, so that two runs can be compared to the last bit.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <bit>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Numbers: vectors, quaternions and matrices in rows of plain numbers.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 namespace throng {
 

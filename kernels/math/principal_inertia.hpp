@@ -1,7 +1,7 @@
 // Principal inertia: the axes about which a body turns by itself, and its moments about them.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 namespace throng {
 

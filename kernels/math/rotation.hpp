@@ -1,30 +1,9 @@
-// Rotation: turning a pose by an angular velocity; inertia in world axes.
-//
-// Sine and cosine are our own, so that a turn is the same bits with every C library.
+// Rotation: inertia in world axes and the gyroscopic torque, beside the turning that is public.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/rotation.hpp"
 
 namespace throng {
-
-struct SinCos {
-    double sin = 0, cos = 1;
-};
-
-/// Sine and cosine of an angle in radians, within 2.5 units in the last place for |angle| < 1e5
-/// (next to a multiple of a quarter turn within 1e-16). Further out they are those of an angle
-/// nearby, on the circle all the same. The same bits on every machine.
-///
-/// Source: quarter-turn reduction in three parts after Cody and Waite (1980); polynomials as in
-///         Sun's fdlibm (1993).
-SinCos sin_cos(double angle);
-
-/// The rotation by a vector: its direction is the axis, its length the angle in radians.
-Quat exponential(const Vec3& turn);
-
-/// The orientation after turning at a constant angular velocity (world axes, rad/s) for a time.
-/// Exact for a constant velocity, however fast; the result is of unit length.
-Quat turned(const Quat& orientation, const Vec3& angular_velocity, double time);
 
 /// The furthest that a shift and a turn about the origin can take a point within a radius of it:
 /// one at radius r is turned by 2 r sin(angle / 2).

@@ -8,7 +8,7 @@
 
 #include "kernels/data/bodies.hpp"
 #include "kernels/data/rows.hpp"
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <algorithm>
 #include <cmath>

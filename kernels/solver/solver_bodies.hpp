@@ -2,8 +2,8 @@
 #pragma once
 
 #include "kernels/data/rows.hpp"
-#include "kernels/math/types.hpp"
 #include "kernels/solver/carried_points.hpp"
+#include "throng/math.hpp"
 
 #include <span>
 

@@ -5,7 +5,7 @@
 // once nothing of it is left the shapes share a point.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 

@@ -3,7 +3,7 @@
 // An answer sheet: slow, and it knows nothing of a shape but how far it reaches.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <functional>
 

@@ -5,7 +5,7 @@
 // it may bend, and only what that bound clears is passed.
 #pragma once
 
-#include "narrowphase/ccd/toi_method.hpp"
+#include "throng/settings.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Sweep: a body's way through a step, at constant velocity and constant angular velocity.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 namespace throng {
 

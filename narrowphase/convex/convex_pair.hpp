@@ -4,7 +4,7 @@
 #include "kernels/data/shapes.hpp"
 #include "kernels/geometry/gjk.hpp"
 #include "kernels/geometry/polytope_contacts.hpp"
-#include "narrowphase/convex/method_start.hpp"
+#include "throng/settings.hpp"
 
 #include <cmath>
 #include <cstdint>

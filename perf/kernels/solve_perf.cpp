@@ -8,7 +8,7 @@
 #include "kernels/solver/sweep.hpp"
 #include "perf/support.hpp"
 #include "pipeline/world/world_state.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -111,7 +111,7 @@ const Sampled<Real>& rows_of(const SceneSize& asked)
     world.step(asked.steps);
 
     made = std::make_unique<Sampled<Real>>();
-    const auto& data = std::get<Step<Real>>(world.state().step).data;
+    const auto& data = std::get<Step<Real>>(state_of(world).step).data;
     const auto& layout = std::get<Layout>(data);
     made->whole.rows = std::get<Rows<Real>>(data);
     for (const Slice& slice : layout.slices) {

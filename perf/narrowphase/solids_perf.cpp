@@ -17,8 +17,8 @@
 #include "perf/support.hpp"
 #include "scene/catalog/noisy_balls.hpp"
 #include "scene/catalog/random.hpp"
-#include "scene/dials.hpp"
 #include "scene/shapes/solid_maker.hpp"
+#include "throng/dials.hpp"
 
 #include <filesystem>
 #include <map>

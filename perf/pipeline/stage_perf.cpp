@@ -7,7 +7,7 @@
 #include "kernels/parallel/blocks.hpp"
 #include "perf/support.hpp"
 #include "pipeline/world/world_state.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 #include <map>
 #include <string>
@@ -67,10 +67,10 @@ const StageSamples& samples_of(const Warmed& warmed, int threads, bool cold)
     Emptier emptier;
     // Turn and turn about, so that whatever else the machine does meets both.
     for (int i = 0; i < kTimed; ++i) {
-        world.state().watch = &emptier;
+        state_of(world).watch = &emptier;
         world.step();
         keep(world, known[{warmed.scene, threads, true}]);
-        world.state().watch = nullptr;
+        state_of(world).watch = nullptr;
         world.step();  // fills the caches again
         world.step();
         keep(world, known[{warmed.scene, threads, false}]);

@@ -2,8 +2,8 @@
 //
 // Each run makes its world anew and lets it go as far as every other: all runs time the same steps.
 #include "perf/support.hpp"
-#include "pipeline/throng.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
+#include "throng/throng.hpp"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "pipeline/queries/convex_query.hpp"
+#include "throng/convex_query.hpp"
 
 #include "narrowphase/alternatives/convex_methods.hpp"
 #include "narrowphase/alternatives/k_dop_tree.hpp"

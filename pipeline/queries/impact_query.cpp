@@ -1,10 +1,10 @@
-#include "pipeline/queries/impact_query.hpp"
+#include "throng/impact_query.hpp"
 
 #include "cooking/repair/build_mesh.hpp"
 #include "narrowphase/ccd/linear_paths.hpp"
 #include "pipeline/queries/query_shape.hpp"
-#include "scene/dials.hpp"
 #include "scene/names.hpp"
+#include "throng/dials.hpp"
 
 #include <cmath>
 

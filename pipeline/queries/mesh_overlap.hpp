@@ -5,7 +5,7 @@
 #pragma once
 
 #include "kernels/data/mesh.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 namespace throng {
 

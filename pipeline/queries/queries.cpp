@@ -1,4 +1,4 @@
-#include "pipeline/queries/queries.hpp"
+#include "throng/queries.hpp"
 
 #include "pipeline/queries/query_scene.hpp"
 
@@ -85,7 +85,7 @@ struct Queries::Inside : QueryScene {
     using QueryScene::QueryScene;
 };
 
-Queries::Queries(const World& world) : inside_(std::make_unique<Inside>(world.state())) { }
+Queries::Queries(const World& world) : inside_(std::make_unique<Inside>(state_of(world))) { }
 Queries::~Queries() = default;
 Queries::Queries(Queries&&) noexcept = default;
 Queries& Queries::operator=(Queries&&) noexcept = default;

@@ -70,9 +70,9 @@ ShapeRef set_shape(const QueryShape& shape, Shapes& shapes)
 
 }  // namespace
 
-QueryScene::QueryScene(const World::State& state)
+QueryScene::QueryScene(const WorldState& state)
     // Asking changes nothing that a step would notice, so it may use the world's own threads.
-    : pool_(&const_cast<World::State&>(state).pool),  // NOLINT: threads are no part of the state
+    : pool_(&const_cast<WorldState&>(state).pool),  // NOLINT: threads are no part of the state
       shapes_(&state.get<Shapes>())
 {
     const Colliders& all = state.get<Colliders>();

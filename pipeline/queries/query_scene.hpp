@@ -5,8 +5,8 @@
 #pragma once
 
 #include "broadphase/box_queries.hpp"
-#include "pipeline/queries/queries.hpp"
 #include "pipeline/world/world_state.hpp"
+#include "throng/queries.hpp"
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ namespace throng {
 /// Answers what Queries asks, once the questions are known to be good.
 class QueryScene {
 public:
-    explicit QueryScene(const World::State& state);
+    explicit QueryScene(const WorldState& state);
 
     void cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits);
     void find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_t> blocked);

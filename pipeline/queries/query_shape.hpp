@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/data/shapes.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "pipeline/queries/volume_query.hpp"
+#include "throng/volume_query.hpp"
 
 #include "cooking/repair/build_mesh.hpp"
 #include "kernels/geometry/mass.hpp"

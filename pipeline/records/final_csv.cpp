@@ -1,5 +1,5 @@
 // Final CSV: where every body is and how it moves, for programs that compare runs.
-#include "pipeline/records/final_csv.hpp"
+#include "throng/final_csv.hpp"
 
 #include <array>
 #include <charconv>

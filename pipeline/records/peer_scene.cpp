@@ -58,7 +58,7 @@ void for_each_stated(const Scene& scene, const Visit& visit)
 
 PeerScene peer_scene(const World& world, const Scene& scene)
 {
-    const World::State& state = world.state();
+    const WorldState& state = state_of(world);
     const auto& masses = state.get<Masses>();
     const auto& colliders = state.get<Colliders>();
     const auto& surfaces = state.get<Surfaces>();

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/data/shapes.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <array>
 #include <cstdint>

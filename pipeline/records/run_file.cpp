@@ -1,7 +1,7 @@
 // Run file: the run, written while it runs, in HDF5.
-#include "pipeline/records/run_file.hpp"
+#include "throng/run_file.hpp"
 
-#include "scene/dials.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 #include <cerrno>

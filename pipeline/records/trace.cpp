@@ -1,11 +1,17 @@
 // Trace: which stage and which block of its loops ran when on which thread, in the last steps.
 #include "pipeline/records/trace.hpp"
 
+#include "kernels/parallel/block_watch.hpp"
 #include "pipeline/world/world_state.hpp"
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdio>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <thread>
 
 namespace throng {
 namespace {
@@ -37,10 +43,66 @@ std::string microseconds(std::chrono::steady_clock::duration time)
 
 }  // namespace
 
-/// Sees the blocks of one stage.
-class Trace::Blocks final : public BlockWatch {
+/// Of one step and thread a row of events.
+class Trace::Inside final : public StepWatch {
 public:
-    Blocks(Trace& trace, std::string_view stage) : trace_(trace), stage_(stage) { }
+    explicit Inside(std::size_t steps_kept);
+
+    void begin_step(std::uint64_t number);
+    void end_step();
+    void run_stage(std::string_view name, const std::function<void()>& stage) override;
+    std::size_t steps() const;
+    std::uint64_t left_out() const;
+    void write(std::string_view label, const std::vector<Wait>& waits, std::ostream& out) const;
+
+private:
+    using Clock = std::chrono::steady_clock;
+    class Blocks;
+
+    struct Event {
+        std::string_view stage;
+        std::int64_t block = kWholeStage;
+        Clock::time_point begin, end;
+    };
+    static constexpr std::int64_t kWholeStage = -1;
+
+    /// What one thread did, by the step's slot. Nobody else writes there.
+    struct Row {
+        std::thread::id thread;
+        std::vector<std::vector<Event>> steps;
+        std::uint64_t left_out = 0;
+    };
+    struct Step {
+        std::uint64_t number = 0;
+        Clock::time_point begin, end;
+    };
+
+    Row& row_of_thread();
+    void add(const Event& event);
+    std::vector<std::size_t> slots_in_order() const;
+    static void write_bar(std::string_view name,
+                          std::string_view kind,
+                          std::size_t row,
+                          const Event& event,
+                          Clock::time_point zero,
+                          std::ostream& out);
+    void write_arrows(const std::vector<Wait>& waits,
+                      std::size_t slot,
+                      Clock::time_point zero,
+                      std::ostream& out) const;
+
+    const std::uint64_t id_;  // no two traces share one, not even one after another
+    std::size_t slot_ = 0;
+    std::uint64_t begun_ = 0;
+    std::vector<Step> kept_;
+    std::mutex guard_;  // of rows_, not of what is in them
+    std::deque<Row> rows_;
+};
+
+/// Sees the blocks of one stage.
+class Trace::Inside::Blocks final : public BlockWatch {
+public:
+    Blocks(Inside& trace, std::string_view stage) : trace_(trace), stage_(stage) { }
     void run_block(const BlockBody& block,
                    std::size_t begin,
                    std::size_t end,
@@ -52,25 +114,24 @@ public:
     }
 
 private:
-    Trace& trace_;
+    Inside& trace_;
     std::string_view stage_;
 };
 
-Trace::Trace(std::size_t steps_kept) : id_(next_id()), kept_(std::max<std::size_t>(1, steps_kept))
+Trace::Inside::Inside(std::size_t steps_kept)
+    : id_(next_id()), kept_(std::max<std::size_t>(1, steps_kept))
 { }
 
-Trace::~Trace() = default;
-
-void Trace::begin_step(std::uint64_t number)
+void Trace::Inside::begin_step(std::uint64_t number)
 {
     slot_ = begun_++ % kept_.size();
     for (Row& row : rows_) row.steps[slot_].clear();
     kept_[slot_] = {number, Clock::now(), {}};
 }
 
-void Trace::end_step() { kept_[slot_].end = Clock::now(); }
+void Trace::Inside::end_step() { kept_[slot_].end = Clock::now(); }
 
-Trace::Row& Trace::row_of_thread()
+Trace::Inside::Row& Trace::Inside::row_of_thread()
 {
     struct Known {
         std::uint64_t trace = 0;
@@ -89,7 +150,7 @@ Trace::Row& Trace::row_of_thread()
     return row;
 }
 
-void Trace::add(const Event& event)
+void Trace::Inside::add(const Event& event)
 {
     Row& row = row_of_thread();
     std::vector<Event>& events = row.steps[slot_];
@@ -99,7 +160,7 @@ void Trace::add(const Event& event)
         ++row.left_out;
 }
 
-void Trace::run_stage(std::string_view name, const std::function<void()>& stage)
+void Trace::Inside::run_stage(std::string_view name, const std::function<void()>& stage)
 {
     Blocks blocks(*this, name);
     const auto begin = Clock::now();
@@ -110,16 +171,16 @@ void Trace::run_stage(std::string_view name, const std::function<void()>& stage)
     add({name, kWholeStage, begin, Clock::now()});
 }
 
-std::size_t Trace::steps() const { return std::min<std::size_t>(begun_, kept_.size()); }
+std::size_t Trace::Inside::steps() const { return std::min<std::size_t>(begun_, kept_.size()); }
 
-std::uint64_t Trace::left_out() const
+std::uint64_t Trace::Inside::left_out() const
 {
     std::uint64_t sum = 0;
     for (const Row& row : rows_) sum += row.left_out;
     return sum;
 }
 
-std::vector<std::size_t> Trace::slots_in_order() const
+std::vector<std::size_t> Trace::Inside::slots_in_order() const
 {
     std::vector<std::size_t> slots;
     for (std::uint64_t step = begun_ - steps(); step < begun_; ++step)
@@ -127,7 +188,9 @@ std::vector<std::size_t> Trace::slots_in_order() const
     return slots;
 }
 
-void Trace::write(std::string_view label, const std::vector<Wait>& waits, std::ostream& out) const
+void Trace::Inside::write(std::string_view label,
+                          const std::vector<Wait>& waits,
+                          std::ostream& out) const
 {
     const std::vector<std::size_t> slots = slots_in_order();
     const Clock::time_point zero = slots.empty() ? Clock::time_point() : kept_[slots[0]].begin;
@@ -156,12 +219,12 @@ void Trace::write(std::string_view label, const std::vector<Wait>& waits, std::o
     out << "\n]}\n";
 }
 
-void Trace::write_bar(std::string_view name,
-                      std::string_view kind,
-                      std::size_t row,
-                      const Event& event,
-                      Clock::time_point zero,
-                      std::ostream& out)
+void Trace::Inside::write_bar(std::string_view name,
+                              std::string_view kind,
+                              std::size_t row,
+                              const Event& event,
+                              Clock::time_point zero,
+                              std::ostream& out)
 {
     out << ",\n"
         << R"({"ph": "X", "name": )" << quoted(name) << R"(, "cat": )" << quoted(kind)
@@ -172,10 +235,10 @@ void Trace::write_bar(std::string_view name,
 }
 
 // From the end of a stage to the beginning of one that waits for it.
-void Trace::write_arrows(const std::vector<Wait>& waits,
-                         std::size_t slot,
-                         Clock::time_point zero,
-                         std::ostream& out) const
+void Trace::Inside::write_arrows(const std::vector<Wait>& waits,
+                                 std::size_t slot,
+                                 Clock::time_point zero,
+                                 std::ostream& out) const
 {
     struct Place {
         const Event* event = nullptr;
@@ -205,6 +268,22 @@ void Trace::write_arrows(const std::vector<Wait>& waits,
     }
 }
 
-void watch_steps(World& world, Trace& trace) { world.state().watch = &trace; }
+Trace::Trace(std::size_t steps_kept) : inside_(std::make_unique<Inside>(steps_kept)) { }
+Trace::~Trace() = default;
+Trace::Trace(Trace&&) noexcept = default;
+Trace& Trace::operator=(Trace&&) noexcept = default;
+
+void Trace::watch(World& world) { state_of(world).watch = inside_.get(); }
+void Trace::leave(World& world) { state_of(world).watch = nullptr; }
+
+void Trace::begin_step(std::uint64_t number) { inside_->begin_step(number); }
+void Trace::end_step() { inside_->end_step(); }
+std::size_t Trace::steps() const { return inside_->steps(); }
+std::uint64_t Trace::left_out() const { return inside_->left_out(); }
+
+void Trace::write(std::string_view label, const std::vector<Wait>& waits, std::ostream& out) const
+{
+    inside_->write(label, waits, out);
+}
 
 }  // namespace throng

@@ -1,9 +1,9 @@
 // Conditions: what holds for a whole step, the same for every body.
 #pragma once
 
-#include "kernels/math/types.hpp"
 #include "pipeline/step/effects.hpp"
-#include "scene/settings.hpp"
+#include "throng/math.hpp"
+#include "throng/settings.hpp"
 
 namespace throng {
 

@@ -4,8 +4,8 @@
 // written (and may be read). So the declaration cannot drift from what the stage can reach.
 #pragma once
 
-#include "pipeline/step/set.hpp"
 #include "pipeline/step/step_data.hpp"
+#include "throng/effects.hpp"
 
 #include <string_view>
 #include <type_traits>

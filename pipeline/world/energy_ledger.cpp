@@ -1,11 +1,14 @@
-#include "pipeline/world/energy_ledger.hpp"
+#include "throng/energy_ledger.hpp"
 
 #include "kernels/dynamics/energy.hpp"
 #include "kernels/dynamics/integrators.hpp"
+#include "kernels/parallel/disjoint_sets.hpp"
 #include "pipeline/world/world_state.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace throng {
 
@@ -21,7 +24,7 @@ Number of_body(const std::vector<Number>& list, std::uint32_t body, const Number
 }
 
 // Whether a body goes its own way, whatever pushes it. A driven one may be dynamic.
-bool moves_by_itself(const World::State& state, std::uint32_t body)
+bool moves_by_itself(const WorldState& state, std::uint32_t body)
 {
     const BodyStates& states = state.get<BodyStates>();
     if (states.carries(body)) return true;
@@ -60,9 +63,54 @@ double wind_power_round(double drag, const Vec3& wind, const Vec3& from, const V
 
 }  // namespace
 
-void EnergyLedger::look(const World& world, Look& look) const
+class EnergyLedger::Inside {
+public:
+    void before_step(const World& world);
+    void after_step(const World& world);
+    double gained() const { return gained_; }
+    std::uint64_t from_step() const { return from_step_; }
+    std::uint64_t to_step() const { return to_step_; }
+    double net() const { return net_; }
+    double greatest_kinetic() const { return greatest_kinetic_; }
+
+private:
+    struct OfBody {
+        double kinetic = 0, potential = 0;  // J
+        Vec3 place = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
+        double power = 0;  // W, of the program's own field
+    };
+    struct Look {
+        std::vector<OfBody> bodies;
+        std::vector<double> springs;  // J
+    };
+    struct OfGroup {
+        double before = 0, after = 0;  // J
+        double faster = 0;             // J, of which in motion
+        double work = 0, rounding = 0;
+        bool driven = false, touches = false;
+    };
+
+    void look(const World& world, Look& look) const;
+    void join_groups(const World& world);
+    void mark_groups(const World& world);
+    void add_up(const World& world);
+    double pay_back(double rise);
+    void enter(double change, std::uint64_t step);
+    double work_on(const World& world, std::uint32_t body) const;
+
+    Look before_, after_;
+    DisjointSets sets_;            // of bodies
+    std::vector<OfGroup> groups_;  // [bodies] at the first of each
+    double account_ = 0, lowest_ = 0, gained_ = 0, net_ = 0, greatest_kinetic_ = 0;
+    // J, that contacts took in each of the last steps: of more of them than the four for which a
+    // soft contact swings where a step has one substep.
+    std::array<double, 6> taken_ = {};
+    std::uint64_t lowest_step_ = 0, from_step_ = 0, to_step_ = 0;
+};
+
+void EnergyLedger::Inside::look(const World& world, Look& look) const
 {
-    const World::State& state = world.state();
+    const WorldState& state = state_of(world);
     const Masses& masses = state.get<Masses>();
     const BodyStates& states = state.get<BodyStates>();
     const Poses& poses = state.get<Poses>();
@@ -93,9 +141,9 @@ void EnergyLedger::look(const World& world, Look& look) const
 }
 
 // What cannot be moved joins nobody.
-void EnergyLedger::join_groups(const World& world)
+void EnergyLedger::Inside::join_groups(const World& world)
 {
-    const World::State& state = world.state();
+    const WorldState& state = state_of(world);
     const BodyStates& states = state.get<BodyStates>();
     const auto count = static_cast<std::uint32_t>(states.kind.size());
     sets_.reset(count);
@@ -108,9 +156,9 @@ void EnergyLedger::join_groups(const World& world)
     for (const SpringForce& spring : state.get<Forces>().springs) join(spring.a, spring.b);
 }
 
-void EnergyLedger::mark_groups(const World& world)
+void EnergyLedger::Inside::mark_groups(const World& world)
 {
-    const World::State& state = world.state();
+    const WorldState& state = state_of(world);
     const BodyStates& states = state.get<BodyStates>();
     const auto mark = [&](std::uint32_t body) {
         if (body != kNobody && states.dynamic(body)) groups_[sets_.find(body)].driven = true;
@@ -137,9 +185,9 @@ void EnergyLedger::mark_groups(const World& world)
     }
 }
 
-double EnergyLedger::work_on(const World& world, std::uint32_t body) const
+double EnergyLedger::Inside::work_on(const World& world, std::uint32_t body) const
 {
-    const Forces& forces = world.state().get<Forces>();
+    const Forces& forces = state_of(world).get<Forces>();
     const double dt = world.settings().dt;
     const OfBody &from = before_.bodies[body], &to = after_.bodies[body];
     const Vec3 none = Vec3::Zero();
@@ -152,9 +200,9 @@ double EnergyLedger::work_on(const World& world, std::uint32_t body) const
            + std::max(from.power, to.power));
 }
 
-void EnergyLedger::add_up(const World& world)
+void EnergyLedger::Inside::add_up(const World& world)
 {
-    const World::State& state = world.state();
+    const WorldState& state = state_of(world);
     const Settings& settings = world.settings();
     const double digit = settings.precision == Precision::float_ ? 0x1p-24 : 0x1p-53;
     for (std::uint32_t body = 0; body < groups_.size(); ++body) {
@@ -181,7 +229,7 @@ void EnergyLedger::add_up(const World& world)
     }
 }
 
-void EnergyLedger::enter(double change, std::uint64_t step)
+void EnergyLedger::Inside::enter(double change, std::uint64_t step)
 {
     account_ += change;
     if (account_ < lowest_) {
@@ -195,7 +243,7 @@ void EnergyLedger::enter(double change, std::uint64_t step)
 }
 
 // What is left of a rise after what contacts have taken lately.
-double EnergyLedger::pay_back(double rise)
+double EnergyLedger::Inside::pay_back(double rise)
 {
     double lent = 0;
     for (const double taken : taken_) lent += taken;
@@ -205,9 +253,9 @@ double EnergyLedger::pay_back(double rise)
     return rise - paid;
 }
 
-void EnergyLedger::before_step(const World& world) { look(world, before_); }
+void EnergyLedger::Inside::before_step(const World& world) { look(world, before_); }
 
-void EnergyLedger::after_step(const World& world)
+void EnergyLedger::Inside::after_step(const World& world)
 {
     look(world, after_);
     join_groups(world);
@@ -231,5 +279,26 @@ void EnergyLedger::after_step(const World& world)
     greatest_kinetic_ = std::max(greatest_kinetic_, kinetic);
     enter(change, world.report().step);
 }
+
+EnergyLedger::EnergyLedger() : inside_(std::make_unique<Inside>()) { }
+EnergyLedger::~EnergyLedger() = default;
+EnergyLedger::EnergyLedger(const EnergyLedger& other)
+    : inside_(std::make_unique<Inside>(*other.inside_))
+{ }
+EnergyLedger& EnergyLedger::operator=(const EnergyLedger& other)
+{
+    inside_ = std::make_unique<Inside>(*other.inside_);
+    return *this;
+}
+EnergyLedger::EnergyLedger(EnergyLedger&&) noexcept = default;
+EnergyLedger& EnergyLedger::operator=(EnergyLedger&&) noexcept = default;
+
+void EnergyLedger::before_step(const World& world) { inside_->before_step(world); }
+void EnergyLedger::after_step(const World& world) { inside_->after_step(world); }
+double EnergyLedger::gained() const { return inside_->gained(); }
+std::uint64_t EnergyLedger::from_step() const { return inside_->from_step(); }
+std::uint64_t EnergyLedger::to_step() const { return inside_->to_step(); }
+double EnergyLedger::net() const { return inside_->net(); }
+double EnergyLedger::greatest_kinetic() const { return inside_->greatest_kinetic(); }
 
 }  // namespace throng

@@ -1,9 +1,10 @@
 #include "pipeline/world/force_builder.hpp"
 
+#include "kernels/dynamics/integrators.hpp"
 #include "kernels/dynamics/spring_limit.hpp"
 #include "kernels/parallel/disjoint_sets.hpp"
-#include "scene/dials.hpp"
 #include "scene/names.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 #include <cmath>

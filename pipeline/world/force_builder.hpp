@@ -3,7 +3,7 @@
 
 #include "kernels/data/bodies.hpp"
 #include "kernels/data/forces.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <span>
 #include <string>

@@ -48,7 +48,7 @@ double solid_depth(const Shapes& shapes, ShapeRef solid, ShapeRef other, const P
     return depth;
 }
 
-void measure_overlaps(const World::State& state, Measures& measures)
+void measure_overlaps(const WorldState& state, Measures& measures)
 {
     const Colliders& colliders = state.get<Colliders>();
     const Shapes& shapes = state.get<Shapes>();
@@ -101,7 +101,7 @@ Measures World::measure() const
 {
     Measures measures;
     // Measuring changes nothing that a step would notice, so it may use the world's own threads.
-    auto& pool = const_cast<State&>(*state_).pool;  // NOLINT: threads are no part of the state
+    auto& pool = const_cast<WorldState&>(*state_).pool;  // NOLINT: threads are no part of the state
     pool.run([&](std::size_t, std::size_t, std::size_t) { measure_overlaps(*state_, measures); });
     const Masses& masses = state_->get<Masses>();
     const BodyStates& states = state_->get<BodyStates>();

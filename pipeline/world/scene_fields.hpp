@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernels/data/forces.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <span>
 

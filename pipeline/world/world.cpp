@@ -1,4 +1,4 @@
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include "broadphase/margins.hpp"
 #include "kernels/solver/contact_rows.hpp"
@@ -8,9 +8,9 @@
 #include "pipeline/step/step_table.hpp"
 #include "pipeline/world/force_builder.hpp"
 #include "pipeline/world/world_state.hpp"
-#include "scene/dials.hpp"
 #include "scene/names.hpp"
 #include "scene/rules/scene_check.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -56,7 +56,7 @@ Vec3 impacts_on(std::uint32_t body,
 
 }  // namespace
 
-World::State::State(const Settings& settings, int thread_count) : pool(thread_count)
+WorldState::WorldState(const Settings& settings, int thread_count) : pool(thread_count)
 {
     check_settings(settings, "world");
     // Throws here and not in a step where the environment asks for lanes that cannot be had.
@@ -65,7 +65,7 @@ World::State::State(const Settings& settings, int thread_count) : pool(thread_co
     get<Conditions>().settings = settings;
 }
 
-std::uint32_t World::State::place_of(BodyId body, const char* caller) const
+std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
 {
     if (body.index < generation.size() && generation[body.index] == body.generation
         && get<BodyStates>().kind[body.index] != BodyKind::gone)
@@ -74,7 +74,7 @@ std::uint32_t World::State::place_of(BodyId body, const char* caller) const
                                 + " was removed or never was; give one that is alive");
 }
 
-void World::State::choose_broad_phase()
+void WorldState::choose_broad_phase()
 {
     const BroadPhase asked = get<Conditions>().settings.broadphase;
     const Colliders& colliders = get<Colliders>();
@@ -113,14 +113,14 @@ void World::State::choose_broad_phase()
     for (std::uint32_t i = 0; i < colliders.size(); ++i) bounds.touched.push_back(i);
 }
 
-bool World::State::nothing_to_do() const
+bool WorldState::nothing_to_do() const
 {
     const Conditions& conditions = get<Conditions>();
     return idle && !effects_stale && !movers_stale && get<Bounds>().touched.empty()
         && conditions.last_substep == conditions.substep();
 }
 
-void World::State::follow_stubborn()
+void WorldState::follow_stubborn()
 {
     Stubborn& stubborn = get<Stubborn>();
     report.islands_escalated += stubborn.escalated;
@@ -137,13 +137,13 @@ void World::State::follow_stubborn()
     effects_stale = true;
 }
 
-std::string World::State::called(std::uint32_t body) const
+std::string WorldState::called(std::uint32_t body) const
 {
     const bool named = body < names.size() && !names[body].empty();
     return "body " + std::to_string(body) + (named ? " " + names[body] : "");
 }
 
-void World::State::follow_step()
+void WorldState::follow_step()
 {
     follow_stubborn();
     Trouble& trouble = get<Trouble>();
@@ -165,7 +165,7 @@ void World::State::follow_step()
     trouble.quarantined.clear();
 }
 
-void World::State::report_state()
+void WorldState::report_state()
 {
     report.pairs = get<Pairs>().keys.size();
     const auto& active = get<ActiveContacts>().entries;
@@ -189,14 +189,14 @@ void World::State::report_state()
     report.islands = carried.groups;
 }
 
-void World::State::refresh()
+void WorldState::refresh()
 {
     if (effects_stale) refresh_effects();
     if (movers_stale) list_movers(get<BodyStates>());
     movers_stale = false;
 }
 
-void World::State::warn_of_cuts(int cuts)
+void WorldState::warn_of_cuts(int cuts)
 {
     if (cuts <= most_cuts) return;
     most_cuts = cuts;
@@ -209,25 +209,25 @@ void World::State::warn_of_cuts(int cuts)
         + "; take substeps=" + std::to_string(settings.substeps * cuts) + ", or auto");
 }
 
-Vec3 World::State::arm(std::uint32_t body) const
+Vec3 WorldState::arm(std::uint32_t body) const
 {
     const auto& hang = get<Forces>().hang;
     return body < hang.size() ? Vec3(get<Poses>().orientation[body] * hang[body])
                               : Vec3(Vec3::Zero());
 }
 
-Vec3 World::State::center_of_mass(std::uint32_t body) const
+Vec3 WorldState::center_of_mass(std::uint32_t body) const
 {
     return get<Poses>().position[body] + arm(body);
 }
 
-Vec3 World::State::velocity(std::uint32_t body) const
+Vec3 WorldState::velocity(std::uint32_t body) const
 {
     const Velocities& velocities = get<Velocities>();
     return velocities.linear[body] + velocities.angular[body].cross(arm(body));
 }
 
-void World::State::warn_of_substeps()
+void WorldState::warn_of_substeps()
 {
     const Settings& settings = get<Conditions>().settings;
     std::vector<std::string> warnings = unstable_springs(get<Forces>(), get<Masses>(), settings);
@@ -243,7 +243,7 @@ void World::State::warn_of_substeps()
             remarks.push_back(std::move(warning));
 }
 
-void World::State::refresh_effects()
+void WorldState::refresh_effects()
 {
     effects_stale = false;
     movers_stale = true;
@@ -271,7 +271,7 @@ void World::State::refresh_effects()
 static_assert(kMissedResidual == kDirectResidual);
 
 World::World(const Settings& settings, int threads)
-    : state_(std::make_unique<State>(settings, threads))
+    : state_(std::make_unique<WorldState>(settings, threads))
 { }
 
 World::World(const Scene& scene, int threads) : World(scene.settings, threads)
@@ -293,7 +293,7 @@ std::vector<BodyId> World::add(const Scene& scene)
 
 void World::step(int steps)
 {
-    State& state = *state_;
+    WorldState& state = *state_;
     using Clock = std::chrono::steady_clock;
     for (int i = 0; i < steps; ++i) {
         const auto begin = Clock::now();

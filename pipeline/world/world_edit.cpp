@@ -13,7 +13,7 @@
 
 namespace throng {
 
-void World::State::wake(std::uint32_t body)
+void WorldState::wake(std::uint32_t body)
 {
     BodyStates& states = get<BodyStates>();
     states.quiet_time[body] = 0;
@@ -30,7 +30,7 @@ void World::State::wake(std::uint32_t body)
     beds.free.push_back(bed);
 }
 
-void World::State::touch(std::uint32_t body)
+void WorldState::touch(std::uint32_t body)
 {
     const Colliders& colliders = get<Colliders>();
     Bounds& bounds = get<Bounds>();
@@ -40,7 +40,7 @@ void World::State::touch(std::uint32_t body)
     get<Stubborn>().forget(body);
 }
 
-void World::State::wake_neighbors(const std::vector<std::uint8_t>& of)
+void WorldState::wake_neighbors(const std::vector<std::uint8_t>& of)
 {
     const Colliders& colliders = get<Colliders>();
     for (const PairKey key : get<Pairs>().keys) {
@@ -50,7 +50,7 @@ void World::State::wake_neighbors(const std::vector<std::uint8_t>& of)
     }
 }
 
-void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
+void WorldState::forget_pairs(const std::vector<std::uint8_t>& of)
 {
     Pairs& pairs = get<Pairs>();
     const Colliders& colliders = get<Colliders>();
@@ -100,12 +100,12 @@ void World::State::forget_pairs(const std::vector<std::uint8_t>& of)
         step);
 }
 
-void World::State::wake_all()
+void WorldState::wake_all()
 {
     for (std::uint32_t body = 0; body < generation.size(); ++body) wake(body);
 }
 
-void World::State::quarantine(std::uint32_t body)
+void WorldState::quarantine(std::uint32_t body)
 {
     Trouble trouble;
     trouble.quarantined = {body};
@@ -115,7 +115,7 @@ void World::State::quarantine(std::uint32_t body)
     effects_stale = true;
 }
 
-void World::State::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular)
+void WorldState::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular)
 {
     const BodyStates& states = get<BodyStates>();
     const Masses& masses = get<Masses>();
@@ -131,7 +131,7 @@ void World::State::set_motion(std::uint32_t body, const Vec3& linear, const Vec3
     effects_stale = true;
 }
 
-void World::State::empty_unused()
+void WorldState::empty_unused()
 {
     const Set<Effect> on = effects.on;
     if (!on.has(Effect::sleeping)) wake_all();
@@ -159,7 +159,7 @@ void World::State::empty_unused()
 
 void World::remove(std::span<const BodyId> bodies)
 {
-    State& state = *state_;
+    WorldState& state = *state_;
     for (const BodyId id : bodies) state.place_of(id, "remove");
     BodyStates& states = state.get<BodyStates>();
     Colliders& colliders = state.get<Colliders>();
@@ -200,7 +200,7 @@ void World::remove(std::span<const BodyId> bodies)
 
 void World::set_force_field(ForceField field)
 {
-    State& state = *state_;
+    WorldState& state = *state_;
     state.get<Forces>().field = std::move(field);
     state.wake_all();
     state.effects_stale = true;

@@ -5,7 +5,7 @@
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/step/step_graph.hpp"
 #include "pipeline/world/scene_fields.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <map>
 #include <variant>
@@ -27,8 +27,8 @@ struct PlacedShape {
     MassProperties mass;      // of unit density
 };
 
-struct World::State {
-    explicit State(const Settings& settings, int thread_count);
+struct WorldState {
+    explicit WorldState(const Settings& settings, int thread_count);
 
     ThreadPool pool;
     WorkCount work;  // of all steps
@@ -112,12 +112,20 @@ struct World::State {
     void warn_of_cuts(int cuts);
 };
 
+/// What a world keeps, for the parts of the pipeline that need more than the public door shows.
+struct WorldAccess {
+    static WorldState& state_of(World& world) { return *world.state_; }
+    static const WorldState& state_of(const World& world) { return *world.state_; }
+};
+inline WorldState& state_of(World& world) { return WorldAccess::state_of(world); }
+inline const WorldState& state_of(const World& world) { return WorldAccess::state_of(world); }
+
 struct MadeSolid;  // solid_maker.hpp
 
 /// Adds the shapes, materials and bodies of a scene.
 class SceneBuilder {
 public:
-    explicit SceneBuilder(World::State& state) : state_(state) { }
+    explicit SceneBuilder(WorldState& state) : state_(state) { }
     std::vector<BodyId> add(const Scene& scene);
 
 private:
@@ -138,7 +146,7 @@ private:
     void add_forces(const Scene& scene, std::span<const BodyId> ids);
     void note_requests(std::uint32_t body, const BodyDescription& stated);
 
-    World::State& state_;
+    WorldState& state_;
     std::uint32_t first_material_ = 0;
     std::uint32_t default_material_ = kNone;
     std::vector<double> density_;

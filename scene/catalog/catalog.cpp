@@ -1,4 +1,4 @@
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 #include "scene/catalog/recipes.hpp"
 

@@ -5,17 +5,9 @@
 // number of triangles in noisy_balls.hpp.
 #pragma once
 
-#include "kernels/math/types.hpp"
-
-#include <array>
-#include <vector>
+#include "throng/scene.hpp"
 
 namespace throng {
-
-struct TriangleSoup {
-    std::vector<Vec3> vertices;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-};
 
 /// Twelve triangles.
 TriangleSoup box_mesh(const Vec3& half_extents);

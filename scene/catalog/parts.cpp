@@ -1,7 +1,7 @@
 #include "scene/catalog/parts.hpp"
 
 #include "kernels/check.hpp"
-#include "kernels/math/box3.hpp"
+#include "throng/box3.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/catalog/random.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <string_view>
 

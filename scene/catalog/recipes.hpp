@@ -5,7 +5,7 @@
 #pragma once
 
 #include "scene/catalog/closed_meshes.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <cstdint>
 

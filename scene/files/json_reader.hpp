@@ -1,8 +1,8 @@
 // JSON reader: values of a document as the types a caller wants, or an error with their place.
 #pragma once
 
-#include "kernels/math/types.hpp"
 #include "scene/files/json.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 #include <span>

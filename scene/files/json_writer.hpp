@@ -1,7 +1,7 @@
 // JSON writer: values as text that reads back to the same bits.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <initializer_list>
 #include <string>

@@ -4,7 +4,7 @@
 // how); what else a file may say (normals, textures, groups, materials) is passed over.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 #include <string>

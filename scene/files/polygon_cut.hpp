@@ -1,7 +1,7 @@
 // Polygon cut: the triangles of a polygon that need not be convex.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <array>
 #include <span>

@@ -1,18 +1,14 @@
-// Scene error: bad input, with its place.
+// Scene error: how bad input is told, with its place.
 #pragma once
 
+#include "scene/rules/scene_check.hpp"
+#include "throng/scene_file.hpp"
+
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace throng {
-
-/// Refused input. what() reads `file:line:col: error: path: what was wanted`.
-class SceneError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 /// Lines and columns count from 1; a column is a character, however many bytes it takes.
 struct TextPlace {
@@ -28,5 +24,9 @@ SceneError scene_error(std::string_view file,
                        std::size_t at,
                        std::string_view path,
                        std::string_view wanted);
+
+/// The error for a part of a scene that was read from a file and cannot become a world, with its
+/// place there.
+SceneError error_in_scene(const std::string& path, const SceneTrouble& trouble);
 
 }  // namespace throng

@@ -1,5 +1,5 @@
 // Scene file: reading from the disk, and the checks that need the whole scene.
-#include "scene/files/scene_file.hpp"
+#include "throng/scene_file.hpp"
 
 #include "scene/files/scene_reader.hpp"
 

@@ -4,11 +4,11 @@
 // scene_check.hpp to say, and its answer is then given the place it has in the text.
 #include "scene/files/scene_reader.hpp"
 
-#include "scene/dials.hpp"
 #include "scene/files/json_reader.hpp"
 #include "scene/files/mesh_file.hpp"
 #include "scene/names.hpp"
 #include "scene/shapes/level_set.hpp"
+#include "throng/dials.hpp"
 
 #include <array>
 #include <bit>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/files/json.hpp"
-#include "scene/files/scene_file.hpp"
+#include "throng/scene_file.hpp"
 
 namespace throng {
 

@@ -2,14 +2,14 @@
 //
 // What is at its default is left out. "At its default" is asked of the bits, so that even a zero
 // keeps its sign on the way through a file.
-#include "scene/dials.hpp"
 #include "scene/files/json.hpp"
 #include "scene/files/json_writer.hpp"
 #include "scene/files/mesh_file.hpp"
-#include "scene/files/scene_file.hpp"
 #include "scene/names.hpp"
 #include "scene/rules/scene_check.hpp"
 #include "scene/shapes/level_set.hpp"
+#include "throng/dials.hpp"
+#include "throng/scene_file.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,9 @@
 // Scene check: what a scene must be before it can become a world.
 #include "scene/rules/scene_check.hpp"
 
-#include "scene/dials.hpp"
 #include "scene/names.hpp"
 #include "scene/rules/scene_rules.hpp"
-#include "scene/rules/unused_dials.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 #include <cmath>

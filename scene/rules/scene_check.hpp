@@ -3,8 +3,8 @@
 // The one place that knows the rules, for scenes read from files and for those that programs make.
 #pragma once
 
-#include "scene/scene.hpp"
 #include "scene/scene_path.hpp"
+#include "throng/scene.hpp"
 
 #include <optional>
 #include <stdexcept>
@@ -33,8 +33,5 @@ private:
 
 /// The first trouble in the order shapes, materials, bodies, instances, the rest.
 std::optional<SceneTrouble> find_trouble(const Scene& scene);
-
-/// The same as text, `bodies[3].mass: wanted ...`; empty when the scene is good.
-std::string check_scene(const Scene& scene);
 
 }  // namespace throng

@@ -1,11 +1,11 @@
 // Shape rules: what a shape of a scene must be, and what it then weighs.
 #include "kernels/geometry/mesh.hpp"
-#include "scene/dials.hpp"
 #include "scene/names.hpp"
 #include "scene/rules/scene_rules.hpp"
 #include "scene/shapes/level_set.hpp"
 #include "scene/shapes/moving_mesh.hpp"
 #include "scene/shapes/stated_hull.hpp"
+#include "throng/dials.hpp"
 
 #include <cmath>
 #include <set>

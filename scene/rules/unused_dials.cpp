@@ -1,10 +1,8 @@
-#include "scene/rules/unused_dials.hpp"
-
-#include "scene/dials.hpp"
 #include "scene/names.hpp"
 #include "scene/rules/scene_rules.hpp"
 #include "scene/shapes/moving_mesh.hpp"
 #include "scene/shapes/solid_maker.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 

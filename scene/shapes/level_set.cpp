@@ -31,6 +31,14 @@ LevelSetResult with_surface(VoxelBricks field, double error)
 
 }  // namespace
 
+LevelSetFacts facts_of(const LevelSet& level_set)
+{
+    Box3 bounds;
+    for (const Vec3& vertex : level_set.surface.vertices) bounds = joined(bounds, {vertex, vertex});
+    return {level_set.field.voxel, level_set.error, level_set.whole, bounds,
+            level_set.surface.triangles.size()};
+}
+
 LevelSetResult read_level_set(std::string bytes)
 {
     if (seal_of(bytes) == Seal::broken)

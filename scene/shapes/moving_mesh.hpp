@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cooking/repair/mesh_health.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <memory>
 

@@ -8,9 +8,9 @@
 #include "cooking/sphere_trees/spheres_cache.hpp"
 #include "kernels/geometry/image_views.hpp"
 #include "kernels/geometry/mesh.hpp"
-#include "scene/dials.hpp"
 #include "scene/shapes/level_set.hpp"
 #include "scene/shapes/moving_mesh.hpp"
+#include "throng/dials.hpp"
 
 namespace throng {
 

@@ -4,7 +4,7 @@
 
 #include "kernels/data/shapes.hpp"
 #include "kernels/geometry/mass.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <string>
 #include <variant>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cooking/hulls/hull.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <memory>
 

@@ -6,7 +6,7 @@
 
 #include "cooking/hulls/hull.hpp"
 #include "narrowphase/alternatives/convex_methods.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <algorithm>
 #include <array>

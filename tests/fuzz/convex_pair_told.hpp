@@ -2,7 +2,7 @@
 #pragma once
 
 #include "narrowphase/alternatives/convex_methods.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <cstdio>
 #include <cstdlib>

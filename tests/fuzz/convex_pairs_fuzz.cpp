@@ -2,8 +2,8 @@
 // them, all methods give finite answers that agree with one another.
 #include "narrowphase/alternatives/method_contacts.hpp"
 #include "narrowphase/dispatch.hpp"
-#include "pipeline/queries/convex_query.hpp"
 #include "tests/fuzz/convex_pair_promises.hpp"
+#include "throng/convex_query.hpp"
 
 #include <optional>
 

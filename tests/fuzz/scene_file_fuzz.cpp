@@ -2,7 +2,7 @@
 //
 // The part after "%%%" is what every file holds that the scene names; nothing is read from the
 // disk. What begins as a .vdb does is left out: OpenVDB, which reads it, does not expect any bytes.
-#include "scene/files/scene_file.hpp"
+#include "throng/scene_file.hpp"
 
 #include "scene/rules/scene_check.hpp"
 

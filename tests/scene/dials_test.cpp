@@ -1,5 +1,5 @@
 // Dials: one table, every value of it settable or refused with a reason.
-#include "scene/dials.hpp"
+#include "throng/dials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Dice: random numbers, places and turns for tests, the same on every machine.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <random>
 #include <utility>

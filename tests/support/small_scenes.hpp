@@ -1,7 +1,7 @@
 // Small scenes: worlds of a few bodies, in one line each, for tests of the step.
 #pragma once
 
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <cmath>
 #include <string>

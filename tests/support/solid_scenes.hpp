@@ -2,9 +2,9 @@
 #pragma once
 
 #include "scene/catalog/closed_meshes.hpp"
-#include "scene/settings.hpp"
 #include "scene/shapes/level_set.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/settings.hpp"
 
 #include <stdexcept>
 

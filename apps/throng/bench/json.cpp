@@ -4,7 +4,7 @@
 #include "apps/throng/bench/budget.hpp"
 #include "apps/throng/bench/report.hpp"
 #include "apps/throng/json_lines.hpp"
-#include "kernels/simd/lane_width.hpp"
+#include "throng/version.hpp"
 
 #include <fstream>
 #include <thread>
@@ -195,7 +195,7 @@ std::string processor_name()
 void write_json(const Plan& plan, const std::vector<Case>& cases, bool complete, std::ostream& out)
 {
     JsonLines json(out);
-    json.add("throng", json_string(THRONG_VERSION));
+    json.add("throng", json_string(version()));
     json.add("machine",
              Members()
                  .add_text("processor", processor_name())

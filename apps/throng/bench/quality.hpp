@@ -1,7 +1,7 @@
 // Quality: what a state is worth, whoever came to it.
 #pragma once
 
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 namespace throng::bench {
 

@@ -4,7 +4,7 @@
 // closes faster than it may, none pulls, friction opposes sliding and is full where it slides.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <memory>
 #include <span>

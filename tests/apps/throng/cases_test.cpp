@@ -1,7 +1,7 @@
 // Cases: what the command prints and writes of hard cases.
-#include "pipeline/queries/convex_query.hpp"
 #include "scene/files/json.hpp"
 #include "tests/apps/throng/command.hpp"
+#include "throng/convex_query.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // Run: what a run of the command writes, and what it leaves behind when it cannot.
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "scene/catalog/closed_meshes.hpp"
-#include "scene/dials.hpp"
 #include "scene/files/json.hpp"
 #include "scene/files/mesh_file.hpp"
 #include "tests/apps/throng/command.hpp"
+#include "throng/catalog.hpp"
+#include "throng/dials.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

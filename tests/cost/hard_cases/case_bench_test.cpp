@@ -1,6 +1,6 @@
 // Case bench: what a run that lost a body proves, and who hears of its lines when.
 #include "cost/hard_cases/cases.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Chosen method: every method of the narrow phase carries a heap, on any number of threads alike;
 // filters change nothing but the time.
 #include "pipeline/world/world_state.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 

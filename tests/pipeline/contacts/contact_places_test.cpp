@@ -3,8 +3,8 @@
 #include "pipeline/contacts/recycled_manifolds.hpp"
 #include "pipeline/step/stages.hpp"
 #include "pipeline/world/world_state.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 template <class Real>
 ConvexContacts<Real>& contacts_of(World& world)
 {
-    return std::get<ConvexContacts<Real>>(std::get<Step<Real>>(world.state().step).data);
+    return std::get<ConvexContacts<Real>>(std::get<Step<Real>>(state_of(world).step).data);
 }
 
 // Looks at a world step after step.
@@ -29,7 +29,7 @@ public:
     void check()
     {
         const auto& contacts = contacts_of<Real>(world_);
-        const auto& keys = world_.state().get<Pairs>().keys;
+        const auto& keys = state_of(world_).get<Pairs>().keys;
         ASSERT_EQ(contacts.of_pair.size(), keys.size());
         std::vector<int> holders(contacts.contacts.size(), 0);
         std::map<PairKey, std::uint32_t> now;
@@ -123,10 +123,10 @@ template <class Real>
 std::size_t count_found(World& world)
 {
     const auto& contacts = contacts_of<Real>(world);
-    const auto& keys = world.state().get<Pairs>().keys;
-    const Shapes& shapes = world.state().get<Shapes>();
-    const Colliders& colliders = world.state().get<Colliders>();
-    const Bounds& bounds = world.state().get<Bounds>();
+    const auto& keys = state_of(world).get<Pairs>().keys;
+    const Shapes& shapes = state_of(world).get<Shapes>();
+    const Colliders& colliders = state_of(world).get<Colliders>();
+    const Bounds& bounds = state_of(world).get<Bounds>();
     std::size_t count = 0;
     EXPECT_EQ(contacts.found.size(), contacts.contacts.size());
     EXPECT_EQ(contacts.apart_until.size(), keys.size());
@@ -229,7 +229,7 @@ TEST(ContactPlaces, APairThatComesBackBeginsAnew)
     row.put(1, 1.04);
     row.put(0, 0);
     row.world.step();
-    ASSERT_EQ(row.world.state().get<Pairs>().keys.size(), 1u);
+    ASSERT_EQ(state_of(row.world).get<Pairs>().keys.size(), 1u);
     ASSERT_EQ(row.contacts().free.size(), 1u);
     row.put(1, 0.98);
     row.put(0, 0);

@@ -3,7 +3,7 @@
 #include "kernels/geometry/gjk.hpp"
 #include "narrowphase/dispatch.hpp"
 #include "pipeline/world/world_state.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 template <class Real>
 std::size_t count_known_apart(World& world)
 {
-    const auto& data = std::get<Step<Real>>(world.state().step).data;
+    const auto& data = std::get<Step<Real>>(state_of(world).step).data;
     const auto& contacts = std::get<ConvexContacts<Real>>(data);
     const auto& keys = std::get<Pairs>(data).keys;
     const auto& bounds = std::get<Bounds>(data);

@@ -1,6 +1,6 @@
 // What overlap=back_up keeps to, through the public door.
-#include "scene/rules/unused_dials.hpp"
 #include "tests/pipeline/event_driven/carried_scenes.hpp"
+#include "throng/dials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 #include "kernels/data/bounds.hpp"
 #include "kernels/geometry/closest_points.hpp"
 #include "scene/catalog/noisy_balls.hpp"
-#include "scene/rules/unused_dials.hpp"
 #include "tests/pipeline/event_driven/carried_scenes.hpp"
 #include "tests/support/solid_scenes.hpp"
+#include "throng/dials.hpp"
 
 #include <gtest/gtest.h>
 

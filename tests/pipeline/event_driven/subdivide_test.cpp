@@ -1,7 +1,7 @@
 // What overlap=subdivide keeps to, through the public door.
-#include "scene/rules/unused_dials.hpp"
 #include "tests/pipeline/event_driven/carried_scenes.hpp"
 #include "tests/support/dice.hpp"
+#include "throng/dials.hpp"
 
 #include <gtest/gtest.h>
 

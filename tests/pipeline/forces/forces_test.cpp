@@ -1,5 +1,5 @@
 // Forces: what acts besides gravity and contacts, in flight and on what touches something.
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

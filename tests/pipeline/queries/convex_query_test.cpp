@@ -1,5 +1,5 @@
 // Convex query: methods asked by name through the public door, and what is refused there.
-#include "pipeline/throng.hpp"
+#include "throng/throng.hpp"
 
 #include <gtest/gtest.h>
 

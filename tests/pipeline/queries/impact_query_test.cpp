@@ -1,7 +1,7 @@
-#include "pipeline/queries/impact_query.hpp"
+#include "throng/impact_query.hpp"
 
-#include "scene/dials.hpp"
 #include "scene/rules/scene_check.hpp"
+#include "throng/dials.hpp"
 
 #include <gtest/gtest.h>
 

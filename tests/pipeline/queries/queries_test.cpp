@@ -1,6 +1,6 @@
 // Queries: every answer against all bodies asked in turn by distances written down afresh.
-#include "pipeline/throng.hpp"
 #include "tests/support/dice.hpp"
+#include "throng/throng.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Volume query: ways asked by name through the public door, and what is refused there.
-#include "pipeline/throng.hpp"
 #include "scene/catalog/closed_meshes.hpp"
+#include "throng/throng.hpp"
 
 #include <gtest/gtest.h>
 

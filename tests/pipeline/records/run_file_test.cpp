@@ -1,7 +1,7 @@
 // Run file: what a reader of HDF5 finds in it.
-#include "pipeline/records/run_file.hpp"
+#include "throng/run_file.hpp"
 
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include "pipeline/records/trace.hpp"
 
 #include "pipeline/world/world_state.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "scene/files/json.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,13 +16,13 @@ namespace {
 std::string traced(Trace& trace, int steps, int threads)
 {
     World world(make_scene("pile", 200), threads);
-    world.state().watch = &trace;
+    trace.watch(world);
     for (int i = 0; i < steps; ++i) {
         trace.begin_step(static_cast<std::uint64_t>(i) + 1);
         world.step();
         trace.end_step();
     }
-    world.state().watch = nullptr;
+    Trace::leave(world);
     return world.state_hash();
 }
 

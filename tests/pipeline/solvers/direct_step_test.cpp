@@ -1,6 +1,6 @@
 // What a step keeps to with solver=direct, through the public door.
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

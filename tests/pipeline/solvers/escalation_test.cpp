@@ -1,7 +1,7 @@
 // Escalation: what the solver would let fall is found, held, and let go again.
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world/energy_ledger.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/energy_ledger.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Friction: where it acts and within which cone, as the dials have it.
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
-#include "scene/rules/unused_dials.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/catalog.hpp"
+#include "throng/dials.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Parting: bodies made deep inside one another move apart, and get no speed by it.
-#include "pipeline/world/energy_ledger.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/catalog.hpp"
+#include "throng/energy_ledger.hpp"
 
 #include <gtest/gtest.h>
 

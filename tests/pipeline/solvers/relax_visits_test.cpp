@@ -1,6 +1,6 @@
 // Relaxing visits: how many soft_step makes is told, and can be set.
-#include "scene/dials.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/dials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // What a step keeps to with response=penalty and response=kinematic, through the public door.
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/catalog.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

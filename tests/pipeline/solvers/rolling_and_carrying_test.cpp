@@ -1,6 +1,6 @@
 // Rolling and carrying: a side that looks the same however it is turned must not sink for turning;
 // a belt carries what lies on it.
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

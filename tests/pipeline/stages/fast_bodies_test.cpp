@@ -1,9 +1,9 @@
 // Fast bodies: whoever goes far in a step is stopped where it meets something, and by nothing else.
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world/energy_ledger.hpp"
-#include "pipeline/world/world.hpp"
 #include "tests/support/dice.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

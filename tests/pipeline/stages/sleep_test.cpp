@@ -1,6 +1,6 @@
 // Sleep: who may, what it keeps, and what wakes it.
-#include "pipeline/world/world.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Effects: what a scene calls for, what it does not, and who called.
 #include "pipeline/step/effects.hpp"
 
-#include "pipeline/world/world.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

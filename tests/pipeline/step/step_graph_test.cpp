@@ -37,7 +37,7 @@ std::string run_with(Set<Effect> effects, bool in_order, int threads)
     World world(given::mixed_scene(), threads);
     world.run_in_order(in_order);
     static_cast<void>(world.effects());
-    auto& state = world.state();
+    auto& state = state_of(world);
     state.get<Conditions>().effects = effects;
     auto& step = std::get<Step<float>>(state.step);
     state.pool.run([&](std::size_t, std::size_t, std::size_t) {

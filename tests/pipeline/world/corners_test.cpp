@@ -1,7 +1,7 @@
 // Corners: odd bodies, odd sizes and changes from outside, each with what it must do all the same.
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

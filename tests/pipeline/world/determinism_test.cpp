@@ -1,7 +1,7 @@
 // Determinism: the same bits on any number of threads, in any order the graph takes, with any
 // finder of pairs and any width of lanes, on every run.
 #include "pipeline/world/world_state.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 
@@ -89,10 +89,10 @@ std::string hash_when_cut(const char* name, int size, int threads, Precision pre
     scene.settings.precision = precision;
     scene.settings.sleep = false;
     World world(scene, threads);
-    world.state().get<Painter>().cut = {.from = 550, .slice = 60};
+    state_of(world).get<Painter>().cut = {.from = 550, .slice = 60};
     world.step(kSteps);
     std::size_t most = 0;
-    for (const Batch& batch : world.state().get<Layout>().batches)
+    for (const Batch& batch : state_of(world).get<Layout>().batches)
         most = std::max<std::size_t>(most, batch.slices);
     EXPECT_GT(most, 3u) << name;
     return world.state_hash();

@@ -1,8 +1,8 @@
 // Energy ledger: what grows without a source is told, and nothing else.
-#include "pipeline/world/energy_ledger.hpp"
+#include "throng/energy_ledger.hpp"
 
-#include "scene/catalog/catalog.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 

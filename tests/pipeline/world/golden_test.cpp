@@ -1,8 +1,8 @@
 // Golden: small scenes against what they did when their files were written.
 //
 // A change that means to move one runs tools/update_golden.sh and says why in the same commit.
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Large hulls: beyond the wide kernels, where GJK leads to the points of contact.
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "scene/catalog/random.hpp"
+#include "throng/catalog.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
 // Odd meshes: those that real projects hold move, or are refused with what was found of them.
-#include "pipeline/throng.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "scene/catalog/closed_meshes.hpp"
 #include "scene/files/mesh_file.hpp"
 #include "tests/support/shared_data.hpp"
+#include "throng/catalog.hpp"
+#include "throng/throng.hpp"
 
 #include <gtest/gtest.h>
 

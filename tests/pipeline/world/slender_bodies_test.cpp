@@ -1,7 +1,7 @@
 // Slender bodies: however thin they are, what stops them stops them, and falling over they win
 // nothing.
 #include "kernels/math/rotation.hpp"
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

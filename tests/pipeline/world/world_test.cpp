@@ -1,6 +1,6 @@
 // World: bodies that come and go, what may be done to them from outside, and what physics owes
 // them.
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include "tests/support/small_scenes.hpp"
 

@@ -1,5 +1,5 @@
 // Catalogue: what holds of every scene on offer.
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 #include "tests/scene/catalog/scene_bodies.hpp"
 

@@ -1,9 +1,9 @@
 // Every dial: each scene of the catalogue takes some steps with each value of each dial, and no
 // body is lost. Worth most where checks and sanitizers look on.
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
-#include "scene/dials.hpp"
 #include "scene/rules/scene_check.hpp"
+#include "throng/catalog.hpp"
+#include "throng/dials.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "kernels/data/bounds.hpp"
-#include "scene/catalog/catalog.hpp"
 #include "scene/shapes/level_set.hpp"
+#include "throng/catalog.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Scene file: what is read, and what is refused with which place and which words.
-#include "scene/files/scene_file.hpp"
+#include "throng/scene_file.hpp"
 
 #include "scene/shapes/level_set.hpp"
 #include "tests/support/vdb_files.hpp"

@@ -1,8 +1,9 @@
 // Scene file, written: what is written reads back to the same bits.
-#include "pipeline/world/world.hpp"
-#include "scene/catalog/catalog.hpp"
-#include "scene/files/scene_file.hpp"
+#include "scene/catalog/closed_meshes.hpp"
 #include "scene/shapes/level_set.hpp"
+#include "throng/catalog.hpp"
+#include "throng/scene_file.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

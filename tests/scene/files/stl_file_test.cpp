@@ -3,7 +3,7 @@
 
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/files/scene_error.hpp"
-#include "scene/files/scene_file.hpp"
+#include "throng/scene_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,7 @@
 // Unused dials: each is named with its reason, and none that something in the scene reads.
-#include "scene/rules/unused_dials.hpp"
-
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/rules/scene_check.hpp"
+#include "throng/dials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 
 #include "kernels/geometry/mass.hpp"
 #include "kernels/geometry/mesh.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/rules/scene_check.hpp"
 #include "tests/support/vdb_files.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

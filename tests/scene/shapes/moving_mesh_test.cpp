@@ -2,9 +2,9 @@
 #include "scene/shapes/moving_mesh.hpp"
 
 #include "kernels/geometry/mesh.hpp"
-#include "pipeline/world/world.hpp"
 #include "scene/rules/scene_check.hpp"
 #include "tests/support/solid_scenes.hpp"
+#include "throng/world.hpp"
 
 #include <gtest/gtest.h>
 

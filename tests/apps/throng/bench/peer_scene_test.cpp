@@ -1,6 +1,6 @@
 // Peer scene: what another engine is given, and how its answer is judged.
 #include "apps/throng/bench/peer_quality.hpp"
-#include "scene/catalog/catalog.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 

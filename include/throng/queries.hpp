@@ -5,7 +5,7 @@
 // triangles, with nothing inside. Where two bodies answer alike, the one with the smaller id does.
 #pragma once
 
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <limits>
 #include <variant>

@@ -5,7 +5,7 @@
 // same: it is refused with a sentence that says what can be had instead.
 #pragma once
 
-#include "scene/settings.hpp"
+#include "throng/settings.hpp"
 
 #include <span>
 #include <string>
@@ -47,6 +47,15 @@ std::string set_dial(Settings& settings, std::string_view name, std::string_view
 
 /// The present value of a dial, as text that set_dial() takes; empty for an unknown name.
 std::string dial_value(const Settings& settings, std::string_view name);
+
+struct Scene;
+
+/// Of Scene::dials_set those that do nothing, in that order, each with its reason:
+/// `contact_rate: unused, solver pgs has no soft contacts`.
+std::vector<std::string> unused_dials(const Scene& scene);
+
+/// Which dial has a value that another's does not allow, and what was wanted; empty for none.
+std::string clashing_dials(const Settings& settings);
 
 /// A time in seconds, as a number or a fraction: "0.01", "1/60". NaN where it is neither.
 double parse_time(std::string_view text);

@@ -24,7 +24,7 @@
 // no longer does so at exit.
 #pragma once
 
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <memory>
 #include <stdexcept>

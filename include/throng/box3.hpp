@@ -1,7 +1,7 @@
 // Box3: an axis-aligned box.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <limits>
 

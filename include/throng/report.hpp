@@ -1,7 +1,7 @@
 // Report: what a world has to tell of its steps and of its state.
 #pragma once
 
-#include "kernels/math/types.hpp"
+#include "throng/math.hpp"
 
 #include <string>
 #include <vector>

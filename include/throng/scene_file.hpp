@@ -1,18 +1,23 @@
 // Scene file: JSON in and out.
 //
 // SI units, radians, quaternions [w, x, y, z]. An error names file, line, column, path and what was
-// wanted; scene.schema.json beside this file describes the format for other programs.
+// wanted; scene/files/scene.schema.json describes the format for other programs.
 #pragma once
 
-#include "scene/files/scene_error.hpp"
-#include "scene/rules/scene_check.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 namespace throng {
+
+/// Refused input. what() reads `file:line:col: error: path: what was wanted`.
+class SceneError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
 
 /// What a file holds.
 struct FileContent {
@@ -37,10 +42,6 @@ Scene read_scene_text(std::string text,
                       const std::string& file,
                       const std::string& folder,
                       const FileReader& reader = read_file);
-
-/// The error for a part of a scene that was read from a file and cannot become a world, with its
-/// place there.
-SceneError error_in_scene(const std::string& path, const SceneTrouble& trouble);
 
 /// Writes a scene that reads back to the same values, bit for bit, save for Scene::name.
 ///

@@ -4,24 +4,42 @@
 // the command line.
 #pragma once
 
-#include "kernels/dynamics/integrators.hpp"
-#include "kernels/dynamics/orientation.hpp"
-#include "narrowphase/ccd/toi_method.hpp"
-#include "narrowphase/convex/method_start.hpp"
-
 #include <cstdint>
 
 namespace throng {
 
 enum class Precision : std::uint8_t { float_, double_ };
+/// auto_: splitting for what forces act on, something cheaper for what only falls.
+enum class Integrator : std::uint8_t { auto_, semi_implicit, euler, midpoint, splitting, rk4 };
+/// How an orientation is written down and turned on.
+enum class Rotation : std::uint8_t {
+    quaternion,
+    rotation_vector,
+    matrix,
+    quaternion_euler,
+    matrix_euler,
+    matrix_euler_repaired
+};
 enum class Gyroscopic : std::uint8_t { implicit, explicit_, off };
 enum class BroadPhase : std::uint8_t { auto_, embree, grid, sweep, all_pairs };
 enum class NarrowPhase : std::uint8_t { auto_, gjk, sat, chung_wang, clip_volume, containment };
+/// With how much of its speed a method of the narrow phase runs.
+enum class MethodStart : std::uint8_t {
+    cached,  // from what the pair remembers
+    cold,    // as if it remembered nothing
+    plain,   // without its accelerations: the answer sheet
+};
 enum class BoundsFilter : std::uint8_t { none, sphere, k_dop_14, k_dop_6, k_dop_18, k_dop_26 };
 enum class NonConvex : std::uint8_t { voxels, parts, spheres, depth_image, hull };
 enum class Response : std::uint8_t { impulse, penalty, kinematic };
 enum class Solver : std::uint8_t { soft_step, pgs, direct };
 enum class Overlap : std::uint8_t { allow, back_up, subdivide };
+/// How the time of impact is found.
+enum class ToiMethod : std::uint8_t {
+    newton,        // towards where the tangent meets the level
+    bisection,     // by halves
+    conservative,  // as far as the greatest speed of approach allows
+};
 enum class ImpactLaw : std::uint8_t { sequential, simultaneous };
 enum class FrictionAt : std::uint8_t { manifold, points };
 enum class Escalation : std::uint8_t { auto_, off };

@@ -4,8 +4,8 @@
 // their own. An answer is never late: see narrowphase/ccd/impact_time.hpp.
 #pragma once
 
-#include "scene/scene.hpp"
-#include "scene/settings.hpp"
+#include "throng/scene.hpp"
+#include "throng/settings.hpp"
 
 #include <array>
 #include <memory>

@@ -4,8 +4,8 @@
 // for itself, says what it can tell, and none answers through another; known_methods() lists them.
 #pragma once
 
-#include "narrowphase/convex/method_start.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
+#include "throng/settings.hpp"
 
 #include <limits>
 #include <memory>

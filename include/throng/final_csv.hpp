@@ -1,7 +1,7 @@
 // Final CSV: where every body is and how it moves, for programs that compare runs.
 #pragma once
 
-#include "pipeline/world/world.hpp"
+#include "throng/world.hpp"
 
 #include <ostream>
 

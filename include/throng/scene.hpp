@@ -4,8 +4,8 @@
 // another, a program a third; World takes it from there and refuses what is impossible.
 #pragma once
 
-#include "kernels/math/types.hpp"
-#include "scene/settings.hpp"
+#include "throng/math.hpp"
+#include "throng/settings.hpp"
 
 #include <array>
 #include <memory>
@@ -54,6 +54,12 @@ struct PlaneShape {  // solid where normal . x < offset
     Vec3 normal = Vec3::UnitZ();
     double offset = 0;
 };
+/// Triangles by the places of their vertices, counter-clockwise seen from outside.
+struct TriangleSoup {
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
 struct MeshShape {
     std::string file;  // as written in the scene; empty when made by a program
     double scale = 1;
@@ -167,5 +173,9 @@ struct Scene {
         return count;
     }
 };
+
+/// What is wrong with a scene, in the order shapes, materials, bodies, instances, the rest:
+/// `bodies[3].mass: wanted ...`; empty when it can become a world.
+std::string check_scene(const Scene& scene);
 
 }  // namespace throng

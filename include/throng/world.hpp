@@ -5,10 +5,10 @@
 // the world's own threads, and its result is the same bits for any number of them.
 #pragma once
 
-#include "kernels/data/forces.hpp"
-#include "pipeline/step/effects.hpp"
-#include "pipeline/world/report.hpp"
-#include "scene/scene.hpp"
+#include "throng/effects.hpp"
+#include "throng/force_field.hpp"
+#include "throng/report.hpp"
+#include "throng/scene.hpp"
 
 #include <memory>
 #include <span>
@@ -115,13 +115,9 @@ public:
     /// graph.
     void run_in_order(bool in_order);
 
-    struct State;
-    /// For the parts of throng that need more than the door shows.
-    State& state() { return *state_; }
-    const State& state() const { return *state_; }
-
 private:
-    std::unique_ptr<State> state_;
+    friend struct WorldAccess;
+    std::unique_ptr<struct WorldState> state_;
 };
 
 }  // namespace throng

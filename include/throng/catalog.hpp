@@ -4,8 +4,7 @@
 // recipes.hpp, list it in catalog.cpp, and every test of the catalogue runs on it.
 #pragma once
 
-#include "scene/catalog/closed_meshes.hpp"
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <cstdint>
 #include <span>

@@ -4,7 +4,7 @@
 // them. Shapes need not be convex, and none of the ways fills holes but the one that says so.
 #pragma once
 
-#include "scene/scene.hpp"
+#include "throng/scene.hpp"
 
 #include <memory>
 #include <string>

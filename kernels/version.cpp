@@ -1,0 +1,7 @@
+#include "throng/version.hpp"
+
+namespace throng {
+
+const char* version() { return THRONG_VERSION; }
+
+}  // namespace throng
