@@ -17,6 +17,9 @@ except ImportError:
     print("python3-jsonschema is not installed")
     sys.exit(77)
 
+sys.dont_write_bytecode = True
+import scene_docs  # noqa: E402
+
 root = pathlib.Path(__file__).resolve().parent.parent
 schema = json.loads((root / "scene/files/scene.schema.json").read_text())
 jsonschema.Draft202012Validator.check_schema(schema)
@@ -30,6 +33,16 @@ dials = set(re.findall(r'_(?:dial|number)(?:<[^;]*?>)?\(\s*"(\w+)"', table))
 listed = set(schema["$defs"]["settings"]["properties"])
 if dials != listed:
     trouble.append(f"settings: dials and schema differ in {sorted(dials ^ listed)}")
+
+# Dials with names for values: the same names in the same order, the default first.
+for name, dial in scene_docs.dials().items():
+    stated = scene_docs.resolved(schema["$defs"]["settings"]["properties"].get(name, {}))
+    if dial["choices"] and dial["choices"] != stated.get("enum"):
+        trouble.append(f"settings.{name}: the dial has the values {dial['choices']}")
+    if dial["choices"] and dial["choices"][0] != stated.get("default"):
+        trouble.append(f"settings.{name}: the dial's default is {dial['choices'][0]}")
+    if not dial["choices"] and "default" not in stated:
+        trouble.append(f"settings.{name}: no default is stated")
 
 seeds = root / "tests/fuzz/corpus/scene_file"
 for path in [pathlib.Path(a) for a in sys.argv[1:]] or sorted(seeds.glob("*.json")):
