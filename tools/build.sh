@@ -7,6 +7,7 @@ build_packages=(g++ cmake ninja-build ccache libtbb-dev libeigen3-dev libembree-
 test_packages=(libgtest-dev python3)
 peer_packages=(libbullet-dev libode-dev)  # used where they are, never installed
 check_packages=(clang-14 clang-format-14 clang-tidy-14 libbenchmark-dev)
+docs_packages=(doxygen python3)  # tools/docs.sh alone
 
 say() { printf 'throng: %s\n' "$*" >&2; }
 

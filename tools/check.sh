@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Check: what a change goes through before it is pushed.
 #   tools/check.sh         format, include direction, dev build, fast tests, clang-tidy on what changed
-#   tools/check.sh all     clang-tidy on everything, and the other presets too; fuzzes a little; then
-#                          every case whole, whose time it tells, and the fixed random scenes
+#   tools/check.sh all     clang-tidy on everything, the other presets too, and the pages of the public
+#                          headers; fuzzes a little; then every case whole, whose time it tells, and
+#                          the fixed random scenes
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 cd "$root"
@@ -32,6 +33,7 @@ if [[ ${1:-} == all ]]; then
         build_preset "$races"
         test_sanitized "$races"
     done
+    tools/docs.sh
     build_preset release
     build_preset perf
     build_preset fuzz
