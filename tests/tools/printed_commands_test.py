@@ -196,5 +196,5 @@ CACHE = tempfile.TemporaryDirectory()
 if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    THRONG = sys.argv.pop(1)
+    THRONG = str(pathlib.Path(sys.argv.pop(1)).resolve())
     unittest.main()
