@@ -52,6 +52,7 @@ INSIDE = {
     "kernels": [".", "math", "simd", "parallel", "data", "geometry", "dynamics", "solver"],
     "kernels/solver": ["direct", "."],
     "cooking": [".", "cache", "repair", "hulls", "decomposition", "sphere_trees", "fields"],
+    "cooking/fields": [".", "openvdb"],
     "broadphase": ["."],
     "narrowphase": ["manifold", "convex", "mesh", "solid", "ccd", "alternatives", "."],
     "narrowphase/convex": ["wide", "."],
@@ -67,10 +68,10 @@ INSIDE = {
 # threads offer counts as one, so that a loop goes through blocks.hpp.
 LIBRARIES = {
     r"(tbb|oneapi)/": ["*_tbb.cpp", "broadphase/embree_tree.cpp", "kernels/parallel/sort_keys.cpp",
-                       "cooking/fields/voxel_field.cpp"],
+                       "cooking/fields/openvdb/vdb_fill.cpp"],
     r"embree\d*/": ["broadphase/embree_tree.cpp"],
     r"(hdf5|H5)": ["pipeline/records/run_file*.cpp", "tests/pipeline/records/run_file*.cpp"],
-    r"(openvdb|nanovdb)/": ["cooking/fields/voxel_field.cpp", "perf/cooking/tree_samples.cpp"],
+    r"(openvdb|nanovdb)/": ["cooking/fields/openvdb/*", "perf/cooking/tree_samples.cpp"],
     r"(gtest|gmock)/": ["tests/*"],
     r"benchmark/": ["perf/*"],
     r"(hwy/|\w*intrin\.h)": ["kernels/simd/lanes*"],

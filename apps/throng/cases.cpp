@@ -1,4 +1,5 @@
-// Cases: runs the hard cases that throng claims, and prints each figure beside its bound.
+// Cases: runs the hard cases that throng claims, and prints each figure beside its bound. A program
+// of its own, which `throng cases` becomes.
 #include "cost/hard_cases/cases.hpp"
 
 #include "apps/throng/commands.hpp"
@@ -18,14 +19,6 @@
 
 namespace throng {
 namespace {
-
-constexpr Option kOptions[] = {
-    {"--energy", "",
-     "adds a line to each case: energy that its runs by the default dials gained from nowhere"},
-    {"--json", "FILE", "writes the lines as JSON too"},
-    kSetOption,
-    kThreadsOption,
-};
 
 std::vector<const HardCase*> cases_asked(const Options& options)
 {
@@ -204,14 +197,10 @@ void list_cases(std::ostream& out)
     print_columns(rows, out);
 }
 
+const Command kCases = {kCasesUsage, run_cases, list_cases};
+const Command* const kCommands[] = {&kCases};
+
 }  // namespace
-
-const Command kCases = {
-    {"cases", "[NAME...]",
-     "Runs hard cases (all, or those named) and prints each figure beside its bound.", 0, 1000,
-     kOptions},
-    run_cases,
-    list_cases,
-};
-
 }  // namespace throng
+
+int main(int count, char** words) { return throng::run_program(throng::kCommands, count, words); }

@@ -19,8 +19,13 @@ struct Command {
     Usage usage;
     int (*run)(const Options& options) = nullptr;
     void (*more_help)(std::ostream& out) = nullptr;  // what follows the options; may be null
+    const char* program = nullptr;                   // that this command is; null: this one
 };
 
-extern const Command kRun, kExplain, kScene, kCases, kBench;
+extern const Command kRun, kExplain, kScene, kBench;
+extern const Usage kCasesUsage;
+
+/// What main() does: runs the command that the words ask for, and answers with the exit code.
+int run_program(std::span<const Command* const> commands, int count, char** words);
 
 }  // namespace throng

@@ -16,6 +16,7 @@ endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component headers)
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component ${KIND})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component cooking)
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G Ninja
   -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${WORK}/prefix -DHELLO=${HELLO})
 run(${CMAKE_COMMAND} --build ${WORK}/build)

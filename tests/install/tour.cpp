@@ -1,4 +1,5 @@
 // Tour: a program that goes through all of the public door, in the folder that it is given.
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <string>
@@ -98,9 +99,11 @@ void ask_pairs()
     coming.velocity = throng::Vec3(-1, 0, 0);
     const throng::ImpactAnswer meeting = impact.ask({}, coming, 2);
     expect(meeting.meets && meeting.time > 0.99 && meeting.time <= 1, "when they meet");
-    throng::VolumeQuery volume(ball, box);
-    expect(volume.ask(throng::known_volume_ways().front().name, throng::Pose{}).volume > 0,
-           "what they share");
+    throng::VolumeQuery volume(box, box);
+    for (const throng::VolumeWayDescription& way : throng::known_volume_ways()) {
+        const throng::VolumeAnswer shared = volume.ask(way.name, throng::Pose{});
+        expect(shared.trouble.empty() && std::abs(shared.volume - 8) < 0.1, "what two share");
+    }
 }
 
 // Level sets need OpenVDB, which the package finds by itself.

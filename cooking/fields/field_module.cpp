@@ -1,0 +1,83 @@
+#include "cooking/fields/field_module.hpp"
+
+#include "throng/version.hpp"
+
+#include <cstdlib>
+#include <dlfcn.h>
+#include <string_view>
+
+namespace throng {
+namespace {
+
+constexpr const char* kFile = "libthrong_cooking.so";
+
+// The folder of the program or library that this is in.
+std::filesystem::path own_folder()
+{
+    Dl_info told{};
+    const auto* const here = reinterpret_cast<const void*>(&field_module);
+    if (::dladdr(here, &told) == 0 || told.dli_fname == nullptr) return {};
+    std::error_code trouble;
+    const auto whole = std::filesystem::canonical(told.dli_fname, trouble);
+    return trouble ? std::filesystem::path() : whole.parent_path();
+}
+
+// In the order in which they are tried. The last is for the system to find.
+std::vector<std::string> places()
+{
+    if (const char* const named = std::getenv("THRONG_COOKING");  // NOLINT(concurrency-mt-unsafe)
+        named != nullptr && *named != '\0')
+        return {named};
+    std::vector<std::string> all;
+    if (const std::filesystem::path folder = own_folder(); !folder.empty())
+        for (const std::filesystem::path& place :
+             {folder, folder / ".." / THRONG_LIBRARIES, folder / ".." / "lib",
+              folder / ".." / ".." / "lib"})
+            all.push_back((place / kFile).string());
+    all.emplace_back(kFile);
+    return all;
+}
+
+OpenedFieldModule refused(const std::string& why)
+{
+    return {nullptr,
+            "needs " + std::string(kFile) + ", which makes and reads level sets: " + why
+                + "; install it beside the program or its libraries, or name it in THRONG_COOKING"};
+}
+
+OpenedFieldModule open_module()
+{
+    std::string why;
+    for (const std::string& place : places()) {
+        std::error_code ignored;
+        if (place.find('/') != std::string::npos && !std::filesystem::exists(place, ignored)) {
+            why = place + ": no such file";
+            continue;
+        }
+        void* const opened = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
+        if (opened == nullptr) {
+            const char* const said =
+                ::dlerror();  // NOLINT(concurrency-mt-unsafe): its thread's own
+            why = said != nullptr ? said : place;
+            continue;
+        }
+        using Door = const FieldModule* (*)();
+        const auto door = reinterpret_cast<Door>(::dlsym(opened, "throng_field_module"));
+        const FieldModule* const module = door != nullptr ? door() : nullptr;
+        if (module == nullptr || module->size != sizeof(FieldModule)
+            || std::string_view(module->version) != version())
+            return refused(place + " is of another version");
+        return {module, {}};
+    }
+    return refused(why);
+}
+
+}  // namespace
+
+const OpenedFieldModule& field_module()
+{
+    static const OpenedFieldModule opened = open_module();
+    return opened;
+}
+
+}  // namespace throng
