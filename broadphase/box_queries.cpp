@@ -18,7 +18,7 @@ constexpr double kFarOut = 100;
 constexpr double kFarthest = 1e16;  // m, beyond it floats give out
 constexpr std::size_t kSample = 1024;
 
-bool meet(const Box3& region, const Box3& box)
+bool overlaps(const Box3& region, const Box3& box)
 {
     return region.overlaps(box) && !meets_nothing(region) && !meets_nothing(box);
 }
@@ -95,7 +95,7 @@ void ListedBoxes::meet_boxes(std::span<const Box3> regions, Candidates& candidat
     candidates.ids.clear();
     for (const Box3& region : regions) {
         for (std::uint32_t id = 0; id < boxes_.size(); ++id)
-            if (meet(region, boxes_[id])) candidates.ids.push_back(id);
+            if (overlaps(region, boxes_[id])) candidates.ids.push_back(id);
         candidates.begin.push_back(candidates.ids.size());
     }
 }
@@ -195,7 +195,7 @@ void EmbreeRays::meet_boxes(std::span<const Box3> regions, Candidates& candidate
         const bool fits = farthest(regions[q], origin_) < kFarthest;
         const auto compare = [&](const std::vector<std::uint32_t>& ids) {
             for (const std::uint32_t id : ids)
-                if (meet(regions[q], boxes_[id])) keys_.push_back(PairKey{q} << 32 | id);
+                if (overlaps(regions[q], boxes_[id])) keys_.push_back(PairKey{q} << 32 | id);
         };
         compare(aside_);
         if (!fits) compare(ids_);
@@ -206,7 +206,7 @@ void EmbreeRays::meet_boxes(std::span<const Box3> regions, Candidates& candidate
     regions_.build(asked, origin_, 0);
     const auto accept = [&](std::uint32_t at, std::uint32_t place, PairKey& key) {
         key = PairKey{questions[at]} << 32 | ids_[place];
-        return meet(asked[at], in_tree_[place]);
+        return overlaps(asked[at], in_tree_[place]);
     };
     regions_.collide(tree_, accept, keys_);
     sort_keys(keys_, scratch_);

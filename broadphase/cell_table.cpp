@@ -1,7 +1,7 @@
 #include "broadphase/cell_table.hpp"
 
 #include "kernels/check.hpp"
-#include "kernels/parallel/room.hpp"
+#include "kernels/parallel/capacity.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -17,13 +17,13 @@ constexpr int kStep = 2;
 constexpr double kSmall = 8;
 // The share of boxes that fit a cell of the middle level. With larger cells a search passes more
 // boxes that are not met, with smaller ones more cells.
-constexpr double kUsual = 0.9, kRoom = 2.5;
+constexpr double kUsual = 0.9, kWidestCell = 2.5;
 constexpr std::size_t kSample = 1024;
 // A place is so many cells from the origin at most: further out only larger cells tell places
 // apart.
 constexpr double kPlaces = 0x1p40;
 
-constexpr std::uint32_t kFirstRoom = 2;  // entries
+constexpr std::uint32_t kFirstCapacity = 2;  // entries
 // In large worlds memory is what a search waits for: so many places are asked for ahead.
 constexpr std::size_t kAhead = 8, kCellsAhead = 32;
 
@@ -55,7 +55,7 @@ std::uint64_t mixed(std::uint64_t z)
 template <class Entry>
 bool near(const Entry& a, const Entry& b)
 {
-    return boxes_meet(a.lower, a.upper, b.lower, b.upper);
+    return boxes_overlap(a.lower, a.upper, b.lower, b.upper);
 }
 
 // The size that nearly all boxes stay below. The sample is taken at even distances, so it is the
@@ -71,7 +71,7 @@ double usual_size(std::span<const Box3> boxes)
     if (sizes.empty()) return 1;
     const auto at = static_cast<std::size_t>(kUsual * static_cast<double>(sizes.size() - 1));
     std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(at), sizes.end());
-    return kRoom * sizes[at];
+    return kWidestCell * sizes[at];
 }
 
 }  // namespace
@@ -110,49 +110,51 @@ void CellTable::take_out(std::uint32_t id)
     }
     --levels_[level].count;
     // The last of its bucket takes its seat.
-    Bucket& bucket = buckets_[seats_[id].bucket];
+    Bucket& bucket = buckets_[places_[id].bucket];
     const Entry& last = entries_[bucket.begin + --bucket.count];
-    entries_[seats_[id].at] = last;
-    seats_[last.id].at = seats_[id].at;
+    entries_[places_[id].at] = last;
+    places_[last.id].at = places_[id].at;
     if (bucket.count > 0) return;
     leave_room(bucket);
-    bucket.room = 0;
+    bucket.capacity = 0;
 }
 
 // Somebody else may have the room of a bucket.
 void CellTable::leave_room(const Bucket& bucket)
 {
-    if (bucket.room > 0) rooms_[std::countr_zero(bucket.room)].push_back(bucket.begin);
+    if (bucket.capacity > 0)
+        free_places_[std::countr_zero(bucket.capacity)].push_back(bucket.begin);
 }
 
 // Where there is room for so many, a power of two.
-std::uint32_t CellTable::find_room(std::uint32_t room)
+std::uint32_t CellTable::find_free_places(std::uint32_t capacity)
 {
-    std::vector<std::uint32_t>& free = rooms_[std::countr_zero(room)];
+    std::vector<std::uint32_t>& free = free_places_[std::countr_zero(capacity)];
     if (free.empty()) {
-        resize_closely(entries_, entries_.size() + room);
-        return static_cast<std::uint32_t>(entries_.size() - room);
+        resize_closely(entries_, entries_.size() + capacity);
+        return static_cast<std::uint32_t>(entries_.size() - capacity);
     }
     const std::uint32_t begin = free.back();
     free.pop_back();
     return begin;
 }
 
-void CellTable::seat(const Entry& entry, std::uint32_t at)
+void CellTable::insert(const Entry& entry, std::uint32_t at)
 {
     Bucket& bucket = buckets_[at];
-    if (bucket.count == bucket.room) {
+    if (bucket.count == bucket.capacity) {
         // Moves to where there is room for twice as many.
-        const std::uint32_t room = std::max(kFirstRoom, 2 * bucket.room), begin = find_room(room);
+        const std::uint32_t capacity = std::max(kFirstCapacity, 2 * bucket.capacity),
+                            begin = find_free_places(capacity);
         for (std::uint32_t i = 0; i < bucket.count; ++i) {
             entries_[begin + i] = entries_[bucket.begin + i];
-            seats_[entries_[begin + i].id].at = begin + i;
+            places_[entries_[begin + i].id].at = begin + i;
         }
         leave_room(bucket);
         bucket.begin = begin;
-        bucket.room = room;
+        bucket.capacity = capacity;
     }
-    seats_[entry.id] = {at, bucket.begin + bucket.count};
+    places_[entry.id] = {at, bucket.begin + bucket.count};
     entries_[bucket.begin + bucket.count++] = entry;
 }
 
@@ -176,7 +178,7 @@ void CellTable::put(std::uint32_t id, const Box3& box)
     level.longest = level.longest.cwiseMax(box.upper - box.lower);
     const auto cell = [&](int axis) { return cell_at(box.lower[axis], level.per_m); };
     const std::uint64_t bucket = row_of(at, cell(1), cell(2)) + static_cast<std::uint64_t>(cell(0));
-    seat(entry_of(id, box), static_cast<std::uint32_t>(bucket & (buckets_.size() - 1)));
+    insert(entry_of(id, box), static_cast<std::uint32_t>(bucket & (buckets_.size() - 1)));
 }
 
 CellTable::Entry CellTable::entry_of(std::uint32_t id, const Box3& box)
@@ -195,8 +197,8 @@ void CellTable::rebuild(const OverlapQuery& query)
     const std::size_t count = query.boxes.size();
     buckets_.assign(std::bit_ceil(2 * count + 1), {});
     entries_.clear();
-    for (std::vector<std::uint32_t>& free : rooms_) free.clear();
-    seats_.assign(count, {});
+    for (std::vector<std::uint32_t>& free : free_places_) free.clear();
+    places_.assign(count, {});
     level_.assign(count, kNowhere);
     aside_.clear();
     active_.clear();
@@ -224,13 +226,13 @@ void CellTable::update(const OverlapQuery& query)
         rebuild(query);
         return;
     }
-    seats_.resize(count);
+    places_.resize(count);
     level_.resize(count, kNowhere);
     for (std::size_t i = 0; i < named_.size(); ++i) {
         if (i + kAhead < named_.size()) {
-            const Seat& seat = seats_[named_[i + kAhead]];
-            if (seat.bucket < buckets_.size()) __builtin_prefetch(&buckets_[seat.bucket]);
-            if (seat.at < entries_.size()) __builtin_prefetch(&entries_[seat.at]);
+            const EntryPlace& place = places_[named_[i + kAhead]];
+            if (place.bucket < buckets_.size()) __builtin_prefetch(&buckets_[place.bucket]);
+            if (place.at < entries_.size()) __builtin_prefetch(&entries_[place.at]);
         }
         put(named_[i], query.boxes[named_[i]]);
     }
@@ -257,12 +259,14 @@ CellTable::Cells CellTable::cells_round(const Box3& box, const Level& level) con
     return cells;
 }
 
-void CellTable::meet(const OverlapQuery& query, std::uint32_t id, std::vector<PairKey>& pairs) const
+void CellTable::find_overlaps(const OverlapQuery& query,
+                              std::uint32_t id,
+                              std::vector<PairKey>& pairs) const
 {
     if (level_[id] == kNowhere) return;
     const Box3& box = query.boxes[id];
     const bool moves = query.moving[id] != 0;
-    const auto meet = [&](std::uint32_t other) {
+    const auto add_if_overlapping = [&](std::uint32_t other) {
         if (other == id || (asked_[other] != 0 && other < id)) return;
         if (!moves && query.moving[other] == 0) return;
         if (!box.overlaps(query.boxes[other])) return;
@@ -273,7 +277,7 @@ void CellTable::meet(const OverlapQuery& query, std::uint32_t id, std::vector<Pa
     const auto walk = [&](const Bucket& bucket, const auto& wanted) {
         const Entry* const begin = entries_.data() + bucket.begin;
         for (const Entry* entry = begin; entry < begin + bucket.count; ++entry)
-            if (near(mine, *entry) && wanted(entry->id)) meet(entry->id);
+            if (near(mine, *entry) && wanted(entry->id)) add_if_overlapping(entry->id);
     };
     // Buckets first, then their entries, then a look: each round waits for memory once.
     std::array<const Bucket*, kCellsAhead> cells_ahead;
@@ -317,7 +321,7 @@ void CellTable::meet(const OverlapQuery& query, std::uint32_t id, std::vector<Pa
     if (scans)
         for (const Bucket& bucket : buckets_)
             walk(bucket, [&](std::uint32_t other) { return all[level_[other]]; });
-    for (const std::uint32_t other : aside_) meet(other);
+    for (const std::uint32_t other : aside_) add_if_overlapping(other);
 }
 
 }  // namespace throng

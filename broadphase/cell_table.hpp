@@ -19,7 +19,8 @@ public:
 
     /// Appends the pairs of an asked collider with all that its box meets; those of two asked ones
     /// by the lower id alone. Some may come up twice. May run on several threads.
-    void meet(const OverlapQuery& query, std::uint32_t id, std::vector<PairKey>& pairs) const;
+    void
+    find_overlaps(const OverlapQuery& query, std::uint32_t id, std::vector<PairKey>& pairs) const;
 
 private:
     static constexpr std::uint8_t kNowhere = 0, kAside = 1, kLowest = 2, kMiddle = 100;
@@ -33,9 +34,9 @@ private:
     };
     // The entries of a bucket follow one another, with room for some more.
     struct Bucket {
-        std::uint32_t begin = 0, count = 0, room = 0;
+        std::uint32_t begin = 0, count = 0, capacity = 0;
     };
-    struct Seat {
+    struct EntryPlace {
         std::uint32_t bucket = 0, at = 0;
     };
     struct Level {
@@ -51,21 +52,22 @@ private:
     void rebuild(const OverlapQuery& query);
     void put(std::uint32_t id, const Box3& box);
     void take_out(std::uint32_t id);
-    void seat(const Entry& entry, std::uint32_t bucket);
+    void insert(const Entry& entry, std::uint32_t bucket);
     void leave_room(const Bucket& bucket);
-    std::uint32_t find_room(std::uint32_t room);
+    std::uint32_t find_free_places(std::uint32_t capacity);
     static Entry entry_of(std::uint32_t id, const Box3& box);
     std::uint8_t level_of(const Box3& box) const;
     Cells cells_round(const Box3& box, const Level& level) const;
     std::uint64_t row_of(std::uint8_t level, std::int64_t y, std::int64_t z) const;
 
-    std::vector<Entry> entries_;                        // of all buckets
-    std::array<std::vector<std::uint32_t>, 32> rooms_;  // among them, free; by the power of two
-    std::vector<Bucket> buckets_;                       // a power of two of them
-    std::vector<Seat> seats_;                           // [colliders]
-    std::vector<std::uint8_t> level_;                   // [colliders]
-    std::vector<std::uint8_t> asked_;                   // [colliders] 1 for those of the last query
-    std::vector<std::uint32_t> named_;                  // whose flag is up
+    std::vector<Entry> entries_;  // of all buckets
+    std::array<std::vector<std::uint32_t>, 32>
+        free_places_;                   // among them, free; by the power of two
+    std::vector<Bucket> buckets_;       // a power of two of them
+    std::vector<EntryPlace> places_;    // [colliders]
+    std::vector<std::uint8_t> level_;   // [colliders]
+    std::vector<std::uint8_t> asked_;   // [colliders] 1 for those of the last query
+    std::vector<std::uint32_t> named_;  // whose flag is up
     std::vector<std::uint32_t> aside_;
     std::array<Level, 256> levels_;
     std::vector<std::uint8_t> active_;  // levels that ever held a box

@@ -283,9 +283,12 @@ public:
         for (const std::uint32_t id : ids) boxes_.push_back(boxes[id]);
         tree_.build(boxes_, origin, 0);
     }
-    void join(const PairRule& rule, std::vector<PairKey>& pairs) { meet(*this, rule, pairs); }
+    void join(const PairRule& rule, std::vector<PairKey>& pairs)
+    {
+        find_overlaps(*this, rule, pairs);
+    }
 
-    void meet(const EmbreeIndex& other, const PairRule& rule, std::vector<PairKey>& pairs)
+    void find_overlaps(const EmbreeIndex& other, const PairRule& rule, std::vector<PairKey>& pairs)
     {
         // Embree tests floats, and whole leaves at a time: what counts is tested here.
         const auto accept = [&](std::uint32_t at_a, std::uint32_t at_b, PairKey& key) {

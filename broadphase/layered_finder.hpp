@@ -16,7 +16,7 @@ void LayeredFinder<Index>::find(const OverlapQuery& query, std::vector<PairKey>&
 
     if (layers_.join_all) {
         settled_.join({query, layers_, Place::settled, true}, pairs);
-        settled_.meet(still_, {query, layers_, Place::still, true}, pairs);
+        settled_.find_overlaps(still_, {query, layers_, Place::still, true}, pairs);
     } else if (layers_.askers == layers_.moved) {
         moved_.build(layers_.moved, query.boxes, layers_.origin);
         ask(moved_, query, pairs);
@@ -35,13 +35,13 @@ void LayeredFinder<Index>::ask(Index& askers,
                                std::vector<PairKey>& pairs)
 {
     if (layers_.askers.empty()) return;
-    askers.meet(settled_, {query, layers_, Place::settled}, pairs);
-    askers.meet(still_, {query, layers_, Place::still}, pairs);
+    askers.find_overlaps(settled_, {query, layers_, Place::settled}, pairs);
+    askers.find_overlaps(still_, {query, layers_, Place::still}, pairs);
     if (layers_.moved.empty()) return;
     if (&askers == &moved_)
         moved_.join({query, layers_, Place::moved, true}, pairs);
     else
-        askers.meet(moved_, {query, layers_, Place::moved}, pairs);
+        askers.find_overlaps(moved_, {query, layers_, Place::moved}, pairs);
 }
 
 }  // namespace throng

@@ -97,7 +97,7 @@ concept BoxIndex = requires(T index,
 {
     index.build(ids, boxes, origin);
     index.join(rule, pairs);
-    index.meet(other, rule, pairs);
+    index.find_overlaps(other, rule, pairs);
 };
 
 /// Pairs of an asked collider with one that stands aside, either way round.

@@ -16,9 +16,9 @@ double ahead_of(double way, double size, const MarginRule& rule)
 
 }  // namespace
 
-double stretch_for(std::size_t pairs, std::size_t movers)
+double stretch_for(std::size_t pairs, std::size_t active)
 {
-    return pairs * 4 < movers ? 4 : pairs < movers ? 2 : 1;
+    return pairs * 4 < active ? 4 : pairs < active ? 2 : 1;
 }
 
 bool loose(const Box3& box,
@@ -51,9 +51,9 @@ Box3 fattened(
         const double slack = 4 * std::numeric_limits<double>::epsilon();
         const double rounding =
             slack * (std::max(std::abs(tight.lower[axis]), std::abs(tight.upper[axis])) + ahead);
-        const double room = std::isfinite(rounding) ? base + rounding : base;
-        fat.lower[axis] -= step < 0 ? room + ahead : room;
-        fat.upper[axis] += step > 0 ? room + ahead : room;
+        const double padding = std::isfinite(rounding) ? base + rounding : base;
+        fat.lower[axis] -= step < 0 ? padding + ahead : padding;
+        fat.upper[axis] += step > 0 ? padding + ahead : padding;
     }
     return fat;
 }

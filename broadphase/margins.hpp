@@ -23,7 +23,7 @@ struct MarginRule {
 
 /// How many times further margins may look ahead in a scene with so many pairs for so many
 /// colliders that move: where these are far apart, wide margins bring next to no pairs.
-double stretch_for(std::size_t pairs, std::size_t movers);
+double stretch_for(std::size_t pairs, std::size_t active);
 
 /// True for a box that holds `tight` but is loose, see MarginRule. One of fattened() is not, as
 /// long as the velocity stays the same.

@@ -22,12 +22,12 @@ public:
         std::sort(order_.begin(), order_.end());
 
         boxes_.clear();
-        reach_.clear();
-        double reach = -std::numeric_limits<double>::infinity();
+        greatest_upper_.clear();
+        double greatest_upper = -std::numeric_limits<double>::infinity();
         for (const auto& [begin, id] : order_) {
             boxes_.push_back(boxes[id]);
-            reach = std::max(reach, boxes[id].upper[axis_]);
-            reach_.push_back(reach);
+            greatest_upper = std::max(greatest_upper, boxes[id].upper[axis_]);
+            greatest_upper_.push_back(greatest_upper);
         }
     }
 
@@ -41,7 +41,7 @@ public:
         });
     }
 
-    void meet(const SweepIndex& other, const PairRule& rule, std::vector<PairKey>& pairs)
+    void find_overlaps(const SweepIndex& other, const PairRule& rule, std::vector<PairKey>& pairs)
     {
         const int along = other.axis_;
         run(other.order_.empty() ? 0 : order_.size(), pairs, [&](std::size_t a, auto& found) {
@@ -50,7 +50,7 @@ public:
                 other.order_.begin(), other.order_.end(),
                 [&](const auto& entry) { return entry.first <= boxes_[a].upper[along]; });
             for (auto b = static_cast<std::size_t>(end - other.order_.begin()); b-- > 0;) {
-                if (other.reach_[b] < boxes_[a].lower[along]) break;
+                if (other.greatest_upper_[b] < boxes_[a].lower[along]) break;
                 consider(boxes_[a], order_[a].second, other, b, rule, found);
             }
         });
@@ -100,7 +100,7 @@ private:
     int axis_ = 0;
     std::vector<std::pair<double, std::uint32_t>> order_;  // where each begins, and whose it is
     std::vector<Box3> boxes_;                              // in that order
-    std::vector<double> reach_;  // how far this one or any before it extends
+    std::vector<double> greatest_upper_;  // how far this one or any before it extends
     BlockLists<PairKey> lists_;
 };
 

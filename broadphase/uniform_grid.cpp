@@ -32,7 +32,7 @@ void UniformGrid::find(const OverlapQuery& query, std::vector<PairKey>& pairs)
     lists.start(block_count(query.asked.size(), kGrain));
     for_each_block(query.asked.size(), kGrain, [&](auto begin, auto end, auto block) {
         for (std::size_t i = begin; i < end; ++i)
-            inside_->table.meet(query, query.asked[i], lists[block]);
+            inside_->table.find_overlaps(query, query.asked[i], lists[block]);
     });
     lists.append_to(pairs);
     sort_keys(pairs, inside_->scratch);

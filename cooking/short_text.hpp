@@ -1,4 +1,4 @@
-// Short text: a number as remarks tell it.
+// Short text: a number as warnings tell it.
 #pragma once
 
 #include <string>

@@ -23,12 +23,12 @@ std::vector<std::uint32_t> shapes_of_bodies(const Scene& scene)
     return shapes;
 }
 
-// A scene's shape, a mesh mended as a world mends it.
+// A scene's shape, a mesh repaired as a world mends it.
 struct HeapShape {
     ShapeDescription shape;
     bool is_mesh = false;
-    double volume = 0;  // m3, of a mesh
-    double reach = 0;   // m, of a mesh from its origin
+    double volume = 0;        // m3, of a mesh
+    double outer_radius = 0;  // m, of a mesh from its origin
 };
 
 HeapShape heap_shape(const ShapeDescription& stated)
@@ -36,12 +36,13 @@ HeapShape heap_shape(const ShapeDescription& stated)
     HeapShape made{stated};
     auto* const mesh = std::get_if<MeshShape>(&made.shape.shape);
     if (mesh == nullptr) return made;
-    const Mesh mended = mend(mesh->vertices, mesh->triangles).mesh;
-    mesh->vertices = mended.vertices;
-    mesh->triangles = mended.triangles;
+    const Mesh repaired = repair(mesh->vertices, mesh->triangles).mesh;
+    mesh->vertices = repaired.vertices;
+    mesh->triangles = repaired.triangles;
     made.is_mesh = true;
-    made.volume = mass_as_if_closed(mended).volume;
-    for (const Vec3& vertex : mended.vertices) made.reach = std::max(made.reach, vertex.norm());
+    made.volume = mass_as_if_closed(repaired).volume;
+    for (const Vec3& vertex : repaired.vertices)
+        made.outer_radius = std::max(made.outer_radius, vertex.norm());
     return made;
 }
 
@@ -91,7 +92,7 @@ SharedInHeap shared_in_heap(const Scene& scene, const World& world, int rays)
             const HeapShape& b = shapes[shape_of[j]];
             if (b.is_mesh ? j <= i : !can_be_asked(b.shape)) continue;
             const Pose b_in_a = seen_from(world.pose(bodies[i]), world.pose(bodies[j]));
-            if (b.is_mesh && b_in_a.position.norm() > a.reach + b.reach) continue;
+            if (b.is_mesh && b_in_a.position.norm() > a.outer_radius + b.outer_radius) continue;
             const VolumeAnswer answer = queries.ask(shape_of[i], shape_of[j], b_in_a, rays);
             if (!answer.trouble.empty()) shared.trouble = answer.trouble;
             shared.volume += answer.volume;

@@ -22,7 +22,7 @@ struct SharedInHeap {
 };
 
 /// By depth images of the triangles themselves, with so many rays along the longest side of what
-/// two bounds share: meshes, which have to be closed once they are mended, with one another and
+/// two bounds share: meshes, which have to be closed once they are repaired, with one another and
 /// with every other body that is no plane, compound or level set.
 SharedInHeap shared_in_heap(const Scene& scene, const World& world, int rays);
 

@@ -16,8 +16,8 @@ std::optional<TriangleSoup> shared_mesh(const std::string& file)
     std::stringstream text;
     text << std::ifstream(path).rdbuf();
     MeshFile read = read_mesh_file(text.str(), file);
-    MendedMesh mended = mend(std::move(read.vertices), std::move(read.triangles));
-    return TriangleSoup{std::move(mended.mesh.vertices), std::move(mended.mesh.triangles)};
+    RepairedMesh repaired = repair(std::move(read.vertices), std::move(read.triangles));
+    return TriangleSoup{std::move(repaired.mesh.vertices), std::move(repaired.mesh.triangles)};
 }
 
 }  // namespace throng

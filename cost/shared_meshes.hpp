@@ -8,7 +8,7 @@
 
 namespace throng {
 
-/// The triangles of a file of the shared data, mended as a moving mesh is; nothing where the file
+/// The triangles of a file of the shared data, repaired as a moving mesh is; nothing where the file
 /// is absent. Looks in meshes/ of the directory named by THRONG_DATA, then of shared/data beside
 /// each folder above the sources.
 ///

@@ -30,7 +30,8 @@ constexpr std::size_t kTabled = 6;
 // clang-format off
 template <class Real>
 constexpr std::array<std::array<PairFunction<Real>, kTabled>, kTabled> kTable = {{
-    //               sphere               capsule                cylinder               box                  hull                 plane
+    //               sphere               capsule                cylinder               box
+    //               hull                 plane
     /* sphere   */ {{sphere_sphere<Real>, sphere_capsule<Real>,  sphere_cylinder<Real>, sphere_box<Real>,    sphere_hull<Real>,   convex_plane<Real>}},
     /* capsule  */ {{nullptr,             capsule_capsule<Real>, convex_convex<Real>,   capsule_box<Real>,   capsule_hull<Real>,  convex_plane<Real>}},
     /* cylinder */ {{nullptr,             nullptr,               convex_convex<Real>,   convex_convex<Real>, convex_convex<Real>, convex_plane<Real>}},
@@ -51,10 +52,10 @@ PairFunction<Real> function_for(ShapeKind a, ShapeKind b)
 double
 separation_from_plane(const Shapes& shapes, ShapeRef a, const Plane& plane, const Pose& b_in_a)
 {
-    const Core<double> core = core_of<double>(shapes, a);
+    const ConvexCore<double> core = convex_core_of<double>(shapes, a);
     const Vec3 normal = b_in_a.orientation * plane.normal;
     const Vec3 lowest = support<double>(core, -normal).position;
-    return normal.dot(lowest - b_in_a.position) - core.radius - plane.offset;
+    return normal.dot(lowest - b_in_a.position) - core.convex_radius - plane.offset;
 }
 
 }  // namespace
@@ -64,15 +65,16 @@ void collide(const Shapes& shapes,
              ShapeRef a,
              ShapeRef b,
              const PoseT<Real>& b_in_a,
-             Real reach,
+             Real speculative_margin,
              PairCache& cache,
              LocalManifold<Real>& out)
 {
     if (a.kind <= b.kind) {
-        function_for<Real>(a.kind, b.kind)(shapes, a, b, b_in_a, reach, cache, out);
+        function_for<Real>(a.kind, b.kind)(shapes, a, b, b_in_a, speculative_margin, cache, out);
         return;
     }
-    function_for<Real>(b.kind, a.kind)(shapes, b, a, b_in_a.inverse(), reach, cache, out);
+    function_for<Real>(b.kind, a.kind)(shapes, b, a, b_in_a.inverse(), speculative_margin, cache,
+                                       out);
     out.normal = b_in_a.orientation * -out.normal;
     for (int i = 0; i < out.count; ++i) {
         auto& position = out.points[static_cast<std::size_t>(i)].position;
@@ -82,9 +84,9 @@ void collide(const Shapes& shapes,
 
 THRONG_PAIR_INSTANCES(collide)
 
-double overlap_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a)
+double penetration_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a)
 {
-    if (a.kind > b.kind) return overlap_depth(shapes, b, a, b_in_a.inverse());
+    if (a.kind > b.kind) return penetration_depth(shapes, b, a, b_in_a.inverse());
     const auto is_polytope = [](ShapeRef shape) {
         return shape.kind == ShapeKind::box || shape.kind == ShapeKind::hull;
     };
@@ -104,10 +106,10 @@ double overlap_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b
         const PolytopeShape polytope_b(shapes, b);
         separation = polytope_separation(polytope_a.view(), polytope_b.view(), b_in_a, nullptr);
     } else {
-        const CorePair pair(shapes, a, b, b_in_a);
-        const double rounding = pair.a.radius + pair.b.radius;
+        const ConvexCorePair pair(shapes, a, b, b_in_a);
+        const double convex_radius = pair.a.convex_radius + pair.b.convex_radius;
         ContactAxis axis;
-        if (search_axis(pair, rounding, axis)) separation = axis.separation - rounding;
+        if (search_axis(pair, convex_radius, axis)) separation = axis.separation - convex_radius;
     }
     return std::max(0.0, -separation);
 }

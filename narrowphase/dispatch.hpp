@@ -14,7 +14,7 @@ void collide(const Shapes& shapes,
              ShapeRef a,
              ShapeRef b,
              const PoseT<Real>& b_in_a,
-             Real reach,
+             Real speculative_margin,
              PairCache& cache,
              LocalManifold<Real>& out);
 
@@ -26,6 +26,6 @@ Pose pose_seen_from_a(const Shapes& shapes, ShapeRef b, const Pose& pose_a, cons
 
 /// How deep two convex shapes overlap: the least distance by which one must be moved for them to
 /// part, m; 0 when they do not overlap. In double, from the geometry alone.
-double overlap_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a);
+double penetration_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a);
 
 }  // namespace throng

@@ -8,18 +8,18 @@
 namespace throng {
 namespace {
 
-bool cores_touch(const CorePair& pair)
+bool cores_touch(const ConvexCorePair& pair)
 {
-    const double reach = pair.a.radius + pair.b.radius;
-    const Distance distance = gjk(pair, reach);
-    return !distance.apart || distance.distance <= reach;
+    const double extent = pair.a.convex_radius + pair.b.convex_radius;
+    const Distance distance = gjk(pair, extent);
+    return !distance.apart || distance.distance <= extent;
 }
 
 bool reaches_plane(const Shapes& shapes, ShapeRef a, const Plane& plane, const Pose& plane_in_a)
 {
-    const Core<double> core = core_of<double>(shapes, a);
+    const ConvexCore<double> core = convex_core_of<double>(shapes, a);
     const Vec3 normal = plane_in_a.orientation * plane.normal;
-    const double lowest = normal.dot(support<double>(core, -normal).position) - core.radius;
+    const double lowest = normal.dot(support<double>(core, -normal).position) - core.convex_radius;
     return lowest <= plane.offset + normal.dot(plane_in_a.position);
 }
 
@@ -29,8 +29,8 @@ bool touches_mesh(const Shapes& shapes, ShapeRef a, const Mesh& mesh, const Pose
     // A triangle is seen as a hull of three corners: a core needs no faces.
     Hull triangle;
     triangle.vertices.resize(3);
-    CorePair pair(shapes, a, a, mesh_in_a);
-    pair.b = Core<double>{};
+    ConvexCorePair pair(shapes, a, a, mesh_in_a);
+    pair.b = ConvexCore<double>{};
     pair.b.kind = ShapeKind::hull;
     pair.b.hull = &triangle;
     bool found = false;
@@ -61,8 +61,8 @@ bool touching(
         return reaches_plane(shapes_a, a, shapes_b.planes[b.index], b_in_a);
     if (b.kind == ShapeKind::mesh)
         return touches_mesh(shapes_a, a, shapes_b.meshes[b.index], b_in_a);
-    CorePair pair(shapes_a, a, a, b_in_a);
-    pair.b = core_of<double>(shapes_b, b);
+    ConvexCorePair pair(shapes_a, a, a, b_in_a);
+    pair.b = convex_core_of<double>(shapes_b, b);
     pair.size = pair.a.size + pair.b.size;
     return cores_touch(pair);
 }

@@ -1,5 +1,5 @@
 // Main of every benchmark: runs what it lists, and says first what the figures depend on.
-#include "kernels/solver/sweep.hpp"
+#include "kernels/solver/solve_kernels.hpp"
 #include "perf/support.hpp"
 
 int main(int argc, char** argv)

@@ -134,18 +134,18 @@ test_sanitized() {
     export TSAN_OPTIONS=halt_on_error=1:suppressions=$root/tools/races.supp
     if [[ $1 == tsan* ]]; then
         which+=(-R "$(sed -n 's/^THRONG_TESTS_NAMED:STRING=//p' "$root/build/$1/CMakeCache.txt")"
-            -E "Lanes|SweepWidths|Catalogue/HardCases")
+            -E "Lanes|SolveWidths|Catalogue/HardCases")
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi
     else
-        local compares="SameBits|SolidBits|SweepWidths|PlantedFault|OtherFaults|OnThreeThreads|ChangesNoBit"
+        local compares="SameBits|SolidBits|SolveWidths|PlantedFault|OtherFaults|OnThreeThreads|ChangesNoBit"
         compares+="|OnAnyNumberOfThreads|IslandsThatAreCut|Catalog.(SameSeed|OtherSeed)"
         local repeats="KeepsItsBounds/H(37|43|47|48|72)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
         repeats+="|ProgressIs|Bench.ValuesOfADial|ConvexCover.T|ConvexParts.(ErrorIs|SizeChanges)"
-        repeats+="|PartsCache.Damaged|Friction.OfEveryKind|Subdivide.WhatIsJammed|Parting.ThinSolids"
+        repeats+="|PartsCache.Damaged|Friction.OfEveryKind|Subdivide.WhatIsJammed|SplitImpulses.ThinSolids"
         # Methods held against one another, or against plain sums, on thousands of random shapes.
-        local agree="MeshPairs.WhatIsApart|Friction.HoldsOnASlope|SurfaceGaps.TheLeast|AskGjk.RightOn"
-        agree+="|AskSat.FastAndPlain|ImpactOf(Spheres|Surfaces).IsNever|Containment.(Agrees|FacesThat)"
+        local agree="MeshPairs.WhatIsApart|Friction.HoldsOnASlope|SurfaceSeparations.TheLeast|QueryGjk.RightOn"
+        agree+="|QuerySat.FastAndPlain|ImpactOf(Spheres|Surfaces).IsNever|Containment.(Agrees|FacesThat)"
         agree+="|KDop(Tree)?.NeverParts|Finders.AgreeStep|Direct.(AgreesWith|Heaps)|ChungWang.(Agrees|Climb)"
         agree+="|ClipVolume.YesAndNo|WideHull.Tells|KnownApart.Pairs|BoxPairs.AgreeWith|HullHull.LargeHulls"
         agree+="|StepGraph.MatchesRunInOrder"

@@ -76,7 +76,7 @@ LIBRARIES = {
     r"benchmark/": ["perf/*"],
     r"(hwy/|\w*intrin\.h)": ["kernels/simd/lanes*"],
     r"(thread|mutex|shared_mutex|condition_variable|future|atomic)>":
-        ["kernels/parallel/*", "broadphase/embree_tree.cpp", "scene/shapes/kept_answers.hpp",
+        ["kernels/parallel/*", "broadphase/embree_tree.cpp", "scene/shapes/answer_cache.hpp",
          "pipeline/*", "apps/*", "tests/*", "perf/*"],
 }
 

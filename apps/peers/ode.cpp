@@ -86,7 +86,7 @@ public:
                               wanted[2].value_or(now[2]));
         }
         points_ = 0;
-        dSpaceCollide(space_, this, meet);
+        dSpaceCollide(space_, this, collide);
         dWorldQuickStep(world_, dt);
         dJointGroupEmpty(joints_);
     }
@@ -124,7 +124,7 @@ private:
         return *static_cast<const PeerBody*>(dGeomGetData(geom));
     }
 
-    static void meet(void* self, dGeomID a, dGeomID b)
+    static void collide(void* self, dGeomID a, dGeomID b)
     {
         auto& ode = *static_cast<Ode*>(self);
         const PeerBody &of_a = stated_of(a), &of_b = stated_of(b);

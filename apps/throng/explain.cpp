@@ -39,7 +39,7 @@ InnerTables inner_tables(const Stages& stages, const Effects& effects, const Set
     InnerTables tables;
     for (const World::StageInfo& stage : stages) {
         const bool solves = stage.name == "solve_impulses";
-        for (const InnerRow& row : solves ? solve_table(settings) : carry_table(stage.name))
+        for (const InnerRow& row : solves ? solve_table(settings) : event_driven_table(stage.name))
             if (row.called_for_by.meets(effects.on)) tables[stage.name].push_back(row);
     }
     return tables;
@@ -83,6 +83,9 @@ void print_stages(const Stages& stages, const InnerTables& inner, const StageMs&
 {
     std::size_t width = 24;
     for (const World::StageInfo& stage : stages) width = std::max(width, stage.name.size() + 2);
+    for (const auto& [stage, table] : inner)
+        for (const InnerRow& row : table)
+            width = std::max(width, row.name.size() + (row.within ? 10 : 6));
     std::cout << "\nstages\n";
     if (stages.empty()) std::cout << "  none: nothing in this scene can move\n";
     if (!times.empty()) std::cout << "  " << padded("", width) << "   ms/step  waits for\n";
@@ -178,8 +181,8 @@ int explain(const Options& options)
         std::snprintf(text, sizeof text, "%.4g", times.steps().mean());
         std::cout << "steps: " << times.steps().count() << "\nthreads: " << world.threads_met()
                   << "\nms_per_step: " << text << '\n';
-        if (const double visits = world.report().relax_visits; visits > 0) {
-            std::snprintf(text, sizeof text, "%.3g", visits);
+        if (const double iterations = world.report().relax_iterations; iterations > 0) {
+            std::snprintf(text, sizeof text, "%.3g", iterations);
             std::cout << "relax_visits: " << text
                       << " a contact and substep (dial relax_iterations)\n";
         }

@@ -223,7 +223,7 @@ int run(const Options& options)
     RunStats stats = collect_stats(world, std::move(times));
     stats.scene = argument.label;
     stats.seed = argument.seed;
-    stats.warnings = world.remarks();
+    stats.warnings = world.warnings();
     if (ledger) {
         stats.energy = *ledger;
         const std::string warning = energy_warning(*ledger);

@@ -113,7 +113,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("manifolds", std::uint64_t{stats.last.manifolds});
     json.add("islands", std::uint64_t{stats.last.islands});
     json.add("colors", std::uint64_t{stats.last.colors});
-    json.add("relax_visits", stats.last.relax_visits);
+    json.add("relax_visits", stats.last.relax_iterations);
     json.add("max_overlap_m", stats.measures.greatest_overlap);
     json.add("mean_overlap_m", stats.measures.mean_overlap);
     json.add("overlapping_pairs", std::uint64_t{stats.measures.overlapping_pairs});

@@ -1,7 +1,7 @@
 // Scene argument: the SCENE of a command line, with the dials that the line sets.
 #include "apps/throng/scene_argument.hpp"
 
-#include "cooking/cache/kept_file.hpp"
+#include "cooking/cache/disk_cache.hpp"
 #include "scene/files/scene_error.hpp"
 #include "scene/names.hpp"
 #include "throng/catalog.hpp"
@@ -82,8 +82,8 @@ World make_world(const SceneArgument& argument, int threads, bool quiet)
     try {
         World world(argument.scene, threads);
         if (quiet) return world;
-        for (const std::string& remark : world.remarks())
-            std::cerr << "warning: " << remark << '\n';
+        for (const std::string& warning : world.warnings())
+            std::cerr << "warning: " << warning << '\n';
         return world;
     } catch (const SceneRefused& refused) {
         if (argument.file.empty()) throw BadInput(argument.label + ": " + refused.what());

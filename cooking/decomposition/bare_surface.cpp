@@ -24,11 +24,10 @@ struct Bare {
 };
 
 // Distance from what is convex is greatest at a corner. No more than `little` is as good as none.
-double
-out_of_best(const std::vector<LooseHull>& hulls, std::span<const Vec3> corners, double little)
+double out_of_best(const std::vector<HullMesh>& hulls, std::span<const Vec3> corners, double little)
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const LooseHull& hull : hulls) {
+    for (const HullMesh& hull : hulls) {
         double most = 0;
         // The height above a face is never more than the distance, and quickly found.
         for (std::size_t i = 0; i < corners.size() && most < least; ++i)
@@ -42,7 +41,7 @@ out_of_best(const std::vector<LooseHull>& hulls, std::span<const Vec3> corners, 
 }
 
 // Whether some corner is so far outside of all hulls that cutting on would not help.
-bool is_out(const std::vector<LooseHull>& hulls, const Bare& bare, double enough)
+bool is_out(const std::vector<HullMesh>& hulls, const Bare& bare, double enough)
 {
     const auto& [a, b, c] = bare.corners;
     // Corners of what is as small as that are out together.
@@ -56,7 +55,7 @@ bool is_out(const std::vector<LooseHull>& hulls, const Bare& bare, double enough
 
 }  // namespace
 
-BareSurface find_bare_surface(const Mesh& mesh, const std::vector<LooseHull>& hulls, double enough)
+BareSurface find_bare_surface(const Mesh& mesh, const std::vector<HullMesh>& hulls, double enough)
 {
     BareSurface answer;
     std::priority_queue<Bare> waiting;

@@ -1,7 +1,7 @@
 // Bare surface: what of a mesh's surface is outside of the hulls that are to cover it.
 #pragma once
 
-#include "cooking/decomposition/loose_hull.hpp"
+#include "cooking/decomposition/hull_mesh.hpp"
 
 namespace throng {
 
@@ -18,6 +18,6 @@ struct BareSurface {
 /// Looks for it by cutting triangles in two that no single hull covers.
 ///
 ///   enough  m, what is no further outside need not be looked into
-BareSurface find_bare_surface(const Mesh& mesh, const std::vector<LooseHull>& hulls, double enough);
+BareSurface find_bare_surface(const Mesh& mesh, const std::vector<HullMesh>& hulls, double enough);
 
 }  // namespace throng

@@ -28,7 +28,7 @@ public:
         add_places_within();
     }
 
-    std::vector<LooseHull> make()
+    std::vector<HullMesh> make()
     {
         if (!cover_places()) return {};
         drop_needless();
@@ -92,8 +92,8 @@ private:
     {
         HullCell cell(search_, places_);
         if (!cell.close(place)) return false;
-        LooseHull hull =
-            thinned(loose_hull(cell.corners(place)), kMostPartVertices, kThin * search_.error);
+        HullMesh hull =
+            thinned(hull_mesh(cell.corners(place)), kMostPartVertices, kThin * search_.error);
         if (hull.empty() || search_.overhang(hull).least > search_.error) return false;
         bool of_use = false;
         for (HullPlace& other : places_) {
@@ -105,7 +105,7 @@ private:
         return of_use;
     }
 
-    bool covers(const LooseHull& hull, const HullPlace& place) const
+    bool covers(const HullMesh& hull, const HullPlace& place) const
     {
         return height_above(hull, place.point) <= kNear * search_.error;
     }
@@ -133,12 +133,12 @@ private:
     const PartSearch& search_;
     std::size_t most_;
     std::vector<HullPlace> places_;
-    std::vector<LooseHull> hulls_;
+    std::vector<HullMesh> hulls_;
 };
 
 }  // namespace
 
-std::vector<LooseHull> cover_by_hulls(const PartSearch& search, std::size_t most)
+std::vector<HullMesh> cover_by_hulls(const PartSearch& search, std::size_t most)
 {
     return Cover(search, most).make();
 }

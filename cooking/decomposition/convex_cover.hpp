@@ -21,6 +21,6 @@ namespace throng {
 /// of the surface next to nothing is further than that outside of all of them
 /// (find_bare_surface()), and of points spread through the mesh none. Empty where that takes more
 /// than `most`. The same mesh gives the same bits.
-std::vector<LooseHull> cover_by_hulls(const PartSearch& search, std::size_t most);
+std::vector<HullMesh> cover_by_hulls(const PartSearch& search, std::size_t most);
 
 }  // namespace throng

@@ -63,7 +63,7 @@ void cut_worst(const PartSearch& search, std::size_t most, std::vector<MeshPart>
 // Two parts as one. Until `known` its cost is the least that it may have.
 struct Joint {
     std::size_t a = 0, b = 0;
-    LooseHull hull;
+    HullMesh hull;
     double outside = 0, cost = 0;
     bool known = false;
 };
@@ -76,7 +76,7 @@ Joint join(const PartSearch& search,
     Joint joint{a, b, {}, 0, 0, false};
     std::vector<Vec3> points = parts[a].hull.vertices;
     points.insert(points.end(), parts[b].hull.vertices.begin(), parts[b].hull.vertices.end());
-    joint.hull = loose_hull(points);
+    joint.hull = hull_mesh(points);
     const double filled = joint.hull.volume - parts[a].hull.volume - parts[b].hull.volume;
     joint.cost = kFilled * filled / (search.extent * search.extent);
     return joint;
@@ -137,8 +137,8 @@ std::string trouble_with(const Mesh& mesh)
 {
     if (mesh.triangles.empty()) return "has no triangles; give a closed mesh";
     std::size_t rims = 0;
-    for (const auto& beyond : mesh.beyond)
-        rims += static_cast<std::size_t>(std::count(beyond.begin(), beyond.end(), -1));
+    for (const auto& adjacent : mesh.adjacent)
+        rims += static_cast<std::size_t>(std::count(adjacent.begin(), adjacent.end(), -1));
     if (rims > 0)
         return "has " + std::to_string(rims)
             + " edges that are not shared by two triangles; give a closed mesh";
@@ -159,10 +159,10 @@ std::string percent(double share)
 
 // How far a piece is outside of the hull that covers it best: distance from what is convex is
 // greatest at a corner. Of several hulls together that would not hold.
-double left_out(const LooseHull& piece, const std::vector<LooseHull>& hulls)
+double left_out(const HullMesh& piece, const std::vector<HullMesh>& hulls)
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const LooseHull& hull : hulls) {
+    for (const HullMesh& hull : hulls) {
         double most = 0;
         for (std::size_t i = 0; i < piece.vertices.size() && most < least; ++i)
             most = std::max(most, distance_outside(hull, piece.vertices[i]));
@@ -172,20 +172,20 @@ double left_out(const LooseHull& piece, const std::vector<LooseHull>& hulls)
 }
 
 // Hulls as contact takes them, and how far they reach outside. Answers them again.
-std::vector<LooseHull> take_hulls(const PartSearch& search,
-                                  const std::vector<LooseHull>& pieces,
-                                  std::size_t most_vertices,
-                                  double slack,
-                                  FacetCut cut,
-                                  ConvexParts& made)
+std::vector<HullMesh> take_hulls(const PartSearch& search,
+                                 const std::vector<HullMesh>& pieces,
+                                 std::size_t most_vertices,
+                                 double slack,
+                                 FacetCut cut,
+                                 ConvexParts& made)
 {
-    std::vector<LooseHull> hulls;
+    std::vector<HullMesh> hulls;
     double volume = 0;
-    for (const LooseHull& piece : pieces) {
+    for (const HullMesh& piece : pieces) {
         std::vector<Vec3> points = simplified(piece, most_vertices, search.error / 8).vertices;
         HullResult built = build_hull(points);
         if (!built.trouble.empty()) continue;
-        hulls.push_back(loose_hull(built.hull.vertices));
+        hulls.push_back(hull_mesh(built.hull.vertices));
         volume += mass_of(built.hull).volume;
         made.hulls.push_back(std::move(built.hull));
         made.points.push_back(std::move(points));
@@ -201,13 +201,13 @@ std::vector<LooseHull> take_hulls(const PartSearch& search,
 
 // Pieces as hulls, and what of the pieces these leave out.
 ConvexParts
-finished(const PartSearch& search, const std::vector<LooseHull>& pieces, std::size_t most_vertices)
+finished(const PartSearch& search, const std::vector<HullMesh>& pieces, std::size_t most_vertices)
 {
     ConvexParts made;
-    const std::vector<LooseHull> hulls =
+    const std::vector<HullMesh> hulls =
         take_hulls(search, pieces, most_vertices, search.error / 8, FacetCut::in_four, made);
     if (hulls.empty()) return made;
-    for (const LooseHull& piece : pieces)
+    for (const HullMesh& piece : pieces)
         made.uncovered = std::max(made.uncovered, left_out(piece, hulls));
     made.error = std::max(made.error, made.uncovered);
     return made;
@@ -224,13 +224,13 @@ ConvexParts by_cuts(const PartSearch& search, std::size_t most)
 {
     std::vector<MeshPart> parts(1);
     parts[0].piece = whole_piece(search.mesh);
-    parts[0].hull = loose_hull(search.mesh.vertices);
+    parts[0].hull = hull_mesh(search.mesh.vertices);
     parts[0].samples = sample_surface(search.mesh);
     parts[0].over = search.overhang(parts[0].hull);
-    // Half as many again than wanted: what the last cuts show lets the first be mended.
+    // Half as many again than wanted: what the last cuts show lets the first be repaired.
     cut_worst(search, most == 1 ? 1 : most + most / 2, parts);
     merge(search, most, parts);
-    std::vector<LooseHull> pieces;
+    std::vector<HullMesh> pieces;
     for (MeshPart& part : parts) pieces.push_back(std::move(part.hull));
     return finished(search, pieces, kMostPartVertices);
 }
@@ -240,12 +240,12 @@ ConvexParts by_cover(const PartSearch& search, std::size_t grown, std::size_t mo
 {
     ConvexParts made;
     std::vector<MeshPart> parts;
-    for (LooseHull& hull : cover_by_hulls(search, grown))
+    for (HullMesh& hull : cover_by_hulls(search, grown))
         parts.emplace_back().hull = std::move(hull);
     made.trouble = "is not a few convex shapes put together";
     if (parts.empty()) return made;
     merge(search, most, parts);
-    std::vector<LooseHull> hulls;
+    std::vector<HullMesh> hulls;
     for (MeshPart& part : parts) hulls.push_back(std::move(part.hull));
     made.trouble.clear();
     hulls = take_hulls(search, hulls, kMostPartVertices, search.error, FacetCut::in_two, made);
@@ -287,8 +287,8 @@ ConvexParts split_into_parts(const Mesh& mesh, const PartsWanted& wanted)
     const std::string error = percent(made.error / search.extent);
     const std::string asked = percent(search.error / search.extent);
     if (made.error > search.error && error != asked)
-        made.remarks.push_back("the error is " + error + " of the longest side, more than the "
-                               + asked + " wanted");
+        made.warnings.push_back("the error is " + error + " of the longest side, more than the "
+                                + asked + " wanted");
     return made;
 }
 
@@ -298,11 +298,11 @@ ConvexParts put_into_hull(const Mesh& mesh)
     made.trouble = trouble_with(mesh);
     if (!made.trouble.empty()) return made;
     const PartSearch search = search_of(mesh, 0);
-    const LooseHull hull = loose_hull(mesh.vertices);
+    const HullMesh hull = hull_mesh(mesh.vertices);
     made = finished(search, {hull}, hull.vertices.size());
     if (!made.trouble.empty()) return made;
-    made.remarks.push_back("holes and hollows are filled, " + percent(made.volume_error)
-                           + " more than the mesh");
+    made.warnings.push_back("holes and hollows are filled, " + percent(made.volume_error)
+                            + " more than the mesh");
     return made;
 }
 

@@ -41,7 +41,7 @@ inline constexpr std::size_t kMostPartVertices = 87;
 ///   volume_error  volume of all hulls against that of the mesh, less 1. Where hulls overlap it is
 ///                 more than what they fill together
 ///   trouble       empty, or why there are no hulls, and what is wanted
-///   remarks       what a user may want to know, in words
+///   warnings      what a user may want to know, in words
 struct ConvexParts {
     std::vector<Hull> hulls;
     std::vector<std::vector<Vec3>> points;
@@ -50,7 +50,7 @@ struct ConvexParts {
     double uncovered = 0;
     double volume_error = 0;
     std::string trouble;
-    std::vector<std::string> remarks;
+    std::vector<std::string> warnings;
 };
 
 /// Splits a mesh. The same mesh gives the same bits. Needs vertex normals where it is closed.
@@ -58,7 +58,7 @@ struct ConvexParts {
 /// Trouble reads on from the name of the mesh: "has a rim of 3 edges; give a closed mesh".
 ConvexParts split_into_parts(const Mesh& mesh, const PartsWanted& wanted);
 
-/// One hull of all vertices. It fills hollows and holes; a remark says by how much.
+/// One hull of all vertices. It fills hollows and holes; a warning says by how much.
 ConvexParts put_into_hull(const Mesh& mesh);
 
 }  // namespace throng

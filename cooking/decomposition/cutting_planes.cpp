@@ -13,7 +13,7 @@ constexpr std::size_t kEdges = 6;
 // Planes nearer to each other than this, by their normals and against the extent, are one.
 constexpr double kSame = 1e-6;
 
-double extent_of(const LooseHull& hull)
+double extent_of(const HullMesh& hull)
 {
     Vec3 lower = hull.vertices[0], upper = lower;
     for (const Vec3& vertex : hull.vertices) {
@@ -37,7 +37,7 @@ void add_plane(const Vec3& normal, const Vec3& through, double extent, std::vect
     if (!known) planes.push_back(plane);
 }
 
-void add_spaced(const LooseHull& hull, const Vec3& normal, int count, std::vector<Plane>& planes)
+void add_spaced(const HullMesh& hull, const Vec3& normal, int count, std::vector<Plane>& planes)
 {
     double lower = normal.dot(hull.vertices[0]), upper = lower;
     for (const Vec3& vertex : hull.vertices) {
@@ -55,7 +55,7 @@ struct Deep {
 
 // The edges within the piece, those that matter most first.
 std::vector<Deep>
-deepest_edges(const MeshPiece& piece, const LooseHull& hull, const std::vector<InwardEdge>& edges)
+deepest_edges(const MeshPiece& piece, const HullMesh& hull, const std::vector<InwardEdge>& edges)
 {
     std::vector<Deep> found;
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -80,7 +80,7 @@ std::vector<InwardEdge> inward_edges(const Mesh& mesh)
     std::vector<InwardEdge> edges;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::int32_t beyond = mesh.beyond[t][k];
+            const std::int32_t beyond = mesh.adjacent[t][k];
             if (beyond < static_cast<std::int32_t>(t) || (mesh.convex_edges[t] >> k & 1) != 0)
                 continue;
             const Vec3& normal = mesh.normals[t];
@@ -105,7 +105,7 @@ std::vector<Vec3> cutting_directions()
 }
 
 std::vector<Plane>
-cutting_planes(const MeshPiece& piece, const LooseHull& hull, const std::vector<InwardEdge>& edges)
+cutting_planes(const MeshPiece& piece, const HullMesh& hull, const std::vector<InwardEdge>& edges)
 {
     std::vector<Plane> planes;
     const double extent = extent_of(hull);

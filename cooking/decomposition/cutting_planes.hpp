@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cooking/decomposition/cut_mesh.hpp"
-#include "cooking/decomposition/loose_hull.hpp"
+#include "cooking/decomposition/hull_mesh.hpp"
 
 namespace throng {
 
@@ -23,6 +23,6 @@ std::vector<Vec3> cutting_directions();
 /// diagonals; and through the inward edges that lie deepest inside of the piece's hull, weighed by
 /// how sharply they turn, along both faces, along what halves the angle between them, and across.
 std::vector<Plane>
-cutting_planes(const MeshPiece& piece, const LooseHull& hull, const std::vector<InwardEdge>& edges);
+cutting_planes(const MeshPiece& piece, const HullMesh& hull, const std::vector<InwardEdge>& edges);
 
 }  // namespace throng

@@ -29,7 +29,7 @@ constexpr double kHollow = 0.3;
 constexpr std::size_t kLooks = 200, kSureLooks = 30000;
 
 // How far it is from a point of the surface, the way its face looks, to where the hull ends.
-double way_out(const LooseHull& hull, const SurfaceSample& sample)
+double way_out(const HullMesh& hull, const SurfaceSample& sample)
 {
     double way = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < hull.normals.size(); ++i) {
@@ -43,7 +43,7 @@ double way_out(const LooseHull& hull, const SurfaceSample& sample)
 // A cut that was looked at.
 struct Cut {
     Plane plane;
-    Sides<LooseHull> hulls;
+    Sides<HullMesh> hulls;
     double hollow = 0;  // m^3, see hollow_of(), and the volume of both
     double cost = 0;
     Sides<Overhang> over;
@@ -54,7 +54,7 @@ struct Cut {
 // What is between a surface and its hulls, counted for every face that looks into it. Unlike its
 // plain volume it falls already with the first of the cuts that open a ring.
 double
-hollow_of(const Sides<LooseHull>& hulls, const Plane& plane, const std::vector<SurfaceSample>& all)
+hollow_of(const Sides<HullMesh>& hulls, const Plane& plane, const std::vector<SurfaceSample>& all)
 {
     const std::size_t stride = 1 + all.size() / kSamplesLooked;
     double hollow = 0;
@@ -65,10 +65,10 @@ hollow_of(const Sides<LooseHull>& hulls, const Plane& plane, const std::vector<S
     return hollow * static_cast<double>(stride);
 }
 
-Cut look_at(const PartSearch& search, const MeshPart& part, const Plane& plane)
+Cut evaluate_cut(const PartSearch& search, const MeshPart& part, const Plane& plane)
 {
     const auto sides = look_at_cut(search.mesh, part.piece, plane, search.slack());
-    return {plane, {loose_hull(sides[0]), loose_hull(sides[1])}, 0, 0, {}};
+    return {plane, {hull_mesh(sides[0]), hull_mesh(sides[1])}, 0, 0, {}};
 }
 
 bool leaves_both(const MeshPart& part, const Cut& cut)
@@ -85,7 +85,7 @@ std::vector<Cut> least_hollow(const PartSearch& search,
 {
     std::vector<Cut> cuts;
     for (const Plane& plane : planes) {
-        Cut cut = look_at(search, part, plane);
+        Cut cut = evaluate_cut(search, part, plane);
         if (!leaves_both(part, cut)) continue;
         cut.hollow =
             hollow_of(cut.hulls, plane, part.samples) + cut.hulls[0].volume + cut.hulls[1].volume;
@@ -120,7 +120,7 @@ double clearance(std::span<const Vec3> points, const Vec3& at, const Vec3& one, 
     }
     double least = std::numeric_limits<double>::infinity();
     for (const auto& piece : pieces) {
-        const LooseHull hull = loose_hull(piece);
+        const HullMesh hull = hull_mesh(piece);
         if (!hull.empty()) least = std::min(least, height_above(hull, at));
     }
     return least;
@@ -188,12 +188,12 @@ Cut best_cut(const PartSearch& search, const MeshPart& part, std::vector<Cut>& c
 
 double PartSearch::slack() const { return kSlack * extent; }
 
-Overhang PartSearch::overhang(const LooseHull& hull) const
+Overhang PartSearch::overhang(const HullMesh& hull) const
 {
     return find_overhang(mesh, hull, error / 4, error / 2, kLooks);
 }
 
-Overhang PartSearch::sure_overhang(const LooseHull& hull) const
+Overhang PartSearch::sure_overhang(const HullMesh& hull) const
 {
     return find_overhang(mesh, hull, error / 4, error, kSureLooks);
 }
@@ -244,7 +244,7 @@ bool split(const PartSearch& search, std::size_t which, std::vector<MeshPart>& p
     if (best.outside() > kStalled * parts[which].over.least
         && volume > kStalled * parts[which].hull.volume
         && opening_cut(search, parts[which], plane)) {
-        Cut cut = look_at(search, parts[which], plane);
+        Cut cut = evaluate_cut(search, parts[which], plane);
         for (std::size_t side = 0; side < 2; ++side)
             cut.over[side] = search.overhang(cut.hulls[side]);
         if (leaves_both(parts[which], cut)) best = std::move(cut);

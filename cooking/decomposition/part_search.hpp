@@ -18,7 +18,7 @@ std::vector<SurfaceSample> sample_surface(const Mesh& mesh);
 struct MeshPart {
     MeshPiece piece;
     std::vector<SurfaceSample> samples;
-    LooseHull hull;
+    HullMesh hull;
     Overhang over;
     bool sure = false;   // `over` is as good as it gets
     bool whole = false;  // no cut helps
@@ -37,9 +37,9 @@ struct PartSearch {
     /// m, points as near to a plane are on it.
     double slack() const;
     /// A quick look, which may miss some.
-    Overhang overhang(const LooseHull& hull) const;
+    Overhang overhang(const HullMesh& hull) const;
     /// With looks enough to tell whether there is more than the error.
-    Overhang sure_overhang(const LooseHull& hull) const;
+    Overhang sure_overhang(const HullMesh& hull) const;
 };
 
 /// Cuts a part in two where that leaves least between the mesh and the hulls, by how far these

@@ -1,7 +1,7 @@
 #include "cooking/decomposition/parts_cache.hpp"
 
-#include "cooking/cache/kept_file.hpp"
-#include "cooking/cache/kept_words.hpp"
+#include "cooking/cache/cache_words.hpp"
+#include "cooking/cache/disk_cache.hpp"
 #include "cooking/hulls/hull.hpp"
 
 #include <optional>
@@ -20,8 +20,8 @@ WordWriter words_of(const ConvexParts& parts, const std::string& key)
     out.text(key);
     for (const double value : {parts.error, parts.outside, parts.uncovered, parts.volume_error})
         out.number(value);
-    out.word(parts.remarks.size());
-    for (const std::string& remark : parts.remarks) out.text(remark);
+    out.word(parts.warnings.size());
+    for (const std::string& warning : parts.warnings) out.text(warning);
     out.word(parts.points.size());
     for (const auto& points : parts.points) {
         out.word(points.size());
@@ -38,8 +38,8 @@ std::optional<ConvexParts> from_bytes(std::string_view bytes, const std::string&
     ConvexParts parts;
     for (double* value : {&parts.error, &parts.outside, &parts.uncovered, &parts.volume_error})
         *value = in.number();
-    parts.remarks.resize(in.count(8));
-    for (std::string& remark : parts.remarks) remark = in.text();
+    parts.warnings.resize(in.count(8));
+    for (std::string& warning : parts.warnings) warning = in.text();
     parts.points.resize(in.count(8));
     for (auto& points : parts.points) {
         points.resize(in.count(24));
@@ -70,12 +70,12 @@ ConvexParts cached_parts(const Mesh& mesh, const PartsWanted& wanted, const fs::
     if (folder.empty()) return split_into_parts(mesh, wanted);
     const std::string key = parts_key(mesh, wanted);
     const fs::path path = folder / (key + ".parts");
-    if (std::optional<ConvexParts> kept = from_bytes(kept_bytes(path), key))
+    if (std::optional<ConvexParts> kept = from_bytes(read_cached(path), key))
         return std::move(*kept);
     ConvexParts parts = split_into_parts(mesh, wanted);
     if (!parts.trouble.empty()) return parts;
-    const std::string trouble = keep_words(path, words_of(parts, key));
-    if (!trouble.empty()) parts.remarks.push_back("not kept for the next run: " + trouble);
+    const std::string trouble = write_cached_words(path, words_of(parts, key));
+    if (!trouble.empty()) parts.warnings.push_back("not kept for the next run: " + trouble);
     return parts;
 }
 

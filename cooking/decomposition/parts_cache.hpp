@@ -1,4 +1,4 @@
-// Parts cache: convex parts kept on disk by what they were made from (kept_file.hpp).
+// Parts cache: convex parts kept on disk by what they were made from (disk_cache.hpp).
 #pragma once
 
 #include "cooking/decomposition/convex_parts.hpp"

@@ -1,6 +1,6 @@
 #include "cooking/fields/field_cache.hpp"
 
-#include "cooking/cache/kept_file.hpp"
+#include "cooking/cache/disk_cache.hpp"
 
 #include <optional>
 
@@ -14,10 +14,11 @@ constexpr std::uint64_t kVersion = 1;
 
 std::optional<FieldResult> kept_field(const fs::path& path, const std::string& key)
 {
-    if (kept_bytes(path).empty()) return std::nullopt;
+    if (read_cached(path).empty()) return std::nullopt;
     VdbFile file = read_vdb(path, VdbWants::bricks);
     if (!file.trouble.empty() || file.notes.key != key || file.bricks.empty()) return std::nullopt;
-    return FieldResult{std::move(file.bricks), file.notes.error, std::move(file.notes.remarks), {}};
+    return FieldResult{
+        std::move(file.bricks), file.notes.error, std::move(file.notes.warnings), {}};
 }
 
 }  // namespace
@@ -41,10 +42,10 @@ FieldResult cached_field(const Mesh& mesh, const FieldSettings& settings, const 
     if (std::optional<FieldResult> kept = kept_field(path, key)) return std::move(*kept);
     FieldResult result = build_field(mesh, settings);
     if (!result.trouble.empty()) return result;
-    const std::string trouble = keep_file(path, [&](const fs::path& part) {
-        return write_vdb(part, result.bricks, {key, result.error, result.remarks});
+    const std::string trouble = write_cached(path, [&](const fs::path& part) {
+        return write_vdb(part, result.bricks, {key, result.error, result.warnings});
     });
-    if (!trouble.empty()) result.remarks.push_back("not kept for the next run: " + trouble);
+    if (!trouble.empty()) result.warnings.push_back("not kept for the next run: " + trouble);
     return result;
 }
 

@@ -1,5 +1,5 @@
 // Field cache: level sets kept on disk by what they were made from, as files that other tools read
-// (kept_file.hpp).
+// (disk_cache.hpp).
 #pragma once
 
 #include "cooking/fields/voxel_field.hpp"

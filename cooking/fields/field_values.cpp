@@ -20,7 +20,7 @@ enum class State : std::uint8_t { unknown, waiting, known };
 
 struct Place {
     std::array<std::int32_t, 3> at;
-    std::size_t slot;
+    std::size_t value_index;
 };
 
 // The values of a grid in blocks of 8^3, made as they are needed: value, nearest triangle, state.
@@ -109,7 +109,7 @@ public:
             layer_.push_back({seed.at, blocks_.make(seed.at)});
         }
         for_each_block(seeds.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) settle(seeds[i], layer_[i].slot, rule);
+            for (std::size_t i = begin; i < end; ++i) settle(seeds[i], layer_[i].value_index, rule);
         });
     }
 
@@ -120,9 +120,9 @@ public:
             const std::vector<Place> next = next_layer(rule);
             for_each_block(next.size(), kGrain,
                            [&](std::size_t begin, std::size_t end, std::size_t) {
-                               for (std::size_t i = begin; i < end; ++i) reach(next[i]);
+                               for (std::size_t i = begin; i < end; ++i) spread_to(next[i]);
                            });
-            for (const Place& place : next) blocks_.states[place.slot] = State::known;
+            for (const Place& place : next) blocks_.states[place.value_index] = State::known;
             layer_ = next;
         }
     }
@@ -148,7 +148,7 @@ public:
     }
 
 private:
-    void settle(const FieldSeed& seed, std::size_t slot, SeedRule rule)
+    void settle(const FieldSeed& seed, std::size_t value_index, SeedRule rule)
     {
         const Vec3 at = blocks_.position(seed.at);
         // A guess has been rounded, and may be of another's nearest triangle.
@@ -160,9 +160,9 @@ private:
         if (rule == SeedRule::sign)
             value = std::signbit(seed.guess) ? -nearest.distance : nearest.distance;
         if (rule == SeedRule::sheet) value = nearest.distance;
-        blocks_.values[slot] = static_cast<float>(value);
-        blocks_.triangles[slot] = nearest.triangle;
-        blocks_.states[slot] = State::known;
+        blocks_.values[value_index] = static_cast<float>(value);
+        blocks_.triangles[value_index] = nearest.triangle;
+        blocks_.states[value_index] = State::known;
     }
 
     // What is unknown next to the last layer, on the side of whoever comes upon it first. Values
@@ -172,28 +172,28 @@ private:
         std::vector<Place> next;
         const float last = static_cast<float>(laid_.band + 0.5 * laid_.voxel);
         for (const Place& from : layer_) {
-            const float value = blocks_.values[from.slot];
+            const float value = blocks_.values[from.value_index];
             const bool inside = std::signbit(value);
             if (!inside && (value > last || rule == SeedRule::value)) continue;
             for (std::size_t k = 0; k < 6; ++k) {
                 std::array<std::int32_t, 3> at = from.at;
                 at[k / 2] += k % 2 == 0 ? 1 : -1;
                 if (!blocks_.holds(at)) continue;
-                const std::size_t slot = blocks_.make(at);
-                if (blocks_.states[slot] != State::unknown) continue;
-                blocks_.states[slot] = State::waiting;
-                blocks_.values[slot] = inside ? -0.0F : 0.0F;
-                next.push_back({at, slot});
+                const std::size_t value_index = blocks_.make(at);
+                if (blocks_.states[value_index] != State::unknown) continue;
+                blocks_.states[value_index] = State::waiting;
+                blocks_.values[value_index] = inside ? -0.0F : 0.0F;
+                next.push_back({at, value_index});
             }
         }
         return next;
     }
 
     // The nearest of its neighbors' triangles, and where that will not do, the nearest of all.
-    void reach(const Place& place)
+    void spread_to(const Place& place)
     {
         const Vec3 at = blocks_.position(place.at);
-        const bool inside = std::signbit(blocks_.values[place.slot]);
+        const bool inside = std::signbit(blocks_.values[place.value_index]);
         auto [distance, triangle] = nearest_of_neighbors(place, at);
         if (!inside || distance <= kTriedVoxels * laid_.voxel) {
             const double limit = distance * (1 + 1e-9);
@@ -204,8 +204,8 @@ private:
                 triangle = found.triangle;
             }
         }
-        blocks_.values[place.slot] = static_cast<float>(inside ? -distance : distance);
-        blocks_.triangles[place.slot] = triangle;
+        blocks_.values[place.value_index] = static_cast<float>(inside ? -distance : distance);
+        blocks_.triangles[place.value_index] = triangle;
     }
 
     std::pair<double, std::uint32_t> nearest_of_neighbors(const Place& place, const Vec3& at) const
@@ -219,9 +219,9 @@ private:
                     const std::array<std::int32_t, 3> beside{place.at[0] + x, place.at[1] + y,
                                                              place.at[2] + z};
                     if (!blocks_.holds(beside)) continue;
-                    const std::ptrdiff_t slot = blocks_.find(beside);
-                    if (slot < 0) continue;
-                    const auto i = static_cast<std::size_t>(slot);
+                    const std::ptrdiff_t value_index = blocks_.find(beside);
+                    if (value_index < 0) continue;
+                    const auto i = static_cast<std::size_t>(value_index);
                     if (blocks_.states[i] != State::known) continue;
                     const std::uint32_t triangle = blocks_.triangles[i];
                     const auto last = seen.begin() + static_cast<std::ptrdiff_t>(count);
@@ -248,10 +248,11 @@ private:
         for (int z = 0; z < kSide; ++z)
             for (int y = 0; y < kSide; ++y)
                 for (int x = 0; x < kSide; ++x, ++i) {
-                    const std::ptrdiff_t slot = blocks_.find(
+                    const std::ptrdiff_t value_index = blocks_.find(
                         {brick[0] * kCells + x, brick[1] * kCells + y, brick[2] * kCells + z});
-                    const float value =
-                        slot < 0 ? band : blocks_.values[static_cast<std::size_t>(slot)];
+                    const float value = value_index < 0
+                        ? band
+                        : blocks_.values[static_cast<std::size_t>(value_index)];
                     copied[i] = std::min(value, band);
                     near |= value < band;
                 }
@@ -267,7 +268,7 @@ private:
 };
 
 // Of one brick, from each value to the next along each axis.
-float gap_within(const float* values)
+float separation_within(const float* values)
 {
     constexpr std::array<std::size_t, 3> kSteps{1, kSide, kSide * kSide};
     float widest = 0;
@@ -321,7 +322,7 @@ std::size_t count_inside(const VoxelBricks& bricks)
                                                   [](float value) { return value < 0; }));
 }
 
-double widest_gap(const VoxelBricks& bricks)
+double widest_separation(const VoxelBricks& bricks)
 {
     float widest = 0;
     std::size_t row = 0;
@@ -333,7 +334,7 @@ double widest_gap(const VoxelBricks& bricks)
                     + static_cast<std::size_t>(bricks.brick_of[row]) * VoxelBricks::kValues;
                 if (reaches_end(bricks, {x, y, z}, values))
                     return std::numeric_limits<double>::infinity();
-                widest = std::max(widest, gap_within(values));
+                widest = std::max(widest, separation_within(values));
             }
     return static_cast<double>(widest);
 }

@@ -47,6 +47,6 @@ std::size_t count_inside(const VoxelBricks& bricks);
 /// The greatest distance that two values of opposite sign next to each other have between them, m:
 /// about a voxel at the most where a surface parts them, more where the inside leaks out of a hole.
 /// Infinite where the inside reaches the end of the grid.
-double widest_gap(const VoxelBricks& bricks);
+double widest_separation(const VoxelBricks& bricks);
 
 }  // namespace throng

@@ -86,7 +86,7 @@ private:
 
 bool is_sharp(const Mesh& mesh, std::size_t triangle, std::size_t edge)
 {
-    const std::int32_t beyond = mesh.beyond[triangle][edge];
+    const std::int32_t beyond = mesh.adjacent[triangle][edge];
     return (mesh.convex_edges[triangle] >> edge & 1) != 0
         && (beyond < 0
             || mesh.normals[triangle].dot(mesh.normals[static_cast<std::size_t>(beyond)])
@@ -96,8 +96,8 @@ bool is_sharp(const Mesh& mesh, std::size_t triangle, std::size_t edge)
 // Whether an edge is this triangle's to offer and not that of the one beyond.
 bool is_own(const Mesh& mesh, std::size_t triangle, std::size_t edge)
 {
-    return mesh.beyond[triangle][edge] < static_cast<std::int32_t>(triangle)
-        || mesh.beyond[triangle][edge] < 0;
+    return mesh.adjacent[triangle][edge] < static_cast<std::int32_t>(triangle)
+        || mesh.adjacent[triangle][edge] < 0;
 }
 
 // How far the faces at each vertex lean away from what it looks at: least cosine.

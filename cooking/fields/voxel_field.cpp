@@ -86,7 +86,7 @@ std::string trouble_with_size(const Mesh& mesh, double voxel, const FieldSetting
 std::string trouble_with_inside(const VoxelBricks& bricks, const Worth& worth)
 {
     // A hole of a voxel leaves values of three between them at the most.
-    if (widest_gap(bricks) > 3 * bricks.voxel)
+    if (widest_separation(bricks) > 3 * bricks.voxel)
         return "is open wider than a voxel of " + short_text(bricks.voxel)
             + " m, so that nothing tells its inside; give a closed mesh, or a greater voxel_size";
     if (count_inside(bricks) > 0 && worth.thin_area < 0.5) return {};
@@ -151,7 +151,7 @@ FieldResult build_field(const Mesh& mesh, const FieldSettings& wanted)
     }
     result.error = worth.error;
     if (worth.thin_area > 0)
-        result.remarks.push_back(
+        result.warnings.push_back(
             "thinner than a voxel somewhere: " + short_text(100 * worth.thin_area)
             + " % of the surface; what is there is lost or blunted at voxel size "
             + short_text(voxel) + " m, give voxel_size " + short_text(voxel / 2)

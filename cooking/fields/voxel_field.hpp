@@ -35,15 +35,15 @@ struct FieldSettings {
 
 /// A level set, or why there is none.
 ///
-///   error    m, the greatest distance that the field tells of a corner or a middle of a triangle;
-///            in truth all are 0
-///   remarks  what a user should know, in plain words
-///   trouble  empty, or what is wrong and what is wanted
-///   hollow   the trouble is that nothing tells an inside
+///   error     m, the greatest distance that the field tells of a corner or a middle of a triangle;
+///             in truth all are 0
+///   warnings  what a user should know, in plain words
+///   trouble   empty, or what is wrong and what is wanted
+///   hollow    the trouble is that nothing tells an inside
 struct FieldResult {
     VoxelBricks bricks;
     double error = 0;
-    std::vector<std::string> remarks;
+    std::vector<std::string> warnings;
     std::string trouble;
     bool hollow = false;
 };
@@ -68,7 +68,7 @@ MeshResult field_surface(const VoxelBricks& bricks);
 struct FieldNotes {
     std::string key;  // of what it was made from
     double error = 0;
-    std::vector<std::string> remarks;
+    std::vector<std::string> warnings;
 };
 
 /// Writes a level set as a float grid "distance" that other tools read: active where it is below

@@ -14,7 +14,7 @@ constexpr std::uint32_t kNone = 0xffffffffU;
 
 // A triangle of the hull so far, or, once dead, of a hull before.
 struct Face {
-    std::array<std::uint32_t, 3> corners, beyond{kNone, kNone, kNone};
+    std::array<std::uint32_t, 3> corners, adjacent{kNone, kNone, kNone};
     std::array<Int128, 3> normal;   // 2^81 at most
     std::array<double, 3> rounded;  // the normal again
     std::uint32_t outside = kNone;  // first of the points above that wait here, linked by next_
@@ -56,8 +56,8 @@ public:
         for (const Face& face : faces_) {
             if (!face.alive) continue;
             hull.triangles.push_back(face.corners);
-            hull.beyond.push_back(
-                {place[face.beyond[0]], place[face.beyond[1]], place[face.beyond[2]]});
+            hull.adjacent.push_back(
+                {place[face.adjacent[0]], place[face.adjacent[1]], place[face.adjacent[2]]});
         }
         return hull;
     }
@@ -107,10 +107,10 @@ private:
         make_face(p[0], p[3], p[1]);
         make_face(p[1], p[3], p[2]);
         make_face(p[2], p[3], p[0]);
-        faces_[0].beyond = {1, 2, 3};
-        faces_[1].beyond = {3, 2, 0};
-        faces_[2].beyond = {1, 3, 0};
-        faces_[3].beyond = {2, 1, 0};
+        faces_[0].adjacent = {1, 2, 3};
+        faces_[1].adjacent = {3, 2, 0};
+        faces_[2].adjacent = {1, 3, 0};
+        faces_[3].adjacent = {2, 1, 0};
     }
 
     // Leaves the point with the first face, from the given one on, that it is above. A point above
@@ -146,14 +146,14 @@ private:
         const std::size_t first_new = faces_.size();
         for (const HorizonEdge& edge : horizon_) {
             const std::uint32_t face = make_face(edge.from, edge.to, point);
-            faces_[face].beyond[0] = edge.outer;
-            faces_[edge.outer].beyond[edge.outer_edge] = face;
+            faces_[face].adjacent[0] = edge.outer;
+            faces_[edge.outer].adjacent[edge.outer_edge] = face;
             face_from_[edge.from] = face;
         }
         for (std::size_t i = first_new; i < faces_.size(); ++i) {
             const std::uint32_t next = face_from_[faces_[i].corners[1]];
-            faces_[i].beyond[1] = next;
-            faces_[next].beyond[2] = static_cast<std::uint32_t>(i);
+            faces_[i].adjacent[1] = next;
+            faces_[next].adjacent[2] = static_cast<std::uint32_t>(i);
         }
         // A point that waited at a face now gone is above one of the new ones, or inside.
         for (const std::uint32_t gone : visible_) {
@@ -176,17 +176,17 @@ private:
         faces_[seen_from].visible = true;
         for (std::size_t i = 0; i < visible_.size(); ++i) {
             const std::array corners = faces_[visible_[i]].corners;
-            const std::array beyond = faces_[visible_[i]].beyond;
+            const std::array adjacent = faces_[visible_[i]].adjacent;
             for (std::uint32_t k = 0; k < 3; ++k) {
-                Face& other = faces_[beyond[k]];
+                Face& other = faces_[adjacent[k]];
                 if (other.visit != visit_) {
                     other.visit = visit_;
                     other.visible = height(other, point) > 0;
-                    if (other.visible) visible_.push_back(beyond[k]);
+                    if (other.visible) visible_.push_back(adjacent[k]);
                 }
                 const std::uint32_t to = corners[(k + 1) % 3];
                 if (!other.visible)
-                    horizon_.push_back({corners[k], to, beyond[k], edge_from(other, to)});
+                    horizon_.push_back({corners[k], to, adjacent[k], edge_from(other, to)});
             }
         }
     }

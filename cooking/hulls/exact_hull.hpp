@@ -17,7 +17,7 @@ namespace throng {
 /// beyond[t][k] is the triangle on its other side.
 struct TriangleHull {
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<std::array<std::uint32_t, 3>> beyond;
+    std::vector<std::array<std::uint32_t, 3>> adjacent;
 };
 
 /// A point on the grid; coordinates in [0, 2^40].

@@ -116,15 +116,15 @@ bool closes(const std::vector<HullFace>& faces)
         return std::array{a.low, a.high, a.face} < std::array{b.low, b.high, b.face};
     });
 
-    std::vector<std::array<std::uint32_t, 2>> meetings;
+    std::vector<std::array<std::uint32_t, 2>> shared_edges;
     for (std::size_t i = 0; i < sides.size(); i += 2) {
         const Side &a = sides[i], &b = sides[i + 1];
         if (a.low != b.low || a.high != b.high || a.rising == b.rising) return false;
-        meetings.push_back({a.face, b.face});
+        shared_edges.push_back({a.face, b.face});
     }
-    std::sort(meetings.begin(), meetings.end());
-    return std::adjacent_find(meetings.begin(), meetings.end()) == meetings.end()
-        && true_corners(faces).size() + faces.size() == meetings.size() + 2;
+    std::sort(shared_edges.begin(), shared_edges.end());
+    return std::adjacent_find(shared_edges.begin(), shared_edges.end()) == shared_edges.end()
+        && true_corners(faces).size() + faces.size() == shared_edges.size() + 2;
 }
 
 // Whether faces keep to their planes.
@@ -203,8 +203,8 @@ void fill_faces(std::span<const Vec3> points, const std::vector<HullFace>& faces
 }
 
 // Calls visit(from, to, face) for each side of each face.
-template <class Visit>
-void visit_sides(const Hull& hull, Visit visit)
+template <class Visitor>
+void visit_sides(const Hull& hull, Visitor visit)
 {
     for (std::size_t face = 0; face < hull.normals.size(); ++face) {
         const std::size_t begin = hull.face_begin[face], end = hull.face_begin[face + 1];
@@ -260,7 +260,7 @@ void fill_balls(Hull& hull)
 HullResult build_hull(std::span<const Vec3> points)
 {
     HullResult result;
-    const HullCloud cloud = look_at(points);
+    const HullCloud cloud = hull_cloud(points);
     result.trouble = cloud.trouble;
     if (!result.trouble.empty()) return result;
 

@@ -86,7 +86,7 @@ void find_start(HullCloud& cloud)
     cloud.frame << along.transpose(), up.cross(along).transpose(), up.transpose();
 }
 
-HullCloud look_at(std::span<const Vec3> given)
+HullCloud hull_cloud(std::span<const Vec3> given)
 {
     HullCloud cloud;
     cloud.trouble = not_finite(given);

@@ -98,7 +98,7 @@ private:
         };
         take(seed);
         for (std::size_t i = 0; i < found.triangles.size(); ++i)
-            for (const std::uint32_t beyond : hull_.beyond[found.triangles[i]]) take(beyond);
+            for (const std::uint32_t beyond : hull_.adjacent[found.triangles[i]]) take(beyond);
         return found;
     }
 
@@ -154,7 +154,7 @@ private:
         bool simple = true;
         for (const std::uint32_t triangle : triangles)
             for (std::size_t k = 0; k < 3; ++k) {
-                if (visit_[hull_.beyond[triangle][k]] == visits_) continue;
+                if (visit_[hull_.adjacent[triangle][k]] == visits_) continue;
                 const std::uint32_t from = hull_.triangles[triangle][k];
                 simple = simple && next_[from] == kNone;
                 next_[from] = hull_.triangles[triangle][(k + 1) % 3];

@@ -66,9 +66,9 @@ std::uint16_t climb(const Hull& hull, const Vec3& direction, std::uint16_t start
         climbed = false;
         const std::size_t here = best;
         for (std::size_t i = hull.neighbor_begin[here]; i < hull.neighbor_begin[here + 1]; ++i) {
-            const double reach = direction.dot(hull.vertices[hull.neighbors[i]]);
-            if (!(reach > most)) continue;
-            most = reach;
+            const double height = direction.dot(hull.vertices[hull.neighbors[i]]);
+            if (!(height > most)) continue;
+            most = height;
             best = hull.neighbors[i];
             climbed = true;
         }

@@ -21,7 +21,7 @@ HullRings::HullRings(std::span<const Vec3> points, const TriangleHull& hull)
             const auto& corners = hull.triangles[triangle];
             const std::size_t k = corners[0] == corner ? 0 : corners[1] == corner ? 1 : 2;
             ring_[i] = corners[(k + 1) % 3];
-            triangle = hull.beyond[triangle][k];
+            triangle = hull.adjacent[triangle][k];
         }
         if (begin_[corner + 1] - begin_[corner] < kLong) continue;
         first_block_[corner] = static_cast<std::uint32_t>(blocks_.size());

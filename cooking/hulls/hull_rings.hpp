@@ -16,8 +16,8 @@ public:
 
     /// Calls visit(other) for those round a corner, in order, but for some that are lower along the
     /// direction than the level.
-    template <class Visit>
-    void visit_high(std::uint32_t corner, const Vec3& direction, double level, Visit visit) const
+    template <class Visitor>
+    void visit_high(std::uint32_t corner, const Vec3& direction, double level, Visitor visit) const
     {
         const std::uint32_t begin = begin_[corner], end = begin_[corner + 1];
         if (end - begin < kLong) {

@@ -109,14 +109,14 @@ void join_neighbors(Mesh& mesh)
         < std::array{b.low, b.high, b.triangle, b.edge};
     });
 
-    mesh.beyond.assign(mesh.triangles.size(), {-1, -1, -1});
+    mesh.adjacent.assign(mesh.triangles.size(), {-1, -1, -1});
     for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
         const HalfEdge& a = edges[begin];
         while (end < edges.size() && edges[end].low == a.low && edges[end].high == a.high) ++end;
         const HalfEdge& b = edges[end - 1];
         if (end - begin != 2 || a.rising == b.rising) continue;
-        mesh.beyond[a.triangle][a.edge] = static_cast<std::int32_t>(b.triangle);
-        mesh.beyond[b.triangle][b.edge] = static_cast<std::int32_t>(a.triangle);
+        mesh.adjacent[a.triangle][a.edge] = static_cast<std::int32_t>(b.triangle);
+        mesh.adjacent[b.triangle][b.edge] = static_cast<std::int32_t>(a.triangle);
     }
 }
 
@@ -127,7 +127,7 @@ struct Fold {
 };
 Fold fold_at(const Mesh& mesh, std::size_t triangle, std::size_t edge)
 {
-    const std::int32_t other = mesh.beyond[triangle][edge];
+    const std::int32_t other = mesh.adjacent[triangle][edge];
     if (other < 0) return {};
     const std::uint32_t from = mesh.triangles[triangle][edge];
     const std::uint32_t to = mesh.triangles[triangle][(edge + 1) % 3];
@@ -161,16 +161,16 @@ void mark_convex_edges(Mesh& mesh)
 void mark_open_pieces(Mesh& mesh)
 {
     std::vector<std::uint32_t> reached;
-    const auto reach = [&](std::uint32_t t) {
+    const auto mark = [&](std::uint32_t t) {
         if ((mesh.convex_edges[t] & kOpenPiece) != 0) return;
         mesh.convex_edges[t] = static_cast<std::uint8_t>(mesh.convex_edges[t] | kOpenPiece);
         reached.push_back(t);
     };
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-        if (*std::min_element(mesh.beyond[t].begin(), mesh.beyond[t].end()) < 0) reach(t);
+        if (*std::min_element(mesh.adjacent[t].begin(), mesh.adjacent[t].end()) < 0) mark(t);
     for (std::size_t i = 0; i < reached.size(); ++i)
-        for (const std::int32_t next : mesh.beyond[reached[i]])
-            if (next >= 0) reach(static_cast<std::uint32_t>(next));
+        for (const std::int32_t next : mesh.adjacent[reached[i]])
+            if (next >= 0) mark(static_cast<std::uint32_t>(next));
 }
 
 double surface(const Box3& box)

@@ -256,7 +256,7 @@ std::string counted(std::size_t count, const char* one, const char* many)
     return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-std::vector<std::string> remarks_on(const MeshHealth& health)
+std::vector<std::string> warnings_on(const MeshHealth& health)
 {
     std::vector<std::string> said;
     const auto say = [&](std::size_t count, const char* one, const char* many) {
@@ -310,9 +310,9 @@ std::size_t count_cuts(const Mesh& mesh, std::size_t most_pairs, bool& cut_short
     return cuts;
 }
 
-MendedMesh mend_still(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
+RepairedMesh mend_still(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
 {
-    MendedMesh result;
+    RepairedMesh result;
     MeshResult welded = build_mesh(std::move(vertices), std::move(triangles));
     result.trouble = welded.trouble;
     if (!result.trouble.empty()) return result;
@@ -325,9 +325,9 @@ MendedMesh mend_still(std::vector<Vec3> vertices, std::vector<Triangle> triangle
     MeshHealth told;
     told.duplicates = health.duplicates;
     told.turned = health.turned;
-    result.remarks = remarks_on(told);
+    result.warnings = warnings_on(told);
     if (health.inside_out > 0)
-        result.remarks.push_back(
+        result.warnings.push_back(
             counted(health.inside_out,
                     "piece is closed and inside out: turned over, so that it is "
                     "solid; for a room leave it open somewhere, or put it "
@@ -340,9 +340,9 @@ MendedMesh mend_still(std::vector<Vec3> vertices, std::vector<Triangle> triangle
     return result;
 }
 
-MendedMesh mend(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
+RepairedMesh repair(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
 {
-    MendedMesh result;
+    RepairedMesh result;
     // Built twice: the first time for its welding, which tells what is shared.
     MeshResult welded = build_mesh(std::move(vertices), std::move(triangles));
     result.trouble = welded.trouble;
@@ -364,7 +364,7 @@ MendedMesh mend(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
     find_vertex_normals(result.mesh);
     health.cuts =
         count_cuts(result.mesh, kPairsEach * result.mesh.triangles.size(), health.cuts_cut_short);
-    result.remarks = remarks_on(health);
+    result.warnings = warnings_on(health);
     return result;
 }
 

@@ -1,4 +1,4 @@
-// Mesh health: what is wrong with triangles before they become a solid, and what can be mended.
+// Mesh health: what is wrong with triangles before they become a solid, and what can be repaired.
 #pragma once
 
 #include "kernels/data/mesh.hpp"
@@ -24,7 +24,7 @@ struct MeshHealth {
     std::size_t cuts = 0;           // pairs of triangles that cross
     bool cuts_cut_short = false;    // not all pairs were looked at
 
-    /// Whether the normals of the mended mesh tell inside from outside.
+    /// Whether the normals of the repaired mesh tell inside from outside.
     bool sound() const
     {
         return open_edges + crowded_edges + one_sided + buried + cuts == 0 && !cuts_cut_short;
@@ -33,24 +33,25 @@ struct MeshHealth {
 
 /// A mesh as good as it can be made, vertex normals included.
 ///
-///   remarks  one for everything that was found, in plain words, and what was done about it
-///   trouble  as in MeshResult
-struct MendedMesh {
+///   warnings  one for everything that was found, in plain words, and what was done about it
+///   trouble   as in MeshResult
+struct RepairedMesh {
     Mesh mesh;
     MeshHealth health;
-    std::vector<std::string> remarks;
+    std::vector<std::string> warnings;
     std::string trouble;
 };
 
 /// Drops duplicates, makes the windings of every piece agree, closes holes that are small against
 /// the piece that they are in, and turns over what is inside out. Wider holes stay holes.
-MendedMesh mend(std::vector<Vec3> vertices, std::vector<std::array<std::uint32_t, 3>> triangles);
+RepairedMesh repair(std::vector<Vec3> vertices,
+                    std::vector<std::array<std::uint32_t, 3>> triangles);
 
 /// The same of a mesh that is not to move, which may well be open: holes stay as they are, and no
 /// vertex normals. What is closed is solid, turned over where it is inside out but for hollows;
 /// what is open has two sides. A mesh with nothing wrong comes back as build_mesh() makes it.
-MendedMesh mend_still(std::vector<Vec3> vertices,
-                      std::vector<std::array<std::uint32_t, 3>> triangles);
+RepairedMesh mend_still(std::vector<Vec3> vertices,
+                        std::vector<std::array<std::uint32_t, 3>> triangles);
 
 /// How many pairs of triangles that share no corner cross one another; those that lie in one plane
 /// do not count. Looks at no more than `most_pairs` of those whose boxes overlap, and says so.

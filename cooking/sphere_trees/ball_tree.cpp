@@ -34,9 +34,10 @@ void BallTree::build(std::uint32_t node, std::uint32_t begin, std::uint32_t end)
     Node made{0.5 * (box.lower + box.upper), 0, begin, end - begin};
     for (std::uint32_t i = begin; i < end; ++i) {
         const Ball& ball = balls_[order_[i]];
-        made.reach = std::max(made.reach, (ball.center - made.center).norm() + ball.radius);
+        made.outer_radius =
+            std::max(made.outer_radius, (ball.center - made.center).norm() + ball.radius);
     }
-    made.reach += kSlack * (made.reach + made.center.cwiseAbs().maxCoeff());
+    made.outer_radius += kSlack * (made.outer_radius + made.center.cwiseAbs().maxCoeff());
     nodes_[node] = made;
     if (end - begin <= kLeaf) return;
     Eigen::Index axis = 0;
@@ -58,12 +59,12 @@ void BallTree::build(std::uint32_t node, std::uint32_t begin, std::uint32_t end)
 // No ball of the node is nearer.
 double BallTree::least_of(const Node& node, const Vec3& place) const
 {
-    return (place - node.center).norm() * (1 - kSlack) - node.reach;
+    return (place - node.center).norm() * (1 - kSlack) - node.outer_radius;
 }
 
 // All balls but those that are further than the limit, as it stands by then; the nearer node first.
-template <class Limit, class Visit>
-void BallTree::visit(const Vec3& place, Limit limit, Visit visit) const
+template <class Limit, class Visitor>
+void BallTree::visit(const Vec3& place, Limit limit, Visitor visit) const
 {
     struct Waiting {
         std::uint32_t node;
@@ -78,7 +79,7 @@ void BallTree::visit(const Vec3& place, Limit limit, Visit visit) const
         if (next.least > limit()) continue;
         const Node& node = nodes_[next.node];
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-            visit(order_[i], gap_to(balls_[order_[i]], place));
+            visit(order_[i], distance_to(balls_[order_[i]], place));
         if (node.count > 0) continue;
         Waiting near{node.first, least_of(nodes_[node.first], place)};
         Waiting far{node.first + 1, least_of(nodes_[node.first + 1], place)};
@@ -88,13 +89,13 @@ void BallTree::visit(const Vec3& place, Limit limit, Visit visit) const
     }
 }
 
-double BallTree::least_gap(const Vec3& place, double enough) const
+double BallTree::least_separation(const Vec3& place, double enough) const
 {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     double least = kInfinity;
     visit(
         place, [&] { return least < enough ? -kInfinity : least; },
-        [&](std::uint32_t, double gap) { least = std::min(least, gap); });
+        [&](std::uint32_t, double separation) { least = std::min(least, separation); });
     return least;
 }
 
@@ -103,19 +104,21 @@ NearestBalls BallTree::nearest(const Vec3& place, std::span<const std::uint8_t> 
     NearestBalls found;
     visit(
         place, [&] { return found.next; },
-        [&](std::uint32_t which, double gap) {
-            if (gone.empty() || gone[which] == 0) found.offer(which, gap);
+        [&](std::uint32_t which, double separation) {
+            if (gone.empty() || gone[which] == 0) found.offer(which, separation);
         });
     return found;
 }
 
-void BallTree::find_within(const Vec3& place, double gap, std::vector<std::uint32_t>& found) const
+void BallTree::find_within(const Vec3& place,
+                           double separation,
+                           std::vector<std::uint32_t>& found) const
 {
     const auto begin = static_cast<std::ptrdiff_t>(found.size());
     visit(
-        place, [&] { return gap; },
+        place, [&] { return separation; },
         [&](std::uint32_t which, double here) {
-            if (here <= gap) found.push_back(which);
+            if (here <= separation) found.push_back(which);
         });
     std::sort(found.begin() + begin, found.end());
 }

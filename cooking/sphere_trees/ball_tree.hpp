@@ -14,14 +14,14 @@ namespace throng {
 /// the next one are.
 struct NearestBalls {
     std::uint32_t by = 0;
-    double gap = std::numeric_limits<double>::infinity();
+    double separation = std::numeric_limits<double>::infinity();
     double next = std::numeric_limits<double>::infinity();
 
     void offer(std::uint32_t which, double distance)
     {
-        if (distance < gap || (distance == gap && which < by)) {
-            next = gap;
-            gap = distance;
+        if (distance < separation || (distance == separation && which < by)) {
+            next = separation;
+            separation = distance;
             by = which;
         } else {
             next = std::min(next, distance);
@@ -37,27 +37,27 @@ public:
 
     /// The gap to the nearest ball, infinite where there are none; that of another ball with a gap
     /// below `enough` will do.
-    double least_gap(const Vec3& place,
-                     double enough = -std::numeric_limits<double>::infinity()) const;
+    double least_separation(const Vec3& place,
+                            double enough = -std::numeric_limits<double>::infinity()) const;
 
     /// Of the balls that are not marked as gone.
     NearestBalls nearest(const Vec3& place, std::span<const std::uint8_t> gone = {}) const;
 
     /// Appends those with a gap no greater than this, in ascending order.
-    void find_within(const Vec3& place, double gap, std::vector<std::uint32_t>& found) const;
+    void find_within(const Vec3& place, double separation, std::vector<std::uint32_t>& found) const;
 
 private:
     struct Node {
         Vec3 center = Vec3::Zero();
-        double reach = 0;         // about center, of all its balls
+        double outer_radius = 0;  // about center, of all its balls
         std::uint32_t first = 0;  // leaf: first in order_; inner: left child, right is left + 1
         std::uint32_t count = 0;  // leaf: balls; inner: 0
     };
 
     void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
     double least_of(const Node& node, const Vec3& place) const;
-    template <class Limit, class Visit>
-    void visit(const Vec3& place, Limit limit, Visit visit) const;
+    template <class Limit, class Visitor>
+    void visit(const Vec3& place, Limit limit, Visitor visit) const;
 
     std::span<const Ball> balls_;
     std::vector<Node> nodes_;

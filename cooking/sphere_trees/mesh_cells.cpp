@@ -13,7 +13,7 @@ namespace {
 constexpr double kAcross = 24;
 
 // Of distances, more than rounding takes from them.
-constexpr double kRoom = 1 + 1e-9;
+constexpr double kSlack = 1 + 1e-9;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
@@ -45,7 +45,7 @@ double MeshCells::depth_bound(const Vec3& place)
     }
     double& depth = depths_[at];
     if (depth == kUnknown) depth = -signed_distance(mesh_, middle);
-    return depth + (place - middle).norm() * kRoom;
+    return depth + (place - middle).norm() * kSlack;
 }
 
 }  // namespace throng

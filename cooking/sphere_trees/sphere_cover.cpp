@@ -16,9 +16,9 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 // Rounds of moving balls and putting them elsewhere: after the third the gap hardly falls.
 constexpr int kRounds = 4;
 
-double need(const CoverPoint& point, double gap)
+double need(const CoverPoint& point, double separation)
 {
-    return point.depth > 0 ? 2 * std::min(gap, point.depth) : gap;
+    return point.depth > 0 ? 2 * std::min(separation, point.depth) : separation;
 }
 
 // Places that lie side by side, in a ball; most balls of a cover have to do with few of them.
@@ -33,7 +33,7 @@ struct Block {
 constexpr std::size_t kBlock = 32;
 
 // Of radii, more than rounding takes from them.
-constexpr double kRoom = 1 + 1e-9;
+constexpr double kSlack = 1 + 1e-9;
 
 class Cover {
 public:
@@ -44,18 +44,18 @@ public:
         serve_all();
     }
 
-    std::vector<Ball> choose(std::size_t count, double& gap)
+    std::vector<Ball> choose(std::size_t count, double& separation)
     {
         std::vector<Ball> best;
-        gap = kFar;
+        separation = kFar;
         for (int round = 0; round <= kRounds; ++round) {
             while (balls_.size() < count && worst() > 0) put_at_worst();
             if (round < kRounds) add_hollows();
             for (int k = 0; k < 2; ++k) {
                 move_all();
                 serve_all();
-                if (const double now = worst(); now < gap) {
-                    gap = now;
+                if (const double now = worst(); now < separation) {
+                    separation = now;
                     best = balls_;
                 }
             }
@@ -116,7 +116,7 @@ private:
     double need_of(std::size_t i) const
     {
         if (balls_.empty()) return points_[i].depth;
-        return need(points_[i], served_[i].gap);
+        return need(points_[i], served_[i].separation);
     }
 
     void update(Block& block) const
@@ -130,7 +130,7 @@ private:
 
     void serve_point(std::size_t i, std::uint32_t ball)
     {
-        served_[i].offer(ball, gap_to(balls_[ball], points_[i].at));
+        served_[i].offer(ball, distance_to(balls_[ball], points_[i].at));
     }
     NearestBalls nearest_of(std::span<const std::uint32_t> balls, const Vec3& place) const
     {
@@ -138,9 +138,9 @@ private:
         for (const std::uint32_t which : balls) {
             const Ball& ball = balls_[which];
             // Most are not worth a root.
-            const double reach = (found.next + ball.radius) * kRoom;
-            if (reach > 0 && (place - ball.center).squaredNorm() > reach * reach) continue;
-            found.offer(which, gap_to(ball, place));
+            const double furthest = (found.next + ball.radius) * kSlack;
+            if (furthest > 0 && (place - ball.center).squaredNorm() > furthest * furthest) continue;
+            found.offer(which, distance_to(ball, place));
         }
         return found;
     }
@@ -148,8 +148,8 @@ private:
     {
         const Ball& ball = balls_[which];
         for (Block& block : blocks_) {
-            const double reach = block.furthest + block.radius + ball.radius;
-            if ((block.center - ball.center).squaredNorm() > reach * reach) continue;
+            const double furthest = block.furthest + block.radius + ball.radius;
+            if ((block.center - ball.center).squaredNorm() > furthest * furthest) continue;
             for (std::size_t i = block.begin; i < block.end; ++i) serve_point(i, which);
             update(block);
         }
@@ -166,7 +166,7 @@ private:
                 Block& block = blocks_[b];
                 const double next = tree.nearest(block.center).next;
                 near.clear();
-                tree.find_within(block.center, next + 2 * block.radius * kRoom, near);
+                tree.find_within(block.center, next + 2 * block.radius * kSlack, near);
                 for (std::size_t i = block.begin; i < block.end; ++i)
                     served_[i] = nearest_of(near, points_[i].at);
                 update(block);
@@ -197,7 +197,7 @@ private:
                     tried.radius = std::min(tried.radius, (tried.center - touched[k]).norm());
                 if (!(value(tried, least) < least)) continue;  // even if it could be that large
                 const MeshPoint nearest =
-                    nearest_on_mesh(mesh(), tried.center, tried.radius * kRoom);
+                    nearest_on_mesh(mesh(), tried.center, tried.radius * kSlack);
                 if (nearest.distance == kFar) continue;
                 touched[count++ % touched.size()] = nearest.point;
                 tried.radius = -signed_distance(mesh(), tried.center, nearest);
@@ -236,19 +236,19 @@ private:
     // Places below the surface that no ball would hold if all were grown by half the gap.
     void add_hollows()
     {
-        const double gap = worst();
+        const double separation = worst();
         const BallTree tree(balls_);
         std::vector<CoverPoint> found;
         for (std::size_t i = 0; i < points_.size(); ++i) {
             if (points_[i].depth > 0) continue;
             for (const double step : {0.75, 1.5, 3.0, 6.0, 12.0}) {
-                const double below = step * gap;
+                const double below = step * separation;
                 const Vec3 at = points_[i].at + points_[i].inward * below;
-                if (gap_to(balls_[served_[i].by], at) <= gap / 2) continue;
-                if (cells_.depth_bound(at) <= gap / 2) continue;
-                if (tree.least_gap(at, gap / 2) <= gap / 2) continue;
+                if (distance_to(balls_[served_[i].by], at) <= separation / 2) continue;
+                if (cells_.depth_bound(at) <= separation / 2) continue;
+                if (tree.least_separation(at, separation / 2) <= separation / 2) continue;
                 const double depth = -signed_distance(mesh(), at);
-                if (depth > gap / 2) found.push_back({at, depth, Vec3::Zero()});
+                if (depth > separation / 2) found.push_back({at, depth, Vec3::Zero()});
             }
         }
         if (found.empty()) return;
@@ -271,12 +271,12 @@ private:
     void move(Ball& ball, std::span<const std::uint32_t> own) const
     {
         double widest = 0;
-        for (const std::uint32_t i : own) widest = std::max(widest, served_[i].gap);
+        for (const std::uint32_t i : own) widest = std::max(widest, served_[i].separation);
         if (!(widest > 0)) return;
         climb(ball, 2 * widest, 5, [&](const Ball& tried, double enough) {
             double most = -kFar;
             for (const std::uint32_t i : own) {
-                most = std::max(most, need(points_[i], gap_to(tried, points_[i].at)));
+                most = std::max(most, need(points_[i], distance_to(tried, points_[i].at)));
                 if (most >= enough) break;
             }
             return most;
@@ -310,7 +310,7 @@ private:
         gone_[which] = 1;
         alone[which] = kFar;
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const bool second = served_[i].next == gap_to(balls_[which], points_[i].at);
+            const bool second = served_[i].next == distance_to(balls_[which], points_[i].at);
             if (served_[i].by != which && !second) continue;
             served_[i] = tree.nearest(points_[i].at, gone_);
             double& without = alone[served_[i].by];
@@ -357,7 +357,7 @@ void add_grid(const Mesh& mesh, std::size_t triangle, double step, std::vector<C
             if (u == parts || v == parts || w == parts) continue;
             // Those of an edge come with one of its triangles.
             const auto is_mine = [&](std::size_t edge) {
-                return mesh.beyond[triangle][edge] < static_cast<std::int32_t>(triangle);
+                return mesh.adjacent[triangle][edge] < static_cast<std::int32_t>(triangle);
             };
             if ((w == 0 && !is_mine(0)) || (u == 0 && !is_mine(1)) || (v == 0 && !is_mine(2)))
                 continue;
@@ -392,7 +392,7 @@ std::vector<CoverPoint> cover_points(const Mesh& mesh, std::size_t wanted)
             for (double x = box.lower.x() + inner / 2; x < box.upper.x(); x += inner) {
                 const Vec3 at(x, y, z);
                 const MeshPoint nearest = nearest_on_mesh(mesh, at, limit);
-                limit = (nearest.distance + inner) * kRoom;
+                limit = (nearest.distance + inner) * kSlack;
                 if (const double depth = -signed_distance(mesh, at, nearest); depth > 0)
                     points.push_back({at, depth, Vec3::Zero()});
             }
@@ -400,10 +400,12 @@ std::vector<CoverPoint> cover_points(const Mesh& mesh, std::size_t wanted)
     return points;
 }
 
-std::vector<Ball>
-cover_mesh(MeshCells& cells, std::span<const CoverPoint> points, std::size_t count, double& gap)
+std::vector<Ball> cover_mesh(MeshCells& cells,
+                             std::span<const CoverPoint> points,
+                             std::size_t count,
+                             double& separation)
 {
-    return Cover(cells, points).choose(count, gap);
+    return Cover(cells, points).choose(count, separation);
 }
 
 }  // namespace throng

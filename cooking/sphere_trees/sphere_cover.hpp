@@ -28,9 +28,11 @@ std::vector<CoverPoint> cover_points(const Mesh& mesh, std::size_t wanted);
 ///         balls in place of centers; balls within the surface as in Bradshaw and O'Sullivan,
 ///         Adaptive medial-axis approximation for sphere-tree construction (2004), sections 4, 5.
 ///
-///   gap  m, out: how far the furthest of the places is from the balls, those inside counted
-///        double, and no further than they are below the surface
-std::vector<Ball>
-cover_mesh(MeshCells& cells, std::span<const CoverPoint> points, std::size_t count, double& gap);
+///   separation  m, out: how far the furthest of the places is from the balls, those inside counted
+///               double, and no further than they are below the surface
+std::vector<Ball> cover_mesh(MeshCells& cells,
+                             std::span<const CoverPoint> points,
+                             std::size_t count,
+                             double& separation);
 
 }  // namespace throng

@@ -20,7 +20,7 @@ struct Worst {
     double met = 0, sure = 0, bound = 0;
     double slack = 0;
 
-    void meet(double exact)
+    void add(double exact)
     {
         met = std::max(met, exact);
         sure = std::max(sure, exact);
@@ -40,23 +40,24 @@ struct Near {
     std::size_t begin = 0, end = 0;
 };
 
-double least_gap(std::span<const Ball> balls, std::span<const std::uint32_t> ids, const Vec3& point)
+double
+least_separation(std::span<const Ball> balls, std::span<const std::uint32_t> ids, const Vec3& point)
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t i : ids) least = std::min(least, gap_to(balls[i], point));
+    for (const std::uint32_t i : ids) least = std::min(least, distance_to(balls[i], point));
     return least;
 }
 
-// Keeps those of the balls that are within `reach` of the point.
+// Keeps those of the balls that are within `limit` of the point.
 Near keep_near(std::span<const Ball> balls,
                std::span<const std::uint32_t> ids,
                const Vec3& point,
-               double reach,
+               double limit,
                Ids& kept)
 {
     const std::size_t begin = kept.size();
     for (const std::uint32_t i : ids)
-        if (gap_to(balls[i], point) <= reach) kept.push_back(i);
+        if (distance_to(balls[i], point) <= limit) kept.push_back(i);
     return {begin, kept.size()};
 }
 
@@ -96,7 +97,7 @@ Vec3 exit_by_pushing(std::span<const Ball> balls,
         const Ball* deepest = nullptr;
         double least = 0;
         for (const std::uint32_t i : ids)
-            if (const double here = gap_to(balls[i], at); here < least) {
+            if (const double here = distance_to(balls[i], at); here < least) {
                 least = here;
                 deepest = &balls[i];
             }
@@ -160,8 +161,8 @@ private:
     // Whether the answer cannot be less than that.
     bool is_enough() const
     {
-        constexpr double kRoom = 1 - 1e-9;
-        return std::max(worst_.bound, worst_.sure * kRoom) >= enough_;
+        constexpr double kSlack = 1 - 1e-9;
+        return std::max(worst_.bound, worst_.sure * kSlack) >= enough_;
     }
 
     // Those that may hold the worst place, split; or, where that would take too many looks, none.
@@ -211,7 +212,7 @@ private:
         while (height > last && height <= 2 * out_) {
             last = height;
             for (const std::uint32_t i : ids) {
-                if (gap_to(balls_[i], middle) > radius + last) continue;
+                if (distance_to(balls_[i], middle) > radius + last) continue;
                 height =
                     std::max(height, (balls_[i].center - middle).dot(normal) + balls_[i].radius);
             }
@@ -235,7 +236,7 @@ private:
         for (const std::uint32_t i : ids)
             most = std::min(most, furthest(balls_[i].center) - balls_[i].radius);
         const Vec3 way = outside < 0 ? way_out(patch, middle, ids) : Vec3(Vec3::Zero());
-        worst_.meet(outside);
+        worst_.add(outside);
         worst_.met = std::max(worst_.met, way.norm());
         const double least = std::min(furthest(middle + way), height_over(patch, middle, ids));
         return std::max(most, least);
@@ -259,9 +260,9 @@ private:
                 for (const Vec3& corner : patch.corners)
                     radius = std::max(radius, (corner - middle).norm());
                 const auto of = of_cell(ids, patch.near);
-                const double outside = least_gap(balls_, of, middle);
-                const double reach = std::max(outside, 2 * out_) + 2 * radius;
-                const Near near = keep_near(balls_, of, middle, reach, kept);
+                const double outside = least_separation(balls_, of, middle);
+                const double limit = std::max(outside, 2 * out_) + 2 * radius;
+                const Near near = keep_near(balls_, of, middle, limit, kept);
                 found.push_back({most_of(patch, middle, outside, of_cell(kept, near)), near, 0});
             }
             split_on(open, found, next);
@@ -301,15 +302,15 @@ private:
             for (const Cell& cell : open) {
                 const double radius = cell.half * 1.7320508075688774;
                 const auto of = of_cell(ids, cell.near);
-                const double outside = least_gap(balls_, of, cell.middle);
+                const double outside = least_separation(balls_, of, cell.middle);
                 found.emplace_back();
                 if (outside < -radius) continue;
-                const double furthest = furthest_gap(cell, of);
+                const double furthest = furthest_separation(cell, of);
                 if (furthest < 0) continue;
                 const MeshPoint nearest = nearest_on_mesh(mesh_, cell.middle, cell.within);
                 const double side = signed_distance(mesh_, cell.middle, nearest);
                 if (side > radius) continue;
-                if (outside >= 0 && side <= 0) worst_.meet(std::max(outside, -side));
+                if (outside >= 0 && side <= 0) worst_.add(std::max(outside, -side));
                 const double deepest = far_corner(cell, nearest.point);
                 found.back() = {std::max(std::min(furthest, outside + radius), deepest),
                                 keep_near(balls_, of, cell.middle, outside + 2 * radius, kept),
@@ -327,7 +328,7 @@ private:
     }
 
     // The same from the ball that it is least for.
-    double furthest_gap(const Cell& cell, std::span<const std::uint32_t> ids) const
+    double furthest_separation(const Cell& cell, std::span<const std::uint32_t> ids) const
     {
         double least = std::numeric_limits<double>::infinity();
         for (const std::uint32_t i : ids)
@@ -367,7 +368,7 @@ private:
 double distance_to_balls(std::span<const Ball> balls, const Vec3& point)
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const Ball& ball : balls) least = std::min(least, gap_to(ball, point));
+    for (const Ball& ball : balls) least = std::min(least, distance_to(ball, point));
     return least;
 }
 

@@ -38,10 +38,10 @@ void hand_down(SphereTree::Level& above, SphereTree::Level& below)
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < above.nodes.size(); ++i) {
             const SphereTree::Node& parent = above.nodes[i];
-            const double reach =
+            const double furthest =
                 double{(parent.center - node.center).norm()} - double{parent.radius};
-            if (reach >= least) continue;
-            least = reach;
+            if (furthest >= least) continue;
+            least = furthest;
             best = i;
         }
         children[best].push_back(node);
@@ -86,9 +86,9 @@ SphereTree build_sphere_tree(const Mesh& mesh, const SphereTreeLimits& limits)
         count = std::min(count, limits.spheres);
         const auto points = cover_points(mesh, std::clamp(kPlaces * count, kFewest, kMost));
         if (points.empty()) break;
-        double gap = 0;
-        const std::vector<Ball> cover = cover_mesh(cells, points, count, gap);
-        const std::vector<Ball> balls = rounded(cover, gap / 2);
+        double separation = 0;
+        const std::vector<Ball> cover = cover_mesh(cells, points, count, separation);
+        const std::vector<Ball> balls = rounded(cover, separation / 2);
         const double error = sphere_error(mesh, balls, kSlack, limits.looks, kBetter * last);
         if (!(error < kBetter * last)) {
             ++missed;

@@ -1,7 +1,7 @@
 #include "cooking/sphere_trees/spheres_cache.hpp"
 
-#include "cooking/cache/kept_file.hpp"
-#include "cooking/cache/kept_words.hpp"
+#include "cooking/cache/cache_words.hpp"
+#include "cooking/cache/disk_cache.hpp"
 
 #include <optional>
 
@@ -90,12 +90,12 @@ cached_spheres(const Mesh& mesh, const SphereTreeLimits& limits, const fs::path&
     if (folder.empty()) return {build_sphere_tree(mesh, limits), {}};
     const std::string key = spheres_key(mesh, limits);
     const fs::path path = folder / (key + ".spheres");
-    if (std::optional<SphereTree> kept = from_bytes(kept_bytes(path), key))
+    if (std::optional<SphereTree> kept = from_bytes(read_cached(path), key))
         return {std::move(*kept), {}};
     CachedSpheres made{build_sphere_tree(mesh, limits), {}};
     if (made.tree.levels.empty()) return made;
-    const std::string trouble = keep_words(path, words_of(made.tree, key));
-    if (!trouble.empty()) made.remark = "not kept for the next run: " + trouble;
+    const std::string trouble = write_cached_words(path, words_of(made.tree, key));
+    if (!trouble.empty()) made.warning = "not kept for the next run: " + trouble;
     return made;
 }
 

@@ -1,4 +1,4 @@
-// Spheres cache: sphere trees kept on disk by what they were made from (kept_file.hpp).
+// Spheres cache: sphere trees kept on disk by what they were made from (disk_cache.hpp).
 #pragma once
 
 #include "cooking/sphere_trees/sphere_tree.hpp"
@@ -15,7 +15,7 @@ std::string spheres_key(const Mesh& mesh, const SphereTreeLimits& limits);
 /// A tree, and what is to be said about its making: that it could not be kept, or nothing.
 struct CachedSpheres {
     SphereTree tree;
-    std::string remark;
+    std::string warning;
 };
 
 /// build_sphere_tree(), or what an earlier one of the same key left in the folder: the same bits.

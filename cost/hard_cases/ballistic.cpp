@@ -79,7 +79,7 @@ Errors fly(CaseBench& bench, const Throw& box, Integrator integrator, double dt,
     const Scene scene = boxes(bench, box, {integrator, Rotation::quaternion, dt}, count);
     Errors errors;
     double energy_start = 0;
-    bench.look_at(scene, [&](const World& world) {
+    bench.inspect(scene, [&](const World& world) {
         energy_start = world.measure().kinetic_energy / count;
         errors.start = std::abs(energy_start / box.energy - 1);
     });

@@ -48,7 +48,7 @@ struct Drift {
 Drift watch(CaseBench& bench, const Scene& scene, double time)
 {
     std::vector<Vec3> first;
-    bench.look_at(scene, [&](const World& world) {
+    bench.inspect(scene, [&](const World& world) {
         for (const BodyId body : world.bodies()) first.push_back(world.pose(body).position);
     });
     Drift drift;
@@ -108,14 +108,14 @@ void stand_by_default(
 
 Scene card_house(const CaseBench& bench, int levels, double friction)
 {
-    const double lean = 25 * kPi / 180, gap = 0.0004;
+    const double lean = 25 * kPi / 180, separation = 0.0004;
     const Vec3 half(0.2, 0.1, 0.001);
     SceneParts parts(bench.scene());
     const std::uint32_t material = parts.material(friction);
     parts.plane(material, Vec3::UnitZ(), 0);
     const double sideways = half.x() * std::sin(lean) + half.z() * std::cos(lean);
     const double upwards = half.x() * std::cos(lean) + half.z() * std::sin(lean);
-    const double pitch = 2 * half.x() + gap;
+    const double pitch = 2 * half.x() + separation;
     double floor = 0;
     for (int tents = levels; tents >= 1; --tents) {
         for (int i = 0; i < tents; ++i)

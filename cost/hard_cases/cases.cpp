@@ -146,7 +146,7 @@ ShapeDescription shrunk(ShapeDescription shape)
 void scale_friction(Scene& scene, double by)
 {
     for (Material& material : scene.materials) material.friction *= by;
-    for (MaterialPair& pair : scene.pairs)
+    for (MaterialPairDescription& pair : scene.pairs)
         if (pair.friction) *pair.friction *= by;
 }
 
@@ -362,7 +362,7 @@ void CaseBench::run(const Scene& scene,
     spent_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-void CaseBench::look_at(const Scene& scene, const std::function<void(const World&)>& look)
+void CaseBench::inspect(const Scene& scene, const std::function<void(const World&)>& look)
 {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();

@@ -100,7 +100,7 @@ public:
              class EnergyLedger* ledger = nullptr);
 
     /// Shows a scene's world before its first step.
-    void look_at(const Scene& scene, const std::function<void(const class World&)>& look);
+    void inspect(const Scene& scene, const std::function<void(const class World&)>& look);
 
     /// What a method says of two shapes, placed in the world.
     ConvexAnswer ask(ConvexQuery& query,

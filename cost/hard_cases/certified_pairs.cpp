@@ -9,7 +9,7 @@
 namespace throng {
 namespace {
 
-constexpr double kLeastGap = 1e-9, kGreatestGap = 0.3;
+constexpr double kLeastSeparation = 1e-9, kGreatestSeparation = 0.3;
 
 const Vec3& furthest(const Hull& hull, const Vec3& direction)
 {
@@ -120,28 +120,30 @@ CertifiedPair certified_pair(const Hull& a, const Hull& b, Random& random)
     CertifiedPair pair;
     const Quat turn = random.below(2) == 0 ? random_turn(random) : awkward_turn(random);
     pair.b_in_a.orientation = turn;
-    pair.gap = log_uniform(random, kLeastGap, kGreatestGap) * certified_size(a, b);
+    pair.separation =
+        log_uniform(random, kLeastSeparation, kGreatestSeparation) * certified_size(a, b);
     pair.touching = random.below(2) == 0;
 
     if (!pair.touching) {
         if (random.below(8) == 0)
-            pair.gap = log_uniform(random, kFarGap, 10 * kFarGap) * certified_size(a, b);
+            pair.separation =
+                log_uniform(random, kFarSeparation, 10 * kFarSeparation) * certified_size(a, b);
         // A vertex of b above a point of a's furthest face, edge or vertex; then aside, along the
         // plane between them, so that faces lie over one another in all ways.
         const Vec3 along = direction_between(a, b, turn, random);
         const Vec3 lowest = turn * furthest(b, turn.conjugate() * -along);
         const Vec3 aside = random_vector(random, -1, 1) * random.uniform(0, 1) * a.outer_radius;
-        pair.b_in_a.position = furthest(a, along) - lowest + pair.gap * along
+        pair.b_in_a.position = furthest(a, along) - lowest + pair.separation * along
             + (random.below(2) == 0 ? aside - along * along.dot(aside) : Vec3(Vec3::Zero()));
         return pair;
     }
     // Some point of b, its center at times, comes to a point as deep in a as the gap says.
     const bool centers = random.below(8) == 0;
-    const double share = std::min(1.0, pair.gap / a.inner_radius);
+    const double share = std::min(1.0, pair.separation / a.inner_radius);
     const Vec3 skin = surface_point(a, random);
     const Vec3 in_a = centers ? a.center : Vec3(skin + share * (a.center - skin));
     const Vec3 in_b = centers ? b.center : surface_point(b, random);
-    pair.gap = centers ? a.inner_radius : share * a.inner_radius;
+    pair.separation = centers ? a.inner_radius : share * a.inner_radius;
     pair.b_in_a.position = in_a - turn * in_b;
     return pair;
 }

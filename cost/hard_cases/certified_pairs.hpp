@@ -10,19 +10,19 @@
 
 namespace throng {
 
-/// touching: a ball of radius `gap` lies in a and has its center in b; else a slab `gap` thick lies
-/// between the two.
+/// touching: a ball of radius `separation` lies in a and has its center in b; else a slab
+/// `separation` thick lies between the two.
 struct CertifiedPair {
     Pose b_in_a;
     bool touching = false;
-    double gap = 0;  // m
+    double separation = 0;  // m
 };
 
 /// m, what gaps are relative to: the radius of the greater ball round the two.
 double certified_size(const Hull& a, const Hull& b);
 
 /// Beyond this, of the size, any filter can tell that two hulls about their origins are apart.
-inline constexpr double kFarGap = 5;
+inline constexpr double kFarSeparation = 5;
 
 /// A placing whose gap is from 1e-9 to 0.3 of the size, all magnitudes alike; one in sixteen is far
 /// apart.

@@ -83,7 +83,7 @@ void fly(CaseBench& bench, const Room& room, int count)
     const double start = count * kMass * kSpeed * kSpeed / 2;
     double reference = 0, least = start, most = start, now = 0;
     const Scene scene = make_room(bench, room, count);
-    bench.look_at(scene, [&](const World& world) { reference = world.measure().potential_energy; });
+    bench.inspect(scene, [&](const World& world) { reference = world.measure().potential_energy; });
     bench.run(scene, room.time, [&](World& world, double) {
         const Measures measures = world.measure();
         now = measures.kinetic_energy + measures.potential_energy - reference;

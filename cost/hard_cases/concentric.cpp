@@ -64,7 +64,7 @@ void case_concentric(CaseBench& bench)
 {
     MethodTally tally;
     const Pose placed{Vec3(0.3, -2, 1), exponential(Vec3(0.3, 0.5, -0.4))};
-    const auto look_at = [&](const KnownPair& pair, const char* name, double bound) {
+    const auto inspect = [&](const KnownPair& pair, const char* name, double bound) {
         judge(bench, tally, pair, name, {.value = bound});
         judge_in_float(bench, tally, pair, name);
         judge_repeat(bench, tally, pair);
@@ -72,14 +72,14 @@ void case_concentric(CaseBench& bench)
     for (const double ratio : kRatios) {
         for (const Quat& turn : {Quat(Quat::Identity()), Quat(exponential(Vec3(0.9, 0.2, -0.6)))}) {
             const Pose inside{placed.position, placed.orientation * turn};
-            look_at(known_boxes(kHalf, placed, kHalf / ratio, inside), "boxes", 1e-9);
+            inspect(known_boxes(kHalf, placed, kHalf / ratio, inside), "boxes", 1e-9);
         }
         for (const RoundPair& round : round_pairs(ratio))
             for (const Pose& at : {Pose{}, placed}) {
                 KnownPair pair{round.a, round.b, at, at};
                 pair.size = round.size;
                 pair.truth = -round.depth;
-                look_at(pair, round.name, round.bound);
+                inspect(pair, round.name, round.bound);
             }
     }
     tally.report(bench);

@@ -241,7 +241,7 @@ double depth_error(CaseBench& bench, const Settings& settings, const DepthPair& 
         }
     }
     double error = 0;
-    bench.look_at(scene, [&](const World& world) {
+    bench.inspect(scene, [&](const World& world) {
         const Measures measures = world.measure();
         error = std::max(std::abs(measures.greatest_overlap - kDepth),
                          std::abs(measures.mean_overlap - kDepth));

@@ -72,7 +72,7 @@ struct Judge {
         tally.worst(method.name, setting, quantity, error / side.pair.size, bounds.value);
     }
 
-    void look_at(const ConvexAnswer& answer) const
+    void inspect(const ConvexAnswer& answer) const
     {
         const double truth = side.pair.truth;
         const bool verdict_matters = std::abs(truth) > bounds.decided_beyond * side.pair.size;
@@ -194,7 +194,7 @@ void judge(CaseBench& bench,
             for (std::size_t k = 0; k < kStarts.size(); ++k) {
                 const ConvexAnswer answer = bench.ask(queries[way], method.name, sides[way].at_a(),
                                                       sides[way].at_b(), pair.size, kStarts[k]);
-                one.look_at(answer);
+                one.inspect(answer);
                 separations[way][k] = told_separation(method, answer);
             }
         }

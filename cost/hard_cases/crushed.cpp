@@ -65,7 +65,7 @@ std::uint32_t put_heavy(SceneParts& parts, const Blow& blow)
     return heavy;
 }
 
-void strike(CaseBench& bench, const Blow& blow)
+void hit(CaseBench& bench, const Blow& blow)
 {
     SceneParts parts(bench.scene());
     parts.scene().settings.dt = blow.dt;
@@ -133,7 +133,7 @@ void case_crushed(CaseBench& bench)
         {.setting = "pgs, 1:100", .ratio = 100, .choose = plainly},
         {.setting = "direct", .choose = ask_exactly},
     };
-    for (const Blow& blow : all) strike(bench, blow);
+    for (const Blow& blow : all) hit(bench, blow);
 }
 
 }  // namespace throng

@@ -40,14 +40,14 @@ double precession_of(const Disk& disk)
 }
 
 // The disk on a plane, at its steady roll round the vertical.
-Scene rolling_round(const CaseBench& bench, const Disk& disk, double friction, double lever)
+Scene rolling_round(const CaseBench& bench, const Disk& disk, double friction, double lever_arm)
 {
     const double sine = std::sin(disk.angle), cosine = std::cos(disk.angle);
     const Vec3 axis(sine, 0, cosine), down(cosine, 0, -sine);
     const Vec3 to_rim = disk.radius * down - disk.half_thickness * axis;
     SceneParts parts(bench.scene());
     const std::uint32_t material = parts.material(friction);
-    parts.scene().materials[material].rolling_friction = lever;
+    parts.scene().materials[material].rolling_friction = lever_arm;
     parts.plane(material, Vec3::UnitZ(), 0);
     const Quat turn = exponential(Vec3(0, disk.angle, 0));
     const std::uint32_t id = parts.cylinder(material, kDiskMass, disk.radius, disk.half_thickness,
@@ -141,7 +141,7 @@ Settled settle_disk(CaseBench& bench, const Scene& scene, double time)
         const Measures measures = world.measure();
         return measures.kinetic_energy + measures.potential_energy;
     };
-    bench.look_at(scene, [&](const World& world) {
+    bench.inspect(scene, [&](const World& world) {
         first_energy = energy_of(world);
         first_tilt = tilt_of(world.pose(world.bodies().back()).orientation * Vec3::UnitZ());
     });

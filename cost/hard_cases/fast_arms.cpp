@@ -106,7 +106,7 @@ Account account_of(CaseBench& bench, const Scene& scene, double time)
         const double sum = now.kinetic_energy + now.potential_energy;
         return std::isfinite(sum) ? sum : 1e300;
     };
-    bench.look_at(scene, [&](const World& world) {
+    bench.inspect(scene, [&](const World& world) {
         account.first = account.most = account.least = energy_of(world);
         account.moving = world.measure().kinetic_energy;
     });
@@ -162,7 +162,7 @@ void flies(CaseBench& bench)
                   flown(bench, 1e5, 230, as));
 }
 
-void strikes(CaseBench& bench)
+void hits(CaseBench& bench)
 {
     for (const double stiffness : {1e2, 1e4, 1e5, 1e6, 1e8})
         for (const double ratio : {0.0, 0.3})
@@ -242,7 +242,7 @@ void rests(CaseBench& bench, const std::string& setting, const Scene& scene, std
     bench.report("bar on a pivot upon a ball" + setting, "turning at rest", speed, 1e-4, "rad/s");
 }
 
-void hangs(CaseBench& bench)
+void has_pivot(CaseBench& bench)
 {
     for (const bool exactly : {false, true})
         for (const double dt : {1.0 / 60, 1.0 / 240, 1e-3}) {
@@ -298,9 +298,9 @@ void is_struck(CaseBench& bench)
 void case_fast_arms(CaseBench& bench)
 {
     flies(bench);
-    strikes(bench);
+    hits(bench);
     is_thrown_often(bench);
-    hangs(bench);
+    has_pivot(bench);
     is_struck(bench);
 }
 

@@ -203,7 +203,7 @@ namespace {
 
 // Two balls on ways side by side: how near they come to having changed places, and how their
 // velocities differ from those they began with.
-void run_pair(CaseBench& bench, const std::string& setting, double offset, bool meet)
+void run_pair(CaseBench& bench, const std::string& setting, double offset, bool hits)
 {
     for_each_method([&](std::string_view name, ToiMethod method) {
         Scene scene = weightless(bench, 1.0 / 60, method, 1);
@@ -221,9 +221,9 @@ void run_pair(CaseBench& bench, const std::string& setting, double offset, bool 
         const std::string of = std::string(name) + ", " + setting;
         // Balls as heavy as each other swap what they have along the line of their centers.
         const double along = std::sqrt(std::max(0.0, 1 - offset * offset / (0.02 * 0.02)));
-        const double wanted = meet ? 2 * along : 0;
+        const double wanted = hits ? 2 * along : 0;
         bench.report(of, "error of the change of velocity", std::abs(change - wanted),
-                     meet ? 1e-2 : 0, "1");
+                     hits ? 1e-2 : 0, "1");
         bench.report(of, "momentum gained", momentum, 1e-5, "1");
     });
 }
@@ -259,7 +259,7 @@ void bounce_between_plates(CaseBench& bench)
         add_still(scene, box({0.05, 2, 2}), {side * (0.55 + 1e-4), 0, 0});
     add_body(scene, box(Vec3::Constant(0.5)), moving(Vec3::Zero(), {10, 0, 0}));
     double energy = 0, gained = 0;
-    bench.look_at(scene, [&](const World& world) { energy = world.measure().kinetic_energy; });
+    bench.inspect(scene, [&](const World& world) { energy = world.measure().kinetic_energy; });
     bench.run(scene, 1, [&](World& world, double) {
         gained = std::max(gained, world.measure().kinetic_energy / energy - 1);
         return true;

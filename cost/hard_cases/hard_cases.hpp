@@ -109,7 +109,7 @@ public:
     explicit SceneParts(Scene scene) : scene_(std::move(scene)) { }
 
     std::uint32_t material(double friction, double restitution = 0);
-    void meet(std::uint32_t a, std::uint32_t b, double friction);
+    void pair_materials(std::uint32_t a, std::uint32_t b, double friction);
     /// Solid where normal . x < offset.
     std::uint32_t plane(std::uint32_t material, const Vec3& normal, double offset);
     /// Dynamic bodies of a mass; inertia from the shape.

@@ -53,7 +53,7 @@ End end_of(CaseBench& bench, const Scene& scene, double time)
 Scene row_of_balls(const CaseBench& bench,
                    ImpactLaw law,
                    std::initializer_list<double> masses,
-                   double gap,
+                   double separation,
                    int moving,
                    double speed)
 {
@@ -61,7 +61,8 @@ Scene row_of_balls(const CaseBench& bench,
     const std::uint32_t material = parts.material(0, 1);
     int place = 0;
     for (const double mass : masses) {
-        const std::uint32_t ball = parts.ball(material, mass, 0.5, Vec3((1 + gap) * place, 0, 0));
+        const std::uint32_t ball =
+            parts.ball(material, mass, 0.5, Vec3((1 + separation) * place, 0, 0));
         if (place < moving) parts.body(ball).velocity = Vec3(speed, 0, 0);
         ++place;
     }

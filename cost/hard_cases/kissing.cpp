@@ -19,8 +19,8 @@ constexpr double kEighthTurn = 0.78539816339744830962;
 
 struct Kiss {
     const char* name;
-    Quat turn;     // of b, against a
-    double reach;  // of b towards a, in half edges
+    Quat turn;      // of b, against a
+    double offset;  // of b towards a, in half edges
 };
 
 // Askew about the way they meet along, so that no two edges are parallel but those that kiss.
@@ -33,10 +33,10 @@ const Kiss kKisses[] = {
 const Quat kPoses[] = {Quat::Identity(), exponential(Vec3(0.4, -0.7, 0.2)),
                        exponential(Vec3(-1.9, 0.3, 1.1))};
 
-KnownPair kissing(double edge, const Kiss& kiss, const Quat& pose, double gap)
+KnownPair kissing(double edge, const Kiss& kiss, const Quat& pose, double separation)
 {
     const Vec3 half = Vec3::Constant(edge / 2);
-    const Vec3 shift((1 + kiss.reach) * edge / 2 + gap, 0.11 * edge, -0.07 * edge);
+    const Vec3 shift((1 + kiss.offset) * edge / 2 + separation, 0.11 * edge, -0.07 * edge);
     return known_boxes(half, {Vec3::Zero(), pose}, half, {pose * shift, pose * kiss.turn});
 }
 
@@ -60,7 +60,7 @@ void judge_order(CaseBench& bench, MethodTally& tally, std::vector<KnownPair>& s
     }
 }
 
-void sweep_gaps(
+void sweep_separations(
     CaseBench& bench, MethodTally& tally, double edge, const Kiss& kiss, const Quat& pose)
 {
     std::vector<KnownPair> sweep;
@@ -79,14 +79,14 @@ void case_kissing(CaseBench& bench)
     MethodTally tally;
     for (const double edge : kEdges)
         for (const Kiss& kiss : kKisses)
-            for (const Quat& pose : kPoses) sweep_gaps(bench, tally, edge, kiss, pose);
+            for (const Quat& pose : kPoses) sweep_separations(bench, tally, edge, kiss, pose);
 
     // Cubes further and further apart: what is asked grows with the gap once it is the greater.
-    for (double gap = 1e8; gap > 0.5e-12; gap /= 10)
+    for (double separation = 1e8; separation > 0.5e-12; separation /= 10)
         for (const Quat& turn : {Quat(Quat::Identity()), kPoses[1]}) {
             KnownPair pair = known_boxes(Vec3::Constant(0.5), Pose{}, Vec3::Constant(0.5),
-                                         {turn * Vec3(1 + gap, 0, 0), turn});
-            pair.size = std::max(pair.size, gap);
+                                         {turn * Vec3(1 + separation, 0, 0), turn});
+            pair.size = std::max(pair.size, separation);
             judge(bench, tally, pair, "gaps 1e8 to 1e-12",
                   {.decided_beyond = 0.9e-12, .value = 1e-12});
         }

@@ -43,8 +43,8 @@ Scene log_pile(const CaseBench& bench, double on_log, double on_floor)
     const double radius = 0.5, half_length = 1;
     SceneParts parts(bench.scene());
     const std::uint32_t log = parts.material(0), floor = parts.material(0);
-    parts.meet(log, log, on_log);
-    parts.meet(log, floor, on_floor);
+    parts.pair_materials(log, log, on_log);
+    parts.pair_materials(log, floor, on_floor);
     parts.plane(floor, Vec3::UnitZ(), 0);
     const Quat lying = exponential(Vec3(kPi / 2, 0, 0));  // axis along y
     const double up = radius * std::sqrt(3.0);
@@ -82,8 +82,8 @@ Scene leaning_ladder(const CaseBench& bench, const Ladder& ladder, double fricti
     SceneParts parts(bench.scene());
     const std::uint32_t wood = parts.material(0), floor = parts.material(0),
                         wall = parts.material(0);
-    parts.meet(wood, floor, friction);
-    parts.meet(wood, wall, 0);
+    parts.pair_materials(wood, floor, friction);
+    parts.pair_materials(wood, wall, 0);
     parts.plane(floor, Vec3::UnitZ(), ladder.lowest().z());
     parts.plane(wall, Vec3(-1, 0, 0), -ladder.outermost().x());
     Pose pose;

@@ -64,16 +64,16 @@ Pile loaded_pyramid(const CaseBench& bench, double denser)
             parts.scene(), 2};
 }
 
-struct Rest {
+struct Resting {
     double overlap = 0, force_error = 0, sunk = 0;
 };
 
-Rest watch(CaseBench& bench, const Scene& scene, double time)
+Resting watch(CaseBench& bench, const Scene& scene, double time)
 {
     double weight = 0;
     for (const BodyDescription& body : scene.bodies) weight += body.mass.value_or(0) * kGravity;
     const double first = scene.bodies.back().position.z();
-    Rest rest;
+    Resting rest;
     double next_look = 1;
     bench.run(scene, time, [&](World& world, double now) {
         if (now + 1e-9 < next_look) return true;
@@ -103,14 +103,14 @@ void case_mass_ratio(CaseBench& bench)
         const double time = bench.brief() ? 1 : kTime;
         pile.scene.settings.sleep = false;
         if (!bench.brief()) {
-            const Rest soft = watch(bench, pile.scene, time);
+            const Resting soft = watch(bench, pile.scene, time);
             bench.report_default(pile.name + ", default", "greatest overlap over the smallest box",
                                  soft.overlap / pile.small, kOverlap, "1", "solver=direct");
             bench.report_default(pile.name + ", default", "error of the base force",
                                  soft.force_error, 1e-3, "1", "solver=direct");
         }
         ask_exactly(pile.scene.settings);
-        const Rest rest = watch(bench, pile.scene, time);
+        const Resting rest = watch(bench, pile.scene, time);
         const std::string name = pile.name + ", direct";
         bench.report(name, "greatest overlap over the smallest box", rest.overlap / pile.small,
                      kOverlap, "1");

@@ -91,10 +91,10 @@ void judge_edges(CaseBench& bench, MethodTally& tally)
     const Quat on_edge = exponential(Vec3(kEighthTurn, 0, 0));
     for (const double tilt : {0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10})
         for (const Axes& axes : kAxes)
-            for (const double gap : {-1e-3, -1e-9, 0.0, 1e-9, 1e-3}) {
+            for (const double clearance : {-1e-3, -1e-9, 0.0, 1e-9, 1e-3}) {
                 // About y and z here: the edges run along x.
                 const Vec3 about(0, axes.about.x(), axes.about.y());
-                const Pose pose{Vec3(0.03, 0, std::sqrt(2.0) + gap),
+                const Pose pose{Vec3(0.03, 0, std::sqrt(2.0) + clearance),
                                 exponential(tilt * about) * on_edge};
                 judge(bench, tally, known_boxes(half, {Vec3::Zero(), on_edge}, half, pose),
                       "edges all but parallel");

@@ -48,12 +48,12 @@ void bounce_to_rest(CaseBench& bench, const char* name, double height, double e,
     // this long.
     const double slowest = std::sqrt(2 * kGravity * tolerance * radius);
     const double left_out = 2 * slowest / kGravity / (1 - e);
-    double last = 0, gap = height, gone = 0, z = radius + height, speed = 0;
+    double last = 0, clearance = height, gone = 0, z = radius + height, speed = 0;
     bench.run(parts.scene(), wanted + 1, [&](World& world, double now) {
         const double before = z;
         z = world.pose(world.bodies()[1]).position.z();
         speed = world.velocity(world.bodies()[1]).norm();
-        gap = std::min(gap, z - radius);
+        clearance = std::min(clearance, z - radius);
         gone += std::abs(z - before);
         if (speed > 0.1 * slowest) last = now;  // as it turns round it may be slow for a moment
         return true;
@@ -61,7 +61,7 @@ void bounce_to_rest(CaseBench& bench, const char* name, double height, double e,
     bench.report(name, "error of the time to rest", std::abs(last - wanted), left_out + dt, "s");
     // A step in which it turns round shows less than it went: twice a step's fall at most.
     bench.report(name, "error of the path, relative", std::abs(gone - path) / path, 1e-2, "1");
-    bench.report(name, "overlap", -std::min(gap, 0.0), 0, "m");
+    bench.report(name, "overlap", -std::min(clearance, 0.0), 0, "m");
     bench.report(name, "speed 1 s later", speed, 1e-9, "m/s");
 }
 
@@ -230,7 +230,7 @@ void hold_apart(Settings& settings, Overlap overlap)
 }
 
 struct Tower : Price {
-    double gap = 1, deepest = 0, speed = 0;
+    double clearance = 1, deepest = 0, speed = 0;
 };
 
 // H8: ten cubes of 1 m, as they fall asleep nowhere. The least gap between the middles of faces.
@@ -248,7 +248,7 @@ Tower tower(CaseBench& bench, Overlap overlap)
         seen.speed = 0;
         for (std::size_t i = 1; i < world.bodies().size(); ++i) {
             const double z = world.pose(world.bodies()[i]).position.z();
-            seen.gap = std::min(seen.gap, z - 0.5 - below);
+            seen.clearance = std::min(seen.clearance, z - 0.5 - below);
             below = z + 0.5;
             seen.speed = std::max(seen.speed, world.velocity(world.bodies()[i]).norm());
         }
@@ -261,27 +261,27 @@ Tower tower(CaseBench& bench, Overlap overlap)
 
 // How far apart boxes and the ground at z = 0 are: the least of all pairs within reach, in four
 // times the digits and by nothing that a step knows.
-class BoxGaps {
+class BoxSeparations {
 public:
-    explicit BoxGaps(const Vec3& half) : half_(half) { }
+    explicit BoxSeparations(const Vec3& half) : half_(half) { }
 
     double least(std::span<const Pose> poses) const
     {
         std::vector<QuadSolid> solids;
         std::vector<Box3> boxes;
-        double gap = kReach;
+        double clearance = kReach;
         for (const Pose& pose : poses) {
             solids.push_back(quad_box(half_, QuadPose(pose)));
             const Vec3 extent = pose.orientation.toRotationMatrix().cwiseAbs() * half_;
             boxes.push_back({pose.position - extent - Vec3::Constant(kReach / 2),
                              pose.position + extent + Vec3::Constant(kReach / 2)});
-            gap = std::min(gap, pose.position.z() - extent.z());
+            clearance = std::min(clearance, pose.position.z() - extent.z());
         }
         for (std::size_t i = 0; i < solids.size(); ++i)
             for (std::size_t k = 0; k < i; ++k)
                 if (boxes[i].overlaps(boxes[k]))
-                    gap = std::min(gap, quad_truth(solids[i], solids[k]).separation);
-        return gap;
+                    clearance = std::min(clearance, quad_truth(solids[i], solids[k]).separation);
+        return clearance;
     }
 
 private:
@@ -290,7 +290,7 @@ private:
 };
 
 struct House : Price {
-    double drift = 0, gap = 1;
+    double drift = 0, clearance = 1;
     std::uint64_t fallbacks = 0;
 };
 
@@ -301,7 +301,7 @@ House house(CaseBench& bench, Overlap overlap, int levels)
     scene.settings = bench.settings();
     hold_apart(scene.settings, overlap);
     const World built(scene);
-    const BoxGaps gaps(
+    const BoxSeparations separations(
         std::get<BoxShape>(scene.shapes[scene.instances.front().common.shape].shape).half_extents);
     House seen;
     bench.run(scene, bench.brief() ? 1 : 10, [&](World& world, double) {
@@ -312,7 +312,8 @@ House house(CaseBench& bench, Overlap overlap, int levels)
             const Vec3 drift = cards.back().position - built.pose(built.bodies()[i]).position;
             seen.drift = std::max(seen.drift, drift.norm());
         }
-        if (overlap != Overlap::allow) seen.gap = std::min(seen.gap, gaps.least(cards));
+        if (overlap != Overlap::allow)
+            seen.clearance = std::min(seen.clearance, separations.least(cards));
         seen.fallbacks = world.report().fallbacks;
         seen.add(world);
         return true;
@@ -334,11 +335,11 @@ void report_house(CaseBench& bench)
         bench.report(by, "greatest overlap, at any step", seen.overlap, most, "m");
         if (backs)
             bench.report(by, "least distance by geometry, at any step, wanting",
-                         seen.gap > 0 ? 0 : 1, 0, "1");
+                         seen.clearance > 0 ? 0 : 1, 0, "1");
         else
-            bench.report(by, "greatest overlap by geometry, at any step", std::max(0.0, -seen.gap),
-                         most, "m");
-        bench.show(by, "least distance by geometry, at any step", seen.gap, "m");
+            bench.report(by, "greatest overlap by geometry, at any step",
+                         std::max(0.0, -seen.clearance), most, "m");
+        bench.show(by, "least distance by geometry, at any step", seen.clearance, "m");
         bench.report(by, "drift at the end", seen.drift, 1e-3, "m");
         bench.report(by, "groups or pieces given up", static_cast<double>(seen.fallbacks), 0, "1");
         bench.report_time(by, "time a step", seen.ms * 1e6);
@@ -463,7 +464,7 @@ void case_no_overlap(CaseBench& bench)
     const Tower seen = tower(bench, Overlap::back_up), usual = tower(bench, Overlap::allow);
     const Tower halved = tower(bench, Overlap::subdivide);
     const char* const name = "H8, ten cubes from 1 mm gaps, back_up";
-    bench.report(name, "least distance, at any step, wanting", seen.gap > 0 ? 0 : 1, 0, "1");
+    bench.report(name, "least distance, at any step, wanting", seen.clearance > 0 ? 0 : 1, 0, "1");
     bench.report(name, "greatest overlap, at any step", seen.overlap, 0, "m");
     bench.report(name, "speed at the end", seen.speed, 1e-3, "m/s");
     bench.report_time(name, "time a step", seen.ms * 1e6);

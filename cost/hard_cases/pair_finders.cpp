@@ -21,9 +21,9 @@ constexpr double kLargest = 2, kRoom = 6;
 Scene mixed_boxes(const CaseBench& bench, std::uint64_t seed)
 {
     Random random(seed);
-    const auto vector = [&](double reach) {
+    const auto vector = [&](double half_size) {
         Vec3 made = Vec3::Zero();
-        for (double& x : made) x = random.uniform(-reach, reach);
+        for (double& x : made) x = random.uniform(-half_size, half_size);
         return made;
     };
     SceneParts parts(bench.scene());

@@ -43,7 +43,7 @@ Swing swing(CaseBench& bench, double dt)
     bench.run(parts.scene(), kSteps * dt, [&](World& world, double) {
         const double off = world.pose(world.bodies().back()).position.z() - (kRadius - kRests);
         result.widest = std::max(result.widest, std::abs(off));
-        result.warned = !world.remarks().empty();
+        result.warned = !world.warnings().empty();
         return result.widest < 1;
     });
     return result;

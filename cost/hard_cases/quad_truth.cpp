@@ -49,9 +49,9 @@ Extent extent_along(const QuadSolid& solid, const QuadVec& axis)
     Extent extent{dot(solid.corners[0], axis), 0};
     extent.most = extent.least;
     for (const QuadVec& corner : solid.corners) {
-        const Quad reach = dot(corner, axis);
-        extent.least = std::min(extent.least, reach);
-        extent.most = std::max(extent.most, reach);
+        const Quad projection = dot(corner, axis);
+        extent.least = std::min(extent.least, projection);
+        extent.most = std::max(extent.most, projection);
     }
     return extent;
 }
@@ -270,8 +270,8 @@ double quad_outside(const QuadSolid& solid, const Vec3& point)
         if (!(length > 0)) continue;
         const QuadVec unit = normal * (1 / length);
         const Extent extent = extent_along(solid, unit);
-        const Quad reach = dot(at, unit);
-        outside = std::max({outside, reach - extent.most, extent.least - reach});
+        const Quad projection = dot(at, unit);
+        outside = std::max({outside, projection - extent.most, extent.least - projection});
     }
     return static_cast<double>(outside);
 }

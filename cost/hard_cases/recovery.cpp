@@ -68,7 +68,7 @@ Parted part(CaseBench& bench, const Heap& heap)
     const double limit = heap.scene.settings.push_limit, dt = heap.scene.settings.dt;
     const int every = heap.scene.bodies.size() > 100 ? 20 : 1;
     Parted parted;
-    bench.look_at(heap.scene,
+    bench.inspect(heap.scene,
                   [&](const World& world) { parted.overlap = world.measure().greatest_overlap; });
     int step = 0;
     bench.run(heap.scene, 10, [&](World& world, double) {

@@ -199,8 +199,8 @@ Pulled pull_box(CaseBench& bench, const Vec3& direction, const std::function<voi
     SceneParts parts(bench.scene());
     const std::uint32_t ground = parts.material(0), plate = parts.material(0),
                         round = parts.material(0);
-    parts.meet(ground, plate, 0.4);
-    parts.meet(plate, round, 0.8);
+    parts.pair_materials(ground, plate, 0.4);
+    parts.pair_materials(plate, round, 0.8);
     parts.plane(ground, Vec3::UnitZ(), 0);
     const std::uint32_t box =
         parts.box(plate, box_mass, Vec3(10, 10, 0.1), {Vec3(0, 0, 0.1), Quat::Identity()});

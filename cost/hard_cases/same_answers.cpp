@@ -72,16 +72,16 @@ public:
                 if (!method.touch || (method.polytopes_only && most > kMostForPolytopes)) continue;
                 const ConvexAnswer answer =
                     bench_.ask(query, method.name, Pose{}, pair.b_in_a, size, kStarts[i % 3]);
-                look_at(counts_[k], pair, size, answer);
+                inspect(counts_[k], pair, size, answer);
                 if (method.name == "gjk") depth = -told_separation(method, answer);
             }
             const auto touch = [&](Precision precision) {
                 return bench_.touch(query, precision, Pose{}, pair.b_in_a, size);
             };
-            look_at(in_double_, pair, size, touch(Precision::double_));
-            if (pair.gap <= kFloat * size) continue;
+            inspect(in_double_, pair, size, touch(Precision::double_));
+            if (pair.separation <= kFloat * size) continue;
             const ConvexAnswer answer = touch(Precision::float_);
-            look_at(in_float_, pair, size, answer);
+            inspect(in_float_, pair, size, answer);
             if (answer.verdict == QueryVerdict::touching && depth > 0)
                 look_at_depth(std::abs(answer.separation + depth), lead, size);
         }
@@ -120,7 +120,7 @@ private:
     };
 
     static void
-    look_at(Count& count, const CertifiedPair& pair, double size, const ConvexAnswer& answer)
+    inspect(Count& count, const CertifiedPair& pair, double size, const ConvexAnswer& answer)
     {
         const bool wrong = answer.verdict == QueryVerdict::refused
             || answer.verdict == (pair.touching ? QueryVerdict::apart : QueryVerdict::touching);
@@ -129,7 +129,8 @@ private:
         count.wrong += wrong ? 1 : 0;
         count.said_touching += answer.verdict == QueryVerdict::touching ? 1 : 0;
         count.undecided += undecided ? 1 : 0;
-        count.undecided_far += undecided && !pair.touching && pair.gap >= kFarGap * size ? 1 : 0;
+        count.undecided_far +=
+            undecided && !pair.touching && pair.separation >= kFarSeparation * size ? 1 : 0;
     }
 
     // A face that leads is deeper than the true depth, by up to its lead.
@@ -237,15 +238,16 @@ std::vector<double> mean_rounds(CaseBench& bench, int vertices)
     Random random(40);
     const Stated a = stated(random_hull(random, vertices));
     const Stated b = stated(random_hull(random, vertices));
-    const double reach = a.hull.outer_radius + b.hull.outer_radius;
+    const double max_separation = a.hull.outer_radius + b.hull.outer_radius;
     ConvexQuery query(a.shape, b.shape);
     std::vector<double> rounds;
     for (const MethodDescription& method : known_methods()) {
         double sum = 0;
         for (int i = 0; i < kSteps && method.touch && !method.polytopes_only; ++i) {
             const Vec3 about(0, 0.3 * kStep * i, kStep * i);
-            const Pose way{exponential(about) * Vec3(reach, 0, 0), exponential(2 * about)};
-            sum += bench.ask(query, method.name, Pose{}, way, reach, MethodStart::cached).rounds;
+            const Pose way{exponential(about) * Vec3(max_separation, 0, 0), exponential(2 * about)};
+            sum += bench.ask(query, method.name, Pose{}, way, max_separation, MethodStart::cached)
+                       .rounds;
         }
         rounds.push_back(sum / kSteps);
     }
@@ -280,7 +282,8 @@ void judge_trees(CaseBench& bench)
                 const QueryVerdict verdict = query.ask_trees(pair.b_in_a, k).verdict;
                 const bool apart = verdict == QueryVerdict::apart;
                 parted += pair.touching && apart ? 1 : 0;
-                missed_far += !pair.touching && pair.gap >= kFarGap * size && !apart ? 1 : 0;
+                missed_far +=
+                    !pair.touching && pair.separation >= kFarSeparation * size && !apart ? 1 : 0;
             }
         }
         const std::string setting = "k-DOP trees of " + std::to_string(k) + ", 12,000 pairs";

@@ -25,7 +25,7 @@ void SceneParts::hold(std::uint32_t id, Motion motion)
     body(id).mass.reset();
 }
 
-void SceneParts::meet(std::uint32_t a, std::uint32_t b, double friction)
+void SceneParts::pair_materials(std::uint32_t a, std::uint32_t b, double friction)
 {
     scene_.pairs.push_back({a, b, friction, std::nullopt});
 }

@@ -87,7 +87,7 @@ void judge_volume(CaseBench& bench,
         ConvexQuery query(hull(a), hull(b));
         return bench.ask(query, method.name, Pose{}, b_in_a, 1, start);
     };
-    const auto look_at = [&](const ConvexAnswer& answer, const Vec3& center) {
+    const auto inspect = [&](const ConvexAnswer& answer, const Vec3& center) {
         tally.count(method.name, shared.name, "wrong or no answers",
                     answer.verdict == QueryVerdict::touching && !answer.cut_short ? 0 : 1);
         tally.worst(method.name, shared.name, "error of the volume",
@@ -107,8 +107,8 @@ void judge_volume(CaseBench& bench,
         for (const MethodStart start : {MethodStart::cold, MethodStart::plain}) {
             const ConvexAnswer there = ask(a, b, shared.b_in_a, start);
             const ConvexAnswer back = ask(b, a, a_in_b, start);
-            look_at(there, shared.center);
-            look_at(back, center_in_b);
+            inspect(there, shared.center);
+            inspect(back, center_in_b);
             least = std::min({least, there.volume, back.volume});
             most = std::max({most, there.volume, back.volume});
         }

@@ -47,7 +47,7 @@ Watched watch(CaseBench& bench, const Scene& scene, double time)
 {
     Watched seen;
     double last = 0;
-    bench.look_at(scene, [&](const World& world) {
+    bench.inspect(scene, [&](const World& world) {
         const Measures measures = world.measure();
         last = seen.first = measures.kinetic_energy + measures.potential_energy;
     });

@@ -16,7 +16,7 @@ constexpr double kDown = 4, kAlong = 10;  // m/s
 struct Bounce {
     const char* setting;
     double friction = 0.2, restitution = 0.8;
-    double dt = 1.0 / 60, gap = 0.3;  // s, m above the floor
+    double dt = 1.0 / 60, separation = 0.3;  // s, m above the floor
     Vec3 off = Vec3::Zero();
     Quat turn = Quat::Identity();
     bool ball_first = false;
@@ -39,12 +39,12 @@ void slide(CaseBench& bench, const Bounce& bounce)
         parts.hold(floor);
     };
     if (!bounce.ball_first) add_floor();
-    const std::uint32_t ball =
-        parts.ball(material, 1, radius, bounce.off + bounce.turn * Vec3(0, 0, radius + bounce.gap));
+    const std::uint32_t ball = parts.ball(
+        material, 1, radius, bounce.off + bounce.turn * Vec3(0, 0, radius + bounce.separation));
     parts.body(ball).velocity = bounce.turn * Vec3(kAlong, 0, -kDown);
     if (bounce.ball_first) add_floor();
     Vec3 velocity = Vec3::Zero();
-    bench.run(parts.scene(), bounce.gap / kDown + 0.1, [&](World& world, double) {
+    bench.run(parts.scene(), bounce.separation / kDown + 0.1, [&](World& world, double) {
         velocity = bounce.turn.conjugate() * world.velocity(world.bodies()[ball]);
         return true;
     });
@@ -75,7 +75,7 @@ void case_sliding_bounce(CaseBench& bench)
         {.setting = "default, it grips", .friction = 0.7},
         {.setting = "default, dt=1/240", .dt = 1.0 / 240},
         {.setting = "default, dt=1e-3", .dt = 1e-3},
-        {.setting = "default, touching at the start", .gap = 0},
+        {.setting = "default, touching at the start", .separation = 0},
         {.setting = "default, far off", .off = Vec3(1e6, -2e6, 3e6)},
         {.setting = "default, turned", .turn = exponential(Vec3(0.3, -0.5, 0.7))},
         {.setting = "default, ball made first", .ball_first = true},

@@ -50,8 +50,10 @@ struct Finer {
     const char* met_by = nullptr;
 };
 
-std::string
-setting_of(const std::string& kind, int count, const SolidWayName& way, const Finer& finer)
+std::string setting_of(const std::string& kind,
+                       int count,
+                       const SolidRepresentationName& way,
+                       const Finer& finer)
 {
     std::string setting = std::to_string(count) + " " + kind + ", " + std::string(way.name);
     if (finer.dt > 0) setting += " in finer steps";
@@ -62,7 +64,7 @@ void judge_heap(CaseBench& bench,
                 const std::string& kind,
                 const TriangleSoup& mesh,
                 int count,
-                const SolidWayName& way,
+                const SolidRepresentationName& way,
                 const Finer& finer = {})
 {
     Scene scene = taken(bench, find_scene("knots")->make_of(count, 1, mesh), way);
@@ -87,7 +89,7 @@ void judge_heap(CaseBench& bench,
 void judge_file(CaseBench& bench,
                 const std::string& kind,
                 int count,
-                const SolidWayName& way,
+                const SolidRepresentationName& way,
                 const Finer& finer = {})
 {
     const std::string setting = setting_of(kind, count, way, finer);
@@ -108,15 +110,15 @@ void judge_file(CaseBench& bench,
 
 void case_solid_heap(CaseBench& bench)
 {
-    const SolidWayName& voxels = kSolidWays[0];
+    const SolidRepresentationName& voxels = kSolidWays[0];
     if (bench.brief()) {
         judge_heap(bench, "lumps", noisy_ball(kLump, 0.3, 320, 7), 6, voxels);
         return;
     }
     // Lumps need no data, so that there is always something to see.
-    for (const SolidWayName& way : kSolidWays)
+    for (const SolidRepresentationName& way : kSolidWays)
         judge_heap(bench, "lumps", noisy_ball(kLump, 0.3, 500, 7), 20, way);
-    for (const SolidWayName& way : kSolidWays) judge_file(bench, "bunny", 20, way);
+    for (const SolidRepresentationName& way : kSolidWays) judge_file(bench, "bunny", 20, way);
     judge_file(bench, "bunny", 200, voxels);
     for (const char* kind : {"spot", "kettle", "torus", "cube_cup"})
         judge_file(bench, kind, 50, voxels);

@@ -7,7 +7,7 @@
 
 namespace throng {
 
-Scene taken(const CaseBench& bench, Scene scene, const SolidWayName& way)
+Scene taken(const CaseBench& bench, Scene scene, const SolidRepresentationName& way)
 {
     scene.settings = bench.settings();
     set_dial(scene.settings, "nonconvex", way.name);

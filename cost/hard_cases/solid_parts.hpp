@@ -9,15 +9,15 @@
 namespace throng {
 
 /// A value of the dial `nonconvex`, and whether what it makes of a torus still has its hole.
-struct SolidWayName {
+struct SolidRepresentationName {
     std::string_view name;
     bool keeps_holes;
 };
-inline constexpr SolidWayName kSolidWays[] = {
+inline constexpr SolidRepresentationName kSolidWays[] = {
     {"voxels", true}, {"parts", true}, {"spheres", true}, {"depth_image", true}, {"hull", false}};
 
 /// The scene with the bench's settings, its meshes that move taken that way.
-Scene taken(const CaseBench& bench, Scene scene, const SolidWayName& way);
+Scene taken(const CaseBench& bench, Scene scene, const SolidRepresentationName& way);
 
 /// m/s, of any body.
 double greatest_speed(const class World& world);

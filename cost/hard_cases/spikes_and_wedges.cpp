@@ -74,7 +74,7 @@ double least_half_extent(const std::vector<Vec3>& corners)
 
 // What came of a fall: the least gap ever, below 0 by overlap, and the way from where it hung, m.
 struct Fallen {
-    double gap = 1;
+    double clearance = 1;
     Vec3 way = Vec3::Zero();
     double speed = 0, gained = 0;  // m/s at the end; of the fall's energy
 };
@@ -104,7 +104,7 @@ Fallen let_fall(CaseBench& bench, const Corners& corners, Overlap overlap)
             const BodyId body = world.bodies().back();
             const Pose pose = world.pose(body);
             const QuadTruth truth = quad_truth(still, quad_cloud(above, QuadPose(pose)));
-            fallen.gap = std::min(fallen.gap, truth.separation);
+            fallen.clearance = std::min(fallen.clearance, truth.separation);
             fallen.way = pose.position - start;
             fallen.speed = world.velocity(body).norm();
             return true;
@@ -136,7 +136,7 @@ void spikes_and_wedges(CaseBench& bench)
               std::tuple(Overlap::subdivide, "subdivide", bench.settings().toi_tolerance * half)}) {
             const Fallen fallen = let_fall(bench, corners, overlap);
             const std::string setting = name + std::string(way);
-            bench.report(setting, quantity, std::max(0.0, -fallen.gap), most, "m");
+            bench.report(setting, quantity, std::max(0.0, -fallen.clearance), most, "m");
             bench.report(setting, "energy gained, of the greatest in motion", fallen.gained, 1e-3,
                          "1");
             if (corners.falling.size() != 8 || bench.brief()) continue;

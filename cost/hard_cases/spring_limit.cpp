@@ -48,7 +48,7 @@ Swing swing(CaseBench& bench,
     bench.run(scene, steps * choice.dt, [&](World& world, double) {
         const BodyId mass = world.bodies()[0];
         const double off = world.center_of_mass(mass).z() - kLength;
-        result.warned = !world.remarks().empty();
+        result.warned = !world.warnings().empty();
         result.widest = std::max(result.widest, std::abs(off));
         result.last = std::hypot(off, world.velocity(mass).z() / kFrequency);
         return result.widest < kTooWide;

@@ -173,7 +173,7 @@ void sags(CaseBench& bench)
 void gains_nothing(CaseBench& bench, const std::string& setting, const Scene& scene, double bound)
 {
     double first = 0, most = 0;
-    bench.look_at(scene, [&](const World& world) { first = energy_of(world); });
+    bench.inspect(scene, [&](const World& world) { first = energy_of(world); });
     bench.run(scene, bench.brief() ? 1 : kTime, [&](World& world, double) {
         const double now = energy_of(world);
         most = std::max(most, std::isfinite(now) ? now : 1e300);

@@ -20,14 +20,14 @@ constexpr int kHigh = 10;
 const std::pair<const char*, Vec3> kAway[] = {{"at (1e5, 0, -8e4) m", {1e5, 0, -8e4}},
                                               {"at (1e7, 0, -8e6) m", {1e7, 0, -8e6}}};
 
-Scene stack(const CaseBench& bench, int high, double edge, double gap, const Vec3& at)
+Scene stack(const CaseBench& bench, int high, double edge, double separation, const Vec3& at)
 {
     SceneParts parts(bench.scene());
     const std::uint32_t material = parts.material(0.5);
     parts.plane(material, Vec3::UnitZ(), at.z());
     for (int k = 0; k < high; ++k) {
         Pose pose;
-        pose.position = at + Vec3(0, 0, edge / 2 + k * (edge + gap) + gap);
+        pose.position = at + Vec3(0, 0, edge / 2 + k * (edge + separation) + separation);
         parts.box(material, 1, Vec3::Constant(edge / 2), pose);
     }
     return parts.scene();
@@ -40,7 +40,7 @@ double greatest_speed(const World& world)
     return speed;
 }
 
-struct Rest {
+struct Resting {
     double overlap = 0, speed = 0, force_error = 0;
     double load_error = 0;  // of the loads under the boxes, the greatest
     std::vector<Vec3> places;
@@ -62,10 +62,10 @@ double greatest_load_error(const World& world)
 }
 
 // Overlap is looked at every second, since it may not even pass through the bound.
-Rest watch_stack(CaseBench& bench, const Scene& scene, double time = 10)
+Resting watch_stack(CaseBench& bench, const Scene& scene, double time = 10)
 {
     const auto high = static_cast<double>(scene.bodies.size() - 1);
-    Rest rest;
+    Resting rest;
     double next_look = 1;
     bench.run(scene, time, [&](World& world, double now) {
         if (now + 1e-9 < next_look) return true;
@@ -90,9 +90,9 @@ void exact_sleep(CaseBench& bench)
 {
     Scene scene = stack(bench, kHigh, 1, 0, Vec3::Zero());
     ask_exactly(scene.settings);
-    const Rest asleep = watch_stack(bench, scene);
+    const Resting asleep = watch_stack(bench, scene);
     scene.settings.sleep = false;
-    const Rest awake = watch_stack(bench, scene);
+    const Resting awake = watch_stack(bench, scene);
     double apart = 0;
     for (std::size_t i = 0; i < awake.places.size(); ++i)
         apart = std::max(apart, (awake.places[i] - asleep.places[i]).norm());
@@ -105,17 +105,17 @@ void exact_stacks(CaseBench& bench)
     struct Setting {
         const char* name;
         int high;
-        double edge, gap, overlap;
+        double edge, separation, overlap;
     };
     for (const Setting& setting :
          {Setting{"n=10, direct", 10, 1, 0, 5e-5}, Setting{"n=10, 0.1 m, direct", 10, 0.1, 0, 5e-5},
           Setting{"n=10, from 1 mm gaps, direct", 10, 1, 1e-3, 5e-5},
           Setting{"n=40, direct", 40, 1, 0, 5e-5}, Setting{"n=100, direct", 100, 1, 0, 1e-3}}) {
         if (bench.brief() && setting.high > 10) continue;
-        Scene scene = stack(bench, setting.high, setting.edge, setting.gap, Vec3::Zero());
+        Scene scene = stack(bench, setting.high, setting.edge, setting.separation, Vec3::Zero());
         ask_exactly(scene.settings);
         scene.settings.sleep = false;
-        const Rest rest = watch_stack(bench, scene, bench.brief() ? 10 : 30);
+        const Resting rest = watch_stack(bench, scene, bench.brief() ? 10 : 30);
         bench.report(setting.name, "greatest overlap", rest.overlap, setting.overlap, "m");
         bench.report(setting.name, "speed after 10 s", rest.speed, 1e-4, "m/s");
         bench.report(setting.name, "error of the base force", rest.force_error, 1e-3, "1");
@@ -207,7 +207,7 @@ void case_stack(CaseBench& bench)
     struct Setting {
         const char* name;
         int high;
-        double edge, gap;
+        double edge, separation;
         bool sleep;
     };
     std::vector<Vec3> places;
@@ -217,9 +217,9 @@ void case_stack(CaseBench& bench)
           Setting{"n=10, from 1 mm gaps", kHigh, 1, 1e-3, true}, Setting{"n=40", 40, 1, 0, true},
           Setting{"n=100", 100, 1, 0, true}, Setting{"n=100, sleep=off", 100, 1, 0, false}}) {
         if (bench.brief() && setting.high > kHigh) continue;
-        Scene scene = stack(bench, setting.high, setting.edge, setting.gap, Vec3::Zero());
+        Scene scene = stack(bench, setting.high, setting.edge, setting.separation, Vec3::Zero());
         scene.settings.sleep = scene.settings.sleep && setting.sleep;
-        const Rest rest = watch_stack(bench, scene, bench.brief() ? 10 : 30);
+        const Resting rest = watch_stack(bench, scene, bench.brief() ? 10 : 30);
         const auto judge = [&](const char* quantity, double figure, double bound,
                                const char* unit) {
             if (setting.high > kHigh)

@@ -118,7 +118,7 @@ void drop(CaseBench& bench, const Stick& stick, Scene scene, const std::string& 
         return std::pair(measures.kinetic_energy,
                          measures.kinetic_energy + measures.potential_energy - mass * floor);
     };
-    bench.look_at(scene, [&](const World& world) { start = energy_of(world).second; });
+    bench.inspect(scene, [&](const World& world) { start = energy_of(world).second; });
     EnergyLedger ledger;
     double most = start, kinetic = 0;
     const auto watch = [&](World& world, double) {

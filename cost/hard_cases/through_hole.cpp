@@ -46,7 +46,7 @@ void judge_mass(CaseBench& bench)
 
 double off_axis(const Vec3& place) { return std::hypot(place.x(), place.y()); }
 
-void drop_over_peg(CaseBench& bench, const SolidWayName& way)
+void drop_over_peg(CaseBench& bench, const SolidRepresentationName& way)
 {
     const Scene scene = taken(bench, make_scene("peg", 1), way);
     Vec3 place = Vec3::Zero();
@@ -124,7 +124,7 @@ struct Links {
     }
 };
 
-void hang_chain(CaseBench& bench, const SolidWayName& way)
+void hang_chain(CaseBench& bench, const SolidRepresentationName& way)
 {
     Links links;
     const Scene scene = taken(bench, make_scene("chain", 10), way);
@@ -141,7 +141,7 @@ void hang_chain(CaseBench& bench, const SolidWayName& way)
 // Two links through one another, one pulled away at a speed that it is given again before every
 // step. One that is kinematic is its triangles and cannot be slowed; one that is not is a solid as
 // the other.
-Scene pulled_links(const CaseBench& bench, const SolidWayName& way, Motion motion)
+Scene pulled_links(const CaseBench& bench, const SolidRepresentationName& way, Motion motion)
 {
     Scene scene = begin_scene("links", 2);
     scene.gravity = Vec3::Zero();
@@ -163,7 +163,7 @@ Scene pulled_links(const CaseBench& bench, const SolidWayName& way, Motion motio
     return taken(bench, std::move(scene), way);
 }
 
-void pull_links(CaseBench& bench, const SolidWayName& way)
+void pull_links(CaseBench& bench, const SolidRepresentationName& way)
 {
     for (const Motion motion : {Motion::kinematic, Motion::dynamic}) {
         Links links;
@@ -216,7 +216,7 @@ Descent watch_bolt(CaseBench& bench, const Scene& scene)
     return descent;
 }
 
-void turn_bolt(CaseBench& bench, const SolidWayName& way, int image_resolution = 0)
+void turn_bolt(CaseBench& bench, const SolidRepresentationName& way, int image_resolution = 0)
 {
     // As the catalogue has it.
     constexpr double kPitch = 0.005, kClearance = 0.00025;
@@ -252,14 +252,14 @@ void case_through_hole(CaseBench& bench)
     judge_mass(bench);
     spikes_and_wedges(bench);
     edges_and_cracks(bench);
-    for (const SolidWayName& way : kSolidWays)
+    for (const SolidRepresentationName& way : kSolidWays)
         if (!bench.brief() || way.name == "voxels" || !way.keeps_holes) drop_over_peg(bench, way);
     if (bench.brief()) {
         pull_links(bench, kSolidWays[0]);
         turn_bolt(bench, kSolidWays[2]);
         return;
     }
-    for (const SolidWayName& way : kSolidWays) {
+    for (const SolidRepresentationName& way : kSolidWays) {
         if (!way.keeps_holes) continue;
         hang_chain(bench, way);
         pull_links(bench, way);

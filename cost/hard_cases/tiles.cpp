@@ -21,7 +21,8 @@ enum class Floor { boxes, hulls, meshes, compound };
 // How a floor is laid, and where.
 struct Laid {
     Floor of = Floor::boxes;
-    double gap = 0, step = 0;  // m, between tiles; that those from the fourth on stand higher by
+    double separation = 0,
+           step = 0;  // m, between tiles; that those from the fourth on stand higher by
     Pose at = {};
     bool backwards = false;  // the slider is made first, and the far tiles before the near ones
 };
@@ -53,7 +54,8 @@ std::vector<Pose> places_of(const Laid& laid, int tiles)
         for (int j = -1; j <= 1; ++j) {
             Pose place;
             const double high = i < 4 ? 0 : laid.step;
-            place.position = Vec3(i * (1 + laid.gap), j * (1 + laid.gap), high - kTile.z());
+            place.position =
+                Vec3(i * (1 + laid.separation), j * (1 + laid.separation), high - kTile.z());
             places.push_back(place);
         }
     if (laid.backwards) std::reverse(places.begin(), places.end());
@@ -145,7 +147,7 @@ void case_tiles(CaseBench& bench)
     keeps_speed(bench, "hulls", {.of = Floor::hulls}, by_default);
     keeps_speed(bench, "meshes", {.of = Floor::meshes}, by_default);
     keeps_speed(bench, "a compound", {.of = Floor::compound}, by_default);
-    keeps_speed(bench, "boxes 1 mm apart", {.gap = 1e-3}, by_default);
+    keeps_speed(bench, "boxes 1 mm apart", {.separation = 1e-3}, by_default);
     keeps_speed(bench, "boxes, turned", {.at = {Vec3::Zero(), turned}}, by_default);
     keeps_speed(bench, "boxes, far off", {.at = {Vec3(1e5, -2e5, 1e4), turned}}, by_default);
     keeps_speed(bench, "boxes, made last", {.backwards = true}, by_default);

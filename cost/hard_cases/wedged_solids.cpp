@@ -59,7 +59,7 @@ void drop_stars(CaseBench& bench, const std::string& setting, const Scene& scene
 void case_wedged_solids(CaseBench& bench)
 {
     const TriangleSoup mesh = flat_star();
-    for (const SolidWayName& way : kSolidWays)
+    for (const SolidRepresentationName& way : kSolidWays)
         for (const int substeps : {4, 16, 64}) {
             if (bench.brief() && (substeps > 4 || &way != &kSolidWays[0])) continue;
             Scene scene = taken(bench, find_scene("knots")->make_of(20, 1, mesh), way);

@@ -82,13 +82,13 @@ public:
     /// does not serve, a pose that is not finite or not of unit length within 1e-6, and a reach
     /// below 0 are refused.
     ///
-    ///   start   from what the method remembers of the last question, from nothing, or without its
-    ///           accelerations
-    ///   reach   m, of shapes further apart only the verdict has to be good
+    ///   start           from what the method remembers of the last question, from nothing, or
+    ///                   without its accelerations
+    ///   max_separation  m, of shapes further apart only the verdict has to be good
     ConvexAnswer ask(std::string_view method,
                      const Pose& b_in_a,
                      MethodStart start = MethodStart::cached,
-                     double reach = std::numeric_limits<double>::infinity());
+                     double max_separation = std::numeric_limits<double>::infinity());
 
     /// Asks the trees of k-DOPs round the faces of two boxes or hulls, built at the first question:
     /// a filter, which is undecided of what it cannot part. Others are refused, and so is a k other

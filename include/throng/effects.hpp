@@ -69,7 +69,7 @@ enum class Effect : std::uint8_t {
 inline constexpr Set<Effect> kSolidContact = {Effect::voxel_contact, Effect::sphere_contact,
                                               Effect::image_contact};
 /// Bodies carried from touch to touch, in place of contact.
-inline constexpr Set<Effect> kCarried = {Effect::no_overlap, Effect::little_overlap};
+inline constexpr Set<Effect> kEventDriven = {Effect::no_overlap, Effect::little_overlap};
 /// What acts on bodies besides gravity and contacts.
 inline constexpr Set<Effect> kForces = {Effect::forces, Effect::springs, Effect::attractors,
                                         Effect::wind,   Effect::drag,    Effect::pivot};

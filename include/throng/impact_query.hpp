@@ -1,7 +1,7 @@
 // Impact query: asks when two shapes that move and turn first touch.
 //
 // Apart from any world: for cases and tools that measure the methods, and for users with ways of
-// their own. An answer is never late: see narrowphase/ccd/impact_time.hpp.
+// their own. An answer is never late: see narrowphase/ccd/time_of_impact.hpp.
 #pragma once
 
 #include "throng/scene.hpp"

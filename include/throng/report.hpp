@@ -18,8 +18,8 @@ struct StepReport {
     std::size_t contacts = 0;  // points
     std::size_t manifolds = 0;
     std::size_t islands = 0;
-    std::size_t colors = 0;   // of the most colorful island
-    double relax_visits = 0;  // a contact, of soft_step in a substep; see relax_visits()
+    std::size_t colors = 0;       // of the most colorful island
+    double relax_iterations = 0;  // a contact, of soft_step in a substep; see relax_iterations()
     std::size_t bodies_awake = 0;
     std::size_t bodies_quarantined = 0;  // since the beginning
     std::uint64_t contacts_dropped = 0;  // since the beginning

@@ -19,7 +19,7 @@ namespace throng {
 enum class Motion : std::uint8_t { static_, kinematic, dynamic };
 
 /// What a surface is made of. Two materials meet with the geometric mean of their frictions and the
-/// greater restitution, unless a MaterialPair says otherwise.
+/// greater restitution, unless a MaterialPairDescription says otherwise.
 struct Material {
     std::string name;
     double density = 1000;        // kg/m3
@@ -30,7 +30,7 @@ struct Material {
 };
 
 /// Overrides the combination of two materials, named by place in Scene::materials.
-struct MaterialPair {
+struct MaterialPairDescription {
     std::uint32_t a = 0, b = 0;
     std::optional<double> friction, restitution;
 };
@@ -157,7 +157,7 @@ struct Scene {
     Settings settings;
     std::vector<std::string> dials_set;  // those the scene asks for by name, in its order
     std::vector<Material> materials;
-    std::vector<MaterialPair> pairs;
+    std::vector<MaterialPairDescription> pairs;
     std::vector<ShapeDescription> shapes;
     std::vector<BodyDescription> bodies;  // ids 0, 1, ...
     std::vector<Instances> instances;     // ids go on from there

@@ -38,7 +38,7 @@ enum class Overlap : std::uint8_t { allow, back_up, subdivide };
 enum class ToiMethod : std::uint8_t {
     newton,        // towards where the tangent meets the level
     bisection,     // by halves
-    conservative,  // as far as the greatest speed of approach allows
+    conservative,  // conservative advancement: as far as the greatest speed of approach allows
 };
 enum class ImpactLaw : std::uint8_t { sequential, simultaneous };
 enum class FrictionAt : std::uint8_t { manifold, points };
@@ -48,9 +48,10 @@ enum class FrictionCone : std::uint8_t { cone, pyramid };
 struct Settings {
     double dt = 1.0 / 60;  // s, the step
     int substeps = 4;      // they divide dt
-    int iterations = 0;    // solver visits a substep; 0: the solver's own default
+    int iterations = 0;    // solver iterations a substep; 0: the solver's own default
 
-    // Relaxing visits a substep of soft_step, after bodies have moved. 0: auto, see relax_visits().
+    // Relaxing iterations a substep of soft_step, after bodies have moved. 0: auto, see
+    // relax_iterations().
     int relax_iterations = 0;
 
     // Stiffness of contacts. 0: auto, 0.25 of the substep's rate for manifolds of four points,

@@ -88,7 +88,7 @@ public:
     const StepReport& report() const;
     /// What was found wrong with shapes that were added and what was done about it, a sentence
     /// each.
-    const std::vector<std::string>& remarks() const;
+    const std::vector<std::string>& warnings() const;
     /// How each moving mesh and level set that was added is taken, and how exactly, a line each.
     const std::vector<std::string>& solids() const;
     std::vector<StageReport> stages() const;

@@ -16,7 +16,7 @@
 
 namespace throng {
 
-inline constexpr std::uint32_t kNobody = 0xffffffffu;
+inline constexpr std::uint32_t kNoBody = 0xffffffffu;
 
 /// True for what a step can hold, of any quantity of a body: finite, with squares that fit float.
 /// Far beyond what a scene may state (see scene_rules.hpp); a body that gets here is lost.
@@ -56,7 +56,7 @@ struct Masses {
     std::vector<Sym3> inverse_inertia;  // 1/(kg m2), body axes
     // 1 where principal moments differ, so that the gyroscopic term acts; 2 where, besides, the
     // body's axes are not the principal ones.
-    std::vector<std::uint8_t> spins_unevenly;
+    std::vector<std::uint8_t> gyroscopic_kind;
     // Of those, body axes: the one about which the inertia is all but symmetric, as of rods, discs
     // and needles of any kind; zero where there is none.
     std::vector<Vec3> symmetry_axis;
@@ -73,25 +73,25 @@ struct Masses {
 };
 
 /// m/s along each axis; not a number where it is free.
-using DriveVelocity = std::array<double, 3>;
+using PrescribedVelocity = std::array<double, 3>;
 
 /// Velocities that the user sets before every step.
-struct Drives {
+struct PrescribedVelocities {
     std::vector<std::uint32_t> body;  // ascending
-    std::vector<DriveVelocity> velocity;
+    std::vector<PrescribedVelocity> velocity;
 
     /// Null for who is not driven.
-    const DriveVelocity* of(std::uint32_t who) const
+    const PrescribedVelocity* of(std::uint32_t who) const
     {
         const auto at = std::lower_bound(body.begin(), body.end(), who);
         return at != body.end() && *at == who ? &velocity[std::size_t(at - body.begin())] : nullptr;
     }
 };
 
-enum class BodyKind : std::uint8_t { gone, still, kinematic, dynamic };
+enum class BodyKind : std::uint8_t { removed, static_, kinematic, dynamic };
 
 /// Who moves, so that a step need not look at all who sleep. Ascending.
-struct Movers {
+struct ActiveBodies {
     std::vector<std::uint32_t> dynamic, kinematic;
 
     bool none() const { return dynamic.empty() && kinematic.empty(); }
@@ -102,21 +102,24 @@ struct BodyStates {
     std::vector<BodyKind> kind;
     std::vector<std::uint8_t> awake;        // dynamic or kinematic, and not asleep
     std::vector<std::uint8_t> quarantined;  // turned non-finite once; stands still since
-    std::vector<double> quiet_time;         // s, how long it has been slower than the limit
-    std::vector<std::uint32_t> bed;         // the group it fell asleep with; kNobody while awake
-    std::vector<double> radius;             // m, furthest point of its shapes from its center
+    std::vector<double> sleep_time;         // s, how long it has been slower than the limit
+    std::vector<std::uint32_t>
+        sleeping_island;         // the group it fell asleep with; kNoBody while awake
+    std::vector<double> radius;  // m, furthest point of its shapes from its center
 
-    std::vector<std::uint8_t> conveys;  // still, and its surface is driven; may be shorter
+    std::vector<std::uint8_t> is_conveyor;  // still, and its surface is driven; may be shorter
 
     std::vector<std::uint8_t> fast;  // marked so by the user; may be shorter
 
-    Movers movers;  // as of the start of the step: who wakes in it is there from the next one on
+    ActiveBodies active_bodies;  // as of the start of the step: who wakes in it is there from the
+                                 // next one on
 
     bool moves(std::size_t body) const { return awake[body] != 0; }
     /// A conveyor: it stays where it is and carries what lies on it.
     bool carries(std::size_t body) const
     {
-        return body < conveys.size() && conveys[body] != 0 && kind[body] == BodyKind::still;
+        return body < is_conveyor.size() && is_conveyor[body] != 0
+            && kind[body] == BodyKind::static_;
     }
     bool dynamic(std::size_t body) const { return kind[body] == BodyKind::dynamic; }
     bool marked_fast(std::size_t body) const { return body < fast.size() && fast[body] != 0; }
@@ -124,19 +127,19 @@ struct BodyStates {
     bool movable(std::size_t body) const { return dynamic(body) && moves(body); }
 };
 
-/// Lists all movers afresh.
-void list_movers(BodyStates& states);
+/// Lists all active bodies afresh.
+void list_active_bodies(BodyStates& states);
 /// The same after a step: some of them may have stopped, and these awoke (ascending, dynamic).
-void follow_movers(const std::vector<std::uint32_t>& awoken, BodyStates& states);
+void update_active_bodies(const std::vector<std::uint32_t>& woke, BodyStates& states);
 
 /// Bodies that fell asleep together and wake together.
-struct Beds {
-    std::vector<std::vector<std::uint32_t>> sleepers;  // ascending; empty: a free bed
+struct SleepingIslands {
+    std::vector<std::vector<std::uint32_t>> bodies;  // ascending; empty: a free place
     std::vector<std::uint32_t> free;
 };
 
 /// Shapes placed on bodies. A compound body has several, one after another. The place of a
-/// collider is its id; a removed one leaves a gap (body kNobody) that is filled again.
+/// collider is its id; a removed one leaves a gap (body kNoBody) that is filled again.
 struct Colliders {
     std::vector<std::uint32_t> body;
     std::vector<ShapeRef> shape;
@@ -151,19 +154,19 @@ struct Colliders {
 
 /// What surfaces do when they meet.
 struct Surfaces {
-    struct Meeting {
+    struct MaterialPair {
         double friction = 0, restitution = 0, rolling_friction = 0;
     };
     std::vector<double> friction, restitution, rolling_friction;  // [materials]
 
     struct Override {
         std::uint32_t a = 0, b = 0;  // a <= b; sorted
-        Meeting meeting;
+        MaterialPair materials;
     };
     std::vector<Override> overrides;
 
     /// Geometric mean of the frictions, greater restitution, unless overridden.
-    Meeting between(std::uint32_t a, std::uint32_t b) const;
+    MaterialPair between(std::uint32_t a, std::uint32_t b) const;
 };
 
 }  // namespace throng

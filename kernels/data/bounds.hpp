@@ -10,8 +10,10 @@ namespace throng {
 
 /// Whether two boxes of float meet; four numbers a corner, of which the fourth is not looked at.
 /// Whole registers and no branch for each side: which of them parts two boxes is anybody's guess.
-inline bool
-boxes_meet(const float* lower_a, const float* upper_a, const float* lower_b, const float* upper_b)
+inline bool boxes_overlap(const float* lower_a,
+                          const float* upper_a,
+                          const float* lower_b,
+                          const float* upper_b)
 {
     typedef float Four __attribute__((vector_size(16)));
     const auto load = [](const float* from) {
@@ -19,8 +21,8 @@ boxes_meet(const float* lower_a, const float* upper_a, const float* lower_b, con
         __builtin_memcpy(&four, from, sizeof four);
         return four;
     };
-    const auto meet = (load(lower_a) <= load(upper_b)) & (load(lower_b) <= load(upper_a));
-    return (meet[0] & meet[1] & meet[2]) != 0;
+    const auto overlap = (load(lower_a) <= load(upper_b)) & (load(lower_b) <= load(upper_a));
+    return (overlap[0] & overlap[1] & overlap[2]) != 0;
 }
 
 /// A box in float, rounded outward: two that are apart show that their contents are.
@@ -30,30 +32,35 @@ struct NearBox {
 
     bool overlaps(const NearBox& other) const
     {
-        return boxes_meet(lower, upper, other.lower, other.upper);
+        return boxes_overlap(lower, upper, other.lower, other.upper);
     }
 };
 
 /// What the broad phase works on.
 ///
-///   boxes     [colliders] margin included
-///   reach     [colliders] m, how far from its surface a contact is looked for in this step
-///   near      [colliders] where it may find contacts in this step: its tight box, grown by `reach`
-///   moving    [colliders] 1 for those of bodies that can move
-///   placed    [colliders] where each shape is, as of the start of the last step it was awake in
-///   asked     colliders whose boxes changed in this step, ascending
-///   touched   colliders that were added, removed or moved from outside since the last step
-///   half, round, form  [colliders] the shape as mover_bounds.hpp wants it, rounded up
-///   stretch   how many times further than usual margins look ahead: see stretch_for()
-///   fast      bodies that a later stage stops where they meet something, ascending: contacts are
-///             looked for no further from them than from bodies at rest
-///   kept      [colliders] m, of those of fast bodies, else 0: how far contacts that they have
-///             already are looked for; empty where nobody is ever stopped
-///   hurried   the first body that may go about half its smallest half extent in this step, or more
-///   flags     [colliders] scratch, all 0 between stages
+///   boxes               [colliders] margin included
+///   speculative_margin  [colliders] m, how far from its surface a contact is looked for in this
+///                       step
+///   near                [colliders] where it may find contacts in this step: its tight box, grown
+///                       by `speculative_margin`
+///   moving              [colliders] 1 for those of bodies that can move
+///   placed              [colliders] where each shape is, as of the start of the last step it was
+///                       awake in
+///   asked               colliders whose boxes changed in this step, ascending
+///   touched             colliders that were added, removed or moved from outside since the last
+///                       step
+///   half, round, form   [colliders] the shape as active_bounds.hpp wants it, rounded up
+///   stretch             how many times further than usual margins look ahead: see stretch_for()
+///   fast                bodies that a later stage stops where they meet something, ascending:
+///                       contacts are looked for no further from them than from bodies at rest
+///   kept                [colliders] m, of those of fast bodies, else 0: how far contacts that they
+///                       have already are looked for; empty where nobody is ever stopped
+///   fast_candidate      the first body that may go about half its smallest half extent in this
+///                       step, or more
+///   flags               [colliders] scratch, all 0 between stages
 struct Bounds {
     std::vector<Box3> boxes;
-    std::vector<double> reach;
+    std::vector<double> speculative_margin;
     std::vector<NearBox> near;
     std::vector<std::uint8_t> moving;
     std::vector<Pose> placed;
@@ -65,11 +72,11 @@ struct Bounds {
     std::vector<std::uint32_t> fast;
     std::vector<double> kept;
     static constexpr std::uint32_t kNone = 0xffffffffu;
-    std::uint32_t hurried = kNone;
+    std::uint32_t fast_candidate = kNone;
     std::vector<std::uint8_t> flags;
     bool still_changed = true;
     std::vector<std::vector<std::uint32_t>> of_block, fast_of_block;  // scratch
-    std::vector<std::uint32_t> hurried_of_block;                      // scratch
+    std::vector<std::uint32_t> fast_candidate_of_block;               // scratch
 };
 
 }  // namespace throng

@@ -18,20 +18,20 @@ namespace throng {
 template <class Real>
 struct Contact {
     struct Point {
-        Vec3T<Real> from_a =
+        Vec3T<Real> anchor_a =
             Vec3T<Real>::Zero();  // m, on the surface of a, from its center of mass
         Real separation = 0;      // m, along the normal to the surface of b
         Real impulse = 0;         // N s along the normal, total over the last substep
         std::uint32_t feature = 0;
     };
-    Vec3T<Real> normal = Vec3T<Real>::UnitZ();   // from a to b
-    Vec3T<Real> between = Vec3T<Real>::Zero();   // m, from b's center of mass to a's
-    Vec3T<Real> friction = Vec3T<Real>::Zero();  // N s on b, at the middle of the points
-    Vec3T<Real> rolling = Vec3T<Real>::Zero();   // N m s on b
+    Vec3T<Real> normal = Vec3T<Real>::UnitZ();        // from a to b
+    Vec3T<Real> center_offset = Vec3T<Real>::Zero();  // m, from b's center of mass to a's
+    Vec3T<Real> friction = Vec3T<Real>::Zero();       // N s on b, at the middle of the points
+    Vec3T<Real> rolling = Vec3T<Real>::Zero();        // N m s on b
     Real round_a = 0,
          round_b = 0;  // m, radius about the normal: round sides do not turn with the body
-    Real twist = 0;    // N m s on b about the normal
-    int count = 0;     // of points; next to what is always read, as most have one or two
+    Real torsional_impulse = 0;  // N m s on b about the normal
+    int count = 0;               // of points; next to what is always read, as most have one or two
     std::array<Point, 4> points;
 
     /// m, of the deepest among the first points; 0 where all are apart.
@@ -42,21 +42,21 @@ struct Contact {
         return deepest;
     }
     /// The same point on the surface of b, from its center of mass.
-    Vec3T<Real> from_b(int point) const
+    Vec3T<Real> anchor_b(int point) const
     {
         const Point& at = points[static_cast<std::size_t>(point)];
-        return at.from_a + normal * at.separation + between;
+        return at.anchor_a + normal * at.separation + center_offset;
     }
     /// The other without what lies behind its points, which need not be brought into the cache.
     void take(const Contact& other)
     {
         normal = other.normal;
-        between = other.between;
+        center_offset = other.center_offset;
         friction = other.friction;
         rolling = other.rolling;
         round_a = other.round_a;
         round_b = other.round_b;
-        twist = other.twist;
+        torsional_impulse = other.torsional_impulse;
         count = other.count;
         for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
             points[k] = other.points[k];
@@ -99,7 +99,7 @@ struct ConvexContacts {
     };
     struct Found {
         std::uint32_t pair = 0;
-        FoundManifold<Real> found;
+        CachedManifold<Real> found;
     };
     /// Contacts that began, and of those whose pair is recycled, what was found.
     struct Begun {
@@ -117,9 +117,9 @@ struct ConvexContacts {
     BlockLists<std::uint32_t> parted;     // scratch: pairs whose contacts ended
 
     // Empty in scenes where no kind of pair asks for it.
-    bool recycles = false;                            // some kind does
-    std::vector<FoundManifold<Real>> found;           // [contacts] of pairs of such a kind
-    std::vector<FoundManifold<Real>> found_gathered;  // scratch, like `gathered`
+    bool recycles = false;                             // some kind does
+    std::vector<CachedManifold<Real>> found;           // [contacts] of pairs of such a kind
+    std::vector<CachedManifold<Real>> found_gathered;  // scratch, like `gathered`
     std::vector<float> apart_until;  // [pairs] m, no contact before their approaches come to this
     Travels travels;
 
@@ -166,7 +166,7 @@ struct SolidContacts : ManyContacts<Real> {
         std::uint32_t pair = 0;
         std::uint32_t first = 0, count = 0;  // among the manifolds
         PoseT<double> b_in_a;                // of the other in the solid's frame
-        double reach = 0;                    // m
+        double speculative_margin = 0;       // m
         double apart = 0;                    // m, where nothing was found: see SolidAnswer
         std::size_t left_out = 0;            // touches found in this step that no manifold holds
     };
@@ -187,15 +187,15 @@ enum class ContactList : std::uint8_t { convex, mesh, solid };
 struct ActiveContacts {
     struct Entry {
         std::uint32_t body_a = 0, body_b = 0;
-        std::uint32_t slot = 0;  // in the list
+        std::uint32_t list_index = 0;  // in the list
         ContactList list = ContactList::convex;
         std::uint8_t points = 0;
         float friction = 0, restitution = 0, rolling_friction = 0;
         float extent = 0;  // m, the lesser of the smallest half extents of the two shapes
     };
     std::vector<Entry> entries;
-    std::vector<Surfaces::Meeting> meetings;  // [entries] in all digits; empty in float
-    std::vector<std::size_t> begin, end;      // scratch: of the entries of each block of pairs
+    std::vector<Surfaces::MaterialPair> materials;  // [entries] in all digits; empty in float
+    std::vector<std::size_t> begin, end;  // scratch: of the entries of each block of pairs
 };
 
 }  // namespace throng

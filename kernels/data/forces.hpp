@@ -12,7 +12,7 @@ namespace throng {
 
 /// Holds two points at a distance: stiffness (distance - length) + damping d distance / dt.
 struct SpringForce {
-    std::uint32_t a = 0, b = 0;                     // bodies; kNobody: the world
+    std::uint32_t a = 0, b = 0;                     // bodies; kNoBody: the world
     Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  // m, from the center of mass, body axes
     double stiffness = 0, damping = 0, length = 0;  // N/m, N s/m, m
 };
@@ -31,52 +31,55 @@ struct Forces {
     ForceField field;  // empty: none
     // [bodies] m, body axes: where the center of mass is, seen from the pivot that the body's
     // position is; zero for a body without a pivot.
-    std::vector<Vec3> hang;
-    std::vector<std::uint8_t> hangs;  // [bodies] 1: has a pivot
+    std::vector<Vec3> pivot_to_center;
+    std::vector<std::uint8_t> has_pivot;  // [bodies] 1: has a pivot
 
     std::vector<SpringForce> springs;
     std::vector<std::uint32_t> first_spring, spring_of;  // [bodies + 1]; springs of each body
     // Bodies that springs join and that have to be carried on together; each list ascending.
     std::vector<std::vector<std::uint32_t>> groups;
-    std::vector<std::uint32_t> group_of;  // [bodies] kNobody: in none
+    std::vector<std::uint32_t> group_of;  // [bodies] kNoBody: in none
 
     /// Whether there is anything but gravity.
     bool any() const
     {
         return !force.empty() || !linear_drag.empty() || !attractors.empty() || field
-            || !hang.empty() || !springs.empty();
+            || !pivot_to_center.empty() || !springs.empty();
     }
     bool has_springs(std::uint32_t body) const
     {
         return body + std::size_t{1} < first_spring.size()
             && first_spring[body] != first_spring[body + 1];
     }
-    bool on_pivot(std::size_t body) const { return body < hangs.size() && hangs[body] != 0; }
+    bool on_pivot(std::size_t body) const
+    {
+        return body < has_pivot.size() && has_pivot[body] != 0;
+    }
     /// Whether a body is held by something that may move it from rest at any time.
-    bool stirs(std::uint32_t body) const { return field || has_springs(body); }
+    bool keeps_awake(std::uint32_t body) const { return field || has_springs(body); }
     /// Whether what acts on a body changes as it goes: to take it as it was when the step began
     /// would make energy.
-    bool follow(std::uint32_t body) const
+    bool depends_on_state(std::uint32_t body) const
     {
         return field || !attractors.empty() || has_springs(body) || on_pivot(body);
     }
     /// Whether anything but gravity acts on a body.
     bool act_on(std::uint32_t body) const
     {
-        return follow(body)
+        return depends_on_state(body)
             || (body < force.size() && !(force[body].isZero(0) && torque[body].isZero(0)))
             || (body < linear_drag.size() && (linear_drag[body] != 0 || angular_drag[body] != 0));
     }
     /// From where a body's position is to its center of mass, m, body axes.
-    Vec3 hang_of(std::uint32_t body) const
+    Vec3 pivot_to_center_of(std::uint32_t body) const
     {
-        return body < hang.size() ? hang[body] : Vec3(Vec3::Zero());
+        return body < pivot_to_center.size() ? pivot_to_center[body] : Vec3(Vec3::Zero());
     }
 };
 
-/// What forces that stay as they are through a step (see Forces::follow) do to the velocities of
-/// bodies that the solver moves.
-struct Pulls {
+/// What forces that stay as they are through a step (see Forces::depends_on_state) do to the
+/// velocities of bodies that the solver moves.
+struct ExternalAcceleration {
     std::vector<Vec3> linear, angular;  // [bodies] m/s2, rad/s2 in world axes; empty: no forces
 };
 

@@ -59,13 +59,13 @@ struct PatchManifold {
 /// A manifold as it was found, and what for: while the two have hardly moved against one another
 /// since, where its points are now says as much as a new one (see recycle()).
 ///
-///   b_in_a  the pose that it was found at
-///   reach   m, points further apart were left out
+///   b_in_a              the pose that it was found at
+///   speculative_margin  m, points further apart were left out
 template <class Real>
-struct FoundManifold {
+struct CachedManifold {
     LocalManifold<Real> manifold;
     PoseT<Real> b_in_a;
-    Real reach = 0;
+    Real speculative_margin = 0;
 };
 
 /// What a pair remembers from step to step so that the next answer comes sooner. It never changes
@@ -73,7 +73,7 @@ struct FoundManifold {
 struct PairCache {
     std::uint32_t feature_a = 0, feature_b = 0;
     std::uint32_t kind = 0;
-    float apart = 0;  // m, of this call alone: out of reach, some axis parts them by so much
+    float apart = 0;  // m, of this call alone: beyond the margin, some axis parts them by so much
     bool operator==(const PairCache&) const = default;
 };
 

@@ -23,9 +23,9 @@ struct Mesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> normals;         // [triangles] unit
     std::vector<Vec3> vertex_normals;  // [vertices] unit; of solids alone: see mesh_distance.hpp
-    std::vector<std::array<std::int32_t, 3>> beyond;  // triangle over each edge, -1 at a rim
-    std::vector<std::uint8_t> convex_edges;           // bit e set: edge e sticks out, or is a rim
-    std::vector<Node> tree;                           // [0] is the root
+    std::vector<std::array<std::int32_t, 3>> adjacent;  // triangle over each edge, -1 at a rim
+    std::vector<std::uint8_t> convex_edges;             // bit e set: edge e sticks out, or is a rim
+    std::vector<Node> tree;                             // [0] is the root
     std::vector<std::uint32_t> order;
 };
 

@@ -14,7 +14,7 @@ namespace throng {
 
 /// How a solid is taken in contact. `parts` and `hull` of the dial are no ways of a solid: they
 /// make convex hulls of it.
-enum class SolidWay : std::uint8_t { voxels, spheres, depth_image };
+enum class SolidRepresentation : std::uint8_t { voxels, spheres, depth_image };
 
 /// A signed distance on a grid of values, in bricks of 9^3 values: 8^3 cells and the layer shared
 /// with the next brick, so that a sample reads one brick alone. Trilinear between values.
@@ -96,7 +96,7 @@ struct SphereTree {
 ///   error          m, how far a depth may be from that of the triangles: half a voxel, a pixel
 ///                  of this shape, or the spheres' own; smaller features may be missed
 struct Solid {
-    SolidWay way = SolidWay::voxels;
+    SolidRepresentation representation = SolidRepresentation::voxels;
     Mesh mesh;
     VoxelBricks field;
     SurfacePoints points;

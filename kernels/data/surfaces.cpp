@@ -5,7 +5,7 @@
 
 namespace throng {
 
-Surfaces::Meeting Surfaces::between(std::uint32_t a, std::uint32_t b) const
+Surfaces::MaterialPair Surfaces::between(std::uint32_t a, std::uint32_t b) const
 {
     if (!overrides.empty()) {
         const auto [low, high] = std::minmax(a, b);
@@ -14,7 +14,8 @@ Surfaces::Meeting Surfaces::between(std::uint32_t a, std::uint32_t b) const
                                             [](const Override& entry, const auto& wanted) {
                                                 return std::pair(entry.a, entry.b) < wanted;
                                             });
-        if (found != overrides.end() && found->a == low && found->b == high) return found->meeting;
+        if (found != overrides.end() && found->a == low && found->b == high)
+            return found->materials;
     }
     return {std::sqrt(friction[a] * friction[b]), std::max(restitution[a], restitution[b]),
             std::max(rolling_friction[a], rolling_friction[b])};

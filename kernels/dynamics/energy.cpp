@@ -7,8 +7,8 @@ namespace throng {
 double spring_energy(const SpringForce& spring, const Forces& forces, const Poses& poses)
 {
     const auto point = [&](std::uint32_t body, const Vec3& at) {
-        if (body == kNobody) return at;
-        return Vec3(poses.at(body) * Vec3(forces.hang_of(body) + at));
+        if (body == kNoBody) return at;
+        return Vec3(poses.at(body) * Vec3(forces.pivot_to_center_of(body) + at));
     };
     const double distance = (point(spring.b, spring.at_b) - point(spring.a, spring.at_a)).norm();
     const double stretch = distance - spring.length;
@@ -20,7 +20,7 @@ attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, st
 {
     double energy = 0;
     for (const AttractorForce& attractor : forces.attractors) {
-        const Vec3 place = poses.at(body) * forces.hang_of(body);
+        const Vec3 place = poses.at(body) * forces.pivot_to_center_of(body);
         const double distance = (place - attractor.position).norm();
         if (masses.mass[body] > 0 && distance > 0)
             energy -= masses.mass[body] * attractor.strength / distance;

@@ -25,7 +25,7 @@ struct FlightRule {
 ///   orientation                [bodies * 4]  x, y, z, w; of unit length
 ///   inertia                    [bodies * 6]  xx, yy, zz, xy, xz, yz in body axes
 ///   inverse_mass               [bodies]      0: does not fall
-///   spins                      [bodies]      see Masses::spins_unevenly
+///   spins                      [bodies]      see Masses::gyroscopic_kind
 struct FlightArrays {
     double* position;
     double* orientation;

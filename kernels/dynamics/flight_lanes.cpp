@@ -9,7 +9,7 @@ namespace {
 using L = Lanes<double>;
 constexpr int kWidth = L::kWidth;
 
-// Twice this much of a nodding in a substep wants more parts; its square. See free_rotation.cpp.
+// Twice this much of a nutation in a substep wants more parts; its square. See free_rotation.cpp.
 constexpr double kNodSquared = 0.01;
 // Turns of a quarter radian and more in a substep want more terms than the series below have.
 constexpr double kFastest = 0.0625;
@@ -164,14 +164,15 @@ struct AxisOrder {
 // them, and how they stand.
 struct FreeTurns {
     L momentum[3], q[4];
-    L ease[2];       // half a substep times what 1 / moment is greater by about the first two axes
-    L fastest{0.0};  // greatest square of a turn of a part
+    L inverse_mass[2];  // half a substep times what 1 / moment is greater by about the first two
+                        // axes
+    L fastest{0.0};     // greatest square of a turn of a part
 
     // share: of a whole part, or of half
     void turn_about(int axis, double share)
     {
         const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-        const L half = ease[axis] * L(share) * momentum[axis], squared = half * half;
+        const L half = inverse_mass[axis] * L(share) * momentum[axis], squared = half * half;
         fastest = max(L(4.0) * squared, fastest);
         L sine, cosine;
         series(squared, sine, cosine);
@@ -240,14 +241,14 @@ void nod(const FlightRule& rule,
     const L uneven = spin.uneven;
     FreeTurns turns;
     for (int k = 0; k < 2; ++k)
-        turns.ease[k] = L(0.5 * rule.substep) * (L(1.0) / told[k] - L(1.0) / told[2]);
+        turns.inverse_mass[k] = L(0.5 * rule.substep) * (L(1.0) / told[k] - L(1.0) / told[2]);
     order.tell(momentum, turns.momentum);
     order.tell(body.orientation, turns.q);
     turns.q[3] = body.orientation[3];
     turns.go(rule.substeps);
     L length = 0.0;
     for (const L part : momentum) length += part * part;
-    const L nodding = L(4.0) * length * absolute(turns.ease[0] * turns.ease[1]);
+    const L nodding = L(4.0) * length * absolute(turns.inverse_mass[0] * turns.inverse_mass[1]);
     body.trouble += select(uneven > L(0.0), trouble_where(nodding < L(kNodSquared)), L(0.0));
     spin.fastest = max(select(uneven > L(0.0), turns.fastest, L(0.0)), spin.fastest);
 

@@ -7,7 +7,7 @@ namespace throng {
 
 namespace {
 
-// A nodding loses a part in 2400 of its phase at this much a part, rad.
+// A nutation loses a part in 2400 of its phase at this much a part, rad.
 constexpr double kNod = 0.1;
 
 }  // namespace

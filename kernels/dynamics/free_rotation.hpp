@@ -21,14 +21,14 @@ struct FreeRotation {
     int middle = 0;               // the axis of the middle moment; outer and inner follow in turn
     double share = 0;             // 1 / that moment, 1 / (kg m2)
     double outer = 0, inner = 0;  // by how much 1 / moment is greater about those
-    /// How much of a nodding's phase is one of angular momentum in a time, 1 / (kg m2).
+    /// How much of a nutation's phase is one of angular momentum in a time, 1 / (kg m2).
     double pace = 0;
 };
 
 /// moments: about principal axes, kg m2
 FreeRotation free_rotation(const Vec3& moments);
 
-/// Into how many parts a span, s, has to go for nodding to keep time; 0 where it would take more
+/// Into how many parts a span, s, has to go for nutation to keep time; 0 where it would take more
 /// than `most`.
 ///
 ///   momentum  its length, N m s
@@ -46,9 +46,9 @@ void turn_freely(
     turn_by(Vec3(span * rotation.share * momentum));
     const double part = span / parts;
     const int outer = (rotation.middle + 1) % 3, inner = (rotation.middle + 2) % 3;
-    const auto turn_about = [&](int axis, double ease) {
+    const auto turn_about = [&](int axis, double inverse_inertia) {
         const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-        const double angle = part * ease * momentum[axis];
+        const double angle = part * inverse_inertia * momentum[axis];
         if (angle == 0) return;
         const SinCos turn = sin_cos(angle);
         const double x = momentum[next], y = momentum[last];

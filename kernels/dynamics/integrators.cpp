@@ -11,10 +11,10 @@ namespace {
 std::size_t numbers_of(const MotionLaw& law) { return law.places() + law.speeds(); }
 
 // Room for so many rows of a state's length.
-double* rows(const MotionLaw& law, std::size_t count, IntegratorRoom& room)
+double* rows(const MotionLaw& law, std::size_t count, IntegratorScratch& scratch)
 {
-    room.resize(std::max(room.size(), count * numbers_of(law)));
-    return room.data();
+    scratch.resize(std::max(scratch.size(), count * numbers_of(law)));
+    return scratch.data();
 }
 
 void all_rates(MotionLaw& law, double time, const double* state, double* rates)
@@ -29,25 +29,26 @@ void follow(const MotionLaw& law, const double* from, double span, const double*
     for (std::size_t i = 0; i < numbers_of(law); ++i) out[i] = from[i] + span * rates[i];
 }
 
-void semi_implicit(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state)
+void semi_implicit(
+    MotionLaw& law, double time, double span, IntegratorScratch& scratch, double* state)
 {
-    double* const rates = rows(law, 1, room);
+    double* const rates = rows(law, 1, scratch);
     law.kick(time, span, state);
-    law.swerve(span, state);
+    law.gyrate(span, state);
     law.place_rates(state, rates);
     for (std::size_t i = 0; i < law.places(); ++i) state[i] += span * rates[i];
 }
 
-void euler(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state)
+void euler(MotionLaw& law, double time, double span, IntegratorScratch& scratch, double* state)
 {
-    double* const rates = rows(law, 1, room);
+    double* const rates = rows(law, 1, scratch);
     all_rates(law, time, state, rates);
     follow(law, state, span, rates, state);
 }
 
-void midpoint(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state)
+void midpoint(MotionLaw& law, double time, double span, IntegratorScratch& scratch, double* state)
 {
-    double* const rates = rows(law, 2, room);
+    double* const rates = rows(law, 2, scratch);
     double* const middle = rates + numbers_of(law);
     all_rates(law, time, state, rates);
     follow(law, state, 0.5 * span, rates, middle);
@@ -55,24 +56,24 @@ void midpoint(MotionLaw& law, double time, double span, IntegratorRoom& room, do
     follow(law, state, span, rates, state);
 }
 
-void splitting(MotionLaw& law, double time, double span, IntegratorRoom&, double* state)
+void splitting(MotionLaw& law, double time, double span, IntegratorScratch&, double* state)
 {
     law.kick(time, 0.5 * span, state);
-    law.coast(span, state);
+    law.drift(span, state);
     law.kick(time + span, 0.5 * span, state);
 }
 
 // What only falls.
-void fall(MotionLaw& law, double time, double span, IntegratorRoom&, double* state)
+void fall(MotionLaw& law, double time, double span, IntegratorScratch&, double* state)
 {
     law.kick(time, span, state);
-    law.coast(span, state);
+    law.drift(span, state);
 }
 
-void rk4(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state)
+void rk4(MotionLaw& law, double time, double span, IntegratorScratch& scratch, double* state)
 {
     const std::size_t n = numbers_of(law);
-    double* const first = rows(law, 5, room);
+    double* const first = rows(law, 5, scratch);
     double* const second = first + n;
     double* const third = second + n;
     double* const fourth = third + n;
@@ -105,8 +106,8 @@ public:
         speed_rates(time, state, &rate);
         state[1] += span * rate;
     }
-    void swerve(double, double*) override { }
-    void coast(double span, double* state) override { state[0] += span * state[1]; }
+    void gyrate(double, double*) override { }
+    void drift(double span, double* state) override { state[0] += span * state[1]; }
 
 private:
     double ratio_;
@@ -118,10 +119,10 @@ bool bounded(const IntegratorRow& integrator, double ratio, double span)
 {
     constexpr double kRounding = 4e-15;
     Oscillation law(ratio);
-    IntegratorRoom room;
+    IntegratorScratch scratch;
     double x[2] = {1, 0}, y[2] = {0, 1};
-    integrator.advance(law, 0, span, room, x);
-    integrator.advance(law, 0, span, room, y);
+    integrator.advance(law, 0, span, scratch, x);
+    integrator.advance(law, 0, span, scratch, y);
     const double trace = x[0] + y[1], determinant = x[0] * y[1] - x[1] * y[0];
     return std::abs(trace) <= 1 + determinant + kRounding && std::abs(determinant) <= 1 + kRounding;
 }

@@ -35,14 +35,14 @@ public:
     /// What acts from outside changes speeds for a span of time, places held.
     virtual void kick(double time, double span, double* state) = 0;
     /// What speeds do to one another, places held.
-    virtual void swerve(double span, double* state) = 0;
+    virtual void gyrate(double span, double* state) = 0;
     /// Places and speeds when nothing acts from outside: symmetric in time, and what the law
     /// conserves is kept to rounding.
-    virtual void coast(double span, double* state) = 0;
+    virtual void drift(double span, double* state) = 0;
 };
 
 /// Room that integrators work in, kept from one call to the next.
-using IntegratorRoom = std::vector<double>;
+using IntegratorScratch = std::vector<double>;
 
 /// A row of the table.
 struct IntegratorRow {
@@ -53,7 +53,8 @@ struct IntegratorRow {
     /// that an explicit rule makes energy of spins alone, more with every span.
     double furthest_turn;
     /// Carries the state from `time` on for a span, both in s.
-    void (*advance)(MotionLaw& law, double time, double span, IntegratorRoom& room, double* state);
+    void (*advance)(
+        MotionLaw& law, double time, double span, IntegratorScratch& scratch, double* state);
 };
 
 /// All integrators, in the order of the enumeration; auto_, which is one or another, is none.
@@ -62,7 +63,7 @@ struct IntegratorRow {
 std::span<const IntegratorRow> integrators();
 
 /// What carries a body: of auto_, splitting where something acts on it. What only falls is kicked
-/// once, as the solver does it, and turns as by splitting: exactly but for its nodding.
+/// once, as the solver does it, and turns as by splitting: exactly but for its nutation.
 ///
 ///   acted_on  something other than gravity acts on the body
 const IntegratorRow& chosen(Integrator integrator, bool acted_on);

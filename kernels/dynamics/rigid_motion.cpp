@@ -45,12 +45,12 @@ RigidMotion::Body RigidMotion::taken(std::uint32_t id, const Flights& flights) c
     body.body = id;
     body.inverse_mass = masses.inverse_mass[id];
     body.turns = rule_.turns && masses.inverse_inertia[id] != Sym3{};
-    body.precesses = body.turns && masses.spins_unevenly[id] != 0
+    body.precesses = body.turns && masses.gyroscopic_kind[id] != 0
         && rule_.gyroscopic != RigidRule::Gyroscopic::off;
     body.by_momentum = rule_.momentum_on_pivots && body.turns && facts_.forces.on_pivot(id)
         && of(facts_.forces.linear_drag, id, 0.0) == 0
         && of(facts_.forces.angular_drag, id, 0.0) == 0;
-    body.ease = masses.inverse_inertia[id].matrix();
+    body.inverse_inertia = masses.inverse_inertia[id].matrix();
     const Sym3& inertia = masses.inertia[id];
     body.principal = masses.principal_of(id);
     if (body.by_momentum && !adds_rates(rule_.rotation)) {
@@ -108,12 +108,12 @@ double RigidMotion::furthest_turn(double span) const
 void RigidMotion::advance(const IntegratorRow& integrator,
                           double time,
                           double span,
-                          IntegratorRoom& room)
+                          IntegratorScratch& scratch)
 {
     const bool follows =
         std::isinf(integrator.furthest_turn) || furthest_turn(span) <= integrator.furthest_turn;
     const IntegratorRow& taken = follows ? integrator : chosen(Integrator::splitting, true);
-    taken.advance(*this, time, span, room, state());
+    taken.advance(*this, time, span, scratch, state());
 }
 
 void RigidMotion::settle()
@@ -178,7 +178,7 @@ Vec3 RigidMotion::body_spin(std::size_t i, const Mat3& turn, const double* state
 {
     const Vec3 spin = vector_at(state + speed_of(i) + 3);
     if (!bodies_[i].by_momentum) return spin;
-    return bodies_[i].ease * Vec3(turn.transpose() * spin);
+    return bodies_[i].inverse_inertia * Vec3(turn.transpose() * spin);
 }
 
 RigidMotion::Moment RigidMotion::moment_at(std::size_t i, const double* state) const
@@ -187,7 +187,7 @@ RigidMotion::Moment RigidMotion::moment_at(std::size_t i, const double* state) c
     Moment now;
     now.turn = turn_at(i, state);
     now.spin = now.turn * body_spin(i, now.turn, state);
-    now.arm = now.turn * of(facts_.forces.hang, body.body, Vec3(Vec3::Zero()));
+    now.arm = now.turn * of(facts_.forces.pivot_to_center, body.body, Vec3(Vec3::Zero()));
     now.position = vector_at(state + place_of(i));
     now.velocity = vector_at(state + speed_of(i)) + now.spin.cross(now.arm);
     return now;
@@ -196,14 +196,14 @@ RigidMotion::Moment RigidMotion::moment_at(std::size_t i, const double* state) c
 RigidMotion::Moment RigidMotion::moment_outside(std::uint32_t body, double time) const
 {
     Moment now;
-    if (body == kNobody) {
+    if (body == kNoBody) {
         now.turn = Mat3::Identity();
         now.position = now.arm = now.velocity = now.spin = Vec3::Zero();
         return now;
     }
     now.spin = facts_.velocities.angular[body];
     now.turn = turned(facts_.poses.orientation[body], now.spin, time).toRotationMatrix();
-    now.arm = now.turn * of(facts_.forces.hang, body, Vec3(Vec3::Zero()));
+    now.arm = now.turn * of(facts_.forces.pivot_to_center, body, Vec3(Vec3::Zero()));
     now.position = facts_.poses.position[body] + time * facts_.velocities.linear[body];
     now.velocity = facts_.velocities.linear[body] + now.spin.cross(now.arm);
     return now;
@@ -230,22 +230,23 @@ void RigidMotion::add_springs(std::size_t i, double time, Wrench& on) const
         const Moment& here = moments_[i];
         const Moment there =
             inside ? moments_[std::size_t(among - bodies_.begin())] : moment_outside(other, time);
-        const Vec3 lever = here.turn * (first ? spring.at_a : spring.at_b);
-        const Vec3 far_lever = there.turn * (first ? spring.at_b : spring.at_a);
+        const Vec3 lever_arm = here.turn * (first ? spring.at_a : spring.at_b);
+        const Vec3 far_lever_arm = there.turn * (first ? spring.at_b : spring.at_a);
         const auto speed = [](const Moment& at, const Vec3& from) {
             return Vec3(at.velocity + at.spin.cross(from));
         };
         const Vec3 between =
-            (there.position + there.arm + far_lever) - (here.position + here.arm + lever);
+            (there.position + there.arm + far_lever_arm) - (here.position + here.arm + lever_arm);
         const double distance = std::sqrt(between.squaredNorm());
         // Ends that meet are drawn nowhere: which way, none could say.
         if (!(distance > 0)) continue;
         const Vec3 along = between / distance;
-        const double parting = along.dot(speed(there, far_lever) - speed(here, lever));
+        const double separating_speed =
+            along.dot(speed(there, far_lever_arm) - speed(here, lever_arm));
         const double pull =
-            spring.stiffness * (distance - spring.length) + spring.damping * parting;
+            spring.stiffness * (distance - spring.length) + spring.damping * separating_speed;
         on.force += pull * along;
-        on.torque += lever.cross(Vec3(pull * along));
+        on.torque += lever_arm.cross(Vec3(pull * along));
     }
 }
 
@@ -288,42 +289,44 @@ void RigidMotion::stand(std::size_t i, const Pose& pose, const Vec3& velocity, c
 {
     Moment& now = moments_[i];
     now.turn = pose.orientation.toRotationMatrix();
-    now.arm = now.turn * facts_.forces.hang_of(bodies_[i].body);
+    now.arm = now.turn * facts_.forces.pivot_to_center_of(bodies_[i].body);
     now.position = pose.position;
     now.velocity = velocity + spin.cross(now.arm);
     now.spin = spin;
 }
 
-void RigidMotion::find_pulls(double time, std::size_t begin, std::size_t end)
+void RigidMotion::find_accelerations(double time, std::size_t begin, std::size_t end)
 {
     find_wrenches(time, false, begin, end);
 }
 
 // What is held for a span is what drag comes to over all of it: as it is at the beginning, a strong
 // one would turn velocities round, and more each time.
-RigidMotion::Pull RigidMotion::pull_on(std::size_t i, double span) const
+RigidMotion::Acceleration RigidMotion::acceleration_of(std::size_t i, double span) const
 {
     const Body& body = bodies_[i];
     const Moment& now = moments_[i];
     const Forces& forces = facts_.forces;
     if (of(forces.linear_drag, body.body, 0.0) == 0 && of(forces.angular_drag, body.body, 0.0) == 0)
-        return {body.inverse_mass * wrenches_[i].force,
-                now.turn * Vec3(body.ease * Vec3(now.turn.transpose() * wrenches_[i].torque))};
+        return {
+            body.inverse_mass * wrenches_[i].force,
+            now.turn
+                * Vec3(body.inverse_inertia * Vec3(now.turn.transpose() * wrenches_[i].torque))};
     const Vec3 velocity = now.velocity - now.spin.cross(now.arm);
     const Vec3 spin = now.turn.transpose() * now.spin;
     double after[6];
     put(velocity, after);
     put(spin, after + 3);
-    push(i, span, after);
+    apply_forces(i, span, after);
     return {Vec3(vector_at(after) - velocity) / span - fall_of(body),
             now.turn * Vec3((vector_at(after + 3) - spin) / span)};
 }
 
-RigidMotion::Pull RigidMotion::pull_over(std::size_t i, double span)
+RigidMotion::Acceleration RigidMotion::mean_acceleration(std::size_t i, double span)
 {
     look(state_.data());
     find_wrenches(0, false, i, i + 1);
-    return pull_on(i, span);
+    return acceleration_of(i, span);
 }
 
 RigidMotion::Going RigidMotion::going(std::size_t i) const
@@ -335,7 +338,7 @@ RigidMotion::Going RigidMotion::going(std::size_t i) const
                 turn,
                 vector_at(state + speed_of(i)),
                 turn * body_spin(i, turn, state),
-                Mat3(turn * body.ease) * turn.transpose(),
+                Mat3(turn * body.inverse_inertia) * turn.transpose(),
                 Vec3::UnitZ(),
                 1};
     if (precesses_evenly(body)) {
@@ -401,7 +404,8 @@ void RigidMotion::speed_rates(double time, const double* state, double* rates)
             add_momentum(i, 1, rates + i * 6 + 3);
             continue;
         }
-        put(body.turns ? Vec3(body.ease * torque) : Vec3(Vec3::Zero()), rates + i * 6 + 3);
+        put(body.turns ? Vec3(body.inverse_inertia * torque) : Vec3(Vec3::Zero()),
+            rates + i * 6 + 3);
     }
 }
 
@@ -412,7 +416,7 @@ void RigidMotion::add_momentum(std::size_t i, double span, double* momentum) con
 }
 
 // Forces, and drag by itself, so that however strong it only slows.
-void RigidMotion::push(std::size_t i, double span, double* speed) const
+void RigidMotion::apply_forces(std::size_t i, double span, double* speed) const
 {
     const Body& body = bodies_[i];
     const Forces& forces = facts_.forces;
@@ -423,16 +427,16 @@ void RigidMotion::push(std::size_t i, double span, double* speed) const
         speed);
     if (!body.turns) return;
     Vec3 torque = turn.transpose() * wrenches_[i].torque;
-    Mat3 z = span * of(forces.angular_drag, body.body, 0.0) * body.ease;
+    Mat3 z = span * of(forces.angular_drag, body.body, 0.0) * body.inverse_inertia;
     // Drag on what swings about a pivot slows its turning.
     if (const Vec3& arm = moments_[i].arm; drag > 0 && !arm.isZero(0)) {
         torque += turn.transpose() * arm.cross(Vec3(drag * forces.wind));
-        const Vec3 lever = turn.transpose() * arm;
+        const Vec3 lever_arm = turn.transpose() * arm;
         const Mat3 one = Mat3::Identity();
-        const Mat3 about = lever.squaredNorm() * one - Mat3(lever * lever.transpose());
-        z += span * drag * Mat3(body.ease * about);
+        const Mat3 about = lever_arm.squaredNorm() * one - Mat3(lever_arm * lever_arm.transpose());
+        z += span * drag * Mat3(body.inverse_inertia * about);
     }
-    const Vec3 spin = vector_at(speed + 3), gained = span * Vec3(body.ease * torque);
+    const Vec3 spin = vector_at(speed + 3), gained = span * Vec3(body.inverse_inertia * torque);
     put(z.isZero(0) ? Vec3(spin + gained) : dragged(spin, gained, z), speed + 3);
 }
 
@@ -446,14 +450,14 @@ void RigidMotion::kick(double time, double span, double* state)
         if (body.by_momentum) {
             add_momentum(i, span, speed + 3);
         } else if (forced_) {
-            push(i, span, speed);
+            apply_forces(i, span, speed);
         } else {
             put(vector_at(speed) + span * fall_of(body), speed);
         }
     }
 }
 
-void RigidMotion::swerve(double span, double* state)
+void RigidMotion::gyrate(double span, double* state)
 {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         if (!bodies_[i].precesses || bodies_[i].by_momentum) continue;
@@ -475,7 +479,7 @@ int RigidMotion::parts_of_turn(const Vec3& turn)
     return static_cast<int>(std::min<double>(std::ceil(angle / kPart), kMostParts));
 }
 
-void RigidMotion::coast_turning(std::size_t i, double span, double* state)
+void RigidMotion::drift_turning(std::size_t i, double span, double* state)
 {
     const auto turn = [&](const Vec3& by) { turn_by(i, by, state); };
     const Mat3 now = bodies_[i].by_momentum ? turn_at(i, state) : Mat3(Mat3::Identity());
@@ -525,7 +529,7 @@ void RigidMotion::go(double span)
         put(vector_at(place) + span * vector_at(state + speed_of(i)), place);
         if (!bodies_[i].turns) continue;
         if (precesses_evenly(bodies_[i]))
-            coast_turning(i, span, state);
+            drift_turning(i, span, state);
         else
             turn_by(i, span * vector_at(state + speed_of(i) + 3), state);
     }
@@ -545,12 +549,12 @@ void RigidMotion::precess(double span)
     }
 }
 
-void RigidMotion::coast(double span, double* state)
+void RigidMotion::drift(double span, double* state)
 {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         double* const place = state + place_of(i);
         put(vector_at(place) + span * vector_at(state + speed_of(i)), place);
-        if (bodies_[i].turns) coast_turning(i, span, state);
+        if (bodies_[i].turns) drift_turning(i, span, state);
     }
 }
 

@@ -28,7 +28,7 @@ struct RigidRule {
     double time = 0;              // s, since the world began, as the step begins
     bool turns = true;            // bodies may turn at all
     Rotation rotation = Rotation::quaternion;
-    // How swerve() takes the gyroscopic torque; to rates it is there or not.
+    // How gyrate() takes the gyroscopic torque; to rates it is there or not.
     enum class Gyroscopic : std::uint8_t {
         off,
         implicit,
@@ -59,7 +59,8 @@ public:
     void leave_springs() { by_springs_ = false; }
     /// Goes on by an integrator from a time, s since the step began; by splitting, which bears any
     /// spin, where a body turns further in the span than that one can follow.
-    void advance(const IntegratorRow& integrator, double time, double span, IntegratorRoom& room);
+    void
+    advance(const IntegratorRow& integrator, double time, double span, IntegratorScratch& scratch);
     /// After each call of an integrator: changes of rotation are taken into the orientations.
     void settle();
 
@@ -71,19 +72,20 @@ public:
     };
     Outcome outcome(std::size_t i) const;
 
-    /// Puts a body where it is at some moment of the step, for find_pulls(); its state stays.
+    /// Puts a body where it is at some moment of the step, for find_accelerations(); its state
+    /// stays.
     void stand(std::size_t i, const Pose& pose, const Vec3& velocity, const Vec3& spin);
     /// What forces do to those that stand, from a place to before another, at a time, s since the
     /// step began.
-    void find_pulls(double time, std::size_t begin, std::size_t end);
+    void find_accelerations(double time, std::size_t begin, std::size_t end);
     /// World axes, m/s2 and rad/s2. Gravity is among them where it hangs from a pivot, and not
     /// where it falls. Of drag it is the mean over a span from there on.
-    struct Pull {
+    struct Acceleration {
         Vec3 linear, angular;
     };
-    Pull pull_on(std::size_t i, double span) const;
+    Acceleration acceleration_of(std::size_t i, double span) const;
     /// The same of one as its state has it, at the step's beginning.
-    Pull pull_over(std::size_t i, double span);
+    Acceleration mean_acceleration(std::size_t i, double span);
 
     /// Where its state has a body and how fast that goes, world axes.
     struct Going {
@@ -97,7 +99,7 @@ public:
     Going going(std::size_t i) const;
     /// Adds to that. Not for bodies that have a momentum in place of a spin.
     void add_speed(std::size_t i, const Vec3& velocity, const Vec3& spin);
-    /// coast() in two, for what acts as bodies go: places, and the precession of what is symmetric
+    /// drift() in two, for what acts as bodies go: places, and the precession of what is symmetric
     /// about an axis; and the precession of the others, whose spin turns them as it is meanwhile.
     void go(double span);
     void precess(double span);
@@ -107,15 +109,15 @@ public:
     void place_rates(const double* state, double* rates) override;
     void speed_rates(double time, const double* state, double* rates) override;
     void kick(double time, double span, double* state) override;
-    void swerve(double span, double* state) override;
-    void coast(double span, double* state) override;
+    void gyrate(double span, double* state) override;
+    void drift(double span, double* state) override;
 
 private:
     struct Body {
         std::uint32_t body = 0;
         bool turns = false, precesses = false, by_momentum = false;
         double inverse_mass = 0;
-        Mat3 ease = Mat3::Zero();  // inverse inertia
+        Mat3 inverse_inertia = Mat3::Zero();  // inverse inertia
         PrincipalInertia principal;
         Vec3 own_axis = Vec3::Zero();    // that of the angle, in body axes
         double own_share = 0;            // the angle's rate over momentum about it, 1 / (kg m2)
@@ -146,7 +148,7 @@ private:
     void look(const double* state);
     void find_wrenches(double time, bool all_drag, std::size_t begin, std::size_t end);
     void add_springs(std::size_t i, double time, Wrench& on) const;
-    void push(std::size_t i, double span, double* speed) const;
+    void apply_forces(std::size_t i, double span, double* speed) const;
     Vec3 fall_of(const Body& body) const
     {
         return body.inverse_mass > 0 ? rule_.gravity : Vec3(Vec3::Zero());
@@ -154,7 +156,7 @@ private:
     void add_momentum(std::size_t i, double span, double* momentum) const;
     bool precesses_evenly(const Body& body) const;
     static int parts_of_turn(const Vec3& turn);
-    void coast_turning(std::size_t i, double span, double* state);
+    void drift_turning(std::size_t i, double span, double* state);
     template <class Turn>
     void turn_momentum(std::size_t i, double span, int parts, double* state, Turn turn_by);
     void turn_by(std::size_t i, const Vec3& turn, double* state);

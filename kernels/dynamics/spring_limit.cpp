@@ -10,11 +10,11 @@ namespace {
 
 // How easily a body gives way at a point of it, in whatever direction is easiest, 1/kg: at most the
 // sum of what turning makes of it in all. About the arm itself nothing turns the point.
-double ease_at(const Masses& masses, std::uint32_t body, const Vec3& lever)
+double inverse_mass_at(const Masses& masses, std::uint32_t body, const Vec3& lever_arm)
 {
     const Sym3& turning = masses.inverse_inertia[body];
-    const double all = (turning.xx + turning.yy + turning.zz) * lever.squaredNorm();
-    const double about = lever.dot(Vec3(turning.matrix() * lever));
+    const double all = (turning.xx + turning.yy + turning.zz) * lever_arm.squaredNorm();
+    const double about = lever_arm.dot(Vec3(turning.matrix() * lever_arm));
     return masses.inverse_mass[body] + std::max(0.0, all - about);
 }
 
@@ -23,13 +23,14 @@ double ease_at(const Masses& masses, std::uint32_t body, const Vec3& lever)
 SpringLoad spring_load(const Forces& forces, const Masses& masses, std::uint32_t body)
 {
     SpringLoad load;
-    if (body == kNobody) return load;
+    if (body == kNoBody) return load;
     for (std::uint32_t k = forces.first_spring[body]; k < forces.first_spring[body + 1]; ++k) {
         const SpringForce& spring = forces.springs[forces.spring_of[k]];
         const Vec3& at = spring.a == body ? spring.at_a : spring.at_b;
-        const double ease = ease_at(masses, body, forces.hang_of(body) + at);
-        load.square += spring.stiffness * ease;
-        load.damping += spring.damping * ease;
+        const double inverse_mass =
+            inverse_mass_at(masses, body, forces.pivot_to_center_of(body) + at);
+        load.square += spring.stiffness * inverse_mass;
+        load.damping += spring.damping * inverse_mass;
     }
     return load;
 }

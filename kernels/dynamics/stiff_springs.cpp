@@ -67,10 +67,10 @@ StiffSprings::StiffSprings(const Forces& forces,
 // An end that is on none of the bodies.
 Vec3 StiffSprings::outer_end(std::uint32_t body, const Vec3& at, double time) const
 {
-    if (body == kNobody) return at;
+    if (body == kNoBody) return at;
     const Quat now = turned(poses_.orientation[body], velocities_.angular[body], time);
     return poses_.position[body] + time * velocities_.linear[body]
-        + now * Vec3(forces_.hang_of(body) + at);
+        + now * Vec3(forces_.pivot_to_center_of(body) + at);
 }
 
 StiffSprings::Row StiffSprings::row_of(const SpringForce& spring, double time) const
@@ -85,7 +85,7 @@ StiffSprings::Row StiffSprings::row_of(const SpringForce& spring, double time) c
             [](const SpringBody& body, std::uint32_t wanted) { return body.body < wanted; });
         if (found != bodies_.end() && found->body == id) {
             place = static_cast<std::int32_t>(found - bodies_.begin());
-            arm = found->turn * Vec3(forces_.hang_of(id) + at);
+            arm = found->turn * Vec3(forces_.pivot_to_center_of(id) + at);
             return found->position + arm;
         }
         arm = Vec3::Zero();
@@ -101,11 +101,12 @@ StiffSprings::Row StiffSprings::row_of(const SpringForce& spring, double time) c
 // What a spring gives if the bodies go on as they do.
 void StiffSprings::stretch(Row& row) const
 {
-    const auto moved = [&](std::int32_t place, const Vec3& arm, Vec3& end, Mat3& lever) -> Vec3 {
+    const auto moved = [&](std::int32_t place, const Vec3& arm, Vec3& end,
+                           Mat3& lever_arm) -> Vec3 {
         if (place < 0) return Vec3::Zero();
         const auto i = static_cast<std::size_t>(place);
         end = turns_[i].after(arm);
-        lever = turns_[i].lever(arm);
+        lever_arm = turns_[i].lever_arm(arm);
         return span_ * going_[i].linear + (end - arm);
     };
     const Vec3 by_a = moved(row.a, row.arm_a, row.end_a, row.lever_a);
@@ -137,22 +138,22 @@ void StiffSprings::stretch(Row& row) const
 
 Vec3 StiffSprings::speed_between(const Row& row, std::span<const Six> speeds) const
 {
-    const auto speed = [&](std::int32_t place, const Mat3& lever) -> Vec3 {
+    const auto speed = [&](std::int32_t place, const Mat3& lever_arm) -> Vec3 {
         if (place < 0) return Vec3::Zero();
         const Six& of = speeds[static_cast<std::size_t>(place)];
-        return of.linear + lever.transpose() * of.angular;
+        return of.linear + lever_arm.transpose() * of.angular;
     };
     return speed(row.b, row.lever_b) - speed(row.a, row.lever_a);
 }
 
 // An impulse on a, and its opposite on b.
-void StiffSprings::push(const Row& row, const Vec3& impulse, std::span<Six> on) const
+void StiffSprings::apply_impulse(const Row& row, const Vec3& impulse, std::span<Six> on) const
 {
-    const auto give = [&](std::int32_t place, const Mat3& lever, double sign) {
+    const auto give = [&](std::int32_t place, const Mat3& lever_arm, double sign) {
         if (place < 0) return;
         Six& to = on[static_cast<std::size_t>(place)];
         to.linear += sign * impulse;
-        to.angular += sign * Vec3(lever * impulse);
+        to.angular += sign * Vec3(lever_arm * impulse);
     };
     give(row.a, row.lever_a, 1);
     give(row.b, row.lever_b, -1);
@@ -165,11 +166,12 @@ Six StiffSprings::eased(std::size_t i, const Six& impulse) const
 }
 
 // How easily an end of a spring gives way, summed over three directions, 1/kg.
-double StiffSprings::ease_at(std::int32_t place, const Mat3& lever) const
+double StiffSprings::inverse_mass_at(std::int32_t place, const Mat3& lever_arm) const
 {
     if (place < 0) return 0;
     const SpringBody& body = bodies_[static_cast<std::size_t>(place)];
-    return 3 * body.inverse_mass + (lever.transpose() * Mat3(body.inverse_inertia * lever)).trace();
+    return 3 * body.inverse_mass
+        + (lever_arm.transpose() * Mat3(body.inverse_inertia * lever_arm)).trace();
 }
 
 // What springs give if the bodies go on as they do.
@@ -201,13 +203,14 @@ double StiffSprings::find_missing()
         given += dot(impulse_[i], eased(i, impulse_[i]));
     }
     for (const Row& row : rows_) {
-        push(row, row.elastic + row.damping, missing_);
+        apply_impulse(row, row.elastic + row.damping, missing_);
         for (const std::int32_t place : {row.a, row.b}) {
             if (place < 0) continue;
             const SpringBody& body = bodies_[static_cast<std::size_t>(place)];
             const double off = kRounding * row.spring->stiffness * span_
                 * std::sqrt(body.position.squaredNorm() + row.from.squaredNorm());
-            rounding += off * off * ease_at(place, place == row.a ? row.lever_a : row.lever_b);
+            rounding +=
+                off * off * inverse_mass_at(place, place == row.a ? row.lever_a : row.lever_b);
         }
     }
     double lacking = 0;
@@ -222,10 +225,10 @@ void StiffSprings::conjugate_gradients()
 {
     const std::size_t n = bodies_.size(), most = kStepsOfBody * n + kStepsBeside;
     std::vector<Six>& eased_missing = change_;
-    const auto ease = [&] {
+    const auto inverse_mass = [&] {
         for (std::size_t i = 0; i < n; ++i) eased_missing[i] = eased(i, missing_[i]);
     };
-    ease();
+    inverse_mass();
     step_ = eased_missing;
     step_momentum_ = missing_;
     double square = dot(missing_, eased_missing);
@@ -233,12 +236,12 @@ void StiffSprings::conjugate_gradients()
     for (std::size_t k = 0; k < most && square > enough; ++k) {
         answer_ = step_momentum_;
         for (const Row& row : rows_)
-            push(row, -(row.stiffness * speed_between(row, step_)), answer_);
+            apply_impulse(row, -(row.stiffness * speed_between(row, step_)), answer_);
         const double share = square / dot(step_, answer_);
         if (!std::isfinite(share)) return;
         add(share, step_momentum_, impulse_);
         add(-share, answer_, missing_);
-        ease();
+        inverse_mass();
         const double before = square;
         square = dot(missing_, eased_missing);
         for (std::size_t i = 0; i < n; ++i) {
@@ -265,7 +268,7 @@ void StiffSprings::foresee()
     stretch_all();
     for (Row& row : rows_) {
         const Vec3 ahead = row.stiffness * speed_between(row, change_);
-        push(row, row.elastic + row.damping + ahead, missing_);
+        apply_impulse(row, row.elastic + row.damping + ahead, missing_);
     }
 }
 
@@ -332,9 +335,10 @@ void StiffSprings::hold()
     std::fill(missing_.begin(), missing_.end(), Six{});
     stretch_all();
     for (Row& row : rows_) {
-        const double ease = ease_at(row.a, row.lever_a) + ease_at(row.b, row.lever_b);
-        row.stiffness = (ease > 0 ? kHeld / ease : 0) * Mat3::Identity();
-        push(row, row.stiffness * speed_between(row, without_), missing_);
+        const double inverse_mass =
+            inverse_mass_at(row.a, row.lever_a) + inverse_mass_at(row.b, row.lever_b);
+        row.stiffness = (inverse_mass > 0 ? kHeld / inverse_mass : 0) * Mat3::Identity();
+        apply_impulse(row, row.stiffness * speed_between(row, without_), missing_);
     }
     conjugate_gradients();
     const auto sound = [](const Six& six) {
@@ -454,9 +458,9 @@ void StiffSprings::damp_end()
         any = any || c > 0;
         row.stiffness.setZero();
         if (square > 0) row.stiffness = c / square * Mat3(row.to * row.to.transpose());
-        row.lever_a = still_lever(row.end_a);
-        row.lever_b = still_lever(row.end_b);
-        push(row, row.stiffness * speed_between(row, without_), missing_);
+        row.lever_a = still_lever_arm(row.end_a);
+        row.lever_b = still_lever_arm(row.end_b);
+        apply_impulse(row, row.stiffness * speed_between(row, without_), missing_);
     }
     if (any)
         conjugate_gradients();
@@ -507,7 +511,7 @@ double StiffSprings::furthest_turn() const
 double StiffSprings::damping_again()
 {
     std::fill(step_.begin(), step_.end(), Six{});
-    for (const Row& row : rows_) push(row, row.damping, step_);
+    for (const Row& row : rows_) apply_impulse(row, row.damping, step_);
     double taken = 0, turned = 0, square = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Six answer = eased(i, step_[i]);
@@ -525,13 +529,13 @@ std::span<const Six> StiffSprings::end()
 {
     std::fill(missing_.begin(), missing_.end(), Six{});
     if (!found_) return changes(missing_);
-    for (const Row& row : rows_) push(row, row.elastic, missing_);
+    for (const Row& row : rows_) apply_impulse(row, row.elastic, missing_);
     add(damping_again(), step_, missing_);
     // In axes that are carried along they turn a body after it moved as they did before.
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         missing_[i].angular = turns_[i].carried() * missing_[i].angular;
-        Mat3& ease = bodies_[i].inverse_inertia;
-        ease = turns_[i].carried() * Mat3(ease * turns_[i].carried().transpose());
+        Mat3& inverse_mass = bodies_[i].inverse_inertia;
+        inverse_mass = turns_[i].carried() * Mat3(inverse_mass * turns_[i].carried().transpose());
     }
     damp_end();
     return changes(impulse_);

@@ -37,7 +37,7 @@ namespace throng {
 ///   inverse_inertia  1/(kg m2), world axes
 ///   axis, carries    how its spin turns it: see BodyTurn
 struct SpringBody {
-    std::uint32_t body = kNobody;
+    std::uint32_t body = kNoBody;
     Vec3 position = Vec3::Zero();
     Mat3 turn = Mat3::Identity();
     Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
@@ -94,7 +94,7 @@ private:
         std::int32_t a = -1, b = -1;
         Vec3 arm_a, arm_b;  // m, world axes, from positions, as the step began
         Vec3 from, outer;   // m, end to end then; what ends that are outside move until its end
-        // Arms, and end to end, once places have changed; levers: see BodyTurn.
+        // Arms, and end to end, once places have changed; lever arms: see BodyTurn.
         Vec3 end_a = Vec3::Zero(), end_b = Vec3::Zero(), to = Vec3::Zero();
         Mat3 lever_a = Mat3::Zero(), lever_b = Mat3::Zero();
         Vec3 elastic, damping;  // N s on a, in half the step and in all of it
@@ -106,9 +106,9 @@ private:
     Vec3 outer_end(std::uint32_t body, const Vec3& at, double time) const;
     void stretch(Row& row) const;
     void stretch_all();
-    double ease_at(std::int32_t place, const Mat3& lever) const;
+    double inverse_mass_at(std::int32_t place, const Mat3& lever_arm) const;
     Vec3 speed_between(const Row& row, std::span<const Six> speeds) const;
-    void push(const Row& row, const Vec3& impulse, std::span<Six> on) const;
+    void apply_impulse(const Row& row, const Vec3& impulse, std::span<Six> on) const;
     Six eased(std::size_t i, const Six& impulse) const;
     void follow();
     double find_missing();

@@ -15,11 +15,11 @@ constexpr std::size_t kGrain = 512;  // colliders a block: some ten microseconds
 
 void follow_colliders(std::span<const Pose> placed,
                       std::span<const double> outer_radius,
-                      std::span<const double> reach,
+                      std::span<const double> speculative_margin,
                       Travels& travels)
 {
     const std::size_t count = placed.size(), known = std::min(travels.placed.size(), count);
-    THRONG_CHECK(outer_radius.size() == count && reach.size() == count,
+    THRONG_CHECK(outer_radius.size() == count && speculative_margin.size() == count,
                  "each collider needs a radius and a reach");
     travels.placed.resize(count);
     travels.traveled.resize(count, 0.0);
@@ -35,12 +35,12 @@ void follow_colliders(std::span<const Pose> placed,
                 travels.traveled[i] += furthest_moved(shift, turn, outer_radius[i]);
                 travels.placed[i] = now;
             }
-            travels.approach[i] = travels.traveled[i] + reach[i];
+            travels.approach[i] = travels.traveled[i] + speculative_margin[i];
         }
     });
 }
 
-double gap_between(const NearBox& a, const NearBox& b)
+double separation_between(const NearBox& a, const NearBox& b)
 {
     float most = 0;
     for (int axis = 0; axis < 3; ++axis)

@@ -12,15 +12,15 @@ namespace throng {
 /// nowhere yet. A plane reaches everywhere: once it moves, its travel is no number or infinite, and
 /// no pair of it can be told to be apart.
 ///
-///   placed        [colliders] where they are now
-///   outer_radius  [colliders] m, no point is further from where its frame is
-///   reach         [colliders] m
+///   placed              [colliders] where they are now
+///   outer_radius        [colliders] m, no point is further from where its frame is
+///   speculative_margin  [colliders] m
 void follow_colliders(std::span<const Pose> placed,
                       std::span<const double> outer_radius,
-                      std::span<const double> reach,
+                      std::span<const double> speculative_margin,
                       Travels& travels);
 
 /// How far two boxes are apart along the axis that parts them most; 0 where none does.
-double gap_between(const NearBox& a, const NearBox& b);
+double separation_between(const NearBox& a, const NearBox& b);
 
 }  // namespace throng

@@ -27,11 +27,11 @@ Vec3 shortened(const Vec3& arm, const Vec3& turn, double chord)
 
 }  // namespace
 
-Mat3 still_lever(const Vec3& arm)
+Mat3 still_lever_arm(const Vec3& arm)
 {
-    Mat3 lever;
-    lever << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-    return lever;
+    Mat3 lever_arm;
+    lever_arm << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
+    return lever_arm;
 }
 
 BodyTurn::BodyTurn(const Vec3& spin, const Vec3& axis, double carries, double span)
@@ -48,15 +48,15 @@ BodyTurn::BodyTurn(const Vec3& spin, const Vec3& axis, double carries, double sp
     half_rolled_ = roll_ == 0 ? Mat3(Mat3::Identity()) : turn_by(0.5 * roll_ * axis_);
 }
 
-Mat3 BodyTurn::lever(const Vec3& arm) const
+Mat3 BodyTurn::lever_arm(const Vec3& arm) const
 {
     const Vec3 along = shortened(halfway_ * Vec3(rolled_ * arm), carry_, chord_);
-    Mat3 lever = halfway_.transpose() * still_lever(along);
-    if (share_ == 1) return lever;
+    Mat3 lever_arm = halfway_.transpose() * still_lever_arm(along);
+    if (share_ == 1) return lever_arm;
     // About the own axis a share is done by each of both turns.
     const Vec3 beside = roll_chord_ * Vec3(half_rolled_ * arm);
-    const Vec3 by_roll = -beside.cross(axis_), by_carry = lever.transpose() * axis_;
-    return lever + (1 - share_) * Mat3(axis_ * Vec3(by_roll - by_carry).transpose());
+    const Vec3 by_roll = -beside.cross(axis_), by_carry = lever_arm.transpose() * axis_;
+    return lever_arm + (1 - share_) * Mat3(axis_ * Vec3(by_roll - by_carry).transpose());
 }
 
 double BodyTurn::angle_of(const Vec3& arm) const

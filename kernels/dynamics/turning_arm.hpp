@@ -9,7 +9,7 @@
 // both times about the arm as it is halfway, in the axes that are carried, it does just the work of
 // the force along the way of the end, whatever the inertia and however far it turns:
 //
-//   after - arm = span * lever^T spin,   so   impulse . (after - arm) / span = spin . lever
+//   after - arm = span * lever_arm^T spin,   so   impulse . (after - arm) / span = spin . lever_arm
 //   impulse.
 //
 // Source: Simo & Wong, Unconditionally stable algorithms for rigid body dynamics that exactly
@@ -22,7 +22,7 @@ namespace throng {
 
 /// What an impulse at the end of an arm turns a body by that stays as it is: the matrix of
 /// arm.cross().
-Mat3 still_lever(const Vec3& arm);
+Mat3 still_lever_arm(const Vec3& arm);
 
 /// A body's turn in a step.
 class BodyTurn {
@@ -42,7 +42,7 @@ public:
     Vec3 after(const Vec3& arm) const { return carried_ * Vec3(rolled_ * arm); }
     /// What an impulse at the arm's end turns the body by, N m s in world axes as the step begins:
     /// a matrix times the impulse.
-    Mat3 lever(const Vec3& arm) const;
+    Mat3 lever_arm(const Vec3& arm) const;
     /// rad, how far the arm itself goes round.
     double angle_of(const Vec3& arm) const;
 

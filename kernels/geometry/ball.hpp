@@ -11,7 +11,7 @@ struct Ball {
 };
 
 /// How far a place is from a ball, m; below 0 inside.
-inline double gap_to(const Ball& ball, const Vec3& place)
+inline double distance_to(const Ball& ball, const Vec3& place)
 {
     return (place - ball.center).norm() - ball.radius;
 }

@@ -302,8 +302,8 @@ void CutPolyhedron::close_gaps()
 }
 
 // Calls visit(half) once for each face, with one of the halves round it.
-template <class Visit>
-void CutPolyhedron::visit_loops(Visit visit)
+template <class Visitor>
+void CutPolyhedron::visit_loops(Visitor visit)
 {
     visited_.assign(half_edges_.size(), 0);
     for (std::uint32_t loop = 0; loop < half_edges_.size(); ++loop) {

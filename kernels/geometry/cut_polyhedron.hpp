@@ -55,8 +55,8 @@ public:
     Enclosed enclosed();
 
     /// Whether visit(from, to) is true of some edge, in the frame of start().
-    template <class Visit>
-    bool any_edge(Visit visit) const
+    template <class Visitor>
+    bool any_edge(Visitor visit) const
     {
         for (std::uint32_t half = 0; half < half_edges_.size(); half += 2) {
             if (origin(half) == kNone) continue;
@@ -98,8 +98,8 @@ private:
     void close_gaps();
     std::uint32_t new_vertex(const Vec3& position);
     std::uint32_t new_edge();
-    template <class Visit>
-    void visit_loops(Visit visit);
+    template <class Visitor>
+    void visit_loops(Visitor visit);
     Vec3 area_of(std::uint32_t loop) const;
     Vec3 center_of_vertices() const;
     Vec3 center_of_surface();

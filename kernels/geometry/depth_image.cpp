@@ -173,10 +173,10 @@ void DepthImage::draw_triangles()
     const Vec3 low(grid_.at(0, -1), grid_.at(1, -1), 0);
     const Vec3 high(grid_.at(0, grid_.count[0]), grid_.at(1, grid_.count[1]), 0);
     const Vec3 center = 0.5 * (low + high) - position_, half = 0.5 * (high - low);
-    const Mat3 reach = turn_.cwiseAbs();
+    const Mat3 extents = turn_.cwiseAbs();
     const auto in_column = [&](const Mesh::Node& node) {
         const Vec3 apart = (turn_ * (0.5 * (node.lower + node.upper)) - center).cwiseAbs();
-        const Vec3 near = reach * (0.5 * (node.upper - node.lower)) + half;
+        const Vec3 near = extents * (0.5 * (node.upper - node.lower)) + half;
         return apart.x() <= near.x() && apart.y() <= near.y();
     };
     visit_nodes(*mesh_, in_column, [&](std::uint32_t triangle) {

@@ -1,6 +1,6 @@
 #include "kernels/geometry/epa.hpp"
 
-#include "kernels/geometry/climbing_support.hpp"
+#include "kernels/geometry/hill_climbing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@ namespace throng {
 
 namespace {
 
-constexpr double kTolerance = 1e-14;  // of the size
-constexpr std::size_t kRoom = 128;    // corners
+constexpr double kTolerance = 1e-14;    // of the size
+constexpr std::size_t kCapacity = 128;  // corners
 constexpr std::size_t kMuchRoom = 512;
 
 // Of the block that a tetrahedron's edges span: flatter ones make noisy faces.
@@ -39,23 +39,23 @@ public:
 
     explicit Polytope(double tolerance) : tolerance_(tolerance) { }
 
-    void start(const std::array<Difference, 4>& corners);
+    void start(const std::array<MinkowskiVertex, 4>& corners);
     /// The living face nearest to 0 that can still grow; -1 when there is none.
     int nearest_face() const;
     /// Tears the faces that the corner sees and closes the hole with it; false if that cannot be.
-    bool grow(int seen, const Difference& corner);
+    bool grow(int seen, const MinkowskiVertex& corner);
 
     bool full() const { return corner_count_ >= kMaxCorners; }
     const Face& face(int i) const { return faces_[static_cast<std::size_t>(i)]; }
-    const Difference& corner(std::uint16_t i) const { return corners_[i]; }
+    const MinkowskiVertex& corner(std::uint16_t i) const { return corners_[i]; }
 
 private:
-    bool make_face(std::size_t slot, std::uint16_t a, std::uint16_t b, std::uint16_t c);
+    bool make_face(std::size_t face_index, std::uint16_t a, std::uint16_t b, std::uint16_t c);
     bool collect_rim(std::uint16_t seen, const Vec3& point);
     bool order_rim();
 
     double tolerance_;
-    std::array<Difference, kMaxCorners> corners_;
+    std::array<MinkowskiVertex, kMaxCorners> corners_;
     std::array<Face, kMaxFaces> faces_;
     std::array<RimEdge, kMaxRim> rim_;
     std::array<std::uint16_t, kMaxFaces> torn_;
@@ -63,7 +63,7 @@ private:
 };
 
 template <std::size_t kMaxCorners>
-bool Polytope<kMaxCorners>::make_face(std::size_t slot,
+bool Polytope<kMaxCorners>::make_face(std::size_t face_index,
                                       std::uint16_t a,
                                       std::uint16_t b,
                                       std::uint16_t c)
@@ -71,7 +71,7 @@ bool Polytope<kMaxCorners>::make_face(std::size_t slot,
     const Vec3& pa = corners_[a].point;
     const Vec3& pb = corners_[b].point;
     const Vec3& pc = corners_[c].point;
-    Face& face = faces_[slot];
+    Face& face = faces_[face_index];
     face.corners = {a, b, c};
     face.alive = true;
     // From the corner between the two shortest sides the cross product loses least.
@@ -89,7 +89,7 @@ bool Polytope<kMaxCorners>::make_face(std::size_t slot,
 }
 
 template <std::size_t kMaxCorners>
-void Polytope<kMaxCorners>::start(const std::array<Difference, 4>& corners)
+void Polytope<kMaxCorners>::start(const std::array<MinkowskiVertex, 4>& corners)
 {
     std::copy(corners.begin(), corners.end(), corners_.begin());
     corner_count_ = 4;
@@ -163,7 +163,7 @@ bool Polytope<kMaxCorners>::order_rim()
 }
 
 template <std::size_t kMaxCorners>
-bool Polytope<kMaxCorners>::grow(int seen, const Difference& corner)
+bool Polytope<kMaxCorners>::grow(int seen, const MinkowskiVertex& corner)
 {
     const bool whole = collect_rim(static_cast<std::uint16_t>(seen), corner.point) && order_rim();
     if (!whole) return false;
@@ -171,24 +171,24 @@ bool Polytope<kMaxCorners>::grow(int seen, const Difference& corner)
     corners_[corner_count_++] = corner;
 
     // The torn faces' places are taken first.
-    std::array<std::uint16_t, kMaxRim> slots;
+    std::array<std::uint16_t, kMaxRim> face_indices;
     for (std::size_t i = 0; i < rim_count_; ++i) {
         if (i < torn_count_) {
-            slots[i] = torn_[i];
+            face_indices[i] = torn_[i];
         } else {
             if (face_count_ == kMaxFaces) return false;
-            slots[i] = static_cast<std::uint16_t>(face_count_++);
+            face_indices[i] = static_cast<std::uint16_t>(face_count_++);
         }
     }
     for (std::size_t i = 0; i < rim_count_; ++i) {
         const RimEdge& edge = rim_[i];
-        if (!make_face(slots[i], edge.from, edge.to, apex)) return false;
-        faces_[slots[i]].beyond = {edge.beyond, slots[(i + 1) % rim_count_],
-                                   slots[(i + rim_count_ - 1) % rim_count_]};
+        if (!make_face(face_indices[i], edge.from, edge.to, apex)) return false;
+        faces_[face_indices[i]].beyond = {edge.beyond, face_indices[(i + 1) % rim_count_],
+                                          face_indices[(i + rim_count_ - 1) % rim_count_]};
         Face& beyond = faces_[edge.beyond];
         for (std::size_t k = 0; k < 3; ++k) {
             if (beyond.corners[k] == edge.to && beyond.corners[(k + 1) % 3] == edge.from) {
-                beyond.beyond[k] = slots[i];
+                beyond.beyond[k] = face_indices[i];
             }
         }
     }
@@ -205,10 +205,10 @@ double distance_from_line(const Vec3& point, const Vec3& from, const Vec3& along
 template <class Furthest>
 bool spread_start(Furthest& furthest,
                   double tolerance,
-                  std::array<Difference, 4>& start,
+                  std::array<MinkowskiVertex, 4>& start,
                   Vec3& flat_normal)
 {
-    std::array<Difference, 10> tried;
+    std::array<MinkowskiVertex, 10> tried;
     int widest = 0;
     double width = -1;
     for (int i = 0; i < 3; ++i) {
@@ -233,7 +233,7 @@ bool spread_start(Furthest& furthest,
 
     start[2] = tried[0];
     double most = -1;
-    for (const Difference& one : tried) {
+    for (const MinkowskiVertex& one : tried) {
         const double now = distance_from_line(one.point, start[0].point, line);
         if (!(now > most)) continue;
         most = now;
@@ -246,7 +246,7 @@ bool spread_start(Furthest& furthest,
     if (!(most > tolerance)) flat_normal = side;
 
     start[3] = furthest(flat_normal);
-    const Difference below = furthest(-flat_normal);
+    const MinkowskiVertex below = furthest(-flat_normal);
     const double above = flat_normal.dot(start[3].point - start[0].point);
     const double under = flat_normal.dot(start[0].point - below.point);
     if (under > above) start[3] = below;
@@ -265,11 +265,11 @@ bool encloses_volume(const Simplex& simplex)
 
 // Points of both surfaces below 0's shadow on a face.
 template <class Grown>
-void place_witness(const Grown& polytope, const Face& face, Depth& result)
+void place_witness(const Grown& polytope, const Face& face, PenetrationDepth& result)
 {
-    const Difference& a = polytope.corner(face.corners[0]);
-    const Difference& b = polytope.corner(face.corners[1]);
-    const Difference& c = polytope.corner(face.corners[2]);
+    const MinkowskiVertex& a = polytope.corner(face.corners[0]);
+    const MinkowskiVertex& b = polytope.corner(face.corners[1]);
+    const MinkowskiVertex& c = polytope.corner(face.corners[2]);
     const Vec3 shadow = face.normal * face.offset;
     const auto area = [&](const Vec3& p, const Vec3& q) {
         return std::max(0.0, face.normal.dot((p - shadow).cross(q - shadow)));
@@ -292,12 +292,12 @@ bool is_corner_of(const Grown& polytope, const Face& face, const Vec3& point)
 }
 
 template <std::size_t kMaxCorners, class Furthest>
-Depth search(const CorePair& pair, Furthest& furthest, const Simplex& beginning)
+PenetrationDepth search(const ConvexCorePair& pair, Furthest& furthest, const Simplex& beginning)
 {
     const double tolerance = kTolerance * (pair.size + pair.b_position.norm());
-    Depth result;
+    PenetrationDepth result;
     result.depth = std::numeric_limits<double>::infinity();
-    const auto keep = [&](const Vec3& normal, const Difference& further) {
+    const auto keep = [&](const Vec3& normal, const MinkowskiVertex& further) {
         const double depth = normal.dot(further.point);
         if (!(depth < result.depth)) return false;
         result.depth = depth;
@@ -307,7 +307,7 @@ Depth search(const CorePair& pair, Furthest& furthest, const Simplex& beginning)
         return true;
     };
 
-    std::array<Difference, 4> start = beginning.corners;
+    std::array<MinkowskiVertex, 4> start = beginning.corners;
     Vec3 flat_normal = Vec3::Zero();
     const auto keep_flat = [&] {
         for (const Vec3& normal : {flat_normal, Vec3(-flat_normal)})
@@ -325,7 +325,7 @@ Depth search(const CorePair& pair, Furthest& furthest, const Simplex& beginning)
         const int nearest = polytope.nearest_face();
         if (nearest < 0) break;
         const Face face = polytope.face(nearest);
-        const Difference further = furthest(face.normal);
+        const MinkowskiVertex further = furthest(face.normal);
         if (keep(face.normal, further)) {
             place_witness(polytope, face, result);
             result.has_face = true;
@@ -346,15 +346,14 @@ Depth search(const CorePair& pair, Furthest& furthest, const Simplex& beginning)
 
 }  // namespace
 
-Depth epa(const CorePair& pair)
+PenetrationDepth epa(const ConvexCorePair& pair)
 {
-    const auto furthest = [&](const Vec3& direction) {
-        return furthest_difference(pair, direction);
-    };
-    return search<kRoom>(pair, furthest, Simplex{});
+    const auto furthest = [&](const Vec3& direction) { return minkowski_support(pair, direction); };
+    return search<kCapacity>(pair, furthest, Simplex{});
 }
 
-Depth epa(const CorePair& pair, ClimbingSupports& supports, const Simplex& beginning)
+PenetrationDepth
+epa(const ConvexCorePair& pair, HillClimbingSupports& supports, const Simplex& beginning)
 {
     return search<kMuchRoom>(pair, supports, beginning);
 }

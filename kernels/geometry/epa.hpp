@@ -15,14 +15,14 @@ namespace throng {
 ///   normal    unit, from a to b
 ///   on_a, on_b  points of the two surfaces, depth apart along the normal
 ///   face        differences whose face has that normal, where `has_face`
-struct Depth {
+struct PenetrationDepth {
     double depth = 0;
     Vec3 normal = Vec3::UnitZ();
     Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
     int iterations = 0;
     bool cut_short = false;  // out of room: the best so far
     bool has_face = false;
-    std::array<Difference, 3> face;
+    std::array<MinkowskiVertex, 3> face;
 };
 
 /// Depth of two cores that overlap or touch.
@@ -33,12 +33,13 @@ struct Depth {
 ///
 /// Source: van den Bergen, Proximity Queries and Penetration Depth Computation on 3D Game Objects
 ///         (2001).
-Depth epa(const CorePair& pair);
+PenetrationDepth epa(const ConvexCorePair& pair);
 
 /// The same with supports of one's own, and room for four times as many corners: round shapes one
 /// within the other have as many directions that are nearly the best.
 ///
 ///   beginning   where GJK ended: four corners that enclose a volume spare the search for some
-Depth epa(const CorePair& pair, ClimbingSupports& supports, const Simplex& beginning);
+PenetrationDepth
+epa(const ConvexCorePair& pair, HillClimbingSupports& supports, const Simplex& beginning);
 
 }  // namespace throng

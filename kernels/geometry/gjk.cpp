@@ -1,6 +1,6 @@
 #include "kernels/geometry/gjk.hpp"
 
-#include "kernels/geometry/climbing_support.hpp"
+#include "kernels/geometry/hill_climbing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +148,7 @@ void finish(Distance& result, const Vec3& nearest)
 // The first simplex, the furthest difference from center to center. The direction is told too, for
 // what it shows already.
 template <class Furthest>
-Vec3 begin_between_centers(const CorePair& pair, Furthest& furthest, Simplex& simplex)
+Vec3 begin_between_centers(const ConvexCorePair& pair, Furthest& furthest, Simplex& simplex)
 {
     Vec3 start = pair.a.middle - (pair.b_turn * pair.b.middle + pair.b_position);
     if (!(start.squaredNorm() > 0)) start = Vec3::UnitX();
@@ -160,14 +160,15 @@ Vec3 begin_between_centers(const CorePair& pair, Furthest& furthest, Simplex& si
 
 // From a simplex and its point nearest to 0.
 template <class Furthest>
-void walk(const CorePair& pair, double limit, Furthest& furthest, Vec3 nearest, Distance& result)
+void walk(
+    const ConvexCorePair& pair, double limit, Furthest& furthest, Vec3 nearest, Distance& result)
 {
     Simplex& simplex = result.simplex;
     const double slack = kTolerance * (pair.size + pair.b_position.norm());
     while (result.iterations++ < kMostRounds) {
         const double length = nearest.norm();
         if (!(length > slack)) return;
-        const Difference further = furthest(-nearest);
+        const MinkowskiVertex further = furthest(-nearest);
         const double bound = nearest.dot(further.point) / length;
         if (bound > limit) {
             finish(result, nearest);
@@ -193,18 +194,24 @@ void walk(const CorePair& pair, double limit, Furthest& furthest, Vec3 nearest, 
 
 }  // namespace
 
-CorePair::CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a)
-    : CorePair(core_of<double>(shapes, shape_a), core_of<double>(shapes, shape_b), b_in_a)
+ConvexCorePair::ConvexCorePair(const Shapes& shapes,
+                               ShapeRef shape_a,
+                               ShapeRef shape_b,
+                               const Pose& b_in_a)
+    : ConvexCorePair(
+        convex_core_of<double>(shapes, shape_a), convex_core_of<double>(shapes, shape_b), b_in_a)
 { }
 
-CorePair::CorePair(const Core<double>& core_a, const Core<double>& core_b, const Pose& b_in_a)
+ConvexCorePair::ConvexCorePair(const ConvexCore<double>& core_a,
+                               const ConvexCore<double>& core_b,
+                               const Pose& b_in_a)
     : a(core_a), b(core_b), b_position(b_in_a.position),
       b_turn(b_in_a.orientation.toRotationMatrix()), size(a.size + b.size)
 { }
 
-Difference furthest_difference(const CorePair& pair, const Vec3& direction)
+MinkowskiVertex minkowski_support(const ConvexCorePair& pair, const Vec3& direction)
 {
-    Difference difference;
+    MinkowskiVertex difference;
     const Vec3 against = pair.b_turn.transpose() * -direction;
     const SupportPoint<double> of_a = support(pair.a, direction);
     const SupportPoint<double> of_b = support(pair.b, against);
@@ -216,16 +223,16 @@ Difference furthest_difference(const CorePair& pair, const Vec3& direction)
     return difference;
 }
 
-double separation_along(const CorePair& pair, const Vec3& direction)
+double separation_along(const ConvexCorePair& pair, const Vec3& direction)
 {
-    return -direction.dot(furthest_difference(pair, direction).point);
+    return -direction.dot(minkowski_support(pair, direction).point);
 }
 
-SweptDistance swept_gjk(const CorePair& pair, const Vec3& motion, double limit)
+SweptDistance swept_gjk(const ConvexCorePair& pair, const Vec3& motion, double limit)
 {
     constexpr std::uint32_t kMoved = 1u << 31;  // of a difference: b was at the end of its way
     const auto furthest = [&](const Vec3& direction) {
-        Difference difference = furthest_difference(pair, direction);
+        MinkowskiVertex difference = minkowski_support(pair, direction);
         if (direction.dot(motion) < 0) {
             difference.on_b += motion;
             difference.point -= motion;
@@ -233,7 +240,7 @@ SweptDistance swept_gjk(const CorePair& pair, const Vec3& motion, double limit)
         }
         return difference;
     };
-    CorePair path = pair;
+    ConvexCorePair path = pair;
     path.size += motion.norm();
     SweptDistance swept;
     Distance& nearest = swept.nearest;
@@ -247,19 +254,19 @@ SweptDistance swept_gjk(const CorePair& pair, const Vec3& motion, double limit)
     return swept;
 }
 
-Distance gjk(const CorePair& pair, double limit)
+Distance gjk(const ConvexCorePair& pair, double limit)
 {
-    const auto furthest = [&](const Vec3& direction) {
-        return furthest_difference(pair, direction);
-    };
+    const auto furthest = [&](const Vec3& direction) { return minkowski_support(pair, direction); };
     Distance result;
     begin_between_centers(pair, furthest, result.simplex);
     walk(pair, limit, furthest, result.simplex.corners[0].point, result);
     return result;
 }
 
-Distance
-gjk(const CorePair& pair, double limit, ClimbingSupports& supports, const Simplex& beginning)
+Distance gjk(const ConvexCorePair& pair,
+             double limit,
+             HillClimbingSupports& supports,
+             const Simplex& beginning)
 {
     Distance result;
     Simplex& simplex = result.simplex;

@@ -1,4 +1,4 @@
-// GJK: the distance of two convex shapes, by walking the differences of their points.
+// GJK: the distance of two convex shapes, by walking the Minkowski difference.
 //
 // Works on cores (kernels/geometry/support.hpp) and leaves rounding to the caller, so that round
 // shapes are exact. Always in double: one pair at a time that costs what float would, and float
@@ -9,36 +9,38 @@
 
 namespace throng {
 
-class ClimbingSupports;
+class HillClimbingSupports;
 
 /// Two cores, b placed in a's frame.
-struct CorePair {
-    Core<double> a, b;
+struct ConvexCorePair {
+    ConvexCore<double> a, b;
     Vec3 b_position = Vec3::Zero();
     Mat3 b_turn = Mat3::Identity();
     double size = 0;  // what tolerances are relative to
 
-    CorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a);
-    CorePair(const Core<double>& core_a, const Core<double>& core_b, const Pose& b_in_a);
+    ConvexCorePair(const Shapes& shapes, ShapeRef shape_a, ShapeRef shape_b, const Pose& b_in_a);
+    ConvexCorePair(const ConvexCore<double>& core_a,
+                   const ConvexCore<double>& core_b,
+                   const Pose& b_in_a);
 };
 
 /// A point of a minus a point of b, in a's frame, and the features that these are of
 /// (SupportPoint).
-struct Difference {
+struct MinkowskiVertex {
     Vec3 point, on_a, on_b;
     std::uint32_t feature_a, feature_b;
 };
 
 /// The furthest difference along a direction of any length.
-Difference furthest_difference(const CorePair& pair, const Vec3& direction);
+MinkowskiVertex minkowski_support(const ConvexCorePair& pair, const Vec3& direction);
 
 /// How far apart the cores lie along a unit direction from a to b, m; below 0 where they overlap.
 /// No direction gives more than their distance, and minus the result is always enough to part them.
-double separation_along(const CorePair& pair, const Vec3& direction);
+double separation_along(const ConvexCorePair& pair, const Vec3& direction);
 
 /// Up to four differences and the weights that make the one nearest to 0.
 struct Simplex {
-    std::array<Difference, 4> corners;
+    std::array<MinkowskiVertex, 4> corners;
     std::array<double, 4> weights = {};
     int count = 0;
 };
@@ -76,13 +78,15 @@ struct Distance {
 ///
 /// Source: Gilbert, Johnson, Keerthi (1988); van den Bergen, Collision Detection in Interactive 3D
 ///         Environments (2003), section 4.3.
-Distance gjk(const CorePair& pair, double limit);
+Distance gjk(const ConvexCorePair& pair, double limit);
 
 /// The same with supports of one's own, begun with a simplex of differences that need not be the
 /// furthest along anything; of count 0 for the usual beginning, the direction from center to
 /// center, which is then asked at once whether it shows more room than the limit.
-Distance
-gjk(const CorePair& pair, double limit, ClimbingSupports& supports, const Simplex& beginning);
+Distance gjk(const ConvexCorePair& pair,
+             double limit,
+             HillClimbingSupports& supports,
+             const Simplex& beginning);
 
 /// What GJK found of a core that is passed by another.
 ///
@@ -99,6 +103,6 @@ struct SweptDistance {
 ///   motion  m, of b against a, in a's frame
 ///
 /// Source: van den Bergen (2003), section 4.3, on the sum of a shape and a segment.
-SweptDistance swept_gjk(const CorePair& pair, const Vec3& motion, double limit);
+SweptDistance swept_gjk(const ConvexCorePair& pair, const Vec3& motion, double limit);
 
 }  // namespace throng

@@ -74,11 +74,11 @@ void draw_triangles(const Shapes& shapes,
                     const ThreeImages& images)
 {
     const Mesh& mesh = *mesh_of(shapes, shape);
-    const Mat3 turn = in_a.orientation.toRotationMatrix(), reach = turn.cwiseAbs();
+    const Mat3 turn = in_a.orientation.toRotationMatrix(), extents = turn.cwiseAbs();
     const AxisWindows windows(grids);
     const auto in_view = [&](const Mesh::Node& node) {
         const Vec3 center = turn * (0.5 * (node.lower + node.upper)) + in_a.position;
-        const Vec3 half = reach * (0.5 * (node.upper - node.lower));
+        const Vec3 half = extents * (0.5 * (node.upper - node.lower));
         return windows.sees(center - half, center + half);
     };
     visit_nodes(mesh, in_view, [&](std::uint32_t triangle) {
@@ -170,9 +170,9 @@ std::array<RayLayers, 3> layers_of(const Solid& solid)
     const ShapeRef own{ShapeKind::solid, 0};
     const double pixel = pixel_of(shapes, own, own);
     if (!(pixel > 0)) return layers;
-    const Vec3 room = Vec3::Constant(pixel);
+    const Vec3 padding = Vec3::Constant(pixel);
     const Box3 box = shape_bounds(shapes, own, {});
-    const ThreeGrids grids = grids_through({box.lower - room, box.upper + room}, pixel);
+    const ThreeGrids grids = grids_through({box.lower - padding, box.upper + padding}, pixel);
     std::array<DepthImage, 3> images;
     draw_along_axes(shapes, own, {}, grids, {&images[0], &images[1], &images[2]}, Layers::all, 0);
     for (std::size_t axis = 0; axis < 3; ++axis) layers[axis] = images[axis].layers();

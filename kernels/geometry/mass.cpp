@@ -77,8 +77,8 @@ struct Moments {
 };
 
 // Calls visit(a, b, c) for triangles that cover the surface.
-template <class Visit>
-void visit_surface(const Hull& hull, Visit visit)
+template <class Visitor>
+void visit_surface(const Hull& hull, Visitor visit)
 {
     for (std::size_t face = 0; face + 1 < hull.face_begin.size(); ++face) {
         const std::size_t begin = hull.face_begin[face];
@@ -88,8 +88,8 @@ void visit_surface(const Hull& hull, Visit visit)
     }
 }
 
-template <class Visit>
-void visit_surface(const Mesh& mesh, Visit visit)
+template <class Visitor>
+void visit_surface(const Mesh& mesh, Visitor visit)
 {
     for (const auto& [a, b, c] : mesh.triangles)
         visit(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);

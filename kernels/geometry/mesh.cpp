@@ -6,9 +6,9 @@ namespace throng {
 
 bool is_closed(const Mesh& mesh)
 {
-    return !mesh.beyond.empty()
-        && std::all_of(mesh.beyond.begin(), mesh.beyond.end(), [](const auto& beyond) {
-               return *std::min_element(beyond.begin(), beyond.end()) >= 0;
+    return !mesh.adjacent.empty()
+        && std::all_of(mesh.adjacent.begin(), mesh.adjacent.end(), [](const auto& adjacent) {
+               return *std::min_element(adjacent.begin(), adjacent.end()) >= 0;
            });
 }
 

@@ -24,8 +24,8 @@ const Mesh* mesh_of(const Shapes& shapes, ShapeRef shape);
 
 /// Visits all triangles of those nodes of the tree that are reached, as are all above them. The
 /// order is that of the tree: sort where it matters.
-template <class Reached, class Visit>
-void visit_nodes(const Mesh& mesh, Reached reached, Visit visit)
+template <class Reached, class Visitor>
+void visit_nodes(const Mesh& mesh, Reached reached, Visitor visit)
 {
     // A child holds at most three quarters of its parent's triangles: 64 levels are 2^26 triangles.
     std::array<std::uint32_t, 96> waiting;
@@ -43,8 +43,8 @@ void visit_nodes(const Mesh& mesh, Reached reached, Visit visit)
 }
 
 /// Visits the triangles whose boxes overlap the given one, in mesh axes, in the order of the tree.
-template <class Visit>
-void visit_triangles(const Mesh& mesh, const Box3& box, Visit visit)
+template <class Visitor>
+void visit_triangles(const Mesh& mesh, const Box3& box, Visitor visit)
 {
     visit_nodes(
         mesh,

@@ -66,32 +66,32 @@ double angle_between(const Vec3& a, const Vec3& b)
 // Down the tree, the nearer child first.
 MeshPoint nearest_on_mesh(const Mesh& mesh, const Vec3& point, double limit, std::uint32_t beside)
 {
-    struct Visit {
+    struct OpenNode {
         std::uint32_t node;
         double distance2;
     };
     // As deep as visit_triangles() in mesh.hpp, which says why.
-    std::array<Visit, 96> waiting;
+    std::array<OpenNode, 96> waiting;
     std::size_t count = 0;
     if (!mesh.tree.empty()) waiting[count++] = {0, distance2_to(mesh.tree.front(), point)};
     MeshPoint nearest;
     double within2 = limit * limit;
-    const auto look_at = [&](std::uint32_t triangle) {
+    const auto process = [&](std::uint32_t triangle) {
         if (is_beyond(mesh, triangle, point, within2)) return;
         const MeshPoint now = on_triangle(mesh, triangle, point);
         if (!(now.distance < nearest.distance)) return;
         nearest = now;
         within2 = std::min(within2, now.distance * now.distance);
     };
-    if (beside < mesh.triangles.size()) look_at(beside);
+    if (beside < mesh.triangles.size()) process(beside);
     while (count > 0) {
-        const Visit visit = waiting[--count];
+        const OpenNode visit = waiting[--count];
         if (visit.distance2 > within2 * kSlack) continue;
         const Mesh::Node& node = mesh.tree[visit.node];
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) look_at(mesh.order[i]);
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) process(mesh.order[i]);
         if (node.count > 0) continue;
-        Visit near{node.first, distance2_to(mesh.tree[node.first], point)};
-        Visit far{node.first + 1, distance2_to(mesh.tree[node.first + 1], point)};
+        OpenNode near{node.first, distance2_to(mesh.tree[node.first], point)};
+        OpenNode far{node.first + 1, distance2_to(mesh.tree[node.first + 1], point)};
         if (far.distance2 < near.distance2) std::swap(near, far);
         waiting[count++] = far;
         waiting[count++] = near;
@@ -144,7 +144,7 @@ Vec3 outward_at(const Mesh& mesh, const MeshPoint& where)
     if (where.region == TriangleRegion::face) return normal;
     if (place >= kVertex)
         return mesh.vertex_normals[mesh.triangles[where.triangle][place - kVertex]];
-    const std::int32_t beyond = mesh.beyond[where.triangle][place - kEdge];
+    const std::int32_t beyond = mesh.adjacent[where.triangle][place - kEdge];
     if (beyond < 0) return normal;
     const Vec3 sum = normal + mesh.normals[static_cast<std::size_t>(beyond)];
     // Folded flat: neither side is outside.

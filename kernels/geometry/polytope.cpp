@@ -1,7 +1,7 @@
 #include "kernels/geometry/polytope.hpp"
 
 #include "kernels/check.hpp"
-#include "kernels/geometry/climbing_support.hpp"
+#include "kernels/geometry/hill_climbing.hpp"
 
 #include <algorithm>
 
@@ -90,8 +90,8 @@ PolytopeView TrianglePolytope::view() const
 
 std::uint16_t support_vertex(const PolytopeView& shape, const Vec3& direction, std::uint16_t start)
 {
-    ClimbCount count;
-    return furthest_vertex_near(ClimbingShape(shape), direction, start, count);
+    HillClimbingCount count;
+    return furthest_vertex_near(HillClimbingShape(shape), direction, start, count);
 }
 
 PolytopeShape::PolytopeShape(const Shapes& shapes, ShapeRef shape)

@@ -14,7 +14,7 @@ constexpr double kParallel = 1e-24;
 // ... and below which the normal is coarse enough for other vertices to be further along it.
 constexpr double kNearParallel = 1e-8;
 
-double reach_along(const PolytopeView& shape, const Vec3& direction)
+double extent_along(const PolytopeView& shape, const Vec3& direction)
 {
     return direction.dot(shape.vertices[support_vertex(shape, direction, 0)]);
 }
@@ -109,8 +109,8 @@ EdgeAxis best_crossing(const PolytopePair& pair, const Scratch& scratch, double 
             double separation = normal.dot(b.on - a.on);
             if (length2 < kNearParallel * full2 || separation > best.separation) {
                 separation = normal.dot(pair.shift)
-                    - reach_along(pair.b, -(pair.turn.transpose() * normal))
-                    - reach_along(pair.a, normal);
+                    - extent_along(pair.b, -(pair.turn.transpose() * normal))
+                    - extent_along(pair.a, normal);
             }
             if (separation > best.separation) best = {separation, normal, a.edge, b.edge};
         }
@@ -119,8 +119,8 @@ EdgeAxis best_crossing(const PolytopePair& pair, const Scratch& scratch, double 
 }
 
 // Calls visit(edge) for the edges at a vertex. Those of a hull are in order of their ends.
-template <class Visit>
-void visit_edges_at(const PolytopeView& shape, std::uint16_t vertex, Visit visit)
+template <class Visitor>
+void visit_edges_at(const PolytopeView& shape, std::uint16_t vertex, Visitor visit)
 {
     if (!shape.guide) {
         for (std::size_t i = 0; i < shape.edges.size(); ++i)
@@ -307,17 +307,20 @@ EdgeAxis best_edge_axis_at(const PolytopePair& pair,
     return best_crossing(pair, scratch, to_beat);
 }
 
-void clip_faces(
-    const PolytopePair& pair, const FaceAxis& axis, double reach, double slack, PolytopePoints& out)
+void clip_faces(const PolytopePair& pair,
+                const FaceAxis& axis,
+                double speculative_margin,
+                double slack,
+                PolytopePoints& out)
 {
     const std::uint16_t against = face_against(pair, axis.vertex, pair.a.normals[axis.face]);
-    clip_faces(pair, axis, against, reach, slack, out);
+    clip_faces(pair, axis, against, speculative_margin, slack, out);
 }
 
 void clip_faces(const PolytopePair& pair,
                 const FaceAxis& axis,
                 std::uint16_t against,
-                double reach,
+                double speculative_margin,
                 double slack,
                 PolytopePoints& out)
 {
@@ -335,7 +338,7 @@ void clip_faces(const PolytopePair& pair,
     for (int i = 0; i < polygon.count; ++i) {
         const Vec3& corner = polygon.corners[static_cast<std::size_t>(i)];
         const double separation = normal.dot(corner) - pair.a.offsets[axis.face];
-        if (separation > reach) continue;
+        if (separation > speculative_margin) continue;
         out.least = out.count == 0 ? separation : std::min(out.least, separation);
         out.points[out.count++] = {corner - normal * (separation / 2), separation,
                                    polygon.corner_id(i) | faces << 24};

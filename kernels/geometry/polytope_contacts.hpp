@@ -71,10 +71,10 @@ struct PolytopePoints {
 };
 
 /// Clips the face of b that looks most against a's face (of those at the axis' vertex) by the sides
-/// of a's face; points no further than reach, midway between the two.
+/// of a's face; points no further than the speculative margin, midway between the two.
 void clip_faces(const PolytopePair& pair,
                 const FaceAxis& axis,
-                double reach,
+                double speculative_margin,
                 double slack,
                 PolytopePoints& out);
 
@@ -82,7 +82,7 @@ void clip_faces(const PolytopePair& pair,
 void clip_faces(const PolytopePair& pair,
                 const FaceAxis& axis,
                 std::uint16_t against,
-                double reach,
+                double speculative_margin,
                 double slack,
                 PolytopePoints& out);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-RayMeeting first_of(const RayPassage& passage, const LocalRay& ray)
+LocalRayHit first_of(const RayPassage& passage, const LocalRay& ray)
 {
     const bool meets = !passage.empty() && passage.leave >= 0 && passage.enter <= ray.longest
         && passage.enter < kInfinity;
@@ -37,7 +37,7 @@ public:
     }
 
     // Where the line meets a triangle, from the ray's start on; infinite where it does not.
-    double meet(std::uint32_t triangle) const
+    double hit_at(std::uint32_t triangle) const
     {
         const Vec3 a = sheared(triangle, 0), b = sheared(triangle, 1), c = sheared(triangle, 2);
         const double u = c.x() * b.y() - c.y() * b.x();
@@ -94,31 +94,31 @@ struct Nearest {
 // Down the tree, the nearer child first.
 Nearest nearest_triangle(const Mesh& mesh, const LocalRay& ray, double earliest)
 {
-    struct Visit {
+    struct OpenNode {
         std::uint32_t node;
         double enter;
     };
     const MeshRay mesh_ray(mesh, ray);
     // As deep as visit_triangles() in mesh.hpp, which says why.
-    std::array<Visit, 96> waiting;
+    std::array<OpenNode, 96> waiting;
     std::size_t count = 0;
     waiting[count++] = {0, mesh_ray.enter(mesh.tree.front())};
     Nearest nearest{kInfinity, 0};
     while (count > 0) {
-        const Visit visit = waiting[--count];
+        const OpenNode visit = waiting[--count];
         if (!(visit.enter <= std::min(nearest.distance, ray.longest)) || visit.enter == kInfinity)
             continue;
         const Mesh::Node& node = mesh.tree[visit.node];
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             const std::uint32_t triangle = mesh.order[i];
-            const double at = mesh_ray.meet(triangle);
+            const double at = mesh_ray.hit_at(triangle);
             if (!(at >= earliest && at <= ray.longest)) continue;
             if (at < nearest.distance || (at == nearest.distance && triangle < nearest.triangle))
                 nearest = {at, triangle};
         }
         if (node.count > 0) continue;
-        Visit near{node.first, mesh_ray.enter(mesh.tree[node.first])};
-        Visit far{node.first + 1, mesh_ray.enter(mesh.tree[node.first + 1])};
+        OpenNode near{node.first, mesh_ray.enter(mesh.tree[node.first])};
+        OpenNode far{node.first + 1, mesh_ray.enter(mesh.tree[node.first + 1])};
         if (far.enter < near.enter) std::swap(near, far);
         waiting[count++] = far;
         waiting[count++] = near;
@@ -126,7 +126,7 @@ Nearest nearest_triangle(const Mesh& mesh, const LocalRay& ray, double earliest)
     return nearest;
 }
 
-RayMeeting cast_at_mesh(const Mesh& mesh, const LocalRay& ray)
+LocalRayHit cast_at_mesh(const Mesh& mesh, const LocalRay& ray)
 {
     if (mesh.tree.empty()) return {};
     // A ray from far away sets out again close by, where its numbers have digits to spare.
@@ -143,7 +143,7 @@ RayMeeting cast_at_mesh(const Mesh& mesh, const LocalRay& ray)
 
 }  // namespace
 
-RayMeeting cast_ray(const Shapes& shapes, ShapeRef shape, const LocalRay& ray)
+LocalRayHit cast_ray(const Shapes& shapes, ShapeRef shape, const LocalRay& ray)
 {
     const std::size_t i = shape.index;
     switch (shape.kind) {

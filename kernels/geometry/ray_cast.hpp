@@ -18,7 +18,7 @@ struct LocalRay {
 ///
 ///   distance  m, from where the ray begins; infinite where they do not meet
 ///   normal    unit, out of the surface; minus `along` where the ray begins inside a solid
-struct RayMeeting {
+struct LocalRayHit {
     double distance = std::numeric_limits<double>::infinity();
     Vec3 normal = Vec3::Zero();
 
@@ -32,6 +32,6 @@ struct RayMeeting {
 /// with the normal of the side that the ray comes from and no gaps along shared edges; a ray that
 /// lies in a triangle's plane does not meet it. Of triangles met at the same distance the first
 /// counts.
-RayMeeting cast_ray(const Shapes& shapes, ShapeRef shape, const LocalRay& ray);
+LocalRayHit cast_ray(const Shapes& shapes, ShapeRef shape, const LocalRay& ray);
 
 }  // namespace throng

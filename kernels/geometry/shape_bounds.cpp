@@ -10,10 +10,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Box3 box_round(const Vec3& center, const Vec3& reach) { return {center - reach, center + reach}; }
+Box3 box_round(const Vec3& center, const Vec3& half_extents)
+{
+    return {center - half_extents, center + half_extents};
+}
 
 // A box of these half-extents, turned, reaches this far along the world's axes.
-Vec3 turned_reach(const Quat& orientation, const Vec3& half_extents)
+Vec3 turned_margin(const Quat& orientation, const Vec3& half_extents)
 {
     return orientation.toRotationMatrix().cwiseAbs() * half_extents;
 }
@@ -54,7 +57,7 @@ Box3 box_round_mesh(const Mesh& mesh, const Pose& pose)
     if (mesh.tree.empty()) return {};
     const Box3 own = box_of(mesh);
     return box_round(pose * Vec3(0.5 * (own.lower + own.upper)),
-                     turned_reach(pose.orientation, 0.5 * (own.upper - own.lower)));
+                     turned_margin(pose.orientation, 0.5 * (own.upper - own.lower)));
 }
 
 }  // namespace
@@ -79,7 +82,7 @@ Box3 shape_bounds(const Shapes& shapes, ShapeRef shape, const Pose& pose)
     }
     case ShapeKind::box:
         return box_round(pose.position,
-                         turned_reach(pose.orientation, shapes.boxes[i].half_extents));
+                         turned_margin(pose.orientation, shapes.boxes[i].half_extents));
     case ShapeKind::hull:
         return box_round_vertices(shapes.hulls[i].vertices, pose);
     case ShapeKind::mesh:

@@ -28,7 +28,7 @@ SupportPoint<Real> furthest_vertex(const Hull& hull, const Vec3T<Real>& directio
 }
 
 template <class Real>
-SupportPoint<Real> furthest_of_cylinder(const Core<Real>& core, const Vec3T<Real>& direction)
+SupportPoint<Real> furthest_of_cylinder(const ConvexCore<Real>& core, const Vec3T<Real>& direction)
 {
     const bool above = direction.z() >= 0;
     SupportPoint<Real> point;
@@ -39,15 +39,15 @@ SupportPoint<Real> furthest_of_cylinder(const Core<Real>& core, const Vec3T<Real
     if (scale > 0) {
         const Real x = direction.x() / scale;
         const Real y = direction.y() / scale;
-        const Real reach = core.extents.x() / std::sqrt(x * x + y * y);
-        point.position.x() = x * reach;
-        point.position.y() = y * reach;
+        const Real rim_radius = core.extents.x() / std::sqrt(x * x + y * y);
+        point.position.x() = x * rim_radius;
+        point.position.y() = y * rim_radius;
     }
     return point;
 }
 
 template <class Real>
-SupportFace<Real> box_face(const Core<Real>& core, const Vec3T<Real>& direction)
+SupportFace<Real> box_face(const ConvexCore<Real>& core, const Vec3T<Real>& direction)
 {
     int axis = 0;
     if (std::abs(direction.y()) > std::abs(direction[axis])) axis = 1;
@@ -78,7 +78,7 @@ SupportFace<Real> box_face(const Core<Real>& core, const Vec3T<Real>& direction)
 }
 
 template <class Real>
-SupportFace<Real> hull_face(const Core<Real>& core, const Vec3T<Real>& direction)
+SupportFace<Real> hull_face(const ConvexCore<Real>& core, const Vec3T<Real>& direction)
 {
     const Hull& hull = *core.hull;
     SupportFace<Real> face;
@@ -114,7 +114,7 @@ SupportFace<Real> hull_face(const Core<Real>& core, const Vec3T<Real>& direction
 // The first point follows the direction once the cap leans by more than kLean; standing straighter
 // it turns back towards the body's own axes, so that noise does not send it round the rim.
 template <class Real>
-SupportFace<Real> cap_of(const Core<Real>& core, const Vec3T<Real>& direction, bool between)
+SupportFace<Real> cap_of(const ConvexCore<Real>& core, const Vec3T<Real>& direction, bool between)
 {
     constexpr Real kLean = Real(0.0002);
     const Real side = direction.z() > 0 ? Real(1) : Real(-1);
@@ -177,20 +177,20 @@ SupportFace<Real> side_line(const Vec3T<Real>& direction, Real x, Real y, Real h
 }  // namespace
 
 template <class Real>
-Core<Real> core_of(const Shapes& shapes, ShapeRef shape)
+ConvexCore<Real> convex_core_of(const Shapes& shapes, ShapeRef shape)
 {
-    Core<Real> core;
+    ConvexCore<Real> core;
     core.kind = shape.kind;
     switch (shape.kind) {
     case ShapeKind::sphere:
-        core.radius = static_cast<Real>(shapes.spheres[shape.index].radius);
-        core.size = core.radius;
+        core.convex_radius = static_cast<Real>(shapes.spheres[shape.index].radius);
+        core.size = core.convex_radius;
         break;
     case ShapeKind::capsule: {
         const Capsule& capsule = shapes.capsules[shape.index];
-        core.radius = static_cast<Real>(capsule.radius);
+        core.convex_radius = static_cast<Real>(capsule.radius);
         core.extents.z() = static_cast<Real>(capsule.half_length);
-        core.size = core.radius + core.extents.z();
+        core.size = core.convex_radius + core.extents.z();
         break;
     }
     case ShapeKind::cylinder: {
@@ -218,9 +218,9 @@ Core<Real> core_of(const Shapes& shapes, ShapeRef shape)
 }
 
 template <class Real>
-Core<Real> core_of_points(std::span<const Vec3T<Real>> corners)
+ConvexCore<Real> convex_core_of_points(std::span<const Vec3T<Real>> corners)
 {
-    Core<Real> core;
+    ConvexCore<Real> core;
     core.kind = ShapeKind::triangle;
     core.corners = corners.data();
     core.corner_count = static_cast<std::uint32_t>(corners.size());
@@ -234,7 +234,7 @@ Core<Real> core_of_points(std::span<const Vec3T<Real>> corners)
 }
 
 template <class Real>
-SupportPoint<Real> support(const Core<Real>& core, const Vec3T<Real>& direction)
+SupportPoint<Real> support(const ConvexCore<Real>& core, const Vec3T<Real>& direction)
 {
     SupportPoint<Real> point;
     switch (core.kind) {
@@ -265,7 +265,7 @@ SupportPoint<Real> support(const Core<Real>& core, const Vec3T<Real>& direction)
 }
 
 template <class Real>
-SupportFace<Real> support_face(const Core<Real>& core, const Vec3T<Real>& direction)
+SupportFace<Real> support_face(const ConvexCore<Real>& core, const Vec3T<Real>& direction)
 {
     switch (core.kind) {
     case ShapeKind::box:
@@ -295,17 +295,17 @@ SupportFace<Real> support_face(const Core<Real>& core, const Vec3T<Real>& direct
 }
 
 template <class Real>
-SupportFace<Real> rim_points(const Core<Real>& cylinder, const Vec3T<Real>& direction)
+SupportFace<Real> rim_points(const ConvexCore<Real>& cylinder, const Vec3T<Real>& direction)
 {
     return cap_of(cylinder, direction, false);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template Core<Real> core_of<Real>(const Shapes&, ShapeRef);                                    \
-    template Core<Real> core_of_points<Real>(std::span<const Vec3T<Real>>);                        \
-    template SupportPoint<Real> support<Real>(const Core<Real>&, const Vec3T<Real>&);              \
-    template SupportFace<Real> support_face<Real>(const Core<Real>&, const Vec3T<Real>&);          \
-    template SupportFace<Real> rim_points<Real>(const Core<Real>&, const Vec3T<Real>&);
+    template ConvexCore<Real> convex_core_of<Real>(const Shapes&, ShapeRef);                       \
+    template ConvexCore<Real> convex_core_of_points<Real>(std::span<const Vec3T<Real>>);           \
+    template SupportPoint<Real> support<Real>(const ConvexCore<Real>&, const Vec3T<Real>&);        \
+    template SupportFace<Real> support_face<Real>(const ConvexCore<Real>&, const Vec3T<Real>&);    \
+    template SupportFace<Real> rim_points<Real>(const ConvexCore<Real>&, const Vec3T<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -22,10 +22,10 @@ namespace throng {
 ///   middle    a point inside the core
 ///   corners   of a triangle, or whatever points there are
 template <class Real>
-struct Core {
+struct ConvexCore {
     ShapeKind kind = ShapeKind::sphere;
     Vec3T<Real> extents = Vec3T<Real>::Zero();
-    Real radius = 0;
+    Real convex_radius = 0;
     Real size = 0;
     Vec3T<Real> middle = Vec3T<Real>::Zero();
     const Hull* hull = nullptr;
@@ -36,11 +36,11 @@ struct Core {
 /// That of a triangle, or of the hull of more points: each is looked at for every support. At least
 /// one. Keep them while it lives.
 template <class Real>
-Core<Real> core_of_points(std::span<const Vec3T<Real>> corners);
+ConvexCore<Real> convex_core_of_points(std::span<const Vec3T<Real>> corners);
 
 /// Needs: a sphere, capsule, cylinder, box or hull.
 template <class Real>
-Core<Real> core_of(const Shapes& shapes, ShapeRef shape);
+ConvexCore<Real> convex_core_of(const Shapes& shapes, ShapeRef shape);
 
 /// A point of a core that lies furthest along some direction.
 ///
@@ -54,7 +54,7 @@ struct SupportPoint {
 
 /// The furthest point of a core along a direction of any length, 0 included; the first of equals.
 template <class Real>
-SupportPoint<Real> support(const Core<Real>& core, const Vec3T<Real>& direction);
+SupportPoint<Real> support(const ConvexCore<Real>& core, const Vec3T<Real>& direction);
 
 inline constexpr int kMaxFaceCorners = 32;
 
@@ -91,14 +91,14 @@ struct SupportFace {
 ///
 ///   direction   unit
 template <class Real>
-SupportFace<Real> support_face(const Core<Real>& core, const Vec3T<Real>& direction);
+SupportFace<Real> support_face(const ConvexCore<Real>& core, const Vec3T<Real>& direction);
 
 /// Four corners of the cap that a cylinder turns towards a direction, at right angles to one
 /// another on its rim. The first is the furthest point of all once the cap leans by 0.0002 or more;
 /// below that they turn back smoothly to places that stay with the body. The eight of
 /// support_face() are these and those between.
 template <class Real>
-SupportFace<Real> rim_points(const Core<Real>& cylinder, const Vec3T<Real>& direction);
+SupportFace<Real> rim_points(const ConvexCore<Real>& cylinder, const Vec3T<Real>& direction);
 
 /// The unit vector along v, whatever its scale; the fallback where v is 0.
 template <class Real>

@@ -168,7 +168,7 @@ struct Arrival {
     THRONG_CALLED_BY_SCHEDULER void operator()() const { rendezvous->arrive(); }
 };
 
-int meet(tbb::task_arena& arena, int threads)
+int wait_for_threads(tbb::task_arena& arena, int threads)
 {
     Rendezvous rendezvous(threads);
     arena.execute([&] {
@@ -186,7 +186,7 @@ ThreadPool::ThreadPool(int threads)
                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
       inside_(std::make_unique<Inside>(threads_))
 {
-    met_ = threads_ == 1 ? 1 : meet(inside_->arena, threads_);
+    met_ = threads_ == 1 ? 1 : wait_for_threads(inside_->arena, threads_);
 }
 
 ThreadPool::~ThreadPool() = default;

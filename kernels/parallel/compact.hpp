@@ -5,7 +5,7 @@
 #pragma once
 
 #include "kernels/parallel/blocks.hpp"
-#include "kernels/parallel/room.hpp"
+#include "kernels/parallel/capacity.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -6,7 +6,7 @@
 // the memory takes; shared among threads it would move three times.
 #pragma once
 
-#include "kernels/parallel/room.hpp"
+#include "kernels/parallel/capacity.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -121,12 +121,12 @@ V3<L> chosen(Mask first, const V3<L>& a, const V3<L>& b)
     return {select(first, a.x, b.x), select(first, a.y, b.y), select(first, a.z, b.z)};
 }
 
-// The SpinInertia of W bodies.
+// The GyroscopicInertia of W bodies.
 template <class L>
 struct Spinning {
     L share[8], axis[8];
 
-    explicit Spinning(const SpinInertia<typename L::Number>* inertias)
+    explicit Spinning(const GyroscopicInertia<typename L::Number>* inertias)
     {
         gather_8(inertias->share, 16, kInOrder, share);
         gather_8(inertias->axis, 16, kInOrder, axis);
@@ -167,13 +167,13 @@ void stop_runaways(SolverBody<Real>* bodies, int count)
             sound = sound && number < kGreatest && number > -kGreatest;
         if (sound) continue;
         for (int k = 0; k < 8; ++k) body.motion[k] = body.inertia[k] = body.free[k] = 0;
-        body.drift[3] = 1;
+        body.delta_pose[3] = 1;
     }
 }
 
 template <class L>
 [[gnu::flatten]] void begin_lanes(SolverBody<typename L::Number>* bodies,
-                                  const SpinInertia<typename L::Number>* inertias,
+                                  const GyroscopicInertia<typename L::Number>* inertias,
                                   unsigned writes,
                                   const Substep<typename L::Number>& substep)
 {
@@ -264,24 +264,24 @@ Turn<L> turned_along(const Spinning<L>& of, const Turn<L>& before, const V3<L>& 
 
 template <class L>
 [[gnu::flatten]] L advance_lanes(SolverBody<typename L::Number>* bodies,
-                                 const SpinInertia<typename L::Number>* inertias,
+                                 const GyroscopicInertia<typename L::Number>* inertias,
                                  unsigned writes,
                                  typename L::Number time,
                                  bool turns)
 {
     using Real = typename L::Number;
     const L zero = Real(0), one = Real(1);
-    L motion[8], drift[8];
+    L motion[8], delta_pose[8];
     gather_bodies(bodies->motion, kInOrder, motion);
-    gather_bodies(bodies->drift, kInOrder, drift);
-    for (int k = 0; k < 3; ++k) drift[k] += motion[k] * L(time);
+    gather_bodies(bodies->delta_pose, kInOrder, delta_pose);
+    for (int k = 0; k < 3; ++k) delta_pose[k] += motion[k] * L(time);
     L fast = zero;
     if (turns) {
         const V3<L> turn{motion[4] * L(time), motion[5] * L(time), motion[6] * L(time)};
         const L squared = dot(turn, turn);
         const auto slow = squared < L(Real(kFastTurn * kFastTurn));
         fast = select(slow, zero, one);
-        const Turn<L> before{{drift[4], drift[5], drift[6]}, drift[7]};
+        const Turn<L> before{{delta_pose[4], delta_pose[5], delta_pose[6]}, delta_pose[7]};
         const auto [axis, w] = inertias == nullptr
             ? small_turn(turn) * before
             : turned_along(Spinning<L>(inertias), before, turn);
@@ -289,12 +289,12 @@ template <class L>
         const L shrink = one / length;
         // Who does not turn keeps its very bits.
         const auto turned = select(squared > zero, one - fast, zero) > zero;
-        drift[4] = select(turned, axis.x * shrink, drift[4]);
-        drift[5] = select(turned, axis.y * shrink, drift[5]);
-        drift[6] = select(turned, axis.z * shrink, drift[6]);
-        drift[7] = select(turned, w * shrink, drift[7]);
+        delta_pose[4] = select(turned, axis.x * shrink, delta_pose[4]);
+        delta_pose[5] = select(turned, axis.y * shrink, delta_pose[5]);
+        delta_pose[6] = select(turned, axis.z * shrink, delta_pose[6]);
+        delta_pose[7] = select(turned, w * shrink, delta_pose[7]);
     }
-    scatter_8(drift, bodies->drift, kStride<Real>, kInOrder, writes);
+    scatter_8(delta_pose, bodies->delta_pose, kStride<Real>, kInOrder, writes);
     return fast;
 }
 
@@ -313,7 +313,7 @@ void for_bodies(std::size_t count, Wide wide, One one)
 
 template <class Real>
 void begin_substep(SolverBody<Real>* bodies,
-                   const SpinInertia<Real>* inertias,
+                   const GyroscopicInertia<Real>* inertias,
                    std::size_t count,
                    const Substep<Real>& substep)
 {
@@ -334,7 +334,7 @@ void begin_substep(SolverBody<Real>* bodies,
 
 template <class Real>
 std::size_t advance(SolverBody<Real>* bodies,
-                    const SpinInertia<Real>* inertias,
+                    const GyroscopicInertia<Real>* inertias,
                     std::size_t count,
                     Real time,
                     bool turns)
@@ -353,16 +353,16 @@ std::size_t advance(SolverBody<Real>* bodies,
 }
 
 template void begin_substep<float>(SolverBody<float>*,
-                                   const SpinInertia<float>*,
+                                   const GyroscopicInertia<float>*,
                                    std::size_t,
                                    const Substep<float>&);
 template void begin_substep<double>(SolverBody<double>*,
-                                    const SpinInertia<double>*,
+                                    const GyroscopicInertia<double>*,
                                     std::size_t,
                                     const Substep<double>&);
 template std::size_t
-advance<float>(SolverBody<float>*, const SpinInertia<float>*, std::size_t, float, bool);
+advance<float>(SolverBody<float>*, const GyroscopicInertia<float>*, std::size_t, float, bool);
 template std::size_t
-advance<double>(SolverBody<double>*, const SpinInertia<double>*, std::size_t, double, bool);
+advance<double>(SolverBody<double>*, const GyroscopicInertia<double>*, std::size_t, double, bool);
 
 }  // namespace throng::THRONG_LANES

@@ -11,11 +11,11 @@
 namespace throng {
 
 /// How easily a body is moved: inverse mass, 1/kg, and the trace of the inverse inertia, 1/(kg m2).
-struct Ease {
-    double of_moving = 0, of_turning = 0;
+struct InverseMass {
+    double linear = 0, angular = 0;
 };
 
-inline Ease ease_of(const DirectBody& body)
+inline InverseMass inverse_mass_of(const DirectBody& body)
 {
     return {body.inverse_mass,
             body.inverse_inertia.xx + body.inverse_inertia.yy + body.inverse_inertia.zz};
@@ -31,12 +31,13 @@ inline constexpr double kHeavier = 10;
 ///
 ///   spin  rad/s
 ///   dt    s, of the step that arms are taken in
-inline bool carries(const Vec3& spin, const Ease& carrier, const Ease& carried, double dt)
+inline bool
+carries(const Vec3& spin, const InverseMass& carrier, const InverseMass& carried, double dt)
 {
     constexpr double kSeen = 1e-3;  // rad a step
     if (spin.isZero(0)) return false;
-    if (carrier.of_moving == 0) return carrier.of_turning * kHeavier <= carried.of_turning;
-    return carrier.of_moving * kHeavier <= carried.of_moving
+    if (carrier.linear == 0) return carrier.angular * kHeavier <= carried.angular;
+    return carrier.linear * kHeavier <= carried.linear
         && spin.squaredNorm() * dt * dt >= kSeen * kSeen;
 }
 

@@ -42,7 +42,7 @@ void clear_idle_lanes(const Color& color, std::size_t held, Layout& layout)
     for (std::size_t lane = color.serial ? begin : begin + held; lane < end; ++lane) {
         if (color.serial && lane % kBlock == 0) continue;
         layout.lanes[lane] = {};
-        layout.slot_a[lane] = layout.slot_b[lane] = 0;
+        layout.solver_index_a[lane] = layout.solver_index_b[lane] = 0;
     }
 }
 
@@ -57,16 +57,16 @@ std::size_t place_in(const std::vector<std::uint32_t>& bodies, std::uint32_t bod
 }  // namespace
 
 // Bodies and contacts of all slices, in order.
-void Painter::gather_slices(const Islands& islands,
-                            const ActiveContacts& active,
-                            const BodyStates& states,
-                            std::span<const Vec3> positions,
-                            Layout& layout)
+void ConstraintGraph::gather_slices(const Islands& islands,
+                                    const ActiveContacts& active,
+                                    const BodyStates& states,
+                                    std::span<const Vec3> positions,
+                                    Layout& layout)
 {
     layout.contacts = islands.contacts;
-    layout.body_of_slot.assign(1, kNobody);
-    layout.body_of_slot.insert(layout.body_of_slot.end(), islands.bodies.begin(),
-                               islands.bodies.end());
+    layout.body_of_solver_index.assign(1, kNoBody);
+    layout.body_of_solver_index.insert(layout.body_of_solver_index.end(), islands.bodies.begin(),
+                                       islands.bodies.end());
     const auto is_direct = [&](std::size_t island) {
         return islands.contact_begin[island + 1] - islands.contact_begin[island] <= direct_limit
             && islands.body_begin[island + 1] - islands.body_begin[island] <= direct_limit;
@@ -96,9 +96,10 @@ void Painter::gather_slices(const Islands& islands,
         slice.first_contact = begin;
         slice.contacts = batch.contacts;
         if (batch.wide)
-            slicer_.cut(std::span(layout.body_of_slot).subspan(slice.first_body, slice.dynamic),
-                        std::span(layout.contacts).subspan(begin, batch.contacts), active, states,
-                        positions, slice, cut, layout.slices);
+            splitter_.split(
+                std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic),
+                std::span(layout.contacts).subspan(begin, batch.contacts), active, states,
+                positions, slice, split_rule, layout.slices);
         else
             layout.slices.push_back(slice);
         batch.slices = static_cast<std::uint32_t>(layout.slices.size()) - batch.first_slice;
@@ -106,33 +107,33 @@ void Painter::gather_slices(const Islands& islands,
     }
 }
 
-void Painter::seat_bodies(const Slice& slice, Layout& layout)
+void ConstraintGraph::number_solver_bodies(const Slice& slice, Layout& layout)
 {
     for_each_block(slice.dynamic, kGrain, [&](std::size_t from, std::size_t to, std::size_t) {
         for (std::size_t k = from; k < to; ++k) {
-            const auto slot = static_cast<std::uint32_t>(slice.first_body + k);
-            const std::uint32_t body = layout.body_of_slot[slot];
-            layout.slot[body] = slot;
+            const auto solver_index = static_cast<std::uint32_t>(slice.first_body + k);
+            const std::uint32_t body = layout.body_of_solver_index[solver_index];
+            layout.solver_index[body] = solver_index;
             used_[body] = before_[body] = 0;
         }
     });
 }
 
 // Colors the contacts of a slice and counts them; lists whom else they touch.
-void Painter::paint(const ActiveContacts& active,
-                    const BodyStates& states,
-                    const Layout& layout,
-                    const Slice& slice,
-                    Plan& plan)
+void ConstraintGraph::color_contacts(const ActiveContacts& active,
+                                     const BodyStates& states,
+                                     const Layout& layout,
+                                     const Slice& slice,
+                                     Plan& plan)
 {
     plan.size.fill(0);
     plan.kinematic.clear();
     plan.conveyors.clear();
     std::uint64_t nobody = 0;
     const auto used_by = [&](std::uint32_t body) -> std::uint64_t& {
-        const std::uint32_t slot = layout.slot[body];
-        if (slot == Layout::kNoSlot) return nobody;
-        return slot - slice.first_body < slice.dynamic ? used_[body] : before_[body];
+        const std::uint32_t solver_index = layout.solver_index[body];
+        if (solver_index == Layout::kNoSolverIndex) return nobody;
+        return solver_index - slice.first_body < slice.dynamic ? used_[body] : before_[body];
     };
     const std::size_t end = slice.first_contact + slice.contacts;
     for (std::size_t i = slice.first_contact; i < end; ++i) {
@@ -151,7 +152,7 @@ void Painter::paint(const ActiveContacts& active,
             by_b |= std::uint64_t{1} << color;
         }
         for (const std::uint32_t body : {contact.body_a, contact.body_b}) {
-            if (layout.slot[body] != Layout::kNoSlot) continue;
+            if (layout.solver_index[body] != Layout::kNoSolverIndex) continue;
             if (states.kind[body] == BodyKind::kinematic) add(body, plan.kinematic);
             if (states.carries(body)) add(body, plan.conveyors);
         }
@@ -169,19 +170,19 @@ void Painter::paint(const ActiveContacts& active,
 }
 
 // Gives every slice its solver bodies, colors and blocks.
-void Painter::make_room(Layout& layout)
+void ConstraintGraph::lay_out_colors(Layout& layout)
 {
     std::uint32_t blocks = 0, colors = 0;
     for (std::size_t i = 0; i < layout.slices.size(); ++i) {
         Slice& slice = layout.slices[i];
         Plan& plan = plans_[i];
-        auto& seats = layout.body_of_slot;
+        auto& sources = layout.body_of_solver_index;
         // Each slice has its own copy of a body that moves by itself: slices are not at the same
         // time of the step. Conveyors have a velocity and go nowhere.
-        slice.first_visitor = static_cast<std::uint32_t>(seats.size());
+        slice.first_kinematic_copy = static_cast<std::uint32_t>(sources.size());
         slice.kinematic = static_cast<std::uint32_t>(plan.kinematic.size());
-        seats.insert(seats.end(), plan.kinematic.begin(), plan.kinematic.end());
-        seats.insert(seats.end(), plan.conveyors.begin(), plan.conveyors.end());
+        sources.insert(sources.end(), plan.kinematic.begin(), plan.kinematic.end());
+        sources.insert(sources.end(), plan.conveyors.begin(), plan.conveyors.end());
         slice.first_color = colors;
         slice.colors = plan.colors;
         plan.first_block = blocks;
@@ -191,17 +192,17 @@ void Painter::make_room(Layout& layout)
     layout.colors.resize(colors);
     layout.points.resize(blocks);
     layout.lanes.resize(std::size_t{blocks} * kBlock);
-    layout.slot_a.resize(layout.lanes.size());
-    layout.slot_b.resize(layout.lanes.size());
+    layout.solver_index_a.resize(layout.lanes.size());
+    layout.solver_index_b.resize(layout.lanes.size());
 }
 
 // Counting sort by color, and by number of points within a color: the fewer points a block has at
 // most, the less there is to do for it.
-void Painter::place(const ActiveContacts& active,
-                    const BodyStates& states,
-                    const Plan& plan,
-                    const Slice& slice,
-                    Layout& layout)
+void ConstraintGraph::place(const ActiveContacts& active,
+                            const BodyStates& states,
+                            const Plan& plan,
+                            const Slice& slice,
+                            Layout& layout)
 {
     std::array<std::uint32_t, kBins> first_lane;
     std::uint32_t block = plan.first_block, color_at = slice.first_color;
@@ -218,9 +219,9 @@ void Painter::place(const ActiveContacts& active,
         clear_idle_lanes(layout.colors[color_at++], held, layout);
     }
 
-    const auto seat = [&](std::uint32_t body) {
-        if (layout.slot[body] != Layout::kNoSlot)
-            return static_cast<std::int32_t>(layout.slot[body]);
+    const auto solver_index_of = [&](std::uint32_t body) {
+        if (layout.solver_index[body] != Layout::kNoSolverIndex)
+            return static_cast<std::int32_t>(layout.solver_index[body]);
         std::size_t place = 0;
         if (states.kind[body] == BodyKind::kinematic)
             place = place_in(plan.kinematic, body);
@@ -228,7 +229,7 @@ void Painter::place(const ActiveContacts& active,
             place = plan.kinematic.size() + place_in(plan.conveyors, body);
         else
             return 0;
-        return static_cast<std::int32_t>(slice.first_visitor + place);
+        return static_cast<std::int32_t>(slice.first_kinematic_copy + place);
     };
     for_each_block(slice.contacts, kGrain, [&](std::size_t from, std::size_t to, std::size_t) {
         for (std::size_t i = slice.first_contact + from; i < slice.first_contact + to; ++i) {
@@ -239,40 +240,41 @@ void Painter::place(const ActiveContacts& active,
             const std::size_t lane = first_lane[bin_[i]] + rank_[i] * (serial ? kBlock : 1u);
             layout.lanes[lane].entry = layout.contacts[i];
             layout.lane[i] = static_cast<std::uint32_t>(lane);
-            layout.slot_a[lane] = seat(contact.body_a);
-            layout.slot_b[lane] = seat(contact.body_b);
+            layout.solver_index_a[lane] = solver_index_of(contact.body_a);
+            layout.solver_index_b[lane] = solver_index_of(contact.body_b);
             if (lane % kBlock == 0) layout.points[lane / kBlock] = contact.points;
         }
     });
 }
 
-void Painter::lay_out(const Islands& islands,
-                      const ActiveContacts& active,
-                      const BodyStates& states,
-                      std::span<const Vec3> positions,
-                      Layout& layout)
+void ConstraintGraph::lay_out(const Islands& islands,
+                              const ActiveContacts& active,
+                              const BodyStates& states,
+                              std::span<const Vec3> positions,
+                              Layout& layout)
 {
-    // Whoever had a slot in the last step may have none in this one.
+    // Whoever had a solver body in the last step may have none in this one.
     for_each_block(layout.dynamic, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t slot = begin + 1; slot <= end; ++slot)
-            layout.slot[layout.body_of_slot[slot]] = Layout::kNoSlot;
+        for (std::size_t solver_index = begin + 1; solver_index <= end; ++solver_index)
+            layout.solver_index[layout.body_of_solver_index[solver_index]] = Layout::kNoSolverIndex;
     });
     layout.batches.clear();
     layout.slices.clear();
     gather_slices(islands, active, states, positions, layout);
 
     layout.dynamic = static_cast<std::uint32_t>(islands.bodies.size());
-    layout.slot.resize(states.kind.size(), Layout::kNoSlot);
+    layout.solver_index.resize(states.kind.size(), Layout::kNoSolverIndex);
     used_.resize(states.kind.size());
     before_.resize(states.kind.size());
     layout.lane.resize(layout.contacts.size());
     bin_.resize(layout.contacts.size());
     rank_.resize(layout.contacts.size());
     if (plans_.size() < layout.slices.size()) plans_.resize(layout.slices.size());
-    for_slices(layout, [&](std::size_t i) { seat_bodies(layout.slices[i], layout); });
-    for_slices(layout,
-               [&](std::size_t i) { paint(active, states, layout, layout.slices[i], plans_[i]); });
-    make_room(layout);
+    for_slices(layout, [&](std::size_t i) { number_solver_bodies(layout.slices[i], layout); });
+    for_slices(layout, [&](std::size_t i) {
+        color_contacts(active, states, layout, layout.slices[i], plans_[i]);
+    });
+    lay_out_colors(layout);
     for_slices(layout,
                [&](std::size_t i) { place(active, states, plans_[i], layout.slices[i], layout); });
 

@@ -2,22 +2,22 @@
 #pragma once
 
 #include "kernels/data/islands.hpp"
-#include "kernels/solver/slices.hpp"
+#include "kernels/solver/island_splitter.hpp"
 
 #include <array>
 
 namespace throng {
 
 /// Small islands share a batch until it holds this many contacts: enough to fill the lanes, few
-/// enough that the rows of a batch stay in one core's cache through all substeps.
+/// enough that the constraints of a batch stay in one core's cache through all substeps.
 inline constexpr std::size_t kBatchContacts = 512;
 
 /// Gathers small islands into batches, cuts big ones into slices, colors each slice greedily in the
 /// order of its contacts, and lays the contacts out: slice by slice, color by color, those of more
 /// points before those of fewer. Ids and positions decide, and nothing of the step before.
-class Painter {
+class ConstraintGraph {
 public:
-    CutRule cut;
+    SplitRule split_rule;
     // Greatest island, in contacts and in bodies, that goes to the direct solver; above 0 each
     // island is a batch of its own.
     std::size_t direct_limit = 0;
@@ -36,7 +36,7 @@ private:
     static constexpr std::uint32_t kPoints = 4;  // a contact has at most
     static constexpr std::size_t kBins = kPoints * (kColors + 1);
 
-    // What is known of a slice before all are painted.
+    // What is known of a slice before all are colored.
     struct Plan {
         std::array<std::uint32_t, kBins> size;  // contacts by color and points
         std::uint32_t blocks, colors, first_block;
@@ -48,20 +48,20 @@ private:
                        const BodyStates& states,
                        std::span<const Vec3> positions,
                        Layout& layout);
-    void seat_bodies(const Slice& slice, Layout& layout);
-    void paint(const ActiveContacts& active,
-               const BodyStates& states,
-               const Layout& layout,
-               const Slice& slice,
-               Plan& plan);
-    void make_room(Layout& layout);
+    void number_solver_bodies(const Slice& slice, Layout& layout);
+    void color_contacts(const ActiveContacts& active,
+                        const BodyStates& states,
+                        const Layout& layout,
+                        const Slice& slice,
+                        Plan& plan);
+    void lay_out_colors(Layout& layout);
     void place(const ActiveContacts& active,
                const BodyStates& states,
                const Plan& plan,
                const Slice& slice,
                Layout& layout);
 
-    Slicer slicer_;
+    IslandSplitter splitter_;
     std::vector<Plan> plans_;            // [slices]
     std::vector<std::uint64_t> used_;    // by body: colors of the contacts of its slice
     std::vector<std::uint64_t> before_;  // by body: of the contacts of the slice before

@@ -1,7 +1,7 @@
 // Contact lanes: the algebra of W contacts side by side. For sources compiled once a width.
 #pragma once
 
-#include "kernels/data/rows.hpp"
+#include "kernels/data/contact_constraints.hpp"
 #include "kernels/simd/lanes.hpp"
 
 namespace throng::THRONG_LANES {
@@ -126,7 +126,7 @@ struct Motion {
         if constexpr (turns) return velocity + cross(spin, arm);
         return velocity;
     }
-    void push(const Mobility<L, turns>& how, const V3<L>& impulse, const V3<L>& torque)
+    void apply(const Mobility<L, turns>& how, const V3<L>& impulse, const V3<L>& torque)
     {
         velocity = velocity + impulse * how.inverse_mass;
         if constexpr (turns) spin = spin + how.turned_by(torque);
@@ -135,15 +135,15 @@ struct Motion {
 
 /// How far W bodies have moved and turned since the step began.
 template <class L, bool turns>
-struct Drift {
+struct DeltaPose {
     using Real = typename L::Number;
     V3<L> moved, axis;
     L w;
 
-    Drift(const SolverBody<Real>* bodies, const std::int32_t* index)
+    DeltaPose(const SolverBody<Real>* bodies, const std::int32_t* index)
     {
         L d[8];
-        gather_bodies(bodies->drift, index, d);
+        gather_bodies(bodies->delta_pose, index, d);
         moved = {d[0], d[1], d[2]};
         axis = {d[4], d[5], d[6]};
         w = d[7];
@@ -167,7 +167,7 @@ struct Drift {
 /// The six numbers of W contacts: what the sides do to each other, or push each other with, at the
 /// center, along the normal and the two tangents; linear, then about them.
 template <class L>
-struct Six {
+struct ContactSpaceVector {
     L n, v1, v2;
     L w1, w2, wn;
 };
@@ -179,7 +179,7 @@ struct Frame {
     V3<L> normal, tangent, other;
     V3<L> center_a, center_b;
 
-    Frame(const ContactBlock<Real>& block, int at)
+    Frame(const ContactConstraintWide<Real>& block, int at)
         : normal(lane3<L>(block.normal, at)), tangent(lane3<L>(block.tangent, at)),
           other(cross(normal, tangent))
     {
@@ -188,10 +188,10 @@ struct Frame {
             center_b = lane3<L>(block.center_b, at);
         }
     }
-    Six<L> between(const Motion<L, turns>& a, const Motion<L, turns>& b) const
+    ContactSpaceVector<L> between(const Motion<L, turns>& a, const Motion<L, turns>& b) const
     {
         const V3<L> v = b.at(center_b) - a.at(center_a);
-        Six<L> six{dot(normal, v), dot(tangent, v), dot(other, v), {}, {}, {}};
+        ContactSpaceVector<L> six{dot(normal, v), dot(tangent, v), dot(other, v), {}, {}, {}};
         if constexpr (turns) {
             const V3<L> w = b.spin - a.spin;
             six.w1 = dot(tangent, w);
@@ -201,21 +201,21 @@ struct Frame {
         return six;
     }
     /// Gives both sides what they push each other with.
-    void push(const Six<L>& by,
-              const Mobility<L, turns>& how_a,
-              const Mobility<L, turns>& how_b,
-              Motion<L, turns>& a,
-              Motion<L, turns>& b) const
+    void apply(const ContactSpaceVector<L>& by,
+               const Mobility<L, turns>& how_a,
+               const Mobility<L, turns>& how_b,
+               Motion<L, turns>& a,
+               Motion<L, turns>& b) const
     {
         const V3<L> impulse = normal * by.n + tangent * by.v1 + other * by.v2;
         const V3<L> back = impulse * L(Real(-1));
         if constexpr (turns) {
             const V3<L> torque = tangent * by.w1 + other * by.w2 + normal * by.wn;
-            a.push(how_a, back, cross(center_a, back) - torque);
-            b.push(how_b, impulse, cross(center_b, impulse) + torque);
+            a.apply(how_a, back, cross(center_a, back) - torque);
+            b.apply(how_b, impulse, cross(center_b, impulse) + torque);
         } else {
-            a.push(how_a, back, {});
-            b.push(how_b, impulse, {});
+            a.apply(how_a, back, {});
+            b.apply(how_b, impulse, {});
         }
     }
 };
@@ -246,7 +246,7 @@ V3<L> across(const V3<L>& n)
 /// greatest eigenvalue as a speed that an impulse gives, 1/kg, and one over it.
 template <class L>
 struct FrictionMass {
-    L m11, m22, m12, sliding_mass, sliding_answer;
+    L m11, m22, m12, sliding_mass, sliding_inverse_mass;
 
     /// Of a matrix k, 1/kg.
     static FrictionMass of(L k11, L k22, L k12)
@@ -264,11 +264,11 @@ struct FrictionMass {
     }
 };
 
-/// Places of ContactBlock::response.
-namespace response {
+/// Places of ContactConstraintWide::inverse_mass.
+namespace inverse_mass_entry {
 enum Place : int { nn, n1, n2, v11, v12, v22 };  // among the velocities
 inline constexpr int kSpin = 6;                  // + 3 * spin (w1, w2, wn) + velocity (n, 1, 2)
 enum Spins : int { w11 = 15, w22, wnn, w12, w1n, w2n };
-}  // namespace response
+}  // namespace inverse_mass_entry
 
 }  // namespace throng::THRONG_LANES

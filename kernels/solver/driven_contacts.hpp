@@ -7,7 +7,7 @@
 #pragma once
 
 #include "kernels/data/bodies.hpp"
-#include "kernels/data/rows.hpp"
+#include "kernels/data/contact_constraints.hpp"
 #include "throng/math.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ inline bool stands_on(const Vec3& normal, const Vec3& up)
 
 /// Along the ground, against what is there: as the drive wants it on its axes and, where the ground
 /// slopes, what follows on the axes that it leaves free.
-inline Vec3 walk_along(const DriveVelocity& wanted, const Vec3& ground, const Vec3& normal)
+inline Vec3 walk_along(const PrescribedVelocity& wanted, const Vec3& ground, const Vec3& normal)
 {
     Vec3 walk = Vec3::Zero(), free = normal;
     for (int k = 0; k < 3; ++k) {
@@ -53,8 +53,8 @@ inline Vec3 walk_along(const DriveVelocity& wanted, const Vec3& ground, const Ve
 ///   rolls       whether b, or else a, is round there and turns: then friction is what has it roll
 ///   velocity    of the material of b, or else of a, at the contact
 template <class Rolls, class Velocity>
-Vec3 walk_of(const DriveVelocity* by_a,
-             const DriveVelocity* by_b,
+Vec3 walk_of(const PrescribedVelocity* by_a,
+             const PrescribedVelocity* by_b,
              const Vec3& normal,
              const Vec3& up,
              const Rolls& rolls,

@@ -13,7 +13,7 @@ constexpr std::size_t kGrain = 4096;
 void IslandFinder::join(const ActiveContacts& contacts, const BodyStates& states)
 {
     sets_.reset(states.kind.size());
-    const auto touch = [&](std::uint32_t body) {
+    const auto find_set = [&](std::uint32_t body) {
         const bool movable = states.movable(body);
         if (movable) sets_.add(body);
         return movable;
@@ -22,7 +22,7 @@ void IslandFinder::join(const ActiveContacts& contacts, const BodyStates& states
                    [&](std::size_t begin, std::size_t end, std::size_t) {
                        for (std::size_t i = begin; i < end; ++i) {
                            const auto& contact = contacts.entries[i];
-                           const bool a = touch(contact.body_a), b = touch(contact.body_b);
+                           const bool a = find_set(contact.body_a), b = find_set(contact.body_b);
                            if (a && b) sets_.join(contact.body_a, contact.body_b);
                        }
                    });

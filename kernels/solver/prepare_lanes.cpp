@@ -1,23 +1,23 @@
-// Contacts as they are kept, made into rows: written once over the width of the registers.
+// Contacts as they are kept, made into constraints: written once over the width of the registers.
 #include "kernels/solver/solve_lanes.hpp"
 
 namespace throng::THRONG_LANES {
 
 namespace {
 
-// Loose contacts, their numbers side by side.
+// Packed contacts, their numbers side by side.
 template <class L>
-struct Loose {
+struct PackedLanes {
     struct Point {
         L there;  // 1 where the lane has this point, else 0, and so is all the rest
-        V3<L> from_a;
+        V3<L> anchor_a;
         L separation, impulse;
     };
-    V3<L> normal, between, held, rolling;
-    L round_a, round_b, twist;
+    V3<L> normal, center_offset, held, rolling;
+    L round_a, round_b, torsional_impulse;
     Point point[4];
 
-    Loose(const LooseBlock<typename L::Number>& block, int at, int points)
+    PackedLanes(const PackedContacts<typename L::Number>& block, int at, int points)
     {
         namespace of = contact_numbers;
         using Real = typename L::Number;
@@ -32,12 +32,12 @@ struct Loose {
             return {number(place), number(place + 1), number(place + 2)};
         };
         normal = three(of::kNormal);
-        between = three(of::kBetween);
+        center_offset = three(of::kCenterOffset);
         held = three(of::kFriction);
         rolling = three(of::kRolling);
         round_a = number(of::kRoundA);
         round_b = number(of::kRoundB);
-        twist = number(of::kTwist);
+        torsional_impulse = number(of::kTorsionalImpulse);
         const L count = lane<L>(block.count, at), zero = Real(0);
         for (int k = 0; k < points; ++k) {
             // The last line ends where the contact does.
@@ -46,7 +46,7 @@ struct Loose {
             const auto has = count > L(Real(k));
             const auto its = [&](int k_th) { return select(has, x[place - first + k_th], zero); };
             point[k] = {select(has, L(Real(1)), zero),
-                        {its(of::kFromA), its(of::kFromA + 1), its(of::kFromA + 2)},
+                        {its(of::kAnchorA), its(of::kAnchorA + 1), its(of::kAnchorA + 2)},
                         its(of::kSeparation),
                         its(of::kImpulse)};
         }
@@ -56,16 +56,16 @@ struct Loose {
 // A tangent along the longest way between points, where there are several: on needles and plates
 // that keeps what turns easily apart from what does not.
 template <class L>
-V3<L> along_points(const Loose<L>& loose, int count, const V3<L>& n)
+V3<L> along_points(const PackedLanes<L>& packed, int count, const V3<L>& n)
 {
     using Real = typename L::Number;
-    const V3<L> first = loose.point[0].from_a;
+    const V3<L> first = packed.point[0].anchor_a;
     const L zero = Real(0), one = Real(1);
     V3<L> way{zero, zero, zero};
     L longest = zero;
     for (int k = 1; k < count; ++k) {
-        const V3<L> between = loose.point[k].from_a - first;
-        const V3<L> flat = (between - n * dot(n, between)) * loose.point[k].there;
+        const V3<L> between = packed.point[k].anchor_a - first;
+        const V3<L> flat = (between - n * dot(n, between)) * packed.point[k].there;
         const L length = dot(flat, flat);
         const auto longer = length > longest;
         way = {select(longer, flat.x, way.x), select(longer, flat.y, way.y),
@@ -83,10 +83,10 @@ V3<L> along_points(const Loose<L>& loose, int count, const V3<L>& n)
 
 // What one side answers to pushes along the contact's axes at an arm: torques and spins.
 template <class L>
-struct Levers {
+struct AngularJacobian {
     V3<L> torque[3], spin[3];
 
-    Levers(const Mobility<L, true>& how, const V3<L>& arm, const V3<L> (&axes)[3])
+    AngularJacobian(const Mobility<L, true>& how, const V3<L>& arm, const V3<L> (&axes)[3])
     {
         for (int k = 0; k < 3; ++k) {
             torque[k] = cross(arm, axes[k]);
@@ -96,89 +96,90 @@ struct Levers {
 };
 
 template <class L>
-void fill_response(ContactBlock<typename L::Number>& block,
-                   int at,
-                   bool spins,
-                   const Mobility<L, true>& a,
-                   const Mobility<L, true>& b)
+void fill_inverse_mass(ContactConstraintWide<typename L::Number>& block,
+                       int at,
+                       bool spins,
+                       const Mobility<L, true>& a,
+                       const Mobility<L, true>& b)
 {
     const Frame<L, true> frame(block, at);
     const V3<L> axes[3] = {frame.normal, frame.tangent, frame.other};
     const V3<L> spin_axes[3] = {frame.tangent, frame.other, frame.normal};
-    const Levers<L> from_a(a, frame.center_a, axes), from_b(b, frame.center_b, axes);
+    const AngularJacobian<L> from_a(a, frame.center_a, axes), from_b(b, frame.center_b, axes);
     const L mass = a.inverse_mass + b.inverse_mass;
-    const auto put = [&](int place, L value) { value.store(block.response[place].at + at); };
+    const auto put = [&](int place, L value) { value.store(block.inverse_mass[place].at + at); };
     const auto linear = [&](int i, int k) {
         return dot(from_a.torque[i], from_a.spin[k]) + dot(from_b.torque[i], from_b.spin[k]);
     };
-    put(response::nn, mass + linear(0, 0));
-    put(response::n1, linear(0, 1));
-    put(response::n2, linear(0, 2));
-    put(response::v11, mass + linear(1, 1));
-    put(response::v12, linear(1, 2));
-    put(response::v22, mass + linear(2, 2));
+    put(inverse_mass_entry::nn, mass + linear(0, 0));
+    put(inverse_mass_entry::n1, linear(0, 1));
+    put(inverse_mass_entry::n2, linear(0, 2));
+    put(inverse_mass_entry::v11, mass + linear(1, 1));
+    put(inverse_mass_entry::v12, linear(1, 2));
+    put(inverse_mass_entry::v22, mass + linear(2, 2));
     if (!spins) return;
     for (int k = 0; k < 3; ++k) {
         const V3<L> spin = from_a.spin[k] + from_b.spin[k];
-        for (int i = 0; i < 3; ++i) put(response::kSpin + 3 * i + k, dot(spin_axes[i], spin));
+        for (int i = 0; i < 3; ++i)
+            put(inverse_mass_entry::kSpin + 3 * i + k, dot(spin_axes[i], spin));
     }
     V3<L> turned[3];
     for (int i = 0; i < 3; ++i) turned[i] = a.turned_by(spin_axes[i]) + b.turned_by(spin_axes[i]);
-    put(response::w11, dot(spin_axes[0], turned[0]));
-    put(response::w22, dot(spin_axes[1], turned[1]));
-    put(response::wnn, dot(spin_axes[2], turned[2]));
-    put(response::w12, dot(spin_axes[0], turned[1]));
-    put(response::w1n, dot(spin_axes[0], turned[2]));
-    put(response::w2n, dot(spin_axes[1], turned[2]));
+    put(inverse_mass_entry::w11, dot(spin_axes[0], turned[0]));
+    put(inverse_mass_entry::w22, dot(spin_axes[1], turned[1]));
+    put(inverse_mass_entry::wnn, dot(spin_axes[2], turned[2]));
+    put(inverse_mass_entry::w12, dot(spin_axes[0], turned[1]));
+    put(inverse_mass_entry::w1n, dot(spin_axes[0], turned[2]));
+    put(inverse_mass_entry::w2n, dot(spin_axes[1], turned[2]));
 }
 
 // Without rotation only masses answer.
 template <class L>
-void fill_response(ContactBlock<typename L::Number>& block,
-                   int at,
-                   bool,
-                   const Mobility<L, false>& a,
-                   const Mobility<L, false>& b)
+void fill_inverse_mass(ContactConstraintWide<typename L::Number>& block,
+                       int at,
+                       bool,
+                       const Mobility<L, false>& a,
+                       const Mobility<L, false>& b)
 {
     using Real = typename L::Number;
     const L mass = a.inverse_mass + b.inverse_mass, zero = Real(0);
     const L values[6] = {mass, zero, zero, mass, zero, mass};
-    for (int k = 0; k < 6; ++k) values[k].store(block.response[k].at + at);
+    for (int k = 0; k < 6; ++k) values[k].store(block.inverse_mass[k].at + at);
 }
 
 template <class L>
-void fill_friction(ContactBlock<typename L::Number>& block, int at)
+void fill_friction(ContactConstraintWide<typename L::Number>& block, int at)
 {
-    const auto mass = FrictionMass<L>::of(lane<L>(block.response[response::v11], at),
-                                          lane<L>(block.response[response::v22], at),
-                                          lane<L>(block.response[response::v12], at));
+    const auto mass = FrictionMass<L>::of(lane<L>(block.inverse_mass[inverse_mass_entry::v11], at),
+                                          lane<L>(block.inverse_mass[inverse_mass_entry::v22], at),
+                                          lane<L>(block.inverse_mass[inverse_mass_entry::v12], at));
     mass.m11.store(block.friction_mass[0].at + at);
     mass.m22.store(block.friction_mass[1].at + at);
     mass.m12.store(block.friction_mass[2].at + at);
     mass.sliding_mass.store(block.sliding_mass.at + at);
-    mass.sliding_answer.store(block.sliding_answer.at + at);
+    mass.sliding_inverse_mass.store(block.sliding_inverse_mass.at + at);
 }
 
 // How a body gives way by turning to a push along the normal, and by how much of that counts: none
 // where the arm all but lies along the normal. Told by the arm alone: a needle, which turns so
-// easily about its own axis, has levers all the same.
+// easily about its own axis, has lever arms all the same.
 template <class L>
 struct Turning {
     V3<L> torque;
-    L answer, by_lever;
+    L inverse_mass, by_lever_arm;
 
     Turning(const Mobility<L, true>& how, const V3<L>& arm, const V3<L>& normal)
-        : torque(cross(arm, normal)), answer(dot(torque, how.turned_by(torque)))
+        : torque(cross(arm, normal)), inverse_mass(dot(torque, how.turned_by(torque)))
     {
         using Real = typename L::Number;
-        constexpr Real kLever = Real(kLeastLever);
-        const auto has_lever = dot(torque, torque) > dot(arm, arm) * L(kLever * kLever);
-        by_lever = select(has_lever, answer, L(Real(0)));
+        constexpr Real kLever = Real(kLeastLeverArm);
+        const auto has_lever_arm = dot(torque, torque) > dot(arm, arm) * L(kLever * kLever);
+        by_lever_arm = select(has_lever_arm, inverse_mass, L(Real(0)));
     }
 };
 
-// The effective mass of a point along the normal; 0 where it gives way by no lever: see
-// kLeastLever.
+// The effective mass of a point along the normal; 0 where it gives way by no lever arm: see
+// kLeastLeverArm.
 template <class L, bool turns>
 L normal_mass(const Mobility<L, turns>& a,
               const Mobility<L, turns>& b,
@@ -192,16 +193,16 @@ L normal_mass(const Mobility<L, turns>& a,
         return inverse_or_zero(mass);
     } else {
         const Turning<L> of_a(a, arm_a, normal), of_b(b, arm_b, normal);
-        const L answer = mass + of_a.answer + of_b.answer;
-        const L by_levers = of_a.by_lever + of_b.by_lever;
-        const L counts = select(mass > L(Real(0)), answer, by_levers + by_levers);
-        return inverse_or_zero(select(counts < answer, L(Real(0)), answer));
+        const L inverse_mass = mass + of_a.inverse_mass + of_b.inverse_mass;
+        const L by_lever_arms = of_a.by_lever_arm + of_b.by_lever_arm;
+        const L counts = select(mass > L(Real(0)), inverse_mass, by_lever_arms + by_lever_arms);
+        return inverse_or_zero(select(counts < inverse_mass, L(Real(0)), inverse_mass));
     }
 }
 
 // The friction that carried over, within the cone of the impulses that did.
 template <class L, bool turns>
-void fill_held(ContactBlock<typename L::Number>& block,
+void fill_held(ContactConstraintWide<typename L::Number>& block,
                int at,
                const V3<L>& held,
                const Frame<L, turns>& frame,
@@ -223,20 +224,20 @@ void fill_held(ContactBlock<typename L::Number>& block,
 }
 
 template <class L>
-void fill_bounce(BounceRows<typename L::Number>& bounce,
+void fill_bounce(RestitutionWide<typename L::Number>& bounce,
                  int at,
-                 const LooseBlock<typename L::Number>& loose)
+                 const PackedContacts<typename L::Number>& packed)
 {
     using Real = typename L::Number;
     const L zero = Real(0);
-    lane<L>(loose.restitution, at).store(bounce.restitution.at + at);
+    lane<L>(packed.restitution, at).store(bounce.restitution.at + at);
     store3(V3<L>{zero, zero, zero}, bounce.impulse, at);
 }
 
 template <class L, bool turns>
-void fill_rolling(RollingRows<typename L::Number>& rolling,
+void fill_rolling(RollingFrictionWide<typename L::Number>& rolling,
                   int at,
-                  const LooseBlock<typename L::Number>& block,
+                  const PackedContacts<typename L::Number>& block,
                   const V3<L>& impulse,
                   const Frame<L, turns>& frame,
                   const Mobility<L, turns>& a,
@@ -252,21 +253,22 @@ void fill_rolling(RollingRows<typename L::Number>& rolling,
 }
 
 template <class L, bool turns>
-[[gnu::flatten]] void prepare_lanes(const LooseBlock<typename L::Number>& from,
+[[gnu::flatten]] void prepare_lanes(const PackedContacts<typename L::Number>& from,
                                     std::size_t place,
                                     int at,
-                                    const RowsView<typename L::Number>& rows)
+                                    const ContactConstraintsView<typename L::Number>& constraints)
 {
     using Real = typename L::Number;
-    ContactBlock<Real>& block = rows.blocks[place];
-    PointRows<Real>* const points = rows.points + block.first_point;
+    ContactConstraintWide<Real>& block = constraints.blocks[place];
+    ContactPointWide<Real>* const points = constraints.points + block.first_point;
     const L zero = Real(0);
-    const Mobility<L, turns> a(rows.bodies, block.a + at), b(rows.bodies, block.b + at);
+    const Mobility<L, turns> a(constraints.bodies, block.a + at),
+        b(constraints.bodies, block.b + at);
 
-    const Loose<L> loose(from, at, block.points);
-    const V3<L> normal = loose.normal;
+    const PackedLanes<L> packed(from, at, block.points);
+    const V3<L> normal = packed.normal;
     store3(normal, block.normal, at);
-    store3(along_points(loose, block.points, normal), block.tangent, at);
+    store3(along_points(packed, block.points, normal), block.tangent, at);
     const auto copy = [at](const Lane16<Real>& number, Lane16<Real>& to) {
         lane<L>(number, at).store(to.at + at);
     };
@@ -274,72 +276,79 @@ template <class L, bool turns>
     copy(from.bias_rate, block.bias_rate);
     copy(from.impulse_scale, block.impulse_scale);
     inverse_or_zero(lane<L>(from.deep, at)).store(block.inverse_deep.at + at);
-    loose.round_a.store(block.round_a.at + at);
-    loose.round_b.store(block.round_b.at + at);
-    loose.twist.store(block.twist_impulse.at + at);
+    packed.round_a.store(block.round_a.at + at);
+    packed.round_b.store(block.round_b.at + at);
+    packed.torsional_impulse.store(block.torsional_impulse.at + at);
 
     // The middle of the points, on either surface.
     V3<L> middle{zero, zero, zero};
-    L gap = zero, count = zero, load = zero;
+    L mean_separation = zero, count = zero, load = zero;
     for (int k = 0; k < block.points; ++k) {
-        const auto& point = loose.point[k];
-        middle = middle + point.from_a;
-        gap += point.separation;
+        const auto& point = packed.point[k];
+        middle = middle + point.anchor_a;
+        mean_separation += point.separation;
         count += point.there;
         load += point.impulse;
     }
     const L share = L(Real(1)) / count;
     const V3<L> center_a = middle * share;
-    const V3<L> between = loose.between;
+    const V3<L> between = packed.center_offset;
     store3(center_a, block.center_a, at);
-    store3(center_a + normal * (gap * share) + between, block.center_b, at);
+    store3(center_a + normal * (mean_separation * share) + between, block.center_b, at);
 
     const Frame<L, turns> frame(block, at);
     for (int k = 0; k < block.points; ++k) {
-        const auto& [there, arm, separation, impulse] = loose.point[k];
-        PointRows<Real>& to = points[k];
+        const auto& [there, arm, separation, impulse] = packed.point[k];
+        ContactPointWide<Real>& to = points[k];
         const V3<L> off = (arm - center_a) * there;
         const L along = dot(off, frame.tangent), other = dot(off, frame.other);
-        other.store(to.lever[0].at + at);
-        (-along).store(to.lever[1].at + at);
-        sqrt(along * along + other * other).store(to.reach.at + at);
-        separation.store(to.gap.at + at);
+        other.store(to.lever_arm[0].at + at);
+        (-along).store(to.lever_arm[1].at + at);
+        sqrt(along * along + other * other).store(to.center_distance.at + at);
+        separation.store(to.separation.at + at);
         impulse.store(to.impulse.at + at);
         const L mass = normal_mass(a, b, normal, arm, arm + normal * separation + between);
         (mass * there).store(to.mass.at + at);
     }
-    // A single point has no lever: only what resists rolling asks what spins do, and friction of
-    // another kind than the usual, which goes one way for any number of points.
-    const bool asked = rows.rollings != nullptr || rows.grips != nullptr;
-    fill_response(block, at, block.points > 1 || asked, a, b);
+    // A single point has no lever arm: only what resists rolling asks what spins do, and friction
+    // of another kind than the usual, which goes one way for any number of points.
+    const bool asked =
+        constraints.rolling_frictions != nullptr || constraints.point_frictions != nullptr;
+    fill_inverse_mass(block, at, block.points > 1 || asked, a, b);
     if constexpr (turns)
         inverse_or_zero(dot(normal, a.turned_by(normal)) + dot(normal, b.turned_by(normal)))
-            .store(block.twist_mass.at + at);
+            .store(block.torsional_mass.at + at);
     fill_friction<L>(block, at);
-    fill_held(block, at, loose.held, frame, load);
+    fill_held(block, at, packed.held, frame, load);
 
-    if (rows.rollings != nullptr)
-        fill_rolling(rows.rollings[place], at, from, loose.rolling, frame, a, b);
-    if (rows.bounces != nullptr) fill_bounce<L>(rows.bounces[place], at, from);
+    if (constraints.rolling_frictions != nullptr)
+        fill_rolling(constraints.rolling_frictions[place], at, from, packed.rolling, frame, a, b);
+    if (constraints.restitutions != nullptr)
+        fill_bounce<L>(constraints.restitutions[place], at, from);
 }
 
 }  // namespace
 
 template <class Real>
-void prepare(const LooseBlock<Real>& loose,
+void prepare(const PackedContacts<Real>& packed,
              std::size_t place,
-             const RowsView<Real>& rows,
+             const ContactConstraintsView<Real>& constraints,
              bool turns)
 {
     for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
         if (turns)
-            prepare_lanes<Lanes<Real>, true>(loose, place, at, rows);
+            prepare_lanes<Lanes<Real>, true>(packed, place, at, constraints);
         else
-            prepare_lanes<Lanes<Real>, false>(loose, place, at, rows);
+            prepare_lanes<Lanes<Real>, false>(packed, place, at, constraints);
 }
 
-template void prepare<float>(const LooseBlock<float>&, std::size_t, const RowsView<float>&, bool);
-template void
-prepare<double>(const LooseBlock<double>&, std::size_t, const RowsView<double>&, bool);
+template void prepare<float>(const PackedContacts<float>&,
+                             std::size_t,
+                             const ContactConstraintsView<float>&,
+                             bool);
+template void prepare<double>(const PackedContacts<double>&,
+                              std::size_t,
+                              const ContactConstraintsView<double>&,
+                              bool);
 
 }  // namespace throng::THRONG_LANES

@@ -2,51 +2,56 @@
 #pragma once
 
 #include "kernels/solver/contact_lanes.hpp"
-#include "kernels/solver/sweep.hpp"
+#include "kernels/solver/solve_kernels.hpp"
 
 namespace throng::THRONG_LANES {
 
 template <class Real>
-void prepare(const LooseBlock<Real>& loose,
+void prepare(const PackedContacts<Real>& packed,
              std::size_t place,
-             const RowsView<Real>& rows,
+             const ContactConstraintsView<Real>& constraints,
              bool turns);
 
 template <class Real>
 void begin_substep(SolverBody<Real>* bodies,
-                   const SpinInertia<Real>* inertias,
+                   const GyroscopicInertia<Real>* inertias,
                    std::size_t count,
                    const Substep<Real>& substep);
 
 template <class Real>
 std::size_t advance(SolverBody<Real>* bodies,
-                    const SpinInertia<Real>* inertias,
+                    const GyroscopicInertia<Real>* inertias,
                     std::size_t count,
                     Real time,
                     bool turns);
 
 template <class Real>
-void carry(const RowsView<Real>& rows, std::size_t begin, std::size_t end, Real half);
+void update_surface_velocity(const ContactConstraintsView<Real>& constraints,
+                             std::size_t begin,
+                             std::size_t end,
+                             Real half);
 
 template <class Real>
-void walk(const RowsView<Real>& rows, std::size_t place, const Real (&up)[3]);
+void walk_surface_velocity(const ContactConstraintsView<Real>& constraints,
+                           std::size_t place,
+                           const Real (&up)[3]);
 
 template <class Real>
-void warm_start_grips(const RowsView<Real>& rows,
-                      std::size_t begin,
-                      std::size_t end,
-                      const Visit<Real>& visit);
+void warm_start_point_friction(const ContactConstraintsView<Real>& constraints,
+                               std::size_t begin,
+                               std::size_t end,
+                               const SolverIteration<Real>& iteration);
 
 template <class Real>
-void sweep_grips(const RowsView<Real>& rows,
-                 std::size_t begin,
-                 std::size_t end,
-                 const Visit<Real>& visit);
+void solve_point_friction(const ContactConstraintsView<Real>& constraints,
+                          std::size_t begin,
+                          std::size_t end,
+                          const SolverIteration<Real>& iteration);
 
 template <class Real>
-bool bounce_grips(const RowsView<Real>& rows,
-                  std::size_t begin,
-                  std::size_t end,
-                  const Visit<Real>& visit);
+bool apply_restitution_point_friction(const ContactConstraintsView<Real>& constraints,
+                                      std::size_t begin,
+                                      std::size_t end,
+                                      const SolverIteration<Real>& iteration);
 
 }  // namespace throng::THRONG_LANES

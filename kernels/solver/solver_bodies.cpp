@@ -1,7 +1,7 @@
 #include "kernels/solver/solver_bodies.hpp"
 
 #include "kernels/math/rotation.hpp"
-#include "kernels/solver/sweep.hpp"
+#include "kernels/solver/solve_kernels.hpp"
 
 #include <cmath>
 
@@ -31,7 +31,8 @@ struct SplitTurn {
 };
 
 template <class Real>
-SplitTurn split_turn(const SolverBody<Real>& body, const SpinInertia<Real>* inertia, double time)
+SplitTurn
+split_turn(const SolverBody<Real>& body, const GyroscopicInertia<Real>* inertia, double time)
 {
     const Vec3 turn = vector_of(body.motion + 4) * time;
     if (inertia == nullptr || !(inertia->share[6] > 0)) return {turn, Vec3::Zero()};
@@ -44,7 +45,7 @@ SplitTurn split_turn(const SolverBody<Real>& body, const SpinInertia<Real>* iner
 }  // namespace
 
 template <class Real>
-Quat spin_frame(const SolverBody<Real>& body, const SpinInertia<Real>* inertia)
+Quat spin_frame(const SolverBody<Real>& body, const GyroscopicInertia<Real>* inertia)
 {
     if (inertia == nullptr || !(inertia->share[6] > 0)) return Quat::Identity();
     const Quat turn = turn_of(body);
@@ -54,7 +55,9 @@ Quat spin_frame(const SolverBody<Real>& body, const SpinInertia<Real>* inertia)
 }
 
 template <class Real>
-void turn_fast(std::span<SolverBody<Real>> bodies, const SpinInertia<Real>* inertias, Real time)
+void turn_fast(std::span<SolverBody<Real>> bodies,
+               const GyroscopicInertia<Real>* inertias,
+               Real time)
 {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         SolverBody<Real>& body = bodies[i];
@@ -65,13 +68,14 @@ void turn_fast(std::span<SolverBody<Real>> bodies, const SpinInertia<Real>* iner
             split_turn(body, inertias == nullptr ? nullptr : inertias + i, double{time});
         Quat after = exponential(split.before) * turn_of(body) * exponential(split.after);
         after.coeffs() /= std::sqrt(after.squaredNorm());
-        for (int k = 0; k < 4; ++k) body.drift[4 + k] = static_cast<Real>(after.coeffs()[k]);
+        for (int k = 0; k < 4; ++k) body.delta_pose[4 + k] = static_cast<Real>(after.coeffs()[k]);
     }
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template Quat spin_frame<Real>(const SolverBody<Real>&, const SpinInertia<Real>*);             \
-    template void turn_fast<Real>(std::span<SolverBody<Real>>, const SpinInertia<Real>*, Real);
+    template Quat spin_frame<Real>(const SolverBody<Real>&, const GyroscopicInertia<Real>*);       \
+    template void turn_fast<Real>(std::span<SolverBody<Real>>, const GyroscopicInertia<Real>*,     \
+                                  Real);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

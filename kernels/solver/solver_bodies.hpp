@@ -1,7 +1,7 @@
 // Solver bodies: what a substep does to them besides contacts.
 #pragma once
 
-#include "kernels/data/rows.hpp"
+#include "kernels/data/contact_constraints.hpp"
 #include "kernels/solver/carried_points.hpp"
 #include "throng/math.hpp"
 
@@ -14,30 +14,32 @@ namespace throng {
 /// Contacts are solved with the inertia that bodies had when the step began. Of what turns equally
 /// easily about any axis that is always right. Of a needle it is not: a spin about its length that
 /// stayed behind as it tips over would become tumbling, with all the energy that its greater moment
-/// makes of it. So what has a SpinInertia has its spin in axes that go with it, in which its
+/// makes of it. So what has a GyroscopicInertia has its spin in axes that go with it, in which its
 /// inertia stays the same: the body's own or, where that is symmetric about an axis, those that
 /// follow this axis on the shortest way and do not take part in the spin about it.
 ///
 ///   inertia  null: the body has none, and the axes are those of the world
 template <class Real>
-Quat spin_frame(const SolverBody<Real>& body, const SpinInertia<Real>* inertia);
+Quat spin_frame(const SolverBody<Real>& body, const GyroscopicInertia<Real>* inertia);
 
 /// Turns the bodies that turn by kFastTurn and more in a time, and no other: the exponential map,
 /// exact for a constant angular velocity. The wide kernels turn the rest.
 ///
 ///   inertias  [bodies], or null
 template <class Real>
-void turn_fast(std::span<SolverBody<Real>> bodies, const SpinInertia<Real>* inertias, Real time);
+void turn_fast(std::span<SolverBody<Real>> bodies,
+               const GyroscopicInertia<Real>* inertias,
+               Real time);
 
 /// True for a body that begin_substep() stopped because its velocity could not be held.
 template <class Real>
 bool ran_away(const SolverBody<Real>& body)
 {
-    return body.drift[3] != 0;
+    return body.delta_pose[3] != 0;
 }
 
 template <class Real>
-Ease ease_of(const SolverBody<Real>& body)
+InverseMass inverse_mass_of(const SolverBody<Real>& body)
 {
     const Real* const inertia = body.inertia;
     return {double{inertia[0]}, double{inertia[1]} + double{inertia[2]} + double{inertia[3]}};
@@ -45,19 +47,19 @@ Ease ease_of(const SolverBody<Real>& body)
 
 /// Whether a body takes another along as it turns, in steps of dt: see carried_points.hpp.
 template <class Real>
-bool carries(const SolverBody<Real>& carrier, const Ease& carried, double dt)
+bool carries(const SolverBody<Real>& carrier, const InverseMass& carried, double dt)
 {
     const Real* const motion = carrier.motion;
-    return carries(Vec3(double{motion[4]}, double{motion[5]}, double{motion[6]}), ease_of(carrier),
-                   carried, dt);
+    return carries(Vec3(double{motion[4]}, double{motion[5]}, double{motion[6]}),
+                   inverse_mass_of(carrier), carried, dt);
 }
 
 /// How far a body has turned since the step began.
 template <class Real>
 Quat turn_of(const SolverBody<Real>& body)
 {
-    return {double{body.drift[7]}, double{body.drift[4]}, double{body.drift[5]},
-            double{body.drift[6]}};
+    return {double{body.delta_pose[7]}, double{body.delta_pose[4]}, double{body.delta_pose[5]},
+            double{body.delta_pose[6]}};
 }
 
 }  // namespace throng

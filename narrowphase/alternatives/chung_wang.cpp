@@ -1,6 +1,6 @@
 #include "narrowphase/alternatives/chung_wang.hpp"
 
-#include "kernels/geometry/climbing_support.hpp"
+#include "kernels/geometry/hill_climbing.hpp"
 #include "narrowphase/alternatives/direction_cone.hpp"
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace throng {
 namespace {
 
-constexpr int kRounds = DirectionCone::kRoom;
+constexpr int kRounds = DirectionCone::kCapacity;
 constexpr double kTolerance = 1e-14;  // of the size; some fifty times double's spacing
 
 // What the memory's numbers are: a direction with the vertices furthest along it, or besides that
@@ -17,11 +17,12 @@ enum class Remembered : std::uint32_t { nothing, direction, witness };
 
 // The differences of any two shapes, by looking at every point of theirs.
 struct FurthestPoints {
-    const CorePair& pair;
+    const ConvexCorePair& pair;
 
     Vec3 difference(const Vec3& s) const
     {
-        return -furthest_difference(pair, s).point - s * (pair.a.radius + pair.b.radius);
+        return -minkowski_support(pair, s).point
+            - s * (pair.a.convex_radius + pair.b.convex_radius);
     }
     void begin_at(const MethodMemory&) { }
     bool still_touch(const MethodMemory&) const { return false; }
@@ -32,12 +33,12 @@ struct FurthestPoints {
 
 // The differences of two polytopes, by climbing from the vertices of the round before.
 struct FurthestVertices {
-    FurthestVertices(const PolytopePair& polytopes, const CorePair& cores)
+    FurthestVertices(const PolytopePair& polytopes, const ConvexCorePair& cores)
         : pair(polytopes), supports(cores)
     { }
 
     const PolytopePair& pair;
-    ClimbingSupports supports;
+    HillClimbingSupports supports;
     std::uint32_t a = 0, b = 0;
     // By round, so that a witness can be told by its vertices.
     std::array<std::uint32_t, kRounds> seen_a, seen_b;
@@ -48,7 +49,7 @@ struct FurthestVertices {
     }
     Vec3 difference(const Vec3& s)
     {
-        const Difference furthest = supports(s);
+        const MinkowskiVertex furthest = supports(s);
         a = furthest.feature_a;
         b = furthest.feature_b;
         return -furthest.point;
@@ -103,20 +104,20 @@ void search(Points& points, Vec3 s, double slack, MethodMemory& memory, MethodAn
         memory.axis = s;
         const double along = s.dot(r);
         if (along > slack) {
-            answer.touch = Touch::apart;
+            answer.overlap = OverlapState::apart;
             answer.normal = s;
             points.remember_direction(memory);
             return;
         }
         const double length = std::sqrt(r.squaredNorm());
         if (length <= slack) {
-            answer.touch = Touch::touching;
+            answer.overlap = OverlapState::touching;
             points.remember_direction(memory);
             return;
         }
         const Vec3 unit = r / length;
         if (!cone.add(unit)) {
-            answer.touch = Touch::touching;
+            answer.overlap = OverlapState::touching;
             points.remember_witness(cone.witness(), memory);
             return;
         }
@@ -129,7 +130,7 @@ void search(Points& points, Vec3 s, double slack, MethodMemory& memory, MethodAn
 
 template <class Points>
 void ask(Points& points,
-         const CorePair& cores,
+         const ConvexCorePair& cores,
          MethodStart start,
          MethodMemory& memory,
          MethodAnswer& answer)
@@ -141,7 +142,7 @@ void ask(Points& points,
     if (known) {
         if (kind == Remembered::witness && points.still_touch(memory)) {
             answer.rounds = 1;
-            answer.touch = Touch::touching;
+            answer.overlap = OverlapState::touching;
             return;
         }
         points.begin_at(memory);
@@ -155,10 +156,11 @@ void ask(Points& points,
 
 }  // namespace
 
-MethodAnswer ask_chung_wang(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
+MethodAnswer
+query_chung_wang(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
 {
     MethodAnswer answer;
-    const CorePair& cores = pair.cores();
+    const ConvexCorePair& cores = pair.cores();
     if (pair.polytopes() && start != MethodStart::plain) {
         FurthestVertices points(*pair.polytopes(), cores);
         ask(points, cores, start, memory, answer);

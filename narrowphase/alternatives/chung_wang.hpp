@@ -18,7 +18,8 @@ namespace throng {
 /// them: the middle of the cone is. So each round leaves a good part of the directions behind, and
 /// the search cannot go round in circles as it does by mirroring alone. Within rounding (1e-14 of
 /// the size) of just touching, shapes count as touching. After 96 rounds the search is cut short,
-/// undecided: shapes with a gap or depth of 1e-9 of their size have not been seen to need 40.
+/// undecided: shapes with a separation or depth of 1e-9 of their size have not been seen to need
+/// 40.
 ///
 /// Round shapes are points of their core pushed outwards along s. The first direction leads from
 /// center to center. Vertices of boxes and hulls are climbed to from those of the round before;
@@ -31,7 +32,9 @@ namespace throng {
 /// Source: Chung, Wang, Quick Collision Detection of Polytopes in Virtual Environments (1996);
 ///         Chung, An Efficient Collision Detection Algorithm for Polytopes in Virtual Environments
 ///         (thesis, 1996).
-MethodAnswer
-ask_chung_wang(const ConvexPair& pair, double reach, MethodStart start, MethodMemory& memory);
+MethodAnswer query_chung_wang(const ConvexPair& pair,
+                              double speculative_margin,
+                              MethodStart start,
+                              MethodMemory& memory);
 
 }  // namespace throng

@@ -167,14 +167,14 @@ left_of(const PolytopePair& pair, bool plain, double slack, Scratch& scratch, in
 }  // namespace
 
 MethodAnswer
-ask_clip_volume(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
+query_clip_volume(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
 {
     thread_local Scratch scratch;
     const BothWays shapes{*pair.polytopes(), pair.polytopes()->mirrored()};
     const double slack = kSlack * shapes.ab.noise();
     const bool plain = start == MethodStart::plain;
     MethodAnswer answer;
-    answer.touch = Touch::apart;
+    answer.overlap = OverlapState::apart;
     if (start == MethodStart::cached && still_parted(shapes, slack, memory, answer.normal)) {
         answer.rounds = 1;
         return answer;
@@ -197,7 +197,7 @@ ask_clip_volume(const ConvexPair& pair, double, MethodStart start, MethodMemory&
         return answer;
     }
     answer.cut_short = scratch.rest.cut_short();
-    answer.touch = Touch::touching;
+    answer.overlap = OverlapState::touching;
     answer.volume = shared->volume;
     answer.surface = shared->surface;
     const Vec3 center = shared->center + seen.a.center;

@@ -24,11 +24,13 @@ namespace throng {
 ///   plain   cuts a by all the planes of b, in the order of its faces
 ///
 /// Allocates until it has met its largest pair, once a thread.
-MethodAnswer
-ask_clip_volume(const ConvexPair& pair, double reach, MethodStart start, MethodMemory& memory);
+MethodAnswer query_clip_volume(const ConvexPair& pair,
+                               double speculative_margin,
+                               MethodStart start,
+                               MethodMemory& memory);
 
 /// m, by which b must be moved along a unit direction from a to b for the two to part: along the
-/// normal of ask_clip_volume() a depth to go with the volume, and no less than the least depth.
+/// normal of query_clip_volume() a depth to go with the volume, and no less than the least depth.
 double depth_along(const ConvexPair& pair, const Vec3& direction);
 
 }  // namespace throng

@@ -63,11 +63,11 @@ bool meets_at_all(const PolytopeSide& side)
     return touching;
 }
 
-bool fits(const PolytopeView& shape, const std::uint32_t* slots)
+bool fits(const PolytopeView& shape, const std::uint32_t* indices)
 {
     const std::size_t vertices = shape.vertices.size();
-    return slots[kFace] < shape.normals.size() && slots[kVertex] < vertices
-        && slots[kFrom] < vertices && slots[kTo] < vertices;
+    return indices[kFace] < shape.normals.size() && indices[kVertex] < vertices
+        && indices[kFrom] < vertices && indices[kTo] < vertices;
 }
 
 bool still_has_inside(const PolytopeSide& side, const Vec3& point)
@@ -119,34 +119,34 @@ void remember(const Side& side, Remembered kind, MethodMemory& memory)
 
 // What the balls round the two and inside them tell, and the direction between them if that parts
 // the two.
-Touch touch_of_balls(const PolytopePair& pair, double noise, Vec3& normal)
+OverlapState touch_of_balls(const PolytopePair& pair, double noise, Vec3& normal)
 {
     const double square = pair.offset.squaredNorm();
     const double outer = pair.a.outer_radius + pair.b.outer_radius + noise;
     if (square > outer * outer) {
         normal = pair.offset / std::sqrt(square);
-        return Touch::apart;
+        return OverlapState::apart;
     }
     const double inner = pair.a.inner_radius + pair.b.inner_radius - noise;
-    return inner > 0 && square < inner * inner ? Touch::touching : Touch::undecided;
+    return inner > 0 && square < inner * inner ? OverlapState::touching : OverlapState::undecided;
 }
 
-Touch touch_by_looking(const PolytopePair& pair, int& rounds)
+OverlapState touch_by_looking(const PolytopePair& pair, int& rounds)
 {
     const PolytopePair mirrored = pair.mirrored();
     const PolytopeSide side{pair, pair.noise(), rounds};
     const PolytopeSide other{mirrored, pair.noise(), rounds};
     const bool either = meets_at_all(side), or_other = meets_at_all(other);
-    return either || or_other ? Touch::touching : Touch::apart;
+    return either || or_other ? OverlapState::touching : OverlapState::apart;
 }
 
-Touch touch_by_walking(
+OverlapState touch_by_walking(
     const PolytopePair& pair, bool cached, MethodMemory& memory, int& rounds, Vec3& normal)
 {
     const double noise = pair.noise();
     ++rounds;
-    const Touch of_balls = touch_of_balls(pair, noise, normal);
-    if (of_balls != Touch::undecided) return of_balls;
+    const OverlapState of_balls = touch_of_balls(pair, noise, normal);
+    if (of_balls != OverlapState::undecided) return of_balls;
 
     auto kind = static_cast<Remembered>(memory.kind / 2);
     if (!cached || !fits(pair.a, memory.a) || !fits(pair.b, memory.b)) kind = Remembered::nothing;
@@ -159,11 +159,11 @@ Touch touch_by_walking(
         return {{*mirrored, noise, rounds}, true, memory.b, memory.a};
     };
     const auto settled = [&](const Side& side, WalkEnd outcome, Remembered inside) {
-        if (outcome == WalkEnd::open) return Touch::undecided;
+        if (outcome == WalkEnd::open) return OverlapState::undecided;
         const bool parted = outcome == WalkEnd::parted;
         remember(side, parted ? Remembered::parted : inside, memory);
         if (parted) normal = normal_of(side);
-        return parted ? Touch::apart : Touch::touching;
+        return parted ? OverlapState::apart : OverlapState::touching;
     };
 
     Side first = side_of(turned);
@@ -184,12 +184,12 @@ Touch touch_by_walking(
     if (any_edge_meets(second)) return settled(second, WalkEnd::inside, Remembered::edge);
     remember(second, Remembered::between, memory);
     remember(first, Remembered::between, memory);
-    return Touch::apart;
+    return OverlapState::apart;
 }
 
 void add(ContainmentPoints& out, const ContainmentPoints::Point& point)
 {
-    if (out.count == ContainmentPoints::kRoom)
+    if (out.count == ContainmentPoints::kCapacity)
         ++out.dropped;
     else
         out.points[out.count++] = point;
@@ -231,12 +231,12 @@ bool add_points(Side& side, ContainmentPoints& out)
 }  // namespace
 
 MethodAnswer
-ask_containment(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
+query_containment(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
 {
     MethodAnswer answer;
     const PolytopePair& shapes = *pair.polytopes();
     if (!shapes.offset.allFinite()) return answer;
-    answer.touch = start == MethodStart::plain
+    answer.overlap = start == MethodStart::plain
         ? touch_by_looking(shapes, answer.rounds)
         : touch_by_walking(shapes, start == MethodStart::cached, memory, answer.rounds,
                            answer.normal);

@@ -34,8 +34,10 @@ namespace throng {
 /// Allocates scratch that the thread keeps.
 ///
 /// Source: Moore, Wilhelms, Collision Detection and Response for Computer Animation (1988).
-MethodAnswer
-ask_containment(const ConvexPair& pair, double reach, MethodStart start, MethodMemory& memory);
+MethodAnswer query_containment(const ConvexPair& pair,
+                               double speculative_margin,
+                               MethodStart start,
+                               MethodMemory& memory);
 
 /// The corners of what two polytopes share, in a's frame, as long as there is room.
 struct ContainmentPoints {
@@ -55,14 +57,14 @@ struct ContainmentPoints {
         double depth = 0;
     };
 
-    static constexpr std::size_t kRoom = 128;
-    std::array<Point, kRoom> points;
+    static constexpr std::size_t kCapacity = 128;
+    std::array<Point, kCapacity> points;
     std::size_t count = 0;
     std::size_t dropped = 0;  // found when there was no room left
 };
 
 /// Finds them; none where the two are apart. Where an edge meets an edge or a vertex a face edge,
-/// the same place may be given more than once. Allocates as ask_containment() does.
+/// the same place may be given more than once. Allocates as query_containment() does.
 void containment_points(const PolytopePair& pair, ContainmentPoints& out);
 
 }  // namespace throng

@@ -29,9 +29,9 @@ struct ConvexMethod {
     bool polytopes_only = false;
     /// Never throws, allocates only where its file says so, ends for every input.
     ///
-    ///   reach   m, pairs known to be further apart need no better answer than `apart`
+    ///   speculative_margin  m, pairs known to be further apart need no better answer than `apart`
     MethodAnswer (*ask)(const ConvexPair& pair,
-                        double reach,
+                        double speculative_margin,
                         MethodStart start,
                         MethodMemory& memory) = nullptr;
 

@@ -16,7 +16,7 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 bool DirectionCone::add(const Vec3& difference)
 {
-    if (count_ == kRoom) return true;
+    if (count_ == kCapacity) return true;
     differences_[at(count_++)] = difference;
     if (count_ == 1) return true;
     return sides_count_ == 0 ? open(difference) : cut(difference);

@@ -15,7 +15,7 @@ namespace throng {
 class DirectionCone {
 public:
     /// Differences there is room for; further ones are not heeded.
-    static constexpr int kRoom = 96;
+    static constexpr int kCapacity = 96;
 
     /// Cuts by the half-space of a difference. False once no direction is left, within rounding:
     /// then add nothing more.
@@ -39,13 +39,13 @@ public:
     Witness witness() const;
 
 private:
-    static constexpr int kCorners = kRoom + 8;
+    static constexpr int kCorners = kCapacity + 8;
 
     bool open(const Vec3& difference);
     bool cut(const Vec3& difference);
     void insert(int index, int side, const Vec3& corner);
 
-    std::array<Vec3, kRoom> differences_;
+    std::array<Vec3, kCapacity> differences_;
     int count_ = 0;
     // Side i is that from corner i to the next, on the plane across the difference of that index.
     std::array<Vec3, kCorners> corners_;

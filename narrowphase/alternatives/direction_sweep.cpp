@@ -88,7 +88,7 @@ Tried refine(Tried best, double step, const Separation& separation)
 
 }  // namespace
 
-double sweep_directions(const Reach& a, const Reach& b, int grid, Vec3* normal)
+double sweep_directions(const Extent& a, const Extent& b, int grid, Vec3* normal)
 {
     const auto separation = [&](const Vec3& direction) { return -b(-direction) - a(direction); };
     std::vector<Tried> tried;

@@ -11,7 +11,7 @@ namespace throng {
 /// Exact to rounding, some 1e-13 of the size cubed. Parts that a mesh goes round twice count
 /// twice.
 ///
-/// Allocates. Two hulls or boxes go by ask_clip_volume() in much less time.
+/// Allocates. Two hulls or boxes go by query_clip_volume() in much less time.
 SharedVolume shared_exactly(const VolumePair& pair);
 
 /// How many pairs of triangles that takes, at most: a microsecond or two for each that is near.

@@ -33,13 +33,13 @@ struct Range {
 };
 
 // Of a shape in its own frame, along a direction of any length.
-Range range_along(const Core<double>& core, const Vec3& direction)
+Range range_along(const ConvexCore<double>& core, const Vec3& direction)
 {
     if (core.kind != ShapeKind::hull) {
         // All others are the same seen from both sides.
-        const double reach = direction.dot(support(core, direction).position)
-            + core.radius * std::sqrt(direction.squaredNorm());
-        return {-reach, reach};
+        const double extent = direction.dot(support(core, direction).position)
+            + core.convex_radius * std::sqrt(direction.squaredNorm());
+        return {-extent, extent};
     }
     Range range = {std::numeric_limits<double>::infinity(),
                    -std::numeric_limits<double>::infinity()};
@@ -51,7 +51,7 @@ Range range_along(const Core<double>& core, const Vec3& direction)
     return range;
 }
 
-Range range_along(const Core<double>& core,
+Range range_along(const ConvexCore<double>& core,
                   const Mat3& turn,
                   const Vec3& position,
                   const Vec3& direction)
@@ -62,7 +62,7 @@ Range range_along(const Core<double>& core,
 }
 
 // m, below which rounding decides.
-double slack_of(const CorePair& cores)
+double slack_of(const ConvexCorePair& cores)
 {
     return kWidened * (cores.size + std::sqrt(cores.b_position.squaredNorm()));
 }
@@ -73,20 +73,20 @@ Vec3 outward(std::size_t slab, bool b_is_above)
     return directions()[slab] / (b_is_above ? length_of(slab) : -length_of(slab));
 }
 
-bool parts(const CorePair& cores, std::size_t slab, MethodAnswer& answer)
+bool parts(const ConvexCorePair& cores, std::size_t slab, MethodAnswer& answer)
 {
     ++answer.rounds;
     const Vec3& direction = slab_direction(slab);
     const Range a = range_along(cores.a, direction);
     const Range b = range_along(cores.b, cores.b_turn, cores.b_position, direction);
-    const double gap = std::max(b.lower - a.upper, a.lower - b.upper);
-    if (!(gap > slack_of(cores) * length_of(slab))) return false;
-    answer.touch = Touch::apart;
+    const double separation = std::max(b.lower - a.upper, a.lower - b.upper);
+    if (!(separation > slack_of(cores) * length_of(slab))) return false;
+    answer.overlap = OverlapState::apart;
     answer.normal = outward(slab, b.lower > a.upper);
     return true;
 }
 
-std::size_t likely_slab(const CorePair& cores, Slabs slabs)
+std::size_t likely_slab(const ConvexCorePair& cores, Slabs slabs)
 {
     const Vec3 offset = cores.b_turn * cores.b.middle + cores.b_position - cores.a.middle;
     std::size_t best = slabs.begin;
@@ -141,7 +141,7 @@ void add(const KDop& other, Slabs slabs, KDop& to)
     }
 }
 
-KDop k_dop_of(const Core<double>& core, const Mat3& turn, const Vec3& position, int k)
+KDop k_dop_of(const ConvexCore<double>& core, const Mat3& turn, const Vec3& position, int k)
 {
     const Slabs slabs = slabs_of(k);
     KDop dop = empty_k_dop(slabs);
@@ -160,16 +160,17 @@ KDop k_dop_of(const Core<double>& core, const Mat3& turn, const Vec3& position, 
 std::size_t parting_slab(const KDop& a, const KDop& b, Slabs slabs, double slack)
 {
     for (std::size_t slab = slabs.begin; slab < slabs.end; ++slab) {
-        const double gap = std::max(b.lower[slab] - a.upper[slab], a.lower[slab] - b.upper[slab]);
-        if (gap > slack * length_of(slab)) return slab;
+        const double separation =
+            std::max(b.lower[slab] - a.upper[slab], a.lower[slab] - b.upper[slab]);
+        if (separation > slack * length_of(slab)) return slab;
     }
     return slabs.end;
 }
 
 template <int k>
-MethodAnswer ask_k_dop(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
+MethodAnswer query_k_dop(const ConvexPair& pair, double, MethodStart start, MethodMemory& memory)
 {
-    const CorePair& cores = pair.cores();
+    const ConvexCorePair& cores = pair.cores();
     const Slabs slabs = slabs_of(k);
     MethodAnswer answer;
     if (start != MethodStart::plain) {
@@ -188,14 +189,14 @@ MethodAnswer ask_k_dop(const ConvexPair& pair, double, MethodStart start, Method
     answer.rounds += static_cast<int>(slabs.end - slabs.begin);
     if (slab == slabs.end) return answer;
     memory.kind = static_cast<std::uint32_t>(slab + 1);
-    answer.touch = Touch::apart;
+    answer.overlap = OverlapState::apart;
     answer.normal = outward(slab, b.lower[slab] > a.upper[slab]);
     return answer;
 }
 
-template MethodAnswer ask_k_dop<6>(const ConvexPair&, double, MethodStart, MethodMemory&);
-template MethodAnswer ask_k_dop<14>(const ConvexPair&, double, MethodStart, MethodMemory&);
-template MethodAnswer ask_k_dop<18>(const ConvexPair&, double, MethodStart, MethodMemory&);
-template MethodAnswer ask_k_dop<26>(const ConvexPair&, double, MethodStart, MethodMemory&);
+template MethodAnswer query_k_dop<6>(const ConvexPair&, double, MethodStart, MethodMemory&);
+template MethodAnswer query_k_dop<14>(const ConvexPair&, double, MethodStart, MethodMemory&);
+template MethodAnswer query_k_dop<18>(const ConvexPair&, double, MethodStart, MethodMemory&);
+template MethodAnswer query_k_dop<26>(const ConvexPair&, double, MethodStart, MethodMemory&);
 
 }  // namespace throng

@@ -40,7 +40,7 @@ void add(const Vec3& point, Slabs slabs, KDop& to);
 void add(const KDop& other, Slabs slabs, KDop& to);
 
 /// The least k-DOP round a placed shape, to rounding.
-KDop k_dop_of(const Core<double>& core, const Mat3& turn, const Vec3& position, int k);
+KDop k_dop_of(const ConvexCore<double>& core, const Mat3& turn, const Vec3& position, int k);
 
 /// The first slab in which the two are further apart than `slack`, m along the slab's direction
 /// once that is of unit length; slabs.end where there is none.
@@ -53,7 +53,9 @@ std::size_t parting_slab(const KDop& a, const KDop& b, Slabs slabs, double slack
 ///   cold    with the one that their middles are furthest apart along
 ///   plain   looks at all slabs at once
 template <int k>
-MethodAnswer
-ask_k_dop(const ConvexPair& pair, double reach, MethodStart start, MethodMemory& memory);
+MethodAnswer query_k_dop(const ConvexPair& pair,
+                         double speculative_margin,
+                         MethodStart start,
+                         MethodMemory& memory);
 
 }  // namespace throng

@@ -216,7 +216,7 @@ KDopTree::KDopTree(const PolytopeView& shape, int k) : k_(k)
     }
 }
 
-MethodAnswer ask_k_dop_trees(const PolytopePair& pair, const KDopTree& a, const KDopTree& b)
+MethodAnswer query_k_dop_trees(const PolytopePair& pair, const KDopTree& a, const KDopTree& b)
 {
     THRONG_CHECK(a.k() == b.k(), "two trees are compared slab by slab");
     const Slabs slabs = slabs_of(a.k());
@@ -248,7 +248,7 @@ MethodAnswer ask_k_dop_trees(const PolytopePair& pair, const KDopTree& a, const 
     const Vec3 center_b = pair.turn * pair.b.center + pair.shift;
     const Vec3 center_a = mirrored.turn * pair.a.center + mirrored.shift;
     if (is_outside(pair.a, center_b, slack) && is_outside(pair.b, center_a, slack))
-        answer.touch = Touch::apart;
+        answer.overlap = OverlapState::apart;
     return answer;
 }
 

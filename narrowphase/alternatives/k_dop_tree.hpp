@@ -44,6 +44,6 @@ private:
 ///
 /// rounds are pairs of nodes; after eight for each node of either, it is cut_short and undecided.
 /// Allocates room for the nodes in hand, once a thread.
-MethodAnswer ask_k_dop_trees(const PolytopePair& pair, const KDopTree& a, const KDopTree& b);
+MethodAnswer query_k_dop_trees(const PolytopePair& pair, const KDopTree& a, const KDopTree& b);
 
 }  // namespace throng

@@ -14,14 +14,14 @@ bool collide_by_axes(const Shapes& shapes,
                      ShapeRef a,
                      ShapeRef b,
                      const Pose& b_in_a,
-                     double reach,
+                     double speculative_margin,
                      MethodStart start,
                      MethodMemory& memory,
                      LocalManifold<double>& out)
 {
     PairCache cache;
     if (start == MethodStart::cached) cache = {memory.a[0], memory.b[0], memory.kind};
-    hull_hull_by_axes(shapes, a, b, b_in_a, reach, cache, out);
+    hull_hull_by_axes(shapes, a, b, b_in_a, speculative_margin, cache, out);
     memory.a[0] = cache.feature_a;
     memory.b[0] = cache.feature_b;
     memory.kind = cache.kind;
@@ -36,9 +36,9 @@ Segment<double> furthest_edge(const SupportFace<double>& face, const Vec3& direc
     double furthest = direction.dot(best.from + best.to);
     for (int i = 1; i < face.count; ++i) {
         const Segment<double> edge{corner(i), corner((i + 1) % face.count)};
-        const double reach = direction.dot(edge.from + edge.to);
-        if (reach > furthest) {
-            furthest = reach;
+        const double extent = direction.dot(edge.from + edge.to);
+        if (extent > furthest) {
+            furthest = extent;
             best = edge;
         }
     }
@@ -46,7 +46,7 @@ Segment<double> furthest_edge(const SupportFace<double>& face, const Vec3& direc
 }
 
 // Points of the two that face one another along a normal, for a method that names none.
-void find_witnesses(const CorePair& pair, ContactAxis& axis)
+void find_witnesses(const ConvexCorePair& pair, ContactAxis& axis)
 {
     const Vec3 back = pair.b_turn.transpose() * -axis.normal;
     Segment<double> on_a = furthest_edge(support_face(pair.a, axis.normal), axis.normal);
@@ -59,7 +59,7 @@ void find_witnesses(const CorePair& pair, ContactAxis& axis)
 
 // Slivers at the rim of the shared volume turn its normal a little off the faces that meet: theirs
 // takes its place where less must be moved along it.
-void settle_on_face(const CorePair& pair, Vec3& normal)
+void settle_on_face(const ConvexCorePair& pair, Vec3& normal)
 {
     constexpr double kNear = 0.9;  // cosine
     double best = separation_along(pair, normal);
@@ -85,7 +85,7 @@ bool collide_by(const ConvexMethod& method,
                 ShapeRef a,
                 ShapeRef b,
                 const Pose& b_in_a,
-                double reach,
+                double speculative_margin,
                 MethodMemory& memory,
                 LocalManifold<double>& out)
 {
@@ -96,33 +96,33 @@ bool collide_by(const ConvexMethod& method,
     const ConvexPair pair(shapes, a, b, b_in_a);
     if (!method.serves(pair)) return false;
     if (depth && !distance && start != MethodStart::plain)
-        return collide_by_axes(shapes, a, b, b_in_a, reach, start, memory, out);
+        return collide_by_axes(shapes, a, b, b_in_a, speculative_margin, start, memory, out);
 
-    const MethodAnswer answer = method.ask(pair, reach, start, memory);
-    if (answer.touch == Touch::undecided) return false;
-    const bool apart = answer.touch == Touch::apart;
-    const CorePair& cores = pair.cores();
-    const double rounding = cores.a.radius + cores.b.radius;
+    const MethodAnswer answer = method.ask(pair, speculative_margin, start, memory);
+    if (answer.overlap == OverlapState::undecided) return false;
+    const bool apart = answer.overlap == OverlapState::apart;
+    const ConvexCorePair& cores = pair.cores();
+    const double convex_radius = cores.a.convex_radius + cores.b.convex_radius;
     // Whatever direction is told: further apart along it is further apart.
     if (!depth && !volume)
-        return apart && separation_along(cores, answer.normal) - rounding > reach;
+        return apart && separation_along(cores, answer.normal) - convex_radius > speculative_margin;
     if (apart && !depth) return true;
     ContactAxis axis;
     axis.normal = answer.normal;
     if (depth) {
-        axis.separation = answer.separation + rounding;
+        axis.separation = answer.separation + convex_radius;
     } else {
         settle_on_face(cores, axis.normal);
         axis.separation = separation_along(cores, axis.normal);
     }
-    if (axis.separation - rounding > reach) return true;
+    if (axis.separation - convex_radius > speculative_margin) return true;
     if (distance) {
-        axis.on_a = answer.on_a - answer.normal * cores.a.radius;
-        axis.on_b = answer.on_b + answer.normal * cores.b.radius;
+        axis.on_a = answer.on_a - answer.normal * cores.a.convex_radius;
+        axis.on_b = answer.on_b + answer.normal * cores.b.convex_radius;
     } else {
         find_witnesses(cores, axis);
     }
-    fill_points(cores, axis, reach, out);
+    fill_points(cores, axis, speculative_margin, out);
     return true;
 }
 

@@ -11,22 +11,22 @@ namespace throng {
 
 /// The points of touch by a method's own answer. False where it cannot give them: it does not serve
 /// the pair, is undecided, or tells of touch alone and the two are not shown to be further apart
-/// than `reach`. A body at rest hardly overlaps what bears it: were points within reach of each
-/// other left out, it would rock from one contact to the next for ever.
+/// than `speculative_margin`. A body at rest hardly overlaps what bears it: were points within the
+/// margin of each other left out, it would rock from one contact to the next for ever.
 ///
-/// gjk gives points out to `reach`, and so does sat, whose points are those of hull_hull_by_axes()
-/// unless it starts `plain`. clip_volume knows nothing of how far apart shapes are: points where
-/// they overlap, none where they do not. Its normal is that of the shared volume's surface, or of
-/// the face near it along which less must be moved; its depth is that move.
+/// gjk gives points out to `speculative_margin`, and so does sat, whose points are those of
+/// hull_hull_by_axes() unless it starts `plain`. clip_volume knows nothing of how far apart shapes
+/// are: points where they overlap, none where they do not. Its normal is that of the shared
+/// volume's surface, or of the face near it along which less must be moved; its depth is that move.
 ///
-///   out   in a's frame; count 0 where nothing is within reach
+///   out  in a's frame; count 0 where nothing is within the margin
 bool collide_by(const ConvexMethod& method,
                 MethodStart start,
                 const Shapes& shapes,
                 ShapeRef a,
                 ShapeRef b,
                 const Pose& b_in_a,
-                double reach,
+                double speculative_margin,
                 MethodMemory& memory,
                 LocalManifold<double>& out);
 

@@ -1,8 +1,8 @@
 #include "narrowphase/alternatives/polytope_side.hpp"
 
-#include "kernels/geometry/climbing_support.hpp"
 #include "kernels/geometry/closest_points.hpp"
 #include "kernels/geometry/flat_faces.hpp"
+#include "kernels/geometry/hill_climbing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -118,9 +118,9 @@ bool has_inside(const PolytopeSide& side, const Vec3& point, const NearestFace& 
 FaceAxis lowest_vertex(const PolytopeSide& side, std::uint16_t face, std::uint16_t start)
 {
     const Vec3 down = -(side.pair.turn.transpose() * side.pair.a.normals[face]);
-    ClimbCount count;
+    HillClimbingCount count;
     const std::uint16_t vertex =
-        furthest_vertex_near(ClimbingShape(side.pair.b), down, start, count);
+        furthest_vertex_near(HillClimbingShape(side.pair.b), down, start, count);
     side.rounds += static_cast<int>(count.looked);
     return {side.height(face, side.place(vertex)), face, vertex};
 }

@@ -64,8 +64,8 @@ RayGrid grid_over(const Box3& box, double pixel, const std::array<double, 2>& of
 }
 
 // Visits what two bodies share of each ray.
-template <class Visit>
-void visit_shared(const RayGrid& grid, const DepthImage& a, const DepthImage& b, Visit visit)
+template <class Visitor>
+void visit_shared(const RayGrid& grid, const DepthImage& a, const DepthImage& b, Visitor visit)
 {
     std::size_t ray = 0;
     for (std::int32_t row = 0; row < grid.count[1]; ++row)
@@ -204,9 +204,9 @@ SharedVolume shared_by_fields(
                     * (VoxelBricks::kCells * field.voxel));
     };
     const Vec3 half = 0.5 * sides(b);
-    const Vec3 reach = b_in_a.orientation.toRotationMatrix().cwiseAbs() * half;
+    const Vec3 extent = b_in_a.orientation.toRotationMatrix().cwiseAbs() * half;
     const Vec3 middle = b_in_a * Vec3(b.origin + half);
-    const Box3 box = common({a.origin, a.origin + sides(a)}, {middle - reach, middle + reach});
+    const Box3 box = common({a.origin, a.origin + sides(a)}, {middle - extent, middle + extent});
     if (!holds_something(box)) return {};
     Cells all(box, cells, offset);
     const Vec3 side = (box.upper - box.lower) / all.side;

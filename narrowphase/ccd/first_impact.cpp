@@ -18,10 +18,10 @@ FirstImpact first_impact(const Shapes& shapes,
         const MovingShape &a = group[pairs[i].a], &b = group[pairs[i].b];
         const ImpactRule rule =
             impact_rule(method, tolerance * impact_size(shapes, a.shape, b.shape));
-        const Impact impact = impact_time(shapes, a, b, begin, first.impact.time, rule);
+        const Impact impact = time_of_impact(shapes, a, b, begin, first.impact.time, rule);
         evaluations += impact.evaluations;
-        if (impact.meeting != Meeting::meet) continue;
-        if (first.impact.meeting == Meeting::meet && !(impact.time < first.impact.time)) continue;
+        if (impact.state != ToiState::hit) continue;
+        if (first.impact.state == ToiState::hit && !(impact.time < first.impact.time)) continue;
         first = {i, impact};
     }
     first.impact.evaluations = evaluations;

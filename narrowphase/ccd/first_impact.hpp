@@ -1,7 +1,7 @@
 // First impact: of a group of shapes on their ways, which two meet first.
 #pragma once
 
-#include "narrowphase/ccd/impact_time.hpp"
+#include "narrowphase/ccd/time_of_impact.hpp"
 
 #include <span>
 

@@ -1,7 +1,7 @@
 #include "narrowphase/ccd/impact_of_spheres.hpp"
 
 #include "narrowphase/ccd/moving_balls.hpp"
-#include "narrowphase/solid/sphere_gaps.hpp"
+#include "narrowphase/solid/sphere_separations.hpp"
 #include "narrowphase/solid/sphere_walk.hpp"
 
 namespace throng {
@@ -43,7 +43,7 @@ public:
                 const double wide = double{p.bound} + double{q.bound} + rule_.close;
                 return ways_.may_meet(center_of(p), center_of(q), wide, left());
             },
-            [&](const Node& p, const Node& q) { look_at(ball_of(a_, p), ball_of(b_, q)); });
+            [&](const Node& p, const Node& q) { process(ball_of(a_, p), ball_of(b_, q)); });
         return told();
     }
 
@@ -52,7 +52,7 @@ public:
     {
         visit_spheres(
             a, [&](const Node& node) { return may_meet(node); },
-            [&](const Node& node, std::uint32_t) { look_at(ball_of(a_, node), b_); });
+            [&](const Node& node, std::uint32_t) { process(ball_of(a_, node), b_); });
         return told();
     }
 
@@ -67,12 +67,12 @@ private:
         return distance_from(shapes_, b_.shape, ways_.seen_from_b(center), wide) <= wide;
     }
 
-    void look_at(const MovingShape& a, const MovingShape& b)
+    void process(const MovingShape& a, const MovingShape& b)
     {
-        const Impact impact = impact_time(shapes_, a, b, begin_, first_.time, rule_);
+        const Impact impact = time_of_impact(shapes_, a, b, begin_, first_.time, rule_);
         evaluations_ += impact.evaluations;
-        if (impact.meeting != Meeting::meet) return;
-        if (first_.meeting == Meeting::meet && !(impact.time < first_.time)) return;
+        if (impact.state != ToiState::hit) return;
+        if (first_.state == ToiState::hit && !(impact.time < first_.time)) return;
         first_ = impact;
     }
 

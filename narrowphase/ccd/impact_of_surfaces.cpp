@@ -2,13 +2,13 @@
 
 #include "narrowphase/ccd/moving_balls.hpp"
 #include "narrowphase/ccd/moving_cores.hpp"
-#include "narrowphase/solid/surface_gaps.hpp"
+#include "narrowphase/solid/surface_separations.hpp"
 
 namespace throng {
 namespace {
 
 Vec3 middle_of(const Box3& box) { return 0.5 * (box.lower + box.upper); }
-double reach_of(const Box3& box) { return 0.5 * (box.upper - box.lower).norm(); }
+double extent_of(const Box3& box) { return 0.5 * (box.upper - box.lower).norm(); }
 
 std::array<Vec3, 3> corners_of(const Mesh& mesh, std::uint32_t triangle)
 {
@@ -51,7 +51,7 @@ Impact impact_of_surfaces(const Mesh& on_a,
     visit_triangle_pairs(
         on_a, on_b,
         [&](const Box3& p, const Box3& q) {
-            const double wide = reach_of(p) + reach_of(q) + rule.close;
+            const double wide = extent_of(p) + extent_of(q) + rule.close;
             const double left = first.time - begin;
             return ways.may_meet(middle_of(p), middle_of(q), wide, left)
                 && ways.may_meet(p, q, rule.close, left);
@@ -60,12 +60,12 @@ Impact impact_of_surfaces(const Mesh& on_a,
             const auto corners_a = corners_of(on_a, p), corners_b = corners_of(on_b, q);
             const double left = first.time - begin;
             if (keeps_beside(ways, on_a.normals[p], corners_a, corners_b, rule.close, left)) return;
-            const MovingCores cores(core_of_points(std::span<const Vec3>(corners_a)), a,
-                                    core_of_points(std::span<const Vec3>(corners_b)), b);
+            const MovingCores cores(convex_core_of_points(std::span<const Vec3>(corners_a)), a,
+                                    convex_core_of_points(std::span<const Vec3>(corners_b)), b);
             const Impact impact = impact_of_cores(cores, begin, first.time, rule);
             evaluations += impact.evaluations;
-            if (impact.meeting != Meeting::meet) return;
-            if (first.meeting == Meeting::meet && !(impact.time < first.time)) return;
+            if (impact.state != ToiState::hit) return;
+            if (first.state == ToiState::hit && !(impact.time < first.time)) return;
             first = impact;
         });
     first.evaluations = evaluations;

@@ -1,11 +1,11 @@
 // Impact of surfaces: when two meshes on their ways first meet, triangle by triangle.
 #pragma once
 
-#include "narrowphase/ccd/impact_time.hpp"
+#include "narrowphase/ccd/time_of_impact.hpp"
 
 namespace throng {
 
-/// The first of the impacts of each two of their triangles, as impact_time() has it. Those that
+/// The first of the impacts of each two of their triangles, as time_of_impact() has it. Those that
 /// touch as it begins are left out one by one: the others are looked at all the same.
 Impact impact_of_surfaces(const Mesh& on_a,
                           const MovingShape& a,

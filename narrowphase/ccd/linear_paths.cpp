@@ -34,19 +34,19 @@ public:
         return nearest.on_b - nearest.on_a;
     }
 
-    Gap gap_along(const Vec3& normal, double time) const
+    SeparationRate separation_rate(const Vec3& normal, double time) const
     {
-        Gap gap{std::numeric_limits<double>::infinity(), 0};
-        Gap of_a{-std::numeric_limits<double>::infinity(), 0};
+        SeparationRate separation{std::numeric_limits<double>::infinity(), 0};
+        SeparationRate of_a{-std::numeric_limits<double>::infinity(), 0};
         for (std::size_t i = 0; i < 4; ++i) {
             const double along = normal.dot(place(i, time));
             if (i < count_of_a(paths_.kind)) {
                 if (along > of_a.value) of_a = {along, normal.dot(way_[i])};
-            } else if (along < gap.value) {
-                gap = {along, normal.dot(way_[i])};
+            } else if (along < separation.value) {
+                separation = {along, normal.dot(way_[i])};
             }
         }
-        return {gap.value - of_a.value - rounding_, gap.slope - of_a.slope};
+        return {separation.value - of_a.value - rounding_, separation.slope - of_a.slope};
     }
 
     double greatest_speed(const Vec3& normal) const
@@ -89,7 +89,7 @@ double rounding_of(const LinearPaths& paths)
     return kRoundings * most;
 }
 
-Impact impact_time(const LinearPaths& paths, ToiMethod method, double tolerance)
+Impact time_of_impact(const LinearPaths& paths, ToiMethod method, double tolerance)
 {
     const Paths ways(paths);
     const ImpactRule rule = impact_rule(method, std::max(tolerance, 8 * ways.rounding()));
@@ -101,31 +101,31 @@ Impact impact_time(const LinearPaths& paths, ToiMethod method, double tolerance)
         const double length = between.norm();
         ++impact.evaluations;
         impact.time = time;
-        Gap gap;
+        SeparationRate separation;
         if (length > 0) {
             impact.normal = between / length;
-            gap = ways.gap_along(impact.normal, time);
+            separation = ways.separation_rate(impact.normal, time);
         }
-        impact.distance = std::max(0.0, gap.value);
-        if (!(gap.value > rule.close)) {
-            impact.meeting = round == 0 ? Meeting::at_start : Meeting::meet;
+        impact.distance = std::max(0.0, separation.value);
+        if (!(separation.value > rule.close)) {
+            impact.state = round == 0 ? ToiState::touching_at_start : ToiState::hit;
             return impact;
         }
         if (round == most) break;
-        const auto gap_at = [&](double at) {
+        const auto separation_at = [&](double at) {
             ++impact.evaluations;
-            return ways.gap_along(impact.normal, at);
+            return ways.separation_rate(impact.normal, at);
         };
-        const Fall fall =
-            first_fall(rule, gap_at, time, gap, 1.0, {0, ways.greatest_speed(impact.normal)});
-        if (fall.clear) {
+        const Crossing crossing = first_crossing(rule, separation_at, time, separation, 1.0,
+                                                 {0, ways.greatest_speed(impact.normal)});
+        if (crossing.clear) {
             impact.time = 1;
             return impact;
         }
-        if (!(fall.time > time)) break;
-        time = fall.time;
+        if (!(crossing.time > time)) break;
+        time = crossing.time;
     }
-    impact.meeting = Meeting::meet;
+    impact.state = ToiState::hit;
     impact.cut_short = true;
     return impact;
 }

@@ -1,11 +1,12 @@
 // Linear paths: when a corner meets a triangle, or an edge an edge, each corner on a straight line.
 //
 // The queries of deforming meshes, and of the public sets with exact answers. The root finders are
-// those of impact_time.hpp: along a fixed direction the separation of points that move on straight
-// lines is the least of straight lines, so it never bends upward and nothing is stepped over.
+// those of time_of_impact.hpp: along a fixed direction the separation of points that move on
+// straight lines is the least of straight lines, so it never bends upward and nothing is stepped
+// over.
 #pragma once
 
-#include "narrowphase/ccd/impact_time.hpp"
+#include "narrowphase/ccd/time_of_impact.hpp"
 
 #include <array>
 
@@ -30,6 +31,6 @@ double rounding_of(const LinearPaths& paths);
 /// is always told to; what comes within a tolerance may be.
 ///
 ///   tolerance   m, raised to eight times rounding_of() where it is below
-Impact impact_time(const LinearPaths& paths, ToiMethod method, double tolerance);
+Impact time_of_impact(const LinearPaths& paths, ToiMethod method, double tolerance);
 
 }  // namespace throng

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kernels/data/bounds.hpp"
-#include "narrowphase/ccd/impact_time.hpp"
+#include "narrowphase/ccd/time_of_impact.hpp"
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace throng {
 class MovingBalls {
 public:
     MovingBalls(const MovingShape& a, const MovingShape& b, double begin)
-        : a_(a, begin), b_(b, begin), shift_(b.sweep.shift - a.sweep.shift),
+        : a_(a, begin), b_(b, begin), shift_(b.trajectory.shift - a.trajectory.shift),
           b_turn_(a_.turn.transpose() * b_.turn), b_at_(a_.shape.to_local(b_.shape.position))
     { }
 
@@ -42,10 +42,10 @@ public:
     bool may_meet(const Box3& of_a, const Box3& of_b, double close, double time) const
     {
         const Vec3 center = 0.5 * (of_b.lower + of_b.upper), half = 0.5 * (of_b.upper - of_b.lower);
-        const Vec3 reach =
+        const Vec3 extent =
             b_turn_.cwiseAbs() * half + Vec3::Constant(close + drift(center, half.norm(), time));
         const Vec3 middle = from_b(center);
-        return of_a.overlaps({middle - reach, middle + reach});
+        return of_a.overlaps({middle - extent, middle + extent});
     }
 
     /// A place of b in a's axes, as the ways began.
@@ -65,9 +65,10 @@ public:
 private:
     struct Start {
         Start(const MovingShape& moving, double begin)
-            : shape(moving.sweep.at(begin) * moving.local),
-              turn(shape.orientation.toRotationMatrix()), body(moving.sweep.at(begin).position),
-              from_body(shape.position - body), spin(moving.sweep.turn.norm())
+            : shape(moving.trajectory.at(begin) * moving.local),
+              turn(shape.orientation.toRotationMatrix()),
+              body(moving.trajectory.at(begin).position), from_body(shape.position - body),
+              spin(moving.trajectory.turn.norm())
         { }
         Vec3 arm(const Vec3& center) const { return turn * center + from_body; }
         // m, that turning takes a point so far from where the body turns about at most.

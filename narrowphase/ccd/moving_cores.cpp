@@ -13,7 +13,7 @@ constexpr double kNoLimit = 1e30;
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 
 // Greatest distance of a point of the core from its frame's origin.
-double reach_of(const Core<double>& core)
+double extent_of(const ConvexCore<double>& core)
 {
     if (core.kind == ShapeKind::sphere) return 0;
     if (core.hull == nullptr && core.corners == nullptr) return core.extents.norm();
@@ -26,10 +26,11 @@ double reach_of(const Core<double>& core)
 
 double rounding_of(const MovingCore& a, const MovingCore& b, double round)
 {
-    const double reach = a.reach() + b.reach() + round;
+    const double outer_radius = a.outer_radius() + b.outer_radius() + round;
     return kRounding
-        * (reach + a.sweep().begin.position.norm() + b.sweep().begin.position.norm()
-           + a.sweep().shift.norm() + b.sweep().shift.norm());
+        * (outer_radius + a.trajectory().begin.position.norm()
+           + b.trajectory().begin.position.norm() + a.trajectory().shift.norm()
+           + b.trajectory().shift.norm());
 }
 
 // Whether a segment comes into a box.
@@ -51,30 +52,30 @@ bool meets(const Vec3& from, const Vec3& way, const Vec3& lower, const Vec3& upp
 
 }  // namespace
 
-Core<double> moving_core(const Shapes& shapes, const MovingShape& moving)
+ConvexCore<double> moving_core(const Shapes& shapes, const MovingShape& moving)
 {
     if (moving.ball > 0) {
-        Core<double> ball;
-        ball.radius = ball.size = moving.ball;
+        ConvexCore<double> ball;
+        ball.convex_radius = ball.size = moving.ball;
         return ball;
     }
     if (const Mesh* const mesh = mesh_of(shapes, moving.shape))
-        return core_of_points(std::span<const Vec3>(mesh->vertices));
-    Core<double> core = core_of<double>(shapes, moving.shape);
+        return convex_core_of_points(std::span<const Vec3>(mesh->vertices));
+    ConvexCore<double> core = convex_core_of<double>(shapes, moving.shape);
     core.extents *= moving.scale;
-    core.radius *= moving.scale;
+    core.convex_radius *= moving.scale;
     core.size *= moving.scale;
     return core;
 }
 
-MovingCore::MovingCore(const Core<double>& core, const MovingShape& moving, const Vec3& from)
-    : core_(core), sweep_(moving.sweep), local_(moving.local),
-      reach_(moving.local.position.norm() + reach_of(core))
+MovingCore::MovingCore(const ConvexCore<double>& core, const MovingShape& moving, const Vec3& from)
+    : core_(core), trajectory_(moving.trajectory), local_(moving.local),
+      outer_radius_(moving.local.position.norm() + extent_of(core))
 {
-    sweep_.begin.position -= from;
+    trajectory_.begin.position -= from;
 }
 
-Gap MovingCore::extent(const Vec3& direction, double time) const
+SeparationRate MovingCore::extent(const Vec3& direction, double time) const
 {
     const Vec3 furthest = furthest_along(direction, time);
     return {direction.dot(furthest), direction.dot(speed_of(furthest, time))};
@@ -88,23 +89,23 @@ Vec3 MovingCore::furthest_along(const Vec3& direction, double time) const
 
 Vec3 MovingCore::speed_of(const Vec3& point, double time) const
 {
-    const Vec3 arm = point - (sweep_.begin.position + time * sweep_.shift);
-    return sweep_.shift + sweep_.turn.cross(arm);
+    const Vec3 arm = point - (trajectory_.begin.position + time * trajectory_.shift);
+    return trajectory_.shift + trajectory_.turn.cross(arm);
 }
 
-GapLimits MovingCore::turning_limits(const Vec3& direction) const
+SeparationLimits MovingCore::turning_limits(const Vec3& direction) const
 {
     // A point at r moves by w x r: along n at most |n x w| r, and that changes by |w| |n x w| r.
-    const double speed = direction.cross(sweep_.turn).norm() * reach_;
-    return {sweep_.turn.norm() * speed, speed};
+    const double speed = direction.cross(trajectory_.turn).norm() * outer_radius_;
+    return {trajectory_.turn.norm() * speed, speed};
 }
 
-MovingCores::MovingCores(const Core<double>& core_a,
+MovingCores::MovingCores(const ConvexCore<double>& core_a,
                          const MovingShape& a,
-                         const Core<double>& core_b,
+                         const ConvexCore<double>& core_b,
                          const MovingShape& b)
-    : from_(a.sweep.begin.position), a_(core_a, a, from_), b_(core_b, b, from_),
-      round_(core_a.radius + core_b.radius), rounding_(rounding_of(a_, b_, round_))
+    : from_(a.trajectory.begin.position), a_(core_a, a, from_), b_(core_b, b, from_),
+      round_(core_a.convex_radius + core_b.convex_radius), rounding_(rounding_of(a_, b_, round_))
 { }
 
 Apart MovingCores::distance_at(double time) const
@@ -112,81 +113,83 @@ Apart MovingCores::distance_at(double time) const
     const Pose a = a_.placed_at(time), b = b_.placed_at(time);
     const Pose b_in_a{a.orientation.conjugate() * (b.position - a.position),
                       a.orientation.conjugate() * b.orientation};
-    const Distance found = gjk(CorePair(a_.core(), b_.core(), b_in_a), kNoLimit);
+    const Distance found = gjk(ConvexCorePair(a_.core(), b_.core(), b_in_a), kNoLimit);
     Apart apart;
     if (!found.apart) return apart;
     apart.normal = a.orientation * found.normal;
     apart.normal /= apart.normal.norm();
-    apart.gap = gap_along(apart.normal, time);
+    apart.separation = separation_rate(apart.normal, time);
     return apart;
 }
 
-Gap MovingCores::gap_along(const Vec3& normal, double time) const
+SeparationRate MovingCores::separation_rate(const Vec3& normal, double time) const
 {
-    const Gap a = a_.extent(normal, time), b = b_.extent(-normal, time);
+    const SeparationRate a = a_.extent(normal, time), b = b_.extent(-normal, time);
     return {-b.value - a.value - round_ - rounding_, -b.slope - a.slope};
 }
 
-GapLimits MovingCores::limits_along(const Vec3& normal) const
+SeparationLimits MovingCores::limits_along(const Vec3& normal) const
 {
-    const GapLimits a = a_.turning_limits(normal), b = b_.turning_limits(normal);
-    const double nearing = normal.dot(a_.sweep().shift - b_.sweep().shift);
+    const SeparationLimits a = a_.turning_limits(normal), b = b_.turning_limits(normal);
+    const double nearing = normal.dot(a_.trajectory().shift - b_.trajectory().shift);
     return {a.bend + b.bend, nearing + a.speed + b.speed};
 }
 
 OverPlane::OverPlane(const Shapes& shapes, const MovingShape& plane, const MovingShape& other)
-    : plane_(shapes.planes[plane.shape.index]), from_(other.sweep.begin.position),
-      sweep_(plane.sweep), local_(plane.local), other_(moving_core(shapes, other), other, from_)
+    : plane_(shapes.planes[plane.shape.index]), from_(other.trajectory.begin.position),
+      trajectory_(plane.trajectory), local_(plane.local),
+      other_(moving_core(shapes, other), other, from_)
 {
-    sweep_.begin.position -= from_;
+    trajectory_.begin.position -= from_;
     rounding_ = kRounding
-        * (other_.reach() + other_.core().radius + sweep_.begin.position.norm()
-           + local_.position.norm() + std::abs(plane_.offset) + sweep_.shift.norm()
-           + other_.sweep().shift.norm());
+        * (other_.outer_radius() + other_.core().convex_radius + trajectory_.begin.position.norm()
+           + local_.position.norm() + std::abs(plane_.offset) + trajectory_.shift.norm()
+           + other_.trajectory().shift.norm());
 }
 
 Vec3 OverPlane::normal_at(double time) const
 {
-    return (sweep_.at(time) * local_).orientation * plane_.normal;
+    return (trajectory_.at(time) * local_).orientation * plane_.normal;
 }
 
 Apart OverPlane::distance_at(double time) const
 {
     const Vec3 normal = normal_at(time);
-    return {gap_along(normal, time), normal};
+    return {separation_rate(normal, time), normal};
 }
 
-Gap OverPlane::gap_along(const Vec3&, double time) const
+SeparationRate OverPlane::separation_rate(const Vec3&, double time) const
 {
-    const Pose body = sweep_.at(time);
+    const Pose body = trajectory_.at(time);
     const Pose placed = body * local_;
     const Vec3 normal = placed.orientation * plane_.normal;
     const Vec3 lowest = other_.furthest_along(-normal, time);
     // Against that point of the plane's body that is there now.
-    const Vec3 speed =
-        other_.speed_of(lowest, time) - sweep_.shift - sweep_.turn.cross(lowest - body.position);
-    return {normal.dot(lowest - placed.position) - plane_.offset - other_.core().radius - rounding_,
+    const Vec3 speed = other_.speed_of(lowest, time) - trajectory_.shift
+        - trajectory_.turn.cross(lowest - body.position);
+    return {normal.dot(lowest - placed.position) - plane_.offset - other_.core().convex_radius
+                - rounding_,
             normal.dot(speed)};
 }
 
-GapLimits OverPlane::limits_along(const Vec3&) const
+SeparationLimits OverPlane::limits_along(const Vec3&) const
 {
     const Vec3 normal = normal_at(0);
-    const GapLimits turning = other_.turning_limits(normal);
-    const Vec3 nearing = sweep_.shift - other_.sweep().shift;
-    if (sweep_.turn.isZero(0)) return {turning.bend, normal.dot(nearing) + turning.speed};
+    const SeparationLimits turning = other_.turning_limits(normal);
+    const Vec3 nearing = trajectory_.shift - other_.trajectory().shift;
+    if (trajectory_.turn.isZero(0)) return {turning.bend, normal.dot(nearing) + turning.speed};
     // In the frame of the plane, which turns with it about its body: nothing is further from there
     // than `far`.
-    const double spin = sweep_.turn.norm(), spin_other = other_.sweep().turn.norm();
-    const double far = sweep_.begin.position.norm() + nearing.norm() + other_.reach();
-    const double speed = nearing.norm() + spin_other * other_.reach();
-    return {spin * spin * far + 2 * spin * speed + spin_other * spin_other * other_.reach(),
+    const double spin = trajectory_.turn.norm(), spin_other = other_.trajectory().turn.norm();
+    const double far = trajectory_.begin.position.norm() + nearing.norm() + other_.outer_radius();
+    const double speed = nearing.norm() + spin_other * other_.outer_radius();
+    return {spin * spin * far + 2 * spin * speed + spin_other * spin_other * other_.outer_radius(),
             spin * far + speed};
 }
 
 void visit_triangles_in_way(const Mesh& mesh,
                             const MovingShape& on,
-                            const Core<double>& core,
+                            const ConvexCore<double>& core,
                             const MovingShape& other,
                             double begin,
                             double end,
@@ -194,17 +197,17 @@ void visit_triangles_in_way(const Mesh& mesh,
                             const std::function<void(std::uint32_t)>& visit)
 {
     const auto seen_at = [&](double time) {
-        return (on.sweep.at(time) * on.local).to_local(other.sweep.at(time).position);
+        return (on.trajectory.at(time) * on.local).to_local(other.trajectory.at(time).position);
     };
-    double radius = other.local.position.norm() + reach_of(core) + core.radius + margin;
+    double radius = other.local.position.norm() + extent_of(core) + core.convex_radius + margin;
     const Vec3 from = seen_at(begin);
     Vec3 way = seen_at(end) - from;
-    if (!on.sweep.turn.isZero(0)) {
+    if (!on.trajectory.turn.isZero(0)) {
         // As far as the mesh may turn under it, it may be anywhere.
-        const double most = (other.sweep.begin.position - on.sweep.begin.position).norm()
-            + other.sweep.shift.norm() + on.sweep.shift.norm();
-        radius += (other.sweep.shift - on.sweep.shift).norm()
-            + std::min(2.0, on.sweep.turn.norm()) * most;
+        const double most = (other.trajectory.begin.position - on.trajectory.begin.position).norm()
+            + other.trajectory.shift.norm() + on.trajectory.shift.norm();
+        radius += (other.trajectory.shift - on.trajectory.shift).norm()
+            + std::min(2.0, on.trajectory.turn.norm()) * most;
         way.setZero();
     }
     radius += kRounding * (from.norm() + way.norm() + radius);

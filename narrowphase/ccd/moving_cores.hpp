@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/geometry/gjk.hpp"
-#include "narrowphase/ccd/impact_time.hpp"
+#include "narrowphase/ccd/time_of_impact.hpp"
 
 #include <functional>
 
@@ -11,50 +11,50 @@ namespace throng {
 /// The core of a shape on its way, its places counted from some point near by.
 class MovingCore {
 public:
-    MovingCore(const Core<double>& core, const MovingShape& moving, const Vec3& from);
+    MovingCore(const ConvexCore<double>& core, const MovingShape& moving, const Vec3& from);
 
-    const Core<double>& core() const { return core_; }
-    Pose placed_at(double time) const { return sweep_.at(time) * local_; }
-    const Sweep& sweep() const { return sweep_; }
+    const ConvexCore<double>& core() const { return core_; }
+    Pose placed_at(double time) const { return trajectory_.at(time) * local_; }
+    const RigidTrajectory& trajectory() const { return trajectory_; }
     Vec3 furthest_along(const Vec3& direction, double time) const;
     /// m a unit of time, of a point of the body that is here then.
     Vec3 speed_of(const Vec3& point, double time) const;
     /// m, of a point of the core from where its body turns about, at most.
-    double reach() const { return reach_; }
+    double outer_radius() const { return outer_radius_; }
 
     /// How far the core reaches along a unit direction, and how that changes with time.
-    Gap extent(const Vec3& direction, double time) const;
+    SeparationRate extent(const Vec3& direction, double time) const;
     /// How much of that its turning can change at most.
-    GapLimits turning_limits(const Vec3& direction) const;
+    SeparationLimits turning_limits(const Vec3& direction) const;
 
 private:
-    Core<double> core_;
-    Sweep sweep_;
+    ConvexCore<double> core_;
+    RigidTrajectory trajectory_;
     Pose local_;
-    double reach_ = 0;
+    double outer_radius_ = 0;
 };
 
 /// The core of a convex shape or of the ball that stands for it; of a mesh, of its corners.
-Core<double> moving_core(const Shapes& shapes, const MovingShape& moving);
+ConvexCore<double> moving_core(const Shapes& shapes, const MovingShape& moving);
 
 /// How two cores are apart: along the unit direction, in world axes, from a to b. The separation
 /// along it is a lower bound of their distance; 0 where they overlap.
 struct Apart {
-    Gap gap;
+    SeparationRate separation;
     Vec3 normal = Vec3::UnitZ();
 };
 
 class MovingCores {
 public:
-    MovingCores(const Core<double>& core_a,
+    MovingCores(const ConvexCore<double>& core_a,
                 const MovingShape& a,
-                const Core<double>& core_b,
+                const ConvexCore<double>& core_b,
                 const MovingShape& b);
 
     Apart distance_at(double time) const;
     /// How far apart the two are along a unit direction, rounding of the cores included.
-    Gap gap_along(const Vec3& normal, double time) const;
-    GapLimits limits_along(const Vec3& normal) const;
+    SeparationRate separation_rate(const Vec3& normal, double time) const;
+    SeparationLimits limits_along(const Vec3& normal) const;
 
 private:
     Vec3 from_;  // what places are counted from
@@ -63,7 +63,7 @@ private:
     double rounding_;  // m, that arithmetic may be off by
 };
 
-/// The impact of two cores, as impact_time() has it.
+/// The impact of two cores, as time_of_impact() has it.
 Impact impact_of_cores(const MovingCores& cores, double begin, double end, const ImpactRule& rule);
 
 /// A shape over a plane; a mesh is its corners.
@@ -74,16 +74,16 @@ public:
     // As MovingCores has them. Whatever direction is asked for, it is the plane's own, which turns
     // with its body.
     Apart distance_at(double time) const;
-    Gap gap_along(const Vec3& normal, double time) const;
-    GapLimits limits_along(const Vec3& normal) const;
+    SeparationRate separation_rate(const Vec3& normal, double time) const;
+    SeparationLimits limits_along(const Vec3& normal) const;
 
 private:
     Vec3 normal_at(double time) const;
 
     Plane plane_;
-    Vec3 from_;    // what places are counted from
-    Sweep sweep_;  // of the plane
-    Pose local_;   // of the plane
+    Vec3 from_;                   // what places are counted from
+    RigidTrajectory trajectory_;  // of the plane
+    Pose local_;                  // of the plane
     MovingCore other_;
     double rounding_;
 };
@@ -92,7 +92,7 @@ private:
 /// order of the tree.
 void visit_triangles_in_way(const Mesh& mesh,
                             const MovingShape& on,
-                            const Core<double>& core,
+                            const ConvexCore<double>& core,
                             const MovingShape& other,
                             double begin,
                             double end,

@@ -86,10 +86,10 @@ Real scaled_edge_separation(const BoxPair<Real>& pair, std::uint32_t index)
     const std::uint32_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
     const Real x = -pair.turn(i2, j), y = pair.turn(i1, j);
     const Real along = std::abs(x * pair.center[i1] + y * pair.center[i2]);
-    const Real reach_a = pair.half_a[i1] * std::abs(x) + pair.half_a[i2] * std::abs(y);
-    const Real reach_b = pair.half_b[j1] * std::abs(x * pair.turn(i1, j1) + y * pair.turn(i2, j1))
+    const Real extent_a = pair.half_a[i1] * std::abs(x) + pair.half_a[i2] * std::abs(y);
+    const Real extent_b = pair.half_b[j1] * std::abs(x * pair.turn(i1, j1) + y * pair.turn(i2, j1))
         + pair.half_b[j2] * std::abs(x * pair.turn(i1, j2) + y * pair.turn(i2, j2));
-    return along - (reach_a + reach_b);
+    return along - (extent_a + extent_b);
 }
 
 template <class Real>
@@ -101,13 +101,14 @@ Real edge_axis_length(const BoxPair<Real>& pair, std::uint32_t index)
     return squared > kParallel<Real> ? std::sqrt(squared) : Real(0);
 }
 
-// Whether this one axis shows that the boxes are out of reach; the same numbers as the full search.
+// Whether this one axis shows that the boxes are beyond the margin; the same numbers as the full
+// search.
 template <class Real>
-bool parts(const BoxPair<Real>& pair, std::uint32_t index, Real reach)
+bool parts(const BoxPair<Real>& pair, std::uint32_t index, Real speculative_margin)
 {
-    if (index < kEdgeAxes) return face_separation(pair, index) > reach;
+    if (index < kEdgeAxes) return face_separation(pair, index) > speculative_margin;
     const Real length = edge_axis_length(pair, index);
-    return length > 0 && scaled_edge_separation(pair, index) / length > reach;
+    return length > 0 && scaled_edge_separation(pair, index) / length > speculative_margin;
 }
 
 template <class Real>
@@ -174,8 +175,11 @@ struct Candidates {
 
 // Clips b's incident face against a's face; points in a's frame, midway between the faces.
 template <class Real>
-void clip_faces(
-    const BoxPair<Real>& pair, std::uint32_t axis, Real sign, Real reach, Candidates<Real>& out)
+void clip_faces(const BoxPair<Real>& pair,
+                std::uint32_t axis,
+                Real sign,
+                Real speculative_margin,
+                Candidates<Real>& out)
 {
     std::uint32_t face = 0;
     Polygon<Real> polygon = incident_face(pair, axis, sign, face);
@@ -193,7 +197,7 @@ void clip_faces(
     for (int i = 0; i < polygon.count; ++i) {
         Vec3T<Real> position = polygon.corners[static_cast<std::size_t>(i)];
         const Real separation = sign * position[axis] - pair.half_a[axis];
-        if (separation > reach) continue;
+        if (separation > speculative_margin) continue;
         position[axis] -= sign * separation / 2;
         // Line ids are below 8: the 24 bits of a corner's name come down to 6.
         const std::uint32_t corner = polygon.corner_id(i);
@@ -211,19 +215,19 @@ Real sign_of(Real value)
 template <class Real>
 Real face_manifold(const BoxPair<Real>& pair,
                    std::uint32_t index,
-                   Real reach,
+                   Real speculative_margin,
                    LocalManifold<Real>& out)
 {
     Candidates<Real> found;
     if (index < 3) {
         const Real sign = sign_of(pair.center[index]);
-        clip_faces(pair, index, sign, reach, found);
+        clip_faces(pair, index, sign, speculative_margin, found);
         out.normal = sign * Vec3T<Real>::Unit(index);
     } else {
         const BoxPair<Real> turned = pair.mirrored();
         const std::uint32_t axis = index - 3;
         const Real sign = sign_of(turned.center[axis]);
-        clip_faces(turned, axis, sign, reach, found);
+        clip_faces(turned, axis, sign, speculative_margin, found);
         out.normal = -sign * pair.turn.col(axis);
         for (std::size_t i = 0; i < found.count; ++i) {
             auto& point = found.points[i];
@@ -254,7 +258,7 @@ Vec3T<Real> face_normal(const BoxPair<Real>& pair, std::uint32_t index)
 template <class Real>
 void edge_manifold(const BoxPair<Real>& pair,
                    const Axis<Real>& best,
-                   Real reach,
+                   Real speculative_margin,
                    LocalManifold<Real>& out)
 {
     const std::uint32_t i = (best.index - kEdgeAxes) / 3, j = (best.index - kEdgeAxes) % 3;
@@ -286,7 +290,8 @@ void edge_manifold(const BoxPair<Real>& pair,
     // Boxes that are apart may have their closest points elsewhere: these two then pass each other
     // by and there is nothing to hold.
     const Real distance2 = (on_b - on_a).squaredNorm();
-    const Real limit = reach + kFaceBias<Real> * (pair.half_a.minCoeff() + pair.half_b.minCoeff());
+    const Real limit =
+        speculative_margin + kFaceBias<Real> * (pair.half_a.minCoeff() + pair.half_b.minCoeff());
     out.count = 0;
     if (best.separation > 0 && distance2 > limit * limit) return;
     out.normal = normal;
@@ -300,7 +305,7 @@ void box_box(const Shapes& shapes,
              ShapeRef a,
              ShapeRef b,
              const PoseT<Real>& b_in_a,
-             Real reach,
+             Real speculative_margin,
              PairCache& cache,
              LocalManifold<Real>& out)
 {
@@ -313,17 +318,19 @@ void box_box(const Shapes& shapes,
     pair.abs_turn = pair.turn.cwiseAbs();
 
     // The axis that parted the boxes last time most often still does.
-    if (cache.kind == 1 && cache.feature_a < kAxes && parts(pair, cache.feature_a, reach)) return;
+    if (cache.kind == 1 && cache.feature_a < kAxes
+        && parts(pair, cache.feature_a, speculative_margin))
+        return;
     cache = {};
     const Axis<Real> face_a = best_of_faces(pair, 0), face_b = best_of_faces(pair, 3);
     const Axis<Real> top = face_b.separation > face_a.separation ? face_b : face_a;
-    if (top.separation > reach) {
+    if (top.separation > speculative_margin) {
         cache = {top.index, 0, 1};
         return;
     }
     const Real bias = kFaceBias<Real> * (pair.half_a.minCoeff() + pair.half_b.minCoeff());
     const Axis<Real> edge = best_of_edges(pair, top.separation);
-    if (edge.index < kAxes && edge.separation > reach) {
+    if (edge.index < kAxes && edge.separation > speculative_margin) {
         cache = {edge.index, 0, 1};
         return;
     }
@@ -334,15 +341,15 @@ void box_box(const Shapes& shapes,
     const bool alike =
         has_edge && edge_normal(pair, edge.index).dot(face_normal(pair, face.index)) > kAlike<Real>;
     if (edge_better && !alike) {
-        edge_manifold(pair, edge, reach, out);
+        edge_manifold(pair, edge, speculative_margin, out);
         return;
     }
     // A face that has lost its deepest corner over the other's side still tells the depth, if what
     // is left of it agrees with the edges. Otherwise clipping has lost the very place of touch.
-    const Real least = face_manifold(pair, face.index, reach, out);
+    const Real least = face_manifold(pair, face.index, speculative_margin, out);
     const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
     const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
-    if (has_edge && !kept && !agrees) edge_manifold(pair, edge, reach, out);
+    if (has_edge && !kept && !agrees) edge_manifold(pair, edge, speculative_margin, out);
 }
 
 THRONG_PAIR_INSTANCES(box_box)

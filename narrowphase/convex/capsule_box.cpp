@@ -5,8 +5,8 @@
 // box leaves by the least of six ways: the box and the axis added make a solid of six pairs of
 // faces.
 #include "kernels/geometry/support.hpp"
+#include "narrowphase/convex/capsule_contacts.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
-#include "narrowphase/convex/rod_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 template <class Real>
 struct Seen {
-    Rod<Real> rod;
+    CapsuleSegment<Real> segment;
     Vec3T<Real> box;  // half extents
     Real noise;       // rounding errors of coordinates stay below this
 };
@@ -30,13 +30,13 @@ Seen<Real> seen_from_box(const Capsule& capsule,
                          const Vec3T<Real>& position)
 {
     Seen<Real> seen;
-    seen.rod.center = -(turn.transpose() * position);
-    seen.rod.along = turn.row(2).transpose();
-    seen.rod.half = static_cast<Real>(capsule.half_length);
-    seen.rod.radius = static_cast<Real>(capsule.radius);
-    seen.rod.rounding = seen.rod.radius;
+    seen.segment.center = -(turn.transpose() * position);
+    seen.segment.along = turn.row(2).transpose();
+    seen.segment.half = static_cast<Real>(capsule.half_length);
+    seen.segment.radius = static_cast<Real>(capsule.radius);
+    seen.segment.convex_radius = seen.segment.radius;
     seen.box = box.half_extents.cast<Real>();
-    const Real greatest = seen.rod.center.cwiseAbs().maxCoeff() + seen.rod.half;
+    const Real greatest = seen.segment.center.cwiseAbs().maxCoeff() + seen.segment.half;
     seen.noise = 4 * std::numeric_limits<Real>::epsilon() * greatest;
     return seen;
 }
@@ -45,7 +45,8 @@ Seen<Real> seen_from_box(const Capsule& capsule,
 template <class Real>
 Vec3T<Real> above_faces(const Seen<Real>& seen)
 {
-    return seen.rod.center.cwiseAbs() - seen.box - seen.rod.half * seen.rod.along.cwiseAbs();
+    return seen.segment.center.cwiseAbs() - seen.box
+        - seen.segment.half * seen.segment.along.cwiseAbs();
 }
 
 template <class Real>
@@ -58,13 +59,13 @@ int greatest_of(const Vec3T<Real>& v)
 
 // Straight out of a face, from the end of the axis that is lowest over it.
 template <class Real>
-RodAxis<Real> over_face(const Seen<Real>& seen, int face, Real above)
+CapsuleAxis<Real> over_face(const Seen<Real>& seen, int face, Real above)
 {
-    const Real side = seen.rod.center[face] >= 0 ? Real(1) : Real(-1);
-    RodAxis<Real> axis;
+    const Real side = seen.segment.center[face] >= 0 ? Real(1) : Real(-1);
+    CapsuleAxis<Real> axis;
     axis.outward.setZero();
     axis.outward[face] = side;
-    axis.at = seen.rod.along[face] * side > 0 ? -seen.rod.half : seen.rod.half;
+    axis.at = seen.segment.along[face] * side > 0 ? -seen.segment.half : seen.segment.half;
     axis.separation = above;
     return axis;
 }
@@ -73,7 +74,7 @@ RodAxis<Real> over_face(const Seen<Real>& seen, int face, Real above)
 template <class Real>
 bool stands_on(const Seen<Real>& seen, int face, Real at)
 {
-    const Vec3T<Real> end = seen.rod.at(at);
+    const Vec3T<Real> end = seen.segment.at(at);
     const int u = face == 0 ? 1 : 0, v = face == 2 ? 1 : 2;
     return std::abs(end[u]) <= seen.box[u] && std::abs(end[v]) <= seen.box[v];
 }
@@ -99,14 +100,14 @@ Slabs<Real> slabs_of(const Seen<Real>& seen)
     Slabs<Real> slabs;
     for (std::size_t i = 0; i < 3; ++i) {
         const auto axis = static_cast<int>(i);
-        const Real along = seen.rod.along[axis], center = seen.rod.center[axis];
+        const Real along = seen.segment.along[axis], center = seen.segment.center[axis];
         const Real square = along * along;
         // An axis this square to others leaves no planes within its length.
         const bool leaves = square > Real(1e-30);
         const Real inverse = leaves ? 1 / along : Real(0), middle = -center * inverse;
         const Real span = std::abs(seen.box[axis] * inverse);
-        slabs.low[i] = leaves ? middle - span : -seen.rod.half;
-        slabs.high[i] = leaves ? middle + span : seen.rod.half;
+        slabs.low[i] = leaves ? middle - span : -seen.segment.half;
+        slabs.high[i] = leaves ? middle + span : seen.segment.half;
         slabs.speed2[i] = square;
     }
     return slabs;
@@ -117,7 +118,7 @@ Slabs<Real> slabs_of(const Seen<Real>& seen)
 template <class Real>
 Real nearest_at(const Seen<Real>& seen)
 {
-    const Real half = seen.rod.half;
+    const Real half = seen.segment.half;
     const Slabs<Real> slabs = slabs_of(seen);
     Real low = -half, high = half;
     const auto look = [&](Real at) {
@@ -143,10 +144,10 @@ Real nearest_at(const Seen<Real>& seen)
 template <class Real>
 Vec3T<Real> nearest_offset(const Seen<Real>& seen, Real at)
 {
-    const Vec3T<Real> point = seen.rod.at(at);
+    const Vec3T<Real> point = seen.segment.at(at);
     const Vec3T<Real> offset = point - point.cwiseMax(-seen.box).cwiseMin(seen.box);
-    if (std::abs(at) == seen.rod.half) return offset;
-    Vec3T<Real> along = seen.rod.along;
+    if (std::abs(at) == seen.segment.half) return offset;
+    Vec3T<Real> along = seen.segment.along;
     for (int i = 0; i < 3; ++i)
         along[i] = std::abs(point[i]) > seen.box[i] - seen.noise ? along[i] : Real(0);
     const Real square = along.squaredNorm();
@@ -158,19 +159,19 @@ Vec3T<Real> nearest_offset(const Seen<Real>& seen, Real at)
 
 // The way out across the axis and the box's edges along `edge`.
 template <class Real>
-void try_across(const Seen<Real>& seen, int edge, RodAxis<Real>& best)
+void try_across(const Seen<Real>& seen, int edge, CapsuleAxis<Real>& best)
 {
     const int u = edge == 0 ? 1 : 0, v = edge == 2 ? 1 : 2;
-    const Rod<Real>& rod = seen.rod;
-    const Real square = rod.along[u] * rod.along[u] + rod.along[v] * rod.along[v];
+    const CapsuleSegment<Real>& segment = seen.segment;
+    const Real square = segment.along[u] * segment.along[u] + segment.along[v] * segment.along[v];
     if (!(square > std::numeric_limits<Real>::min())) return;
     const Real length = std::sqrt(square);
-    Real out_u = -rod.along[v] / length, out_v = rod.along[u] / length;
-    if (rod.center[u] * out_u + rod.center[v] * out_v < 0) {
+    Real out_u = -segment.along[v] / length, out_v = segment.along[u] / length;
+    if (segment.center[u] * out_u + segment.center[v] * out_v < 0) {
         out_u = -out_u;
         out_v = -out_v;
     }
-    const Real above = rod.center[u] * out_u + rod.center[v] * out_v
+    const Real above = segment.center[u] * out_u + segment.center[v] * out_v
         - (seen.box[u] * std::abs(out_u) + seen.box[v] * std::abs(out_v));
     // Faces win where rounding decides.
     if (!(above > best.separation + seen.noise)) return;
@@ -178,59 +179,62 @@ void try_across(const Seen<Real>& seen, int edge, RodAxis<Real>& best)
     best.outward[edge] = 0;
     best.outward[u] = out_u;
     best.outward[v] = out_v;
-    const Real to_u = std::copysign(seen.box[u], out_u) - rod.center[u];
-    const Real to_v = std::copysign(seen.box[v], out_v) - rod.center[v];
-    const Real at = (to_u * rod.along[u] + to_v * rod.along[v]) / square;
-    best.at = std::min(rod.half, std::max(-rod.half, at));
+    const Real to_u = std::copysign(seen.box[u], out_u) - segment.center[u];
+    const Real to_v = std::copysign(seen.box[v], out_v) - segment.center[v];
+    const Real at = (to_u * segment.along[u] + to_v * segment.along[v]) / square;
+    best.at = std::min(segment.half, std::max(-segment.half, at));
 }
 
 template <class Real>
-RodAxis<Real> contact_axis(const Seen<Real>& seen, int face, Real above)
+CapsuleAxis<Real> contact_axis(const Seen<Real>& seen, int face, Real above)
 {
-    const RodAxis<Real> straight = over_face(seen, face, above);
+    const CapsuleAxis<Real> straight = over_face(seen, face, above);
     if (above > 0 && stands_on(seen, face, straight.at)) return straight;
 
     const Real at = nearest_at(seen);
     const Vec3T<Real> offset = nearest_offset(seen, at);
-    const Real gap = length_of(offset);
-    if (gap > seen.noise) return {offset / gap, at, gap};
-    RodAxis<Real> best = straight;
+    const Real separation = length_of(offset);
+    if (separation > seen.noise) return {offset / separation, at, separation};
+    CapsuleAxis<Real> best = straight;
     for (int edge = 0; edge < 3; ++edge) try_across(seen, edge, best);
     return best;
 }
 
 // The stretch of the axis over the face that the box turns to it.
 template <class Real>
-RodStretch<Real> over_turned_face(const Seen<Real>& seen, const RodAxis<Real>& axis, int face)
+SegmentRange<Real> over_turned_face(const Seen<Real>& seen, const CapsuleAxis<Real>& axis, int face)
 {
-    const Rod<Real>& rod = seen.rod;
+    const CapsuleSegment<Real>& segment = seen.segment;
     const Real side = axis.outward[face] >= 0 ? Real(1) : Real(-1);
     const Real facing = axis.outward[face] * side;
-    const Real height = side * rod.center[face] - seen.box[face], climb = side * rod.along[face];
-    RodStretch<Real> stretch = {-rod.half, rod.half, height / facing, climb / facing};
+    const Real height = side * segment.center[face] - seen.box[face],
+               climb = side * segment.along[face];
+    SegmentRange<Real> range = {-segment.half, segment.half, height / facing, climb / facing};
     for (const int i : {face == 0 ? 1 : 0, face == 2 ? 1 : 2}) {
         // Feet are where the axis meets the face going along the normal.
         const Real lean = axis.outward[i] / facing;
-        const Real from = rod.center[i] - lean * height, slope = rod.along[i] - lean * climb;
-        stretch.keep(from, slope, seen.box[i] + seen.noise + beside_edge(rod, slope));
+        const Real from = segment.center[i] - lean * height,
+                   slope = segment.along[i] - lean * climb;
+        range.keep(from, slope, seen.box[i] + seen.noise + beside_edge(segment, slope));
     }
-    return stretch;
+    return range;
 }
 
 // The stretch of the axis along the edge that the box turns to it.
 template <class Real>
-RodStretch<Real> along_turned_edge(const Seen<Real>& seen, const RodAxis<Real>& axis, int edge)
+SegmentRange<Real>
+along_turned_edge(const Seen<Real>& seen, const CapsuleAxis<Real>& axis, int edge)
 {
-    const Rod<Real>& rod = seen.rod;
+    const CapsuleSegment<Real>& segment = seen.segment;
     const Vec3T<Real>& out = axis.outward;
-    RodStretch<Real> stretch = {-rod.half, rod.half,
-                                out.dot(rod.center) - out.cwiseAbs().dot(seen.box),
-                                out.dot(rod.along)};
-    stretch.keep(rod.center[edge], rod.along[edge], seen.box[edge] + seen.noise);
+    SegmentRange<Real> range = {-segment.half, segment.half,
+                                out.dot(segment.center) - out.cwiseAbs().dot(seen.box),
+                                out.dot(segment.along)};
+    range.keep(segment.center[edge], segment.along[edge], seen.box[edge] + seen.noise);
     const int u = edge == 0 ? 1 : 0, v = edge == 2 ? 1 : 2;
-    const Real aside = out[u] * rod.along[v] - out[v] * rod.along[u];
-    stretch.keep(-aside * axis.at, aside, beside_edge(rod, Real(0)));
-    return stretch;
+    const Real aside = out[u] * segment.along[v] - out[v] * segment.along[u];
+    range.keep(-aside * axis.at, aside, beside_edge(segment, Real(0)));
+    return range;
 }
 
 }  // namespace
@@ -240,7 +244,7 @@ void capsule_box(const Shapes& shapes,
                  ShapeRef a,
                  ShapeRef b,
                  const PoseT<Real>& b_in_a,
-                 Real reach,
+                 Real speculative_margin,
                  PairCache&,
                  LocalManifold<Real>& out)
 {
@@ -248,23 +252,24 @@ void capsule_box(const Shapes& shapes,
     const Mat3T<Real> turn = b_in_a.orientation.toRotationMatrix();
     const Seen<Real> seen =
         seen_from_box<Real>(shapes.capsules[a.index], shapes.boxes[b.index], turn, b_in_a.position);
-    const Real limit = reach + seen.rod.radius;
+    const Real limit = speculative_margin + seen.segment.radius;
     const Vec3T<Real> above = above_faces(seen);
     const int face = greatest_of(above);
     if (!(above[face] <= limit)) return;
-    const RodAxis<Real> axis = contact_axis(seen, face, above[face]);
+    const CapsuleAxis<Real> axis = contact_axis(seen, face, above[face]);
     if (!(axis.separation <= limit)) return;
 
     out.normal = -(turn * axis.outward);
-    if (lies_across(seen.rod, axis)) {
+    if (lies_across(seen.segment, axis)) {
         const Vec3T<Real> size = axis.outward.cwiseAbs();
         const int turned = greatest_of(size);
-        const RodStretch<Real> stretch = size[turned] > kFacing<Real>
+        const SegmentRange<Real> range = size[turned] > kFacing<Real>
             ? over_turned_face(seen, axis, turned)
             : along_turned_edge(seen, axis, greatest_of<Real>(-size));
-        if (touch_along(seen.rod, axis, stretch, seen.noise, reach, out)) return;
+        if (add_capsule_ends(seen.segment, axis, range, seen.noise, speculative_margin, out))
+            return;
     }
-    touch_at(seen.rod, axis, out);
+    add_capsule_point(seen.segment, axis, out);
 }
 
 THRONG_PAIR_INSTANCES(capsule_box)

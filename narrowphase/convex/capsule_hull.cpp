@@ -1,7 +1,7 @@
 // Capsule on hull: in closed form where an end looks straight down on a face, which is how capsules
 // rest; whatever else touches is searched for. In double: hulls are stored so.
+#include "narrowphase/convex/capsule_contacts.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
-#include "narrowphase/convex/rod_contacts.hpp"
 
 namespace throng {
 
@@ -9,7 +9,7 @@ namespace {
 
 struct Seen {
     const Hull& hull;
-    Rod<double> rod;
+    CapsuleSegment<double> segment;
     double noise;  // rounding errors of coordinates stay below this
 };
 
@@ -18,12 +18,12 @@ Seen seen_from_hull(const Capsule& capsule, const Hull& hull, const PoseT<Real>&
 {
     Seen seen = {hull, {}, 0};
     const Mat3 turn = b_in_a.orientation.template cast<double>().normalized().toRotationMatrix();
-    seen.rod.center = -(turn.transpose() * b_in_a.position.template cast<double>());
-    seen.rod.along = turn.row(2).transpose();
-    seen.rod.half = capsule.half_length;
-    seen.rod.radius = capsule.radius;
-    seen.rod.rounding = capsule.radius;
-    const double greatest = seen.rod.center.cwiseAbs().maxCoeff() + seen.rod.half;
+    seen.segment.center = -(turn.transpose() * b_in_a.position.template cast<double>());
+    seen.segment.along = turn.row(2).transpose();
+    seen.segment.half = capsule.half_length;
+    seen.segment.radius = capsule.radius;
+    seen.segment.convex_radius = capsule.radius;
+    const double greatest = seen.segment.center.cwiseAbs().maxCoeff() + seen.segment.half;
     seen.noise = 4 * std::numeric_limits<double>::epsilon() * greatest;
     return seen;
 }
@@ -31,8 +31,8 @@ Seen seen_from_hull(const Capsule& capsule, const Hull& hull, const PoseT<Real>&
 double above_face(const Seen& seen, std::size_t face)
 {
     const Vec3& normal = seen.hull.normals[face];
-    return normal.dot(seen.rod.center) - seen.hull.offsets[face]
-        - seen.rod.half * std::abs(normal.dot(seen.rod.along));
+    return normal.dot(seen.segment.center) - seen.hull.offsets[face]
+        - seen.segment.half * std::abs(normal.dot(seen.segment.along));
 }
 
 std::size_t face_furthest_below(const Seen& seen)
@@ -63,7 +63,7 @@ void for_each_side(const Hull& hull, std::size_t face, const Call& call)
 
 bool stands_on(const Seen& seen, std::size_t face, double at)
 {
-    const Vec3 end = seen.rod.at(at);
+    const Vec3 end = seen.segment.at(at);
     bool inside = true;
     for_each_side(seen.hull, face, [&](const Vec3& out, const Vec3& corner) {
         inside = inside && out.dot(end - corner) <= 0;
@@ -72,30 +72,30 @@ bool stands_on(const Seen& seen, std::size_t face, double at)
 }
 
 // The way out over a face, if the lowest end looks straight down on it: no other is nearer then.
-bool stands_clear(const Seen& seen, std::size_t face, double above, RodAxis<double>& axis)
+bool stands_clear(const Seen& seen, std::size_t face, double above, CapsuleAxis<double>& axis)
 {
     if (!(above > 0)) return false;
     axis.outward = seen.hull.normals[face];
-    axis.at = axis.outward.dot(seen.rod.along) > 0 ? -seen.rod.half : seen.rod.half;
+    axis.at = axis.outward.dot(seen.segment.along) > 0 ? -seen.segment.half : seen.segment.half;
     axis.separation = above;
     return stands_on(seen, face, axis.at);
 }
 
-RodStretch<double> over_face(const Seen& seen, std::size_t face)
+SegmentRange<double> over_face(const Seen& seen, std::size_t face)
 {
-    const Rod<double>& rod = seen.rod;
+    const CapsuleSegment<double>& segment = seen.segment;
     const Vec3& normal = seen.hull.normals[face];
-    RodStretch<double> stretch = {-rod.half, rod.half,
-                                  normal.dot(rod.center) - seen.hull.offsets[face],
-                                  normal.dot(rod.along)};
+    SegmentRange<double> range = {-segment.half, segment.half,
+                                  normal.dot(segment.center) - seen.hull.offsets[face],
+                                  normal.dot(segment.along)};
     for_each_side(seen.hull, face, [&](const Vec3& out, const Vec3& corner) {
         const double length = length_of(out);
         if (!(length > 0)) return;
-        const double slope = out.dot(rod.along) / length;
-        stretch.cut(out.dot(rod.center - corner) / length, slope,
-                    seen.noise + beside_edge(rod, slope));
+        const double slope = out.dot(segment.along) / length;
+        range.cut(out.dot(segment.center - corner) / length, slope,
+                  seen.noise + beside_edge(segment, slope));
     });
-    return stretch;
+    return range;
 }
 
 }  // namespace
@@ -105,15 +105,15 @@ void capsule_hull(const Shapes& shapes,
                   ShapeRef a,
                   ShapeRef b,
                   const PoseT<Real>& b_in_a,
-                  Real reach,
+                  Real speculative_margin,
                   PairCache& cache,
                   LocalManifold<Real>& out)
 {
     out.count = 0;
     const Hull& hull = shapes.hulls[b.index];
     const Seen seen = seen_from_hull(shapes.capsules[a.index], hull, b_in_a);
-    const double limit = static_cast<double>(reach) + seen.rod.radius;
-    RodAxis<double> axis;
+    const double limit = static_cast<double>(speculative_margin) + seen.segment.radius;
+    CapsuleAxis<double> axis;
     // The face known from last time, while it proves to be the one; else the best of all.
     std::size_t face = cache.feature_b;
     double above = 0;
@@ -128,17 +128,17 @@ void capsule_hull(const Shapes& shapes,
         cache.feature_b = static_cast<std::uint32_t>(face);
         if (above > limit) return;
         if (!stands_clear(seen, face, above, axis)) {
-            convex_convex(shapes, a, b, b_in_a, reach, cache, out);
+            convex_convex(shapes, a, b, b_in_a, speculative_margin, cache, out);
             return;
         }
     }
 
     LocalManifold<double> found;
     found.normal = b_in_a.orientation.template cast<double>().normalized() * -axis.outward;
-    if (!lies_across(seen.rod, axis)
-        || !touch_along(seen.rod, axis, over_face(seen, face), seen.noise,
-                        static_cast<double>(reach), found)) {
-        touch_at(seen.rod, axis, found);
+    if (!lies_across(seen.segment, axis)
+        || !add_capsule_ends(seen.segment, axis, over_face(seen, face), seen.noise,
+                             static_cast<double>(speculative_margin), found)) {
+        add_capsule_point(seen.segment, axis, found);
     }
     out = found.cast<Real>();
 }

@@ -1,6 +1,6 @@
 // Capsule pairs: two capsules, in closed form: one point where they cross, two side by side.
+#include "narrowphase/convex/capsule_contacts.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
-#include "narrowphase/convex/rod_contacts.hpp"
 
 namespace throng {
 
@@ -9,7 +9,7 @@ namespace {
 // Axis a is z itself, so that the sine between the axes comes without cancellation.
 template <class Real>
 struct Axes {
-    Rod<Real> a;
+    CapsuleSegment<Real> a;
     Vec3T<Real> center, along;  // of b
     Real half;                  // of b
     Real noise;                 // rounding errors of coordinates stay below this
@@ -58,7 +58,7 @@ void stand_square(const Axes<Real>& axes, Real on_a, Real on_b, Vec3T<Real>& bet
 
 // Nearest points. Where the axes are parallel to rounding any place will do to start from.
 template <class Real>
-RodAxis<Real> axis_between(const Axes<Real>& axes)
+CapsuleAxis<Real> axis_between(const Axes<Real>& axes)
 {
     const Vec3T<Real>&center = axes.center, &along = axes.along;
     const Real square = along.x() * along.x() + along.y() * along.y();
@@ -72,29 +72,29 @@ RodAxis<Real> axis_between(const Axes<Real>& axes)
     Vec3T<Real> between = center + on_b * along;
     between.z() -= on_a;
     stand_square(axes, on_a, on_b, between);
-    const Real gap = length_of(between);
-    if (gap > axes.noise) return {between / -gap, on_a, gap};
+    const Real separation = length_of(between);
+    if (separation > axes.noise) return {between / -separation, on_a, separation};
     const Vec3T<Real> normal = across_both(axes);
     return {-normal, on_a, normal.dot(between)};
 }
 
 // The stretch of a that has b beside it, in line along the normal.
 template <class Real>
-RodStretch<Real> beside(const Axes<Real>& axes, const Vec3T<Real>& normal)
+SegmentRange<Real> beside(const Axes<Real>& axes, const Vec3T<Real>& normal)
 {
     const Vec3T<Real> slope = axes.along / axes.along.z();
     const Vec3T<Real> start = axes.center - slope * axes.center.z();
-    RodStretch<Real> stretch = {-axes.a.half, axes.a.half,
+    SegmentRange<Real> range = {-axes.a.half, axes.a.half,
                                 normal.x() * start.x() + normal.y() * start.y(),
                                 normal.x() * slope.x() + normal.y() * slope.y()};
     const Real half = axes.half * std::abs(axes.along.z());
-    stretch.low = std::max(stretch.low, axes.center.z() - half);
-    stretch.high = std::min(stretch.high, axes.center.z() + half);
-    if (stretch.low < stretch.high) {
-        stretch.keep(normal.x() * start.y() - normal.y() * start.x(),
-                     normal.x() * slope.y() - normal.y() * slope.x(), beside_edge(axes.a, Real(0)));
+    range.low = std::max(range.low, axes.center.z() - half);
+    range.high = std::min(range.high, axes.center.z() + half);
+    if (range.low < range.high) {
+        range.keep(normal.x() * start.y() - normal.y() * start.x(),
+                   normal.x() * slope.y() - normal.y() * slope.x(), beside_edge(axes.a, Real(0)));
     }
-    return stretch;
+    return range;
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ void capsule_capsule(const Shapes& shapes,
                      ShapeRef a,
                      ShapeRef b,
                      const PoseT<Real>& b_in_a,
-                     Real reach,
+                     Real speculative_margin,
                      PairCache&,
                      LocalManifold<Real>& out)
 {
@@ -114,25 +114,26 @@ void capsule_capsule(const Shapes& shapes,
     const Capsule& two = shapes.capsules[b.index];
     axes.a.half = static_cast<Real>(one.half_length);
     axes.a.radius = static_cast<Real>(one.radius);
-    axes.a.rounding = axes.a.radius + static_cast<Real>(two.radius);
+    axes.a.convex_radius = axes.a.radius + static_cast<Real>(two.radius);
     axes.half = static_cast<Real>(two.half_length);
     axes.center = b_in_a.position;
-    const Real limit = reach + axes.a.rounding, length = axes.a.half + axes.half;
+    const Real limit = speculative_margin + axes.a.convex_radius, length = axes.a.half + axes.half;
     const Real distance = limit + length;
     if (axes.center.squaredNorm() > distance * distance) return;
     axes.along = turned_z(b_in_a.orientation);
-    axes.noise = 4 * std::numeric_limits<Real>::epsilon() * (axes.a.rounding + length);
+    axes.noise = 4 * std::numeric_limits<Real>::epsilon() * (axes.a.convex_radius + length);
 
-    const RodAxis<Real> axis = axis_between(axes);
+    const CapsuleAxis<Real> axis = axis_between(axes);
     if (!(axis.separation <= limit)) return;
     out.normal = -axis.outward;
     const bool side_by_side =
         std::abs(axes.along.z()) > Real(0.9) && std::abs(out.normal.z()) < Real(0.17);
     if (side_by_side
-        && touch_along(axes.a, axis, beside(axes, out.normal), axes.noise, reach, out)) {
+        && add_capsule_ends(axes.a, axis, beside(axes, out.normal), axes.noise, speculative_margin,
+                            out)) {
         return;
     }
-    touch_at(axes.a, axis, out);
+    add_capsule_point(axes.a, axis, out);
 }
 
 THRONG_PAIR_INSTANCES(capsule_capsule)

@@ -12,7 +12,7 @@ namespace {
 // Nearer than this, of the size, GJK's direction is rounding noise; faces' normals are not.
 constexpr double kTouching = 1e-9;
 
-void keep_further(const CorePair& pair, const Vec3& normal, ContactAxis& best)
+void keep_further(const ConvexCorePair& pair, const Vec3& normal, ContactAxis& best)
 {
     const double separation = separation_along(pair, normal);
     if (!(separation > best.separation)) return;
@@ -22,8 +22,8 @@ void keep_further(const CorePair& pair, const Vec3& normal, ContactAxis& best)
 
 // Tries the exact directions that a core offers near the one found: its face normals, an axis, and
 // the square side of a cylinder. Whatever separates further is nearer the truth.
-void try_directions_of(const CorePair& pair,
-                       const Core<double>& core,
+void try_directions_of(const ConvexCorePair& pair,
+                       const ConvexCore<double>& core,
                        const Mat3& turn,
                        double sign,
                        ContactAxis& best)
@@ -42,14 +42,14 @@ void try_directions_of(const CorePair& pair,
 
 }  // namespace
 
-bool search_axis(const CorePair& pair, double limit, ContactAxis& axis)
+bool search_axis(const ConvexCorePair& pair, double limit, ContactAxis& axis)
 {
     const Distance distance = gjk(pair, limit);
     if (distance.beyond) return false;
     if (distance.apart && distance.distance > kTouching * pair.size) {
         axis = {distance.normal, distance.distance, distance.on_a, distance.on_b};
     } else {
-        const Depth depth = epa(pair);
+        const PenetrationDepth depth = epa(pair);
         axis = {depth.normal, -depth.depth, depth.on_a, depth.on_b};
     }
     try_directions_of(pair, pair.a, Mat3::Identity(), 1, axis);
@@ -57,7 +57,7 @@ bool search_axis(const CorePair& pair, double limit, ContactAxis& axis)
     return true;
 }
 
-bool contact_axis(const CorePair& pair, double limit, ContactAxis& axis)
+bool contact_axis(const ConvexCorePair& pair, double limit, ContactAxis& axis)
 {
     switch (likely_axis(pair, limit, axis)) {
     case Likely::found:

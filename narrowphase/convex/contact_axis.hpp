@@ -21,9 +21,9 @@ struct ContactAxis {
 ///
 /// What comes of the search is then held against the exact directions that the shapes offer near
 /// it: face normals, and the square sides of cylinders.
-bool search_axis(const CorePair& pair, double limit, ContactAxis& axis);
+bool search_axis(const ConvexCorePair& pair, double limit, ContactAxis& axis);
 
 /// The same, with the few likely directions tried first (likely_axes.hpp).
-bool contact_axis(const CorePair& pair, double limit, ContactAxis& axis);
+bool contact_axis(const ConvexCorePair& pair, double limit, ContactAxis& axis);
 
 }  // namespace throng

@@ -22,7 +22,7 @@ ConvexPair::ConvexPair(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose&
 
 void ConvexPair::place(const Pose& b_in_a)
 {
-    cores_ = CorePair(shapes_, a_, b_, b_in_a);
+    cores_ = ConvexCorePair(shapes_, a_, b_, b_in_a);
     if (polytopes_) polytopes_.emplace(shape_a_->view(), shape_b_->view(), b_in_a);
 }
 

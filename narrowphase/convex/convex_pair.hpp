@@ -23,7 +23,7 @@ public:
 
     void place(const Pose& b_in_a);
 
-    const CorePair& cores() const { return cores_; }
+    const ConvexCorePair& cores() const { return cores_; }
     /// Null where one of the two is round.
     const PolytopePair* polytopes() const { return polytopes_ ? &*polytopes_ : nullptr; }
     /// m, greatest distance of a point of either from its own origin, within a factor of two: what
@@ -34,11 +34,11 @@ private:
     const Shapes& shapes_;
     ShapeRef a_, b_;
     std::optional<PolytopeShape> shape_a_, shape_b_;
-    CorePair cores_;
+    ConvexCorePair cores_;
     std::optional<PolytopePair> polytopes_;
 };
 
-enum class Touch : std::uint8_t {
+enum class OverlapState : std::uint8_t {
     apart,
     touching,   // they share a point
     undecided,  // the method has come to the end of what it can tell
@@ -56,7 +56,7 @@ enum class Touch : std::uint8_t {
 ///   rounds      of its loop: support points asked for, planes cut by, axes looked at
 ///   cut_short   the loop came to its bound; the answer is the best so far
 struct MethodAnswer {
-    Touch touch = Touch::undecided;
+    OverlapState overlap = OverlapState::undecided;
     double separation = 0;
     Vec3 normal = Vec3::UnitZ();
     Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();

@@ -14,19 +14,20 @@ void convex_convex(const Shapes& shapes,
                    ShapeRef a,
                    ShapeRef b,
                    const PoseT<Real>& b_in_a,
-                   Real reach,
+                   Real speculative_margin,
                    PairCache&,
                    LocalManifold<Real>& out)
 {
     out.count = 0;
     const Pose pose = {b_in_a.position.template cast<double>(),
                        b_in_a.orientation.template cast<double>().normalized()};
-    const CorePair pair(shapes, a, b, pose);
-    const double limit = static_cast<double>(reach) + pair.a.radius + pair.b.radius;
+    const ConvexCorePair pair(shapes, a, b, pose);
+    const double limit =
+        static_cast<double>(speculative_margin) + pair.a.convex_radius + pair.b.convex_radius;
     ContactAxis axis;
     if (!contact_axis(pair, limit, axis) || axis.separation > limit) return;
     LocalManifold<double> exact;
-    fill_points(pair, axis, static_cast<double>(reach), exact);
+    fill_points(pair, axis, static_cast<double>(speculative_margin), exact);
 
     out = exact.cast<Real>();
 }

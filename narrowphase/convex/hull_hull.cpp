@@ -4,8 +4,8 @@
 // plain arithmetic of double, and so do pairs in double. Where the vertices are many, GJK and EPA
 // tell which corners meet, and the axes of these are looked at alone.
 #include "kernels/geometry/polytope_contacts.hpp"
-#include "narrowphase/convex/ask_gjk.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
+#include "narrowphase/convex/query_gjk.hpp"
 #include "narrowphase/convex/wide/hull_kernels.hpp"
 #include "narrowphase/convex/wide_shapes.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
@@ -28,13 +28,13 @@ constexpr double kAlike = 0.9998;
 
 void face_manifold(const PolytopePair& pair,
                    const FaceAxis& axis,
-                   double reach,
+                   double speculative_margin,
                    double slack,
                    LocalManifold<double>& out,
                    double& least)
 {
     PolytopePoints found;
-    clip_faces(pair, axis, reach, slack, found);
+    clip_faces(pair, axis, speculative_margin, slack, found);
     least = found.count > 0 ? found.least : std::numeric_limits<double>::max();
     out.normal = pair.a.normals[axis.face];
     reduce_to_four<double>({found.points.data(), found.count}, out);
@@ -52,13 +52,13 @@ void touch_vertex(const PolytopePair& pair, const FaceAxis& axis, LocalManifold<
 // Two polytopes seen from either, and what it costs a face to lead.
 struct Sides {
     Sides(const PolytopePair& of, double within)
-        : pair(of), turned(of.mirrored()), reach(within),
+        : pair(of), turned(of.mirrored()), speculative_margin(within),
           bias(kFaceBias * (of.a.inner_radius + of.b.inner_radius))
     { }
 
     const PolytopePair& pair;
     PolytopePair turned;
-    double reach, bias;
+    double speculative_margin, bias;
 };
 
 // A face axis to begin with: the one remembered, if any.
@@ -102,30 +102,30 @@ PairCache remember_leading(const Sides& sides, const Axes& axes)
                                : remember(Remembered::face_a, axes.face_a);
 }
 
-// Looks at all faces and edges. False where one shows the two to be out of reach.
+// Looks at all faces and edges. False where one shows the two to be beyond the margin.
 bool look_at_all(const Sides& sides, const Guess& guess, PairCache& cache, Axes& axes)
 {
     const PolytopePair &pair = sides.pair, &turned = sides.turned;
     const FaceAxis first = guess.known ? guess.axis : likely_face_axis(guess.of_b ? turned : pair);
     cache.apart = static_cast<float>(std::max(0.0, first.separation));
-    if (first.separation > sides.reach) return false;
+    if (first.separation > sides.speculative_margin) return false;
 
     // What a guess has shown saves looking at faces that cannot lead any more.
     axes.face_a = best_face_axis(pair, guess.of_b ? likely_face_axis(pair) : first,
                                  first.separation - sides.bias);
-    if (axes.face_a.separation > sides.reach) {
+    if (axes.face_a.separation > sides.speculative_margin) {
         cache = remember(Remembered::face_a, axes.face_a);
         return false;
     }
     axes.face_b = best_face_axis(turned, guess.of_b ? first : likely_face_axis(turned),
                                  axes.face_a.separation);
-    if (axes.face_b.separation > sides.reach) {
+    if (axes.face_b.separation > sides.speculative_margin) {
         cache = remember(Remembered::face_b, axes.face_b);
         return false;
     }
     cache = remember_leading(sides, axes);
     axes.edge = best_edge_axis(pair, axes.top());
-    return axes.edge.separation <= sides.reach;
+    return axes.edge.separation <= sides.speculative_margin;
 }
 
 // Whose shapes they are, for GJK to look at.
@@ -175,7 +175,8 @@ Found look_where_they_meet(
 {
     MethodMemory memory = memory_of(sides, guess);
     const ConvexPair cores(shown.shapes, shown.a, shown.b, shown.b_in_a);
-    const MethodAnswer met = ask_gjk(cores, sides.reach, MethodStart::cached, memory);
+    const MethodAnswer met =
+        query_gjk(cores, sides.speculative_margin, MethodStart::cached, memory);
     if (met.cut_short) {
         cache.kind |= kFellBack;
         return Found::unsure;
@@ -187,7 +188,7 @@ Found look_where_they_meet(
     axes.face_a = best_face_axis_at(pair, corner_a, corner_b);
     axes.face_b = best_face_axis_at(sides.turned, corner_b, corner_a);
     cache = remember_leading(sides, axes);
-    if (met.separation > sides.reach) {
+    if (met.separation > sides.speculative_margin) {
         cache.apart = static_cast<float>(met.separation);
         return Found::apart;
     }
@@ -200,7 +201,7 @@ Found look_where_they_meet(
 void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& out)
 {
     const PolytopePair &pair = sides.pair, &turned = sides.turned;
-    const double reach = sides.reach, bias = sides.bias;
+    const double speculative_margin = sides.speculative_margin, bias = sides.bias;
     const bool b_leads = axes.b_leads(sides);
     const EdgeAxis& edge = axes.edge;
     const FaceAxis& face = b_leads ? axes.face_b : axes.face_a;
@@ -210,17 +211,17 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
     const bool edge_better = has_edge && edge.separation > face.separation + bias;
     const bool alike = has_edge && edge.normal.dot(normal) > kAlike;
     if (edge_better && !alike) {
-        cross_edges(pair, edge, reach + bias, out);
+        cross_edges(pair, edge, speculative_margin + bias, out);
         return;
     }
     // A face that has lost its deepest corner over the other's side still tells the depth, if what
     // is left of it agrees with the edges. Otherwise clipping has lost the very place of touch.
     double least = 0;
-    face_manifold(b_leads ? turned : pair, face, reach, bias, out, least);
+    face_manifold(b_leads ? turned : pair, face, speculative_margin, bias, out, least);
     if (b_leads) turn_round(pair, out);
     const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
     const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
-    if (has_edge && !kept && !agrees) cross_edges(pair, edge, reach + bias, out);
+    if (has_edge && !kept && !agrees) cross_edges(pair, edge, speculative_margin + bias, out);
     // A face that leads by its bias alone may have nothing over it: then the best one has. Unless
     // the two are deep its points are told far enough apart not to push: at rest others bear the
     // body, and what pushes at times would rock it.
@@ -229,7 +230,8 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
     const bool shallow = face.separation >= -deep;
     const bool by_b = axes.face_b.separation >= axes.face_a.separation;
     const FaceAxis& best = by_b ? axes.face_b : axes.face_a;
-    if (by_b != b_leads) face_manifold(by_b ? turned : pair, best, reach, bias, out, least);
+    if (by_b != b_leads)
+        face_manifold(by_b ? turned : pair, best, speculative_margin, bias, out, least);
     if (shallow)
         for (int i = 0; i < out.count; ++i)
             out.points[static_cast<std::size_t>(i)].separation += deep;
@@ -238,16 +240,16 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
 }
 
 void collide_polytopes(const PolytopePair& pair,
-                       double reach,
+                       double speculative_margin,
                        const Shown* shown,
                        PairCache& cache,
                        LocalManifold<double>& out)
 {
     out.count = 0;
-    const Sides sides(pair, reach);
+    const Sides sides(pair, speculative_margin);
     cache.kind &= ~kFellBack;
     const Guess guess(sides, cache);
-    if (guess.known && guess.axis.separation > reach) {
+    if (guess.known && guess.axis.separation > speculative_margin) {
         cache.apart = static_cast<float>(guess.axis.separation);
         return;
     }
@@ -269,7 +271,7 @@ bool meet_wide(const Shapes& shapes,
                ShapeRef a,
                ShapeRef b,
                const PoseT<float>& b_in_a,
-               float reach,
+               float speculative_margin,
                PairCache& cache,
                LocalManifold<float>& out)
 {
@@ -284,22 +286,22 @@ bool meet_wide(const Shapes& shapes,
     const Vec3 offset = turn * wide_b.center() + b_in_a.position.cast<double>() - wide_a.center();
     for (int i = 0; i < 9; ++i) pair.turn[i] = static_cast<float>(turn(i / 3, i % 3));
     for (int i = 0; i < 3; ++i) pair.offset[i] = static_cast<float>(offset[i]);
-    pair.reach = reach;
+    pair.speculative_margin = speculative_margin;
     pair.bias = static_cast<float>(kFaceBias) * inner;
 
     HullGuess guess{cache.kind, cache.feature_a, cache.feature_b};
-    HullTouch touch;
-    static const HullKernel meet = hull_kernel();
-    meet(pair, guess, touch);
-    cache = {guess.a, guess.b, guess.kind, touch.count == 0 ? touch.apart : 0};
+    HullOverlap overlap;
+    static const HullKernel collide = hull_kernel();
+    collide(pair, guess, overlap);
+    cache = {guess.a, guess.b, guess.kind, overlap.count == 0 ? overlap.apart : 0};
     out.count = 0;
-    if (touch.count == 0) return true;
-    out.normal = {touch.normal[0], touch.normal[1], touch.normal[2]};
-    std::array<LocalManifold<float>::Point, HullTouch::kMost> points;
-    const auto count = static_cast<std::size_t>(touch.count);
+    if (overlap.count == 0) return true;
+    out.normal = {overlap.normal[0], overlap.normal[1], overlap.normal[2]};
+    std::array<LocalManifold<float>::Point, HullOverlap::kMost> points;
+    const auto count = static_cast<std::size_t>(overlap.count);
     const Vec3T<float> center = wide_a.center().cast<float>();
     for (std::size_t i = 0; i < count; ++i) {
-        const HullTouch::Point& point = touch.points[i];
+        const HullOverlap::Point& point = overlap.points[i];
         points[i].position =
             Vec3T<float>(point.position[0], point.position[1], point.position[2]) + center;
         points[i].separation = point.separation;
@@ -319,7 +321,7 @@ void meet_plain(const Shapes& shapes,
                 ShapeRef b,
                 const PoseT<Real>& b_in_a,
                 bool searches,
-                Real reach,
+                Real speculative_margin,
                 PairCache& cache,
                 LocalManifold<Real>& out)
 {
@@ -331,7 +333,7 @@ void meet_plain(const Shapes& shapes,
     const Pose straight{pose.position, pose.orientation.normalized()};
     const Shown shown{shapes, a, b, straight};
     LocalManifold<double> found;
-    collide_polytopes(pair, reach, searches && many ? &shown : nullptr, cache, found);
+    collide_polytopes(pair, speculative_margin, searches && many ? &shown : nullptr, cache, found);
 
     out = found.cast<Real>();
 }
@@ -343,12 +345,12 @@ void hull_hull<float>(const Shapes& shapes,
                       ShapeRef a,
                       ShapeRef b,
                       const PoseT<float>& b_in_a,
-                      float reach,
+                      float speculative_margin,
                       PairCache& cache,
                       LocalManifold<float>& out)
 {
-    if (!meet_wide(shapes, a, b, b_in_a, reach, cache, out))
-        meet_plain(shapes, a, b, b_in_a, true, reach, cache, out);
+    if (!meet_wide(shapes, a, b, b_in_a, speculative_margin, cache, out))
+        meet_plain(shapes, a, b, b_in_a, true, speculative_margin, cache, out);
 }
 
 template <>
@@ -356,22 +358,22 @@ void hull_hull<double>(const Shapes& shapes,
                        ShapeRef a,
                        ShapeRef b,
                        const Pose& b_in_a,
-                       double reach,
+                       double speculative_margin,
                        PairCache& cache,
                        LocalManifold<double>& out)
 {
-    meet_plain(shapes, a, b, b_in_a, true, reach, cache, out);
+    meet_plain(shapes, a, b, b_in_a, true, speculative_margin, cache, out);
 }
 
 void hull_hull_by_axes(const Shapes& shapes,
                        ShapeRef a,
                        ShapeRef b,
                        const Pose& b_in_a,
-                       double reach,
+                       double speculative_margin,
                        PairCache& cache,
                        LocalManifold<double>& out)
 {
-    meet_plain(shapes, a, b, b_in_a, false, reach, cache, out);
+    meet_plain(shapes, a, b, b_in_a, false, speculative_margin, cache, out);
 }
 
 }  // namespace throng

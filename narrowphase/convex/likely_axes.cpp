@@ -22,8 +22,8 @@ struct Trial {
 
 // The pair as seen by one of its cores: the other's frame in its own.
 struct View {
-    const Core<double>& self;
-    const Core<double>& other;
+    const ConvexCore<double>& self;
+    const ConvexCore<double>& other;
     Mat3 turn;      // the other's axes in this frame
     Vec3 position;  // the other's origin in this frame
 
@@ -37,16 +37,16 @@ struct View {
     }
 };
 
-View from_a(const CorePair& pair) { return {pair.a, pair.b, pair.b_turn, pair.b_position}; }
+View from_a(const ConvexCorePair& pair) { return {pair.a, pair.b, pair.b_turn, pair.b_position}; }
 
-View from_b(const CorePair& pair)
+View from_b(const ConvexCorePair& pair)
 {
     const Mat3 back = pair.b_turn.transpose();
     return {pair.b, pair.a, back, -(back * pair.b_position)};
 }
 
 // How far a cylinder or a capsule's core reaches along a direction of its own frame.
-double reach_along(const Core<double>& core, const Vec3& local)
+double extent_along(const ConvexCore<double>& core, const Vec3& local)
 {
     const double across = std::sqrt(local.x() * local.x() + local.y() * local.y());
     return core.extents.x() * across + core.extents.z() * std::abs(local.z());
@@ -65,18 +65,19 @@ Plate best_plate(const View& view)
     double most = -std::numeric_limits<double>::infinity();
     const auto consider = [&](const Vec3& normal, double offset) {
         const double separation = normal.dot(view.position) - offset
-            - reach_along(view.other, view.turn.transpose() * normal);
+            - extent_along(view.other, view.turn.transpose() * normal);
         if (!(separation > most)) return;
         most = separation;
         best = {normal, offset};
     };
     if (view.self.kind == ShapeKind::box) {
-        // A box sees the cylinder's axis by its coordinates, so the reach needs no turning.
+        // A box sees the cylinder's axis by its coordinates, so the speculative margin needs no
+        // turning.
         for (int i = 0; i < 3; ++i) {
             const double lean = axis[i];
-            const double reach = view.other.extents.z() * std::abs(lean)
+            const double extent = view.other.extents.z() * std::abs(lean)
                 + view.other.extents.x() * std::sqrt(std::max(0.0, 1 - lean * lean));
-            const double separation = std::abs(view.position[i]) - view.self.extents[i] - reach;
+            const double separation = std::abs(view.position[i]) - view.self.extents[i] - extent;
             if (!(separation > most)) continue;
             most = separation;
             best.normal = Vec3::Unit(i) * (view.position[i] >= 0 ? 1 : -1);
@@ -175,10 +176,10 @@ Trial try_side(const View& view)
         low = view.position.z() - half;
         high = view.position.z() + half;
     }
-    const double reach = view.self.extents.z();
-    trial.inside = std::min(reach - low, high + reach);
+    const double extent = view.self.extents.z();
+    trial.inside = std::min(extent - low, high + extent);
     const double middle =
-        std::clamp((std::max(low, -reach) + std::min(high, reach)) / 2, -reach, reach);
+        std::clamp((std::max(low, -extent) + std::min(high, extent)) / 2, -extent, extent);
     trial.axis.on_a = normal * view.self.extents.x() + Vec3(0, 0, middle);
     trial.axis.on_b = trial.axis.on_a + normal * trial.axis.separation;
     return trial;
@@ -191,7 +192,7 @@ void keep(Trial& best, const Trial& trial)
 }
 
 // The trial of b's view in a's frame: sides changed over.
-Trial turned(const CorePair& pair, const Trial& trial)
+Trial turned(const ConvexCorePair& pair, const Trial& trial)
 {
     Trial result = trial;
     result.axis.normal = -(pair.b_turn * trial.axis.normal);
@@ -219,7 +220,7 @@ Trial best_trial(const View& view)
 
 }  // namespace
 
-Likely likely_axis(const CorePair& pair, double limit, ContactAxis& axis)
+Likely likely_axis(const ConvexCorePair& pair, double limit, ContactAxis& axis)
 {
     Trial best = best_trial(from_a(pair));
     keep(best, turned(pair, best_trial(from_b(pair))));

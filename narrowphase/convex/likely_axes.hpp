@@ -16,6 +16,6 @@ enum class Likely : std::uint8_t {
 /// whatever stands on a cylinder's cap. An axis is found when the nearest points lie well within
 /// the two features, which for cores that are apart proves it the best; for cores that overlap they
 /// must lie further within than they are deep.
-Likely likely_axis(const CorePair& pair, double limit, ContactAxis& axis);
+Likely likely_axis(const ConvexCorePair& pair, double limit, ContactAxis& axis);
 
 }  // namespace throng

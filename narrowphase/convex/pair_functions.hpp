@@ -6,13 +6,14 @@
 
 namespace throng {
 
-/// Finds where two convex shapes touch or come within reach of one another.
+/// Finds where two convex shapes touch or come within the margin of one another.
 ///
-///   a, b     shapes, a's kind not after b's kind in ShapeKind (collide() sees to that)
-///   b_in_a   pose of b in a's frame; computed in double: exact however far from the origin
-///   reach    m, points further apart than this are left out (at least 0)
-///   cache    what the pair remembers
-///   out      in a's frame; count 0 where nothing is within reach
+///   a, b                shapes, a's kind not after b's kind in ShapeKind (collide() sees to that)
+///   b_in_a              pose of b in a's frame; computed in double: exact however far from the
+///                       origin
+///   speculative_margin  m, points further apart than this are left out (at least 0)
+///   cache               what the pair remembers
+///   out                 in a's frame; count 0 where nothing is within the margin
 ///
 /// Never throws; finite input gives finite output. Instantiated for float and double.
 template <class Real>
@@ -20,7 +21,7 @@ using PairFunction = void (*)(const Shapes& shapes,
                               ShapeRef a,
                               ShapeRef b,
                               const PoseT<Real>& b_in_a,
-                              Real reach,
+                              Real speculative_margin,
                               PairCache& cache,
                               LocalManifold<Real>& out);
 

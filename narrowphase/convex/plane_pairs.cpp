@@ -18,16 +18,16 @@ template <class Real>
 struct Ground {
     Vec3T<Real> into;
     Real depth;
-    Real reach;
+    Real speculative_margin;
     LocalManifold<Real>& out;
 
     Real height(const Vec3T<Real>& point) const { return depth - point.dot(into); }
 
-    // A point of the core whose surface is `radius` further on; left out when beyond reach.
-    void touch(const Vec3T<Real>& point, Real radius, std::uint32_t feature) const
+    // A point of the core whose surface is `radius` further on; left out when beyond the margin.
+    void add_point(const Vec3T<Real>& point, Real radius, std::uint32_t feature) const
     {
         const Real separation = height(point) - radius;
-        if (!(separation <= reach)) return;
+        if (!(separation <= speculative_margin)) return;
         out.add(point + into * (radius + separation / 2), separation, feature);
     }
 };
@@ -35,7 +35,7 @@ struct Ground {
 // The lowest corner, then the others of the side that faces the plane; where some of that is out of
 // reach, those reached along the edges that climb least.
 template <class Real>
-void touch_box(const Core<Real>& box, const Ground<Real>& ground)
+void touch_box(const ConvexCore<Real>& box, const Ground<Real>& ground)
 {
     std::array<Real, 3> climb;
     std::uint32_t lowest = 0;
@@ -49,7 +49,7 @@ void touch_box(const Core<Real>& box, const Ground<Real>& ground)
     if (climb[order[2]] < climb[order[1]]) std::swap(order[1], order[2]);
     if (climb[order[1]] < climb[order[0]]) std::swap(order[0], order[1]);
 
-    // The side that faces the plane, where all of it is within reach: a thin box that leans a
+    // The side that faces the plane, where all of it is within the margin: a thin box that leans a
     // little climbs less along its thickness than along its length, and would be held at one end
     // alone.
     std::size_t facing = 0;
@@ -60,7 +60,7 @@ void touch_box(const Core<Real>& box, const Ground<Real>& ground)
         if (along(i) > along(facing)) facing = i;
     }
     const Real highest = ground.depth - 2 * climb[facing] + climb[0] + climb[1] + climb[2];
-    const bool whole = highest <= ground.reach;
+    const bool whole = highest <= ground.speculative_margin;
     if (whole && order[2] != facing) {
         if (order[0] == facing) std::swap(order[0], order[1]);
         std::swap(order[1], order[2]);
@@ -77,25 +77,26 @@ void touch_box(const Core<Real>& box, const Ground<Real>& ground)
         for (int i = 0; i < 3; ++i) {
             if (!(corner >> i & 1u)) point[i] = -point[i];
         }
-        ground.touch(point, Real(0), corner);
+        ground.add_point(point, Real(0), corner);
     }
 }
 
 // A cap when the axis leans towards the plane, else the lower line of the side.
 template <class Real>
-void touch_cylinder(const Core<Real>& cylinder, const Ground<Real>& ground)
+void touch_cylinder(const ConvexCore<Real>& cylinder, const Ground<Real>& ground)
 {
     const Vec3T<Real>& into = ground.into;
     const Real across = std::sqrt(into.x() * into.x() + into.y() * into.y());
     if (std::abs(into.z()) > across) {
         const SupportFace<Real> cap = rim_points(cylinder, into);
-        for (std::size_t i = 0; i < 4; ++i) ground.touch(cap.corners[i], Real(0), cap.features[i]);
+        for (std::size_t i = 0; i < 4; ++i)
+            ground.add_point(cap.corners[i], Real(0), cap.features[i]);
         return;
     }
     const Real x = into.x() / across * cylinder.extents.x();
     const Real y = into.y() / across * cylinder.extents.x();
-    ground.touch(Vec3T<Real>(x, y, -cylinder.extents.z()), Real(0), 32);
-    ground.touch(Vec3T<Real>(x, y, cylinder.extents.z()), Real(0), 33);
+    ground.add_point(Vec3T<Real>(x, y, -cylinder.extents.z()), Real(0), 32);
+    ground.add_point(Vec3T<Real>(x, y, cylinder.extents.z()), Real(0), 33);
 }
 
 // Which vertices of a hull bear it on a plane.
@@ -109,7 +110,7 @@ public:
             lowest_ = std::min(lowest_, ground.height(vertex.cast<Real>()));
     }
 
-    bool within_reach() const { return lowest_ <= ground_.reach; }
+    bool within_margin() const { return lowest_ <= ground_.speculative_margin; }
 
     Real lowest() const { return lowest_; }
 
@@ -118,7 +119,8 @@ public:
     // between them.
     void spread(Real size, Real tilt, Real down)
     {
-        const Real slack = std::min(Real(1e-4) * size, std::max(ground_.reach - lowest_, Real(0)));
+        const Real slack =
+            std::min(Real(1e-4) * size, std::max(ground_.speculative_margin - lowest_, Real(0)));
         tilt_ = tilt;
         down_ = std::max(lowest_, down);
         first_ = lowest_within(slack);
@@ -159,10 +161,10 @@ public:
         return true;
     }
 
-    void touch() const
+    void add_points() const
     {
         for (const std::size_t i : {first_, second_, left_, right_})
-            if (i != kNone) ground_.touch(at(i), Real(0), static_cast<std::uint32_t>(i));
+            if (i != kNone) ground_.add_point(at(i), Real(0), static_cast<std::uint32_t>(i));
     }
 
 private:
@@ -188,7 +190,7 @@ private:
         for (std::size_t i = 0; i < hull_.vertices.size(); ++i) {
             const Vec3T<Real> vertex = at(i);
             const Real height = ground_.height(vertex);
-            if (!(height <= ground_.reach)) continue;
+            if (!(height <= ground_.speculative_margin)) continue;
             const Real below = tilt_ * distance(vertex) - (std::max(height, down_) - down_);
             if (!(below > most * Real(1.001))) continue;
             most = below;
@@ -212,13 +214,14 @@ template <class Real>
 void touch_hull(const Hull& hull, Real size, const Ground<Real>& ground)
 {
     HullFoot<Real> foot(hull, ground);
-    if (!foot.within_reach()) return;
+    if (!foot.within_margin()) return;
     // Of a ball, 1e-5 of its radius is within this of its lowest point.
     constexpr Real kLevelTilt = Real(5e-3);
     foot.spread(size, kLevelTilt, foot.lowest());
     if (!foot.stands())
-        foot.spread(size, ground.reach / static_cast<Real>(hull.outer_radius), Real(0));
-    foot.touch();
+        foot.spread(size, ground.speculative_margin / static_cast<Real>(hull.outer_radius),
+                    Real(0));
+    foot.add_points();
 }
 
 }  // namespace
@@ -228,7 +231,7 @@ void convex_plane(const Shapes& shapes,
                   ShapeRef a,
                   ShapeRef b,
                   const PoseT<Real>& b_in_a,
-                  Real reach,
+                  Real speculative_margin,
                   PairCache&,
                   LocalManifold<Real>& out)
 {
@@ -237,16 +240,16 @@ void convex_plane(const Shapes& shapes,
     const Vec3T<Real> normal = b_in_a.orientation * plane.normal.template cast<Real>();
     out.normal = -normal;
     const Real depth = -(static_cast<Real>(plane.offset) + normal.dot(b_in_a.position));
-    const Ground<Real> ground = {out.normal, depth, reach, out};
+    const Ground<Real> ground = {out.normal, depth, speculative_margin, out};
 
-    const Core<Real> core = core_of<Real>(shapes, a);
+    const ConvexCore<Real> core = convex_core_of<Real>(shapes, a);
     switch (core.kind) {
     case ShapeKind::sphere:
-        ground.touch(Vec3T<Real>::Zero(), core.radius, 0);
+        ground.add_point(Vec3T<Real>::Zero(), core.convex_radius, 0);
         break;
     case ShapeKind::capsule:
-        ground.touch(-core.extents, core.radius, 0);
-        ground.touch(core.extents, core.radius, 1);
+        ground.add_point(-core.extents, core.convex_radius, 0);
+        ground.add_point(core.extents, core.convex_radius, 1);
         break;
     case ShapeKind::cylinder:
         touch_cylinder(core, ground);

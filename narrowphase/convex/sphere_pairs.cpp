@@ -6,7 +6,7 @@
 
 #include "kernels/check.hpp"
 #include "kernels/geometry/support.hpp"
-#include "narrowphase/convex/rod_contacts.hpp"
+#include "narrowphase/convex/capsule_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,15 +16,15 @@ namespace throng {
 namespace {
 
 template <class Real>
-void touch(const Outward<Real>& outward,
-           Real radius,
-           const PoseT<Real>& b_in_a,
-           Real reach,
-           LocalManifold<Real>& out)
+void fill_manifold(const Outward<Real>& outward,
+                   Real radius,
+                   const PoseT<Real>& b_in_a,
+                   Real speculative_margin,
+                   LocalManifold<Real>& out)
 {
     out.count = 0;
     const Real separation = outward.distance - radius;
-    if (!(separation <= reach)) return;
+    if (!(separation <= speculative_margin)) return;
     out.normal = b_in_a.orientation * -outward.direction;
     out.add(out.normal * (radius + separation / 2), separation, 0);
 }
@@ -110,7 +110,7 @@ bool look_from_known_face(const Hull& hull,
     if (!(above > 0)) return false;
     outward = {hull.normals[cache.feature_b], std::numeric_limits<double>::infinity()};
     if (!(above > enough)) look_from_face(hull, cache.feature_b, point, outward);
-    // A plane is never further than the hull itself, so more than enough is out of reach.
+    // A plane is never further than the hull itself, so more than enough is beyond the margin.
     return above > enough || outward.distance == above;
 }
 
@@ -187,7 +187,7 @@ void sphere_sphere(const Shapes& shapes,
                    ShapeRef a,
                    ShapeRef b,
                    const PoseT<Real>& b_in_a,
-                   Real reach,
+                   Real speculative_margin,
                    PairCache&,
                    LocalManifold<Real>& out)
 {
@@ -195,7 +195,7 @@ void sphere_sphere(const Shapes& shapes,
     const Real radius = radius_of<Real>(shapes, a);
     const Vec3T<Real> normal = unit_or(b_in_a.position, Vec3T<Real>(Vec3T<Real>::UnitZ()));
     const Real separation = normal.dot(b_in_a.position) - radius - radius_of<Real>(shapes, b);
-    if (!(separation <= reach)) return;
+    if (!(separation <= speculative_margin)) return;
     out.normal = normal;
     out.add(normal * (radius + separation / 2), separation, 0);
 }
@@ -205,13 +205,13 @@ void sphere_capsule(const Shapes& shapes,
                     ShapeRef a,
                     ShapeRef b,
                     const PoseT<Real>& b_in_a,
-                    Real reach,
+                    Real speculative_margin,
                     PairCache&,
                     LocalManifold<Real>& out)
 {
     const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
     const Outward<Real> outward = outward_of(shapes.capsules[b.index], center);
-    touch(outward, radius_of<Real>(shapes, a), b_in_a, reach, out);
+    fill_manifold(outward, radius_of<Real>(shapes, a), b_in_a, speculative_margin, out);
 }
 
 template <class Real>
@@ -219,13 +219,13 @@ void sphere_cylinder(const Shapes& shapes,
                      ShapeRef a,
                      ShapeRef b,
                      const PoseT<Real>& b_in_a,
-                     Real reach,
+                     Real speculative_margin,
                      PairCache&,
                      LocalManifold<Real>& out)
 {
     const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
     const Outward<Real> outward = outward_of(shapes.cylinders[b.index], center);
-    touch(outward, radius_of<Real>(shapes, a), b_in_a, reach, out);
+    fill_manifold(outward, radius_of<Real>(shapes, a), b_in_a, speculative_margin, out);
 }
 
 template <class Real>
@@ -233,13 +233,13 @@ void sphere_box(const Shapes& shapes,
                 ShapeRef a,
                 ShapeRef b,
                 const PoseT<Real>& b_in_a,
-                Real reach,
+                Real speculative_margin,
                 PairCache&,
                 LocalManifold<Real>& out)
 {
     const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
     const Outward<Real> outward = outward_of(shapes.boxes[b.index], center);
-    touch(outward, radius_of<Real>(shapes, a), b_in_a, reach, out);
+    fill_manifold(outward, radius_of<Real>(shapes, a), b_in_a, speculative_margin, out);
 }
 
 template <class Real>
@@ -247,7 +247,7 @@ void sphere_hull(const Shapes& shapes,
                  ShapeRef a,
                  ShapeRef b,
                  const PoseT<Real>& b_in_a,
-                 Real reach,
+                 Real speculative_margin,
                  PairCache& cache,
                  LocalManifold<Real>& out)
 {
@@ -256,9 +256,9 @@ void sphere_hull(const Shapes& shapes,
     // Hulls are stored in double.
     const Outward<double> outward =
         outward_of(shapes.hulls[b.index], center.template cast<double>(),
-                   static_cast<double>(radius + reach), cache);
-    touch<Real>({outward.direction.cast<Real>(), static_cast<Real>(outward.distance)}, radius,
-                b_in_a, reach, out);
+                   static_cast<double>(radius + speculative_margin), cache);
+    fill_manifold<Real>({outward.direction.cast<Real>(), static_cast<Real>(outward.distance)},
+                        radius, b_in_a, speculative_margin, out);
 }
 
 THRONG_PAIR_INSTANCES(sphere_sphere)

@@ -20,26 +20,26 @@ constexpr std::uint32_t kByB = 0x40000000u;
 
 // What both shapes show along the axis, in a's frame.
 struct Facing {
-    const CorePair& pair;
+    const ConvexCorePair& pair;
     const ContactAxis& axis;
-    double reach;
+    double speculative_margin;
     Face a, b;
     std::array<Point, kMaxCorners + 1> points;
     std::size_t count = 0;
 
-    double rounding() const { return pair.a.radius + pair.b.radius; }
+    double convex_radius() const { return pair.a.convex_radius + pair.b.convex_radius; }
 
     // Takes a point of each core, in line along the axis.
     void add(const Vec3& on_a, double separation, std::uint32_t feature)
     {
-        const double between = separation - rounding();
-        if (!(between <= reach) || count == points.size()) return;
-        const Vec3 middle = on_a + axis.normal * (pair.a.radius + between / 2);
+        const double between = separation - convex_radius();
+        if (!(between <= speculative_margin) || count == points.size()) return;
+        const Vec3 middle = on_a + axis.normal * (pair.a.convex_radius + between / 2);
         points[count++] = {middle, between, feature};
     }
 };
 
-Face moved(Face face, const CorePair& pair)
+Face moved(Face face, const ConvexCorePair& pair)
 {
     for (std::size_t i = 0; i < static_cast<std::size_t>(face.count); ++i) {
         face.corners[i] = pair.b_turn * face.corners[i] + pair.b_position;
@@ -146,9 +146,9 @@ bool leading_edge(const Face& face, const Vec3& direction, Face& edge)
     return face.count > 2 && std::abs(along.dot(direction)) < 0.1 * along.norm();
 }
 
-double curvature_radius(const Core<double>& core)
+double curvature_radius(const ConvexCore<double>& core)
 {
-    return core.radius + (core.kind == ShapeKind::cylinder ? core.extents.x() : 0);
+    return core.convex_radius + (core.kind == ShapeKind::cylinder ? core.extents.x() : 0);
 }
 
 void pair_lines(Facing& facing, const Face& a, const Face& b)
@@ -170,7 +170,7 @@ void clip_over(Facing& facing, bool face_is_b, double slack)
         clip_segment(facing, face, face_is_b, other, slack);
         return;
     }
-    const Core<double>& core = face_is_b ? facing.pair.a : facing.pair.b;
+    const ConvexCore<double>& core = face_is_b ? facing.pair.a : facing.pair.b;
     if (core.kind == ShapeKind::cylinder) {
         // Every second corner of a cap will do as long as none of them is cut off.
         Face four = other;
@@ -229,9 +229,9 @@ bool share_line(const Segment<double>& a,
     return true;
 }
 
-void fill_points(const CorePair& pair,
+void fill_points(const ConvexCorePair& pair,
                  const ContactAxis& axis,
-                 double reach,
+                 double speculative_margin,
                  LocalManifold<double>& out)
 {
     out.count = 0;
@@ -239,7 +239,7 @@ void fill_points(const CorePair& pair,
     const Vec3 into_b = pair.b_turn.transpose() * -axis.normal;
     Facing facing = {pair,
                      axis,
-                     reach,
+                     speculative_margin,
                      support_face(pair.a, axis.normal),
                      moved(support_face(pair.b, into_b), pair),
                      {},
@@ -249,7 +249,7 @@ void fill_points(const CorePair& pair,
     const double slack = kSlack * std::min(pair.a.size, pair.b.size);
     // A face of a rather than one of b, unless b's is clearly squarer: names should not swap. A cap
     // had rather be clipped than clip, as its corners stand for a round rim.
-    const auto handicap = [](const Core<double>& core) {
+    const auto handicap = [](const ConvexCore<double>& core) {
         return core.kind == ShapeKind::cylinder ? 1e-3 : 0;
     };
     const bool by_b = square_b - handicap(pair.b) > square_a - handicap(pair.a) + 1e-4;
@@ -275,7 +275,7 @@ void fill_points(const CorePair& pair,
     const bool rim = pair.a.kind == ShapeKind::cylinder || pair.b.kind == ShapeKind::cylinder;
     const double missed =
         (rim && square > 1 - 1e-9 ? 1e-5 : 1e-10) * std::min(pair.a.size, pair.b.size);
-    if (!by_lines && deepest - (axis.separation - facing.rounding()) > missed) {
+    if (!by_lines && deepest - (axis.separation - facing.convex_radius()) > missed) {
         const Vec3 middle = (axis.on_a + axis.on_b) / 2;
         facing.add(middle - axis.normal * (axis.separation / 2), axis.separation, kWitness);
     }

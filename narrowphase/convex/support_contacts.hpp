@@ -12,9 +12,9 @@ namespace throng {
 ///
 /// A face meets a face in up to four points, a face or a line meets a line in two, and whatever
 /// meets a corner, or crosses, in one.
-void fill_points(const CorePair& pair,
+void fill_points(const ConvexCorePair& pair,
                  const ContactAxis& axis,
-                 double reach,
+                 double speculative_margin,
                  LocalManifold<double>& out);
 
 /// Where the stretch that two lines share begins or ends.

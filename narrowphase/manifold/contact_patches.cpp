@@ -27,11 +27,12 @@ namespace {
 // jump. By the group's up to 15 bolts made of spheres do not turn.
 constexpr double kGroupNormal = 0.9903, kOwnNormal = 0.9781;
 // How many times a depth missing weighs as much as a distance to span. Of a ball of radius R that
-// keeps what lies within R / 20 of the deepest place. Less where the reach is more than this part
-// of size, as then bodies are fast, and what is far apart yet may be the first to touch.
+// keeps what lies within R / 20 of the deepest place. Less where the speculative margin is more
+// than this part of size, as then bodies are fast, and what is far apart yet may be the first to
+// touch.
 constexpr double kShallow = 20, kShortReach = 0.1;
 // Part of size that places between those that span a patch stand apart at least.
-constexpr double kBetween = 0.03;
+constexpr double kSpacing = 0.03;
 // More than there are names of groups. What is by itself is named by its group and which end it is.
 constexpr std::uint32_t kNames = 256;
 
@@ -39,7 +40,7 @@ constexpr std::uint32_t kNames = 256;
 // ones apart. A hundred and a thousand times what is left of a motion at rest.
 constexpr double kDepthStep = 1e-4, kApart = 1e-3;
 
-bool comes_before(const SurfaceTouch& a, const SurfaceTouch& b)
+bool comes_before(const ContactCandidate& a, const ContactCandidate& b)
 {
     if (a.feature != b.feature) return a.feature < b.feature;
     if (a.separation != b.separation) return a.separation < b.separation;
@@ -74,9 +75,9 @@ free_name(const Vec3& normal, const std::vector<PatchManifold>& out, std::size_t
 }
 
 // A place that differs from all as near to it, by the same however the bodies tremble.
-Vec3 told_apart(const SurfaceTouch& touch, double by)
+Vec3 told_apart(const ContactCandidate& candidate, double by)
 {
-    return touch.position + by * spot_of(touch.feature);
+    return candidate.position + by * spot_of(candidate.feature);
 }
 
 // A direction across the normal that moves smoothly with it, but for seams far from odd axes.
@@ -113,8 +114,8 @@ public:
     }
 
     /// In the order of the points, and which of the four places each has.
-    template <class Visit>
-    void visit(const Visit& visit) const
+    template <class Visitor>
+    void visit(const Visitor& visit) const
     {
         std::array<std::uint32_t, 4> order{0, 1, 2, 3};
         std::sort(order.begin(), order.begin() + count_,
@@ -168,9 +169,9 @@ private:
     std::size_t count_ = 0;
 };
 
-double weight_of_depth(double reach, double size)
+double weight_of_depth(double speculative_margin, double size)
 {
-    const double fast = reach / (kShortReach * size);
+    const double fast = speculative_margin / (kShortReach * size);
     return fast > 1 ? kShallow / (fast * fast) : kShallow;
 }
 
@@ -182,15 +183,17 @@ Vec3 normal_between(const Vec3& group, const Vec3& own, double cosine)
     return (part * own + (1 - part) * group).normalized();
 }
 
-// The manifolds of one set of touches, put behind what `out` holds.
+// The manifolds of one set of candidates, put behind what `out` holds.
 class PatchMaker {
 public:
-    PatchMaker(const std::vector<SurfaceTouch>& touches,
-               double reach,
+    PatchMaker(const std::vector<ContactCandidate>& candidates,
+               double speculative_margin,
                double size,
                std::vector<PatchManifold>& out)
-        : touches_(touches), groups_(touches, reach, size), reach_(reach), size_(size),
-          fills_(reach > kShortReach * size && groups_.oppose()), out_(out), first_(out.size())
+        : candidates_(candidates), groups_(candidates, speculative_margin, size),
+          speculative_margin_(speculative_margin), size_(size),
+          fills_(speculative_margin > kShortReach * size && groups_.oppose()), out_(out),
+          first_(out.size())
     { }
 
     /// Touches that overlap and are in no manifold.
@@ -207,41 +210,44 @@ private:
     void add(const Vec3& normal, std::uint8_t group)
     {
         const std::vector<LocalManifold<double>::Point>& places = places_of(normal, group);
-        const Spread spread(places, normal, weight_of_depth(reach_, size_));
+        const Spread spread(places, normal, weight_of_depth(speculative_margin_, size_));
         const std::uint32_t name = free_name(normal, out_, first_);
         PatchManifold together{name, {}};
         together.manifold.normal = normal;
         spread.visit([&](const auto& chosen, std::uint32_t end) {
-            const SurfaceTouch& touch = touches_[chosen.feature];
-            const double along = normal.dot(touch.normal);
+            const ContactCandidate& candidate = candidates_[chosen.feature];
+            const double along = normal.dot(candidate.normal);
             if (along >= kGroupNormal)
-                put(touch, together.manifold);
+                put(candidate, together.manifold);
             else
-                add_alone(touch, normal_between(normal, touch.normal, along), name, end);
+                add_alone(candidate, normal_between(normal, candidate.normal, along), name, end);
         });
         if (together.manifold.count > 0) out_.push_back(together);
         if (fills_ && bends(normal, places)) fill(places, spread.chosen(), name);
     }
 
-    static void put(const SurfaceTouch& touch, LocalManifold<double>& manifold)
+    static void put(const ContactCandidate& candidate, LocalManifold<double>& manifold)
     {
-        manifold.add(touch.position, touch.separation * manifold.normal.dot(touch.normal),
-                     touch.feature);
+        manifold.add(candidate.position,
+                     candidate.separation * manifold.normal.dot(candidate.normal),
+                     candidate.feature);
     }
 
     // `end` tells apart what stands alone of one group.
-    void
-    add_alone(const SurfaceTouch& touch, const Vec3& normal, std::uint32_t name, std::uint32_t end)
+    void add_alone(const ContactCandidate& candidate,
+                   const Vec3& normal,
+                   std::uint32_t name,
+                   std::uint32_t end)
     {
         PatchManifold& alone = out_.emplace_back(PatchManifold{kNames * (end + 1) + name, {}});
         alone.manifold.normal = normal;
-        put(touch, alone.manifold);
+        put(candidate, alone.manifold);
     }
 
     bool bends(const Vec3& normal, const std::vector<LocalManifold<double>::Point>& places) const
     {
         return std::any_of(places.begin(), places.end(), [&](const auto& place) {
-            return normal.dot(touches_[place.feature].normal) < kGroupNormal;
+            return normal.dot(candidates_[place.feature].normal) < kGroupNormal;
         });
     }
 
@@ -251,35 +257,36 @@ private:
     {
         thread_local std::vector<std::size_t> taken;
         taken.assign(chosen.begin(), chosen.end());
-        take_between(places, kBetween * size_, weight_of_depth(reach_, size_), kMostBetween, taken);
+        take_between(places, kSpacing * size_, weight_of_depth(speculative_margin_, size_),
+                     kMostBetween, taken);
         for (std::size_t k = chosen.size(); k < taken.size(); ++k) {
-            const SurfaceTouch& touch = touches_[places[taken[k]].feature];
+            const ContactCandidate& candidate = candidates_[places[taken[k]].feature];
             const auto end = static_cast<std::uint32_t>(4 + k - chosen.size());
-            add_alone(touch, touch.normal, name, end);
+            add_alone(candidate, candidate.normal, name, end);
         }
     }
 
-    // The touches of a group, places told apart and depths in steps; features are those of
-    // `touches_`.
+    // The candidates of a group, places told apart and depths in steps; features are those of
+    // `candidates_`.
     const std::vector<LocalManifold<double>::Point>& places_of(const Vec3& normal,
                                                                std::uint8_t group) const
     {
         thread_local std::vector<LocalManifold<double>::Point> places;
         places.clear();
         const double step = kDepthStep * size_;
-        for (std::size_t i = 0; i < touches_.size(); ++i) {
+        for (std::size_t i = 0; i < candidates_.size(); ++i) {
             if (!groups_.holds(group, i)) continue;
-            const double along = touches_[i].separation * normal.dot(touches_[i].normal);
-            places.push_back({told_apart(touches_[i], kApart * size_),
+            const double along = candidates_[i].separation * normal.dot(candidates_[i].normal);
+            places.push_back({told_apart(candidates_[i], kApart * size_),
                               step > 0 ? std::round(along / step) * step : along,
                               static_cast<std::uint32_t>(i)});
         }
         return places;
     }
 
-    const std::vector<SurfaceTouch>& touches_;
+    const std::vector<ContactCandidate>& candidates_;
     const PatchGroups groups_;
-    double reach_, size_;
+    double speculative_margin_, size_;
     bool fills_;  // patches that bend
     std::vector<PatchManifold>& out_;
     std::size_t first_;  // of this set in `out`
@@ -287,19 +294,19 @@ private:
 
 }  // namespace
 
-std::size_t make_patches(std::vector<SurfaceTouch>& touches,
-                         double reach,
+std::size_t make_patches(std::vector<ContactCandidate>& candidates,
+                         double speculative_margin,
                          double size,
                          std::vector<PatchManifold>& out)
 {
-    std::erase_if(touches, [&](const SurfaceTouch& touch) {
-        const bool finite = touch.position.allFinite() && touch.normal.allFinite()
-            && std::isfinite(touch.separation);
-        return !finite || touch.separation > reach;
+    std::erase_if(candidates, [&](const ContactCandidate& candidate) {
+        const bool finite = candidate.position.allFinite() && candidate.normal.allFinite()
+            && std::isfinite(candidate.separation);
+        return !finite || candidate.separation > speculative_margin;
     });
-    if (touches.empty()) return 0;
-    std::sort(touches.begin(), touches.end(), comes_before);
-    return PatchMaker(touches, reach, size, out).make();
+    if (candidates.empty()) return 0;
+    std::sort(candidates.begin(), candidates.end(), comes_before);
+    return PatchMaker(candidates, speculative_margin, size, out).make();
 }
 
 }  // namespace throng

@@ -14,7 +14,7 @@ namespace throng {
 ///   normal      unit, from a to b
 ///   separation  m, along the normal; below 0 when overlapping
 ///   feature     the same while the same place of a surface is meant
-struct SurfaceTouch {
+struct ContactCandidate {
     Vec3 position = Vec3::Zero();
     Vec3 normal = Vec3::UnitZ();
     double separation = 0;
@@ -26,20 +26,21 @@ struct SurfaceTouch {
 inline constexpr std::size_t kMostPatches = 24, kMostBetween = 64;
 inline constexpr std::size_t kMostManifolds = (4 + kMostBetween) * kMostPatches;
 
-/// Groups touches that push much the same way, and chooses of each group up to four that span it.
-/// Those whose normals are within 8 degrees of the group's are one manifold with that normal; each
-/// of the others is a manifold of one point, from 12 degrees on with its own. Appended to `out` in
-/// order of patch.
+/// Groups candidates that push much the same way, and chooses of each group up to four that span
+/// it. Those whose normals are within 8 degrees of the group's are one manifold with that normal;
+/// each of the others is a manifold of one point, from 12 degrees on with its own. Appended to
+/// `out` in order of patch.
 ///
-///   touches  sorted by this, and those further apart than `reach` taken out; the answer does not
-///            hang on their order. Features are to differ from one another
-///   reach    m, touches further apart than this are left out
-///   size     m, of the smaller of the two shapes
+///   candidates          sorted by this, and those further apart than `speculative_margin` taken
+///                       out; the answer does not hang on their order. Features are to differ from
+///                       one another
+///   speculative_margin  m, touches further apart than this are left out
+///   size                m, of the smaller of the two shapes
 ///
 /// Normals of a group's touches are within 31 degrees of the group's: their mean, weighed by how
-/// far within reach each is. Separations are what of them lies along their manifold's. The places
-/// of touches do not part them: bodies are rigid, so what pushes one way holds by the four that
-/// span the most wherever they are, as a table stands on four legs.
+/// far within the margin each is. Separations are what of them lies along their manifold's. The
+/// places of candidates do not part them: bodies are rigid, so what pushes one way holds by the
+/// four that span the most wherever they are, as a table stands on four legs.
 ///
 /// That holds for patches that are flat. Where a body is held from opposite sides, and fast, as a
 /// bolt that runs down its nut, of patches that bend places between the four are kept too, three
@@ -49,13 +50,14 @@ inline constexpr std::size_t kMostManifolds = (4 + kMostBetween) * kMostPatches;
 /// What is chosen hangs on directions and places rather than on small differences in depth, so that
 /// bodies at rest keep the same points. The deepest of each group is among them, or one that is as
 /// deep to within a ten-thousandth of size. What lies shallower counts for less; the less so the
-/// further the reach is beyond a tenth of size, as of fast bodies what is far may touch first.
+/// further the speculative margin is beyond a tenth of size, as of fast bodies what is far may
+/// touch first.
 ///
-/// Where there are more groups than kMostPatches, the touches of the shallowest join those that
+/// Where there are more groups than kMostPatches, the candidates of the shallowest join those that
 /// push within 45 degrees of them, or are left out; how many that overlap were left out is what it
 /// answers.
-std::size_t make_patches(std::vector<SurfaceTouch>& touches,
-                         double reach,
+std::size_t make_patches(std::vector<ContactCandidate>& candidates,
+                         double speculative_margin,
                          double size,
                          std::vector<PatchManifold>& out);
 

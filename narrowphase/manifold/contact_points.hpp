@@ -1,4 +1,4 @@
-// Contact points: the best four of many.
+// Contact points: manifold reduction, the best four of many.
 //
 // Four points hold a flat contact as well as eight do, at half the cost to the solver.
 #pragma once

@@ -10,7 +10,7 @@ namespace {
 // Cosine of the angle that a group takes in, 31 degrees. No round number: the normals of meshes
 // made by formula often stand exactly 30 from one another.
 constexpr double kAlike = 0.857;
-// Of the angle over which the touches of a group too many join another, 45 degrees.
+// Of the angle over which the candidates of a group too many join another, 45 degrees.
 constexpr double kJoins = 0.7;
 // How often a group's middle is sought anew at most.
 constexpr int kRounds = 4;
@@ -42,15 +42,17 @@ std::vector<PatchGroups::Free>& PatchGroups::free_ones()
     return scratch;
 }
 
-PatchGroups::PatchGroups(const std::vector<SurfaceTouch>& touches, double reach, double size)
-    : touches_(touches), group_of_(groups_of()), free_(free_ones())
+PatchGroups::PatchGroups(const std::vector<ContactCandidate>& candidates,
+                         double speculative_margin,
+                         double size)
+    : candidates_(candidates), group_of_(groups_of()), free_(free_ones())
 {
-    group_of_.assign(touches.size(), kNone);
-    // What is just within reach hardly counts.
+    group_of_.assign(candidates.size(), kNone);
+    // What is just within the margin hardly counts.
     const double least_weight = 1e-6 * size;
-    for (std::uint32_t i = 0; i < touches.size(); ++i) {
-        const double within = reach - touches[i].separation + least_weight;
-        free_.push_back({touches[i].normal, within * within, i});
+    for (std::uint32_t i = 0; i < candidates.size(); ++i) {
+        const double within = speculative_margin - candidates[i].separation + least_weight;
+        free_.push_back({candidates[i].normal, within * within, i});
     }
     while (count_ < kMost && gather()) ++count_;
     keep_deepest();
@@ -59,8 +61,8 @@ PatchGroups::PatchGroups(const std::vector<SurfaceTouch>& touches, double reach,
 std::size_t PatchGroups::left_out() const
 {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < touches_.size(); ++i)
-        count += group_of_[i] == kNone && touches_[i].separation < 0 ? 1 : 0;
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
+        count += group_of_[i] == kNone && candidates_[i].separation < 0 ? 1 : 0;
     return count;
 }
 
@@ -109,7 +111,7 @@ bool PatchGroups::gather()
         seed = &one;
     }
     if (seed == nullptr) return false;
-    const std::uint32_t first = seed->touch;
+    const std::uint32_t first = seed->candidate;
     Vec3 middle = seed->normal;
     for (int round = 0; round < kRounds; ++round) {
         const Vec3 before = middle;
@@ -124,21 +126,21 @@ bool PatchGroups::gather()
     const std::size_t were = free_.size();
     std::erase_if(free_, [&](const Free& one) {
         const bool taken = middle.dot(one.normal) >= kAlike;
-        if (taken) take(one.touch);
+        if (taken) take(one.candidate);
         return taken;
     });
     if (free_.size() < were) return true;
     // Rounding.
-    groups_[count_].normal = touches_[first].normal;
+    groups_[count_].normal = candidates_[first].normal;
     take(first);
-    std::erase_if(free_, [&](const Free& one) { return one.touch == first; });
+    std::erase_if(free_, [&](const Free& one) { return one.candidate == first; });
     return true;
 }
 
-void PatchGroups::take(std::size_t touch)
+void PatchGroups::take(std::size_t candidate)
 {
-    group_of_[touch] = static_cast<std::uint8_t>(count_);
-    groups_[count_].deepest = std::min(groups_[count_].deepest, touches_[touch].separation);
+    group_of_[candidate] = static_cast<std::uint8_t>(count_);
+    groups_[count_].deepest = std::min(groups_[count_].deepest, candidates_[candidate].separation);
 }
 
 void PatchGroups::keep_deepest()
@@ -150,16 +152,16 @@ void PatchGroups::keep_deepest()
                                                         : a < b;
     });
     for (std::size_t k = 0; k < std::min(count_, kMostPatches); ++k) groups_[order[k]].kept = true;
-    for (std::size_t i = 0; i < touches_.size(); ++i)
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
         if (group_of_[i] == kNone || !groups_[group_of_[i]].kept) group_of_[i] = nearest_kept(i);
 }
 
-std::uint8_t PatchGroups::nearest_kept(std::size_t touch) const
+std::uint8_t PatchGroups::nearest_kept(std::size_t candidate) const
 {
     std::uint8_t nearest = kNone;
     double most = kJoins;
     for (std::size_t g = 0; g < count_; ++g) {
-        const double along = groups_[g].normal.dot(touches_[touch].normal);
+        const double along = groups_[g].normal.dot(candidates_[candidate].normal);
         if (!groups_[g].kept || !(along > most)) continue;
         most = along;
         nearest = static_cast<std::uint8_t>(g);

@@ -13,22 +13,28 @@ namespace throng {
 /// Axes that no face of a mesh is likely to look along.
 const Mat3& odd_axes();
 
-/// Groups of touches whose normals lie within 31 degrees of the group's: as many as are needed, of
-/// which the deepest kMostPatches are kept. Begun and told apart by nothing that turns on a small
-/// difference. The touches must outlive it; one at a time on a thread, whose scratch it uses.
+/// Groups of candidates whose normals lie within 31 degrees of the group's: as many as are needed,
+/// of which the deepest kMostPatches are kept. Begun and told apart by nothing that turns on a
+/// small difference. The candidates must outlive it; one at a time on a thread, whose scratch it
+/// uses.
 class PatchGroups {
 public:
-    /// `reach` and `size` as of make_patches().
-    PatchGroups(const std::vector<SurfaceTouch>& touches, double reach, double size);
+    /// `speculative_margin` and `size` as of make_patches().
+    PatchGroups(const std::vector<ContactCandidate>& candidates,
+                double speculative_margin,
+                double size);
 
     /// Touches that overlap and are in no group.
     std::size_t left_out() const;
     /// Whether two of the groups that are kept look at one another.
     bool oppose() const;
-    bool holds(std::uint8_t group, std::size_t touch) const { return group_of_[touch] == group; }
+    bool holds(std::uint8_t group, std::size_t candidate) const
+    {
+        return group_of_[candidate] == group;
+    }
     /// Calls visit(normal, group) for each group that is kept.
-    template <class Visit>
-    void visit(const Visit& visit) const
+    template <class Visitor>
+    void visit(const Visitor& visit) const
     {
         for (std::size_t g = 0; g < count_; ++g)
             if (groups_[g].kept) visit(groups_[g].normal, static_cast<std::uint8_t>(g));
@@ -47,7 +53,7 @@ private:
     struct Free {
         Vec3 normal;
         double weight;
-        std::uint32_t touch;
+        std::uint32_t candidate;
     };
 
     static std::vector<std::uint8_t>& groups_of();
@@ -55,11 +61,11 @@ private:
     bool gather();
     template <class Share>
     Vec3 mean_round(const Vec3& direction, const Share& share) const;
-    void take(std::size_t touch);
+    void take(std::size_t candidate);
     void keep_deepest();
-    std::uint8_t nearest_kept(std::size_t touch) const;
+    std::uint8_t nearest_kept(std::size_t candidate) const;
 
-    const std::vector<SurfaceTouch>& touches_;
+    const std::vector<ContactCandidate>& candidates_;
     std::vector<std::uint8_t>& group_of_;
     std::vector<Free>& free_;
     std::array<Group, kMost> groups_;

@@ -8,9 +8,9 @@
 namespace throng {
 
 template <class Real>
-bool recycle(const FoundManifold<Real>& found,
+bool recycle(const CachedManifold<Real>& found,
              const PoseT<Real>& b_in_a,
-             Real reach,
+             Real speculative_margin,
              Real radius_b,
              Real bound,
              LocalManifold<Real>& out)
@@ -18,17 +18,18 @@ bool recycle(const FoundManifold<Real>& found,
     const QuatT<Real> turn = b_in_a.orientation * found.b_in_a.orientation.conjugate();
     const Vec3T<Real> shift = b_in_a.position - found.b_in_a.position;
     const Real moved = furthest_moved(shift, turn, radius_b);
-    // What was out of reach then may be within a greater reach now.
-    if (!(moved + std::max(Real(0), reach - found.reach) <= bound)) return false;
+    // What was beyond the margin then may be within a greater margin now.
+    if (!(moved + std::max(Real(0), speculative_margin - found.speculative_margin) <= bound))
+        return false;
 
-    move_manifold(found, b_in_a, reach, out);
+    move_manifold(found, b_in_a, speculative_margin, out);
     return true;
 }
 
 template <class Real>
-void move_manifold(const FoundManifold<Real>& found,
+void move_manifold(const CachedManifold<Real>& found,
                    const PoseT<Real>& b_in_a,
-                   Real reach,
+                   Real speculative_margin,
                    LocalManifold<Real>& out)
 {
     const QuatT<Real> turn = b_in_a.orientation * found.b_in_a.orientation.conjugate();
@@ -44,7 +45,8 @@ void move_manifold(const FoundManifold<Real>& found,
         const Vec3T<Real> across = 2 * half_turn.cross(on_b);
         const Vec3T<Real> by = shift + turn.w() * across + half_turn.cross(across);
         const Real separation = point.separation + then.normal.dot(by);
-        if (separation <= reach) out.add(point.position + by / 2, separation, point.feature);
+        if (separation <= speculative_margin)
+            out.add(point.position + by / 2, separation, point.feature);
     }
 }
 
@@ -64,9 +66,9 @@ Real furthest_moved_near(const PoseT<Real>& then,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template bool recycle<Real>(const FoundManifold<Real>&, const PoseT<Real>&, Real, Real, Real,  \
+    template bool recycle<Real>(const CachedManifold<Real>&, const PoseT<Real>&, Real, Real, Real, \
                                 LocalManifold<Real>&);                                             \
-    template void move_manifold<Real>(const FoundManifold<Real>&, const PoseT<Real>&, Real,        \
+    template void move_manifold<Real>(const CachedManifold<Real>&, const PoseT<Real>&, Real,       \
                                       LocalManifold<Real>&);                                       \
     template Real furthest_moved_near<Real>(const PoseT<Real>&, const PoseT<Real>&, Real, Real);
 THRONG_INSTANTIATE(float)

@@ -12,26 +12,26 @@ namespace throng {
 
 /// The manifold at another pose; false where it has to be found anew.
 ///
-///   b_in_a    as for PairFunction
-///   reach     m, points further apart than this are left out
-///   radius_b  m, b has no point further than this from its origin
-///   bound     m, no point of b may have moved further than this since, seen from a. What was left
-///             out then may be deeper by so much than it was
+///   b_in_a              as for PairFunction
+///   speculative_margin  m, points further apart than this are left out
+///   radius_b            m, b has no point further than this from its origin
+///   bound               m, no point of b may have moved further than this since, seen from a. What
+///                       was left out then may be deeper by so much than it was
 ///
 /// At the pose that it was found at it is what was found, to the bit.
 template <class Real>
-bool recycle(const FoundManifold<Real>& found,
+bool recycle(const CachedManifold<Real>& found,
              const PoseT<Real>& b_in_a,
-             Real reach,
+             Real speculative_margin,
              Real radius_b,
              Real bound,
              LocalManifold<Real>& out);
 
 /// The manifold at another pose, however far that is.
 template <class Real>
-void move_manifold(const FoundManifold<Real>& found,
+void move_manifold(const CachedManifold<Real>& found,
                    const PoseT<Real>& b_in_a,
-                   Real reach,
+                   Real speculative_margin,
                    LocalManifold<Real>& out);
 
 /// No point of b that is where a is has moved further from one pose to the other, seen from a, m.

@@ -113,35 +113,37 @@ struct Prism {
     }
 };
 
-void touch(const Shapes& shapes,
-           ShapeRef shape,
-           const MeshTriangle& triangle,
-           const Pose& pose,
-           double reach,
-           bool through,
-           LocalManifold<double>& out)
+void collide(const Shapes& shapes,
+             ShapeRef shape,
+             const MeshTriangle& triangle,
+             const Pose& pose,
+             double speculative_margin,
+             bool through,
+             LocalManifold<double>& out)
 {
     out.count = 0;
     switch (shape.kind) {
     case ShapeKind::sphere:
-        touch_ball(triangle, pose.position, shapes.spheres[shape.index].radius, reach, out,
-                   through);
+        collide_triangle_ball(triangle, pose.position, shapes.spheres[shape.index].radius,
+                              speculative_margin, out, through);
         return;
     case ShapeKind::capsule: {
         const Capsule& capsule = shapes.capsules[shape.index];
         const Vec3 half(0, 0, capsule.half_length);
-        touch_rod(triangle, pose * Vec3(-half), pose * half, capsule.radius, reach, out, through);
+        collide_triangle_capsule(triangle, pose * Vec3(-half), pose * half, capsule.radius,
+                                 speculative_margin, out, through);
         return;
     }
     case ShapeKind::cylinder: {
         const Vec3 towards = pose.orientation.conjugate() * -triangle.normal;
         const Prism prism(shapes.cylinders[shape.index], towards);
-        touch_polytope(triangle, prism.view(), pose, reach, out, through);
+        collide_triangle_polytope(triangle, prism.view(), pose, speculative_margin, out, through);
         return;
     }
     case ShapeKind::box:
     case ShapeKind::hull:
-        touch_polytope(triangle, PolytopeShape(shapes, shape).view(), pose, reach, out, through);
+        collide_triangle_polytope(triangle, PolytopeShape(shapes, shape).view(), pose,
+                                  speculative_margin, out, through);
         return;
     default:
         THRONG_CHECK(false, "a mesh collides with convex shapes of some volume");
@@ -170,7 +172,7 @@ void collide_triangles(const Shapes& shapes,
                        ShapeRef mesh,
                        ShapeRef b,
                        const Pose& pose,
-                       double reach,
+                       double speculative_margin,
                        std::span<const std::uint32_t> near,
                        std::span<const std::uint32_t> held,
                        const auto& take)
@@ -182,8 +184,8 @@ void collide_triangles(const Shapes& shapes,
     for (const std::uint32_t index : near) {
         const MeshSides::Approach from = sided ? sides.approach(index) : MeshSides::Approach{};
         if (!from.any) continue;
-        touch(shapes, b, MeshTriangle(surface, index, from.behind), pose, reach, from.through,
-              found);
+        collide(shapes, b, MeshTriangle(surface, index, from.behind), pose, speculative_margin,
+                from.through, found);
         if (found.count == 0) continue;
         if (from.behind && !from.known && sides.is_hidden(nearest_of(found), index)) continue;
         take(from.behind ? index | kBehind : index, found);
@@ -207,7 +209,7 @@ void collide_mesh(const Shapes& shapes,
                   ShapeRef mesh,
                   ShapeRef b,
                   const PoseT<Real>& b_in_a,
-                  Real reach,
+                  Real speculative_margin,
                   std::span<const std::uint32_t> held,
                   std::vector<TriangleManifold<Real>>& out)
 {
@@ -215,12 +217,12 @@ void collide_mesh(const Shapes& shapes,
     const Pose pose{b_in_a.position.template cast<double>(),
                     b_in_a.orientation.template cast<double>().normalized()};
     Box3 box = shape_bounds(shapes, b, pose);
-    box.lower.array() -= double{reach};
-    box.upper.array() += double{reach};
+    box.lower.array() -= double{speculative_margin};
+    box.upper.array() += double{speculative_margin};
     near.clear();
     find_triangles(*mesh_of(shapes, mesh), box, near);
     keep_held(held, near);
-    collide_triangles(shapes, mesh, b, pose, double{reach}, near, held,
+    collide_triangles(shapes, mesh, b, pose, double{speculative_margin}, near, held,
                       [&](std::uint32_t triangle, const LocalManifold<double>& found) {
                           out.push_back({triangle, found.cast<Real>()});
                       });
@@ -231,10 +233,10 @@ void collide_mesh(const Shapes& shapes,
                   ShapeRef mesh,
                   ShapeRef b,
                   const PoseT<Real>& b_in_a,
-                  Real reach,
+                  Real speculative_margin,
                   std::vector<TriangleManifold<Real>>& out)
 {
-    collide_mesh(shapes, mesh, b, b_in_a, reach, {}, out);
+    collide_mesh(shapes, mesh, b, b_in_a, speculative_margin, {}, out);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \

@@ -26,7 +26,7 @@ void collide_mesh(const Shapes& shapes,
                   ShapeRef mesh,
                   ShapeRef b,
                   const PoseT<Real>& b_in_a,
-                  Real reach,
+                  Real speculative_margin,
                   std::vector<TriangleManifold<Real>>& out);
 
 }  // namespace throng

@@ -52,7 +52,7 @@ int MeshSides::side_held(std::uint32_t triangle) const
         const std::uint32_t other = held & ~kBehind;
         const int of_other = (held & kBehind) != 0 ? 1 : 0;
         if (other == triangle) return of_other;
-        for (const std::int32_t next : mesh_.beyond[triangle])
+        for (const std::int32_t next : mesh_.adjacent[triangle])
             if (next == static_cast<std::int32_t>(other)) side = of_other;
     }
     return side;
@@ -73,7 +73,7 @@ MeshSides::Approach MeshSides::crossed(std::uint32_t triangle, bool behind) cons
     // At a corner both its edges count.
     const std::size_t first = region > 3 ? (region - 2) % 3 : region - 1;
     const std::size_t last = region > 3 ? region - 4 : first;
-    if (seen.beyond(first) < 0 || seen.beyond(last) < 0) return went_round;
+    if (seen.adjacent(first) < 0 || seen.adjacent(last) < 0) return went_round;
     // Over an edge within: the triangle that the center is over pushes.
     return {.any = false};
 }
@@ -95,7 +95,7 @@ bool MeshSides::is_inside_of(std::uint32_t triangle) const
     }
     if (nearest != triangle || region > 3) return false;
     if (region == 0) return true;
-    const std::int32_t next = mesh_.beyond[triangle][region - 1];
+    const std::int32_t next = mesh_.adjacent[triangle][region - 1];
     return next >= 0 && height(static_cast<std::uint32_t>(next)) < 0;
 }
 

@@ -59,7 +59,7 @@ void collide_mesh(const Shapes& shapes,
                   ShapeRef mesh,
                   ShapeRef b,
                   const PoseT<Real>& b_in_a,
-                  Real reach,
+                  Real speculative_margin,
                   std::span<const std::uint32_t> held,
                   std::vector<TriangleManifold<Real>>& out);
 

@@ -29,19 +29,19 @@ std::size_t corner_of(const Mesh& mesh, std::uint32_t triangle, std::uint32_t ve
 }
 
 // Visits the triangles round a vertex, over one side or the other; says whether it came all round.
-template <class Visit>
+template <class Visitor>
 bool walk_round(const Mesh& mesh,
                 std::uint32_t start,
                 std::uint32_t vertex,
                 std::size_t side,
                 bool& stop,
-                const Visit& visit)
+                const Visitor& visit)
 {
     std::uint32_t here = start;
     for (int steps = 0; steps < 256 && !stop; ++steps) {
         const std::size_t corner = corner_of(mesh, here, vertex);
         stop = visit(here, corner);
-        const std::int32_t next = mesh.beyond[here][(corner + side) % 3];
+        const std::int32_t next = mesh.adjacent[here][(corner + side) % 3];
         if (next < 0) return false;
         here = static_cast<std::uint32_t>(next);
         if (here == start) return true;
@@ -79,24 +79,24 @@ bool clip_to_prism(const MeshTriangle& triangle, double slack, Segment<double>& 
     return true;
 }
 
-struct RodTouch {
-    Vec3 on_triangle, on_rod;
+struct CapsuleClosest {
+    Vec3 on_triangle, on_segment;
     TriangleRegion region;
     double distance2;
 };
 
-RodTouch closest_on_rod(const MeshTriangle& triangle, const Segment<double>& rod)
+CapsuleClosest closest_on_capsule(const MeshTriangle& triangle, const Segment<double>& segment)
 {
     const auto& corners = triangle.corners;
-    RodTouch best{};
+    CapsuleClosest best{};
     best.distance2 = std::numeric_limits<double>::max();
-    for (const Vec3& end : {rod.from, rod.to}) {
+    for (const Vec3& end : {segment.from, segment.to}) {
         const auto found = closest_on_triangle<double>(end, corners[0], corners[1], corners[2]);
         const double distance2 = (found.point - end).squaredNorm();
         if (distance2 < best.distance2) best = {found.point, end, found.region, distance2};
     }
     for (std::size_t e = 0; e < 3; ++e) {
-        const auto found = closest_points<double>({corners[e], corners[(e + 1) % 3]}, rod);
+        const auto found = closest_points<double>({corners[e], corners[(e + 1) % 3]}, segment);
         const double distance2 = (found.on_a - found.on_b).squaredNorm();
         if (distance2 >= best.distance2) continue;
         const std::size_t region = found.at_a <= 0 ? 4 + e
@@ -108,20 +108,20 @@ RodTouch closest_on_rod(const MeshTriangle& triangle, const Segment<double>& rod
 }
 
 // The rod's part above the triangle, measured along the triangle's normal.
-void lay_rod(const MeshTriangle& triangle,
-             const Segment<double>& rod,
-             double radius,
-             double reach,
-             LocalManifold<double>& out)
+void add_capsule_points(const MeshTriangle& triangle,
+                        const Segment<double>& segment,
+                        double radius,
+                        double speculative_margin,
+                        LocalManifold<double>& out)
 {
-    Segment<double> part = rod;
+    Segment<double> part = segment;
     if (!clip_to_prism(triangle, kSeam * radius, part)) return;
     out.normal = triangle.normal;
     std::uint32_t feature = 0;
     for (const Vec3& end : {part.from, part.to}) {
         const double height = triangle.height(end), separation = height - radius;
         const bool second = feature++ == 1;
-        if (separation > reach || (second && part.to == part.from)) continue;
+        if (separation > speculative_margin || (second && part.to == part.from)) continue;
         out.add(end - triangle.normal * ((height + radius) / 2), separation, second ? 2 : 1);
     }
 }
@@ -168,7 +168,7 @@ bool edge_sticks_out(const MeshTriangle& triangle, std::size_t edge, const Vec3&
 {
     const Mesh& mesh = triangle.mesh;
     if (!triangle.is_convex(edge)) return false;
-    const std::int32_t next = triangle.beyond(edge);
+    const std::int32_t next = triangle.adjacent(edge);
     if (next < 0) return direction.dot(triangle.normal) >= 0;
     const auto& ids = mesh.triangles[static_cast<std::size_t>(next)];
     const Vec3& here = triangle.corners[edge];
@@ -177,16 +177,16 @@ bool edge_sticks_out(const MeshTriangle& triangle, std::size_t edge, const Vec3&
         && !rises(here, mesh.vertices[ids[2]], direction);
 }
 
-void touch_ball(const MeshTriangle& triangle,
-                const Vec3& center,
-                double radius,
-                double reach,
-                LocalManifold<double>& out,
-                bool through)
+void collide_triangle_ball(const MeshTriangle& triangle,
+                           const Vec3& center,
+                           double radius,
+                           double speculative_margin,
+                           LocalManifold<double>& out,
+                           bool through)
 {
     out.count = 0;
     const double height = triangle.height(center);
-    if ((height < 0 && !through) || height - radius > reach) return;
+    if ((height < 0 && !through) || height - radius > speculative_margin) return;
     const auto& corners = triangle.corners;
     const auto closest = closest_on_triangle<double>(center, corners[0], corners[1], corners[2]);
     const Vec3 apart = center - closest.point;
@@ -196,7 +196,7 @@ void touch_ball(const MeshTriangle& triangle,
     if (height >= 0 && past.norm() > kSeam * radius) {
         distance = apart.norm();
         direction = apart / distance;
-        if (distance - radius > reach) return;
+        if (distance - radius > speculative_margin) return;
         // Where the mesh goes on past this edge, the triangle there is the one to push.
         if (!region_sticks_out(triangle, closest.region, direction)) return;
     }
@@ -204,39 +204,42 @@ void touch_ball(const MeshTriangle& triangle,
     out.add(center - direction * ((distance + radius) / 2), distance - radius, 1);
 }
 
-void touch_rod(const MeshTriangle& triangle,
-               const Vec3& from,
-               const Vec3& to,
-               double radius,
-               double reach,
-               LocalManifold<double>& out,
-               bool through)
+void collide_triangle_capsule(const MeshTriangle& triangle,
+                              const Vec3& from,
+                              const Vec3& to,
+                              double radius,
+                              double speculative_margin,
+                              LocalManifold<double>& out,
+                              bool through)
 {
     out.count = 0;
     const double height_from = triangle.height(from), height_to = triangle.height(to);
     const bool before = height_from + height_to >= 0;
-    if ((!before && !through) || std::min(height_from, height_to) - radius > reach) return;
-    const Segment<double> rod{from, to};
+    if ((!before && !through) || std::min(height_from, height_to) - radius > speculative_margin)
+        return;
+    const Segment<double> segment{from, to};
     // What runs through the face is measured along its normal, however far its ends are.
-    if (!before || triangle.is_crossed(from, to)) return lay_rod(triangle, rod, radius, reach, out);
-    const RodTouch touch = closest_on_rod(triangle, rod);
-    const double limit = reach + radius;
-    if (touch.distance2 > limit * limit) return;
+    if (!before || triangle.is_crossed(from, to))
+        return add_capsule_points(triangle, segment, radius, speculative_margin, out);
+    const CapsuleClosest closest = closest_on_capsule(triangle, segment);
+    const double limit = speculative_margin + radius;
+    if (closest.distance2 > limit * limit) return;
 
     // A rod that lies on the triangle, or leans over a seam, is measured from the face; only an
     // edge or a corner that sticks out pushes along the line to it.
-    const Vec3 apart = touch.on_rod - touch.on_triangle;
-    const double distance = std::sqrt(touch.distance2);
+    const Vec3 apart = closest.on_segment - closest.on_triangle;
+    const double distance = std::sqrt(closest.distance2);
     const Vec3 past = apart - triangle.normal * triangle.normal.dot(apart);
-    const bool over_face = touch.region == TriangleRegion::face || distance <= kSeam * radius
+    const bool over_face = closest.region == TriangleRegion::face || distance <= kSeam * radius
         || past.norm() <= kSeam * radius || triangle.normal.dot(apart) < 0;
     const Vec3 direction = over_face ? triangle.normal : Vec3(apart / distance);
-    if (over_face || !region_sticks_out(triangle, touch.region, direction)) {
-        lay_rod(triangle, rod, radius, reach, out);
+    if (over_face || !region_sticks_out(triangle, closest.region, direction)) {
+        add_capsule_points(triangle, segment, radius, speculative_margin, out);
         return;
     }
     out.normal = direction;
-    out.add((touch.on_triangle + touch.on_rod - direction * radius) / 2, distance - radius, 3);
+    out.add((closest.on_triangle + closest.on_segment - direction * radius) / 2, distance - radius,
+            3);
 }
 
 }  // namespace throng

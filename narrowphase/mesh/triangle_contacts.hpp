@@ -28,7 +28,7 @@ struct MeshTriangle {
     std::size_t own_corner(std::size_t corner) const { return behind ? (3 - corner) % 3 : corner; }
     std::size_t own_edge(std::size_t edge) const { return behind ? 2 - edge : edge; }
     /// Over an edge; -1 at a rim.
-    std::int32_t beyond(std::size_t edge) const { return mesh.beyond[index][own_edge(edge)]; }
+    std::int32_t adjacent(std::size_t edge) const { return mesh.adjacent[index][own_edge(edge)]; }
     bool is_convex(std::size_t edge) const
     {
         return (mesh.convex_edges[index] >> (own_edge(edge) + (behind ? 3 : 0)) & 1) != 0;
@@ -48,26 +48,26 @@ bool corner_sticks_out(const MeshTriangle& triangle, std::size_t corner, const V
 bool edge_sticks_out(const MeshTriangle& triangle, std::size_t edge, const Vec3& direction);
 
 /// Where the triangle touches a ball, or a segment thickened by radius, or a polytope, out to
-/// `reach`; in the mesh's frame, normals from the triangle to the shape. Nothing while the shape's
-/// center is behind the triangle, unless it is known to have come `through`.
-void touch_ball(const MeshTriangle& triangle,
-                const Vec3& center,
-                double radius,
-                double reach,
-                LocalManifold<double>& out,
-                bool through = false);
-void touch_rod(const MeshTriangle& triangle,
-               const Vec3& from,
-               const Vec3& to,
-               double radius,
-               double reach,
-               LocalManifold<double>& out,
-               bool through = false);
-void touch_polytope(const MeshTriangle& triangle,
-                    const PolytopeView& shape,
-                    const Pose& pose,
-                    double reach,
-                    LocalManifold<double>& out,
-                    bool through = false);
+/// `speculative_margin`; in the mesh's frame, normals from the triangle to the shape. Nothing while
+/// the shape's center is behind the triangle, unless it is known to have come `through`.
+void collide_triangle_ball(const MeshTriangle& triangle,
+                           const Vec3& center,
+                           double radius,
+                           double speculative_margin,
+                           LocalManifold<double>& out,
+                           bool through = false);
+void collide_triangle_capsule(const MeshTriangle& triangle,
+                              const Vec3& from,
+                              const Vec3& to,
+                              double radius,
+                              double speculative_margin,
+                              LocalManifold<double>& out,
+                              bool through = false);
+void collide_triangle_polytope(const MeshTriangle& triangle,
+                               const PolytopeView& shape,
+                               const Pose& pose,
+                               double speculative_margin,
+                               LocalManifold<double>& out,
+                               bool through = false);
 
 }  // namespace throng

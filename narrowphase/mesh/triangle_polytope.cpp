@@ -31,13 +31,13 @@ struct TriangleAxis {
 // b's faces: any may show that the two are apart; only those the mesh sticks out to may push.
 void try_faces(const MeshTriangle& triangle,
                const PolytopePair& turned,
-               double reach,
+               double speculative_margin,
                double bias,
                TriangleAxis& best)
 {
     for (std::size_t i = 0; i < turned.a.normals.size(); ++i) {
         const FaceAxis axis = face_axis(turned, static_cast<std::uint16_t>(i));
-        if (axis.separation > reach) {
+        if (axis.separation > speculative_margin) {
             best.kind = TriangleAxis::Kind::apart;
             return;
         }
@@ -54,40 +54,42 @@ void try_faces(const MeshTriangle& triangle,
     }
 }
 
-// Whether no axis parts the two by more than reach: b's faces and any two edges may; the front is
-// known.
-bool within_reach(const MeshTriangle& triangle,
-                  const PolytopePair& pair,
-                  const PolytopePair& turned,
-                  double reach,
-                  double bias,
-                  TriangleAxis& best)
+// Whether no axis parts the two by more than the speculative margin: b's faces and any two edges
+// may; the front is known.
+bool within_margin(const MeshTriangle& triangle,
+                   const PolytopePair& pair,
+                   const PolytopePair& turned,
+                   double speculative_margin,
+                   double bias,
+                   TriangleAxis& best)
 {
-    try_faces(triangle, turned, reach, bias, best);
+    try_faces(triangle, turned, speculative_margin, bias, best);
     if (best.kind == TriangleAxis::Kind::apart) return false;
     // By how much the two are apart does not matter once they are.
-    const double floor = best.apart > bias ? reach : std::min(bias, reach);
+    const double floor =
+        best.apart > bias ? speculative_margin : std::min(bias, speculative_margin);
     const EdgeAxis any = best_edge_axis(pair, floor);
     if (!any.normal.isZero(0)) best.apart = any.separation;
-    return best.apart <= reach;
+    return best.apart <= speculative_margin;
 }
 
 // Where the polytope's face at its deepest corner is a sliver beside the triangle: the first that
 // is all but along it and has anything over the triangle.
 void clip_like_faces(const PolytopePair& pair,
                      const FaceAxis& front,
-                     double reach,
+                     double speculative_margin,
                      double slack,
                      PolytopePoints& found)
 {
     const Vec3 against = pair.turn.transpose() * -pair.a.normals[front.face];
     for (std::size_t i = 0; i < pair.b.normals.size() && found.count == 0; ++i)
         if (pair.b.normals[i].dot(against) > kAlike)
-            clip_faces(pair, front, static_cast<std::uint16_t>(i), reach, slack, found);
+            clip_faces(pair, front, static_cast<std::uint16_t>(i), speculative_margin, slack,
+                       found);
 }
 
 // Of two that are apart, what lies behind the triangle has gone past its rim, or past the back of
-// all that the mesh encloses: a far reach sees both.
+// all that the mesh encloses: a far margin sees both.
 void drop_overlaps(PolytopePoints& found)
 {
     std::size_t kept = 0;
@@ -102,14 +104,15 @@ void lay_face(const MeshTriangle& triangle,
               const PolytopePair& turned,
               const FaceAxis& front,
               const TriangleAxis& best,
-              double reach,
+              double speculative_margin,
               double bias,
               LocalManifold<double>& out)
 {
     const bool by_front = best.kind == TriangleAxis::Kind::front;
     PolytopePoints found;
-    clip_faces(by_front ? pair : turned, by_front ? front : best.face, reach, bias, found);
-    if (by_front) clip_like_faces(pair, front, reach, bias, found);
+    clip_faces(by_front ? pair : turned, by_front ? front : best.face, speculative_margin, bias,
+               found);
+    if (by_front) clip_like_faces(pair, front, speculative_margin, bias, found);
     if (best.apart > bias) drop_overlaps(found);
     out.normal = by_front ? triangle.normal : turned.a.normals[best.face.face];
     reduce_to_four<double>({found.points.data(), found.count}, out);
@@ -131,7 +134,7 @@ bool is_shallow(const MeshTriangle& triangle, const PolytopePair& pair, double m
 bool yields_over_edges(const MeshTriangle& triangle, const PolytopePair& pair, double most)
 {
     for (std::size_t e = 0; e < 3; ++e) {
-        const std::int32_t next = triangle.beyond(e);
+        const std::int32_t next = triangle.adjacent(e);
         if (next < 0 || !triangle.is_convex(e)) continue;
         const auto beyond = static_cast<std::uint32_t>(next);
         if (is_shallow({triangle.mesh, beyond, triangle.behind}, pair, most)) return true;
@@ -157,7 +160,7 @@ bool yields_to_faces(const MeshTriangle& triangle, const PolytopePair& turned, d
 // further, so that directions straight out of it are well inside.
 Vec3 far_normal(const MeshTriangle& triangle, std::size_t edge, const Vec3& rim)
 {
-    const std::int32_t next = triangle.beyond(edge);
+    const std::int32_t next = triangle.adjacent(edge);
     if (next >= 0) return triangle.normal_of(next);
     return (rim - 0.05 * triangle.normal).normalized();
 }
@@ -188,18 +191,18 @@ struct OutwardEdges {
 };
 
 // By what tells them apart best, or least of all overlaps.
-void touch_along_best(const MeshTriangle& triangle,
-                      const TrianglePolytope& flat,
-                      const PolytopePair& pair,
-                      const PolytopePair& turned,
-                      const FaceAxis& front,
-                      double reach,
-                      double bias,
-                      LocalManifold<double>& out)
+void collide_along_best(const MeshTriangle& triangle,
+                        const TrianglePolytope& flat,
+                        const PolytopePair& pair,
+                        const PolytopePair& turned,
+                        const FaceAxis& front,
+                        double speculative_margin,
+                        double bias,
+                        LocalManifold<double>& out)
 {
     TriangleAxis best;
     best.separation = best.apart = front.separation;
-    if (!within_reach(triangle, pair, turned, reach, bias, best)) return;
+    if (!within_margin(triangle, pair, turned, speculative_margin, bias, best)) return;
     const bool parted = best.apart > bias;
 
     const OutwardEdges outward(triangle, flat, pair);
@@ -212,24 +215,25 @@ void touch_along_best(const MeshTriangle& triangle,
         if (!edge.normal.isZero(0) && yields_to_faces(triangle, turned, most)) return;
     }
     if (!edge.normal.isZero(0)) {
-        if (edge.separation <= reach) cross_edges(outward.pair, edge, reach + bias, out);
+        if (edge.separation <= speculative_margin)
+            cross_edges(outward.pair, edge, speculative_margin + bias, out);
         return;
     }
-    lay_face(triangle, pair, turned, front, best, reach, bias, out);
+    lay_face(triangle, pair, turned, front, best, speculative_margin, bias, out);
     // What leads by its bias alone may have nothing over it.
     if (out.count > 0 || best.separation >= 0 || parted) return;
     const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
-    if (!better.normal.isZero(0)) cross_edges(outward.pair, better, reach + bias, out);
+    if (!better.normal.isZero(0)) cross_edges(outward.pair, better, speculative_margin + bias, out);
 }
 
 }  // namespace
 
-void touch_polytope(const MeshTriangle& triangle,
-                    const PolytopeView& shape,
-                    const Pose& pose,
-                    double reach,
-                    LocalManifold<double>& out,
-                    bool through)
+void collide_triangle_polytope(const MeshTriangle& triangle,
+                               const PolytopeView& shape,
+                               const Pose& pose,
+                               double speculative_margin,
+                               LocalManifold<double>& out,
+                               bool through)
 {
     out.count = 0;
     const auto& corners = triangle.corners;
@@ -237,16 +241,16 @@ void touch_polytope(const MeshTriangle& triangle,
     const PolytopePair pair(flat.view(), shape, pose);
     if (triangle.normal.dot(pair.offset) < 0 && !through) return;
     const FaceAxis front = face_axis(pair, 0);
-    if (front.separation > reach) return;
+    if (front.separation > speculative_margin) return;
     const double bias = 1e-3 * shape.inner_radius;
     const PolytopePair turned = pair.mirrored();
-    touch_along_best(triangle, flat, pair, turned, front, reach, bias, out);
+    collide_along_best(triangle, flat, pair, turned, front, speculative_margin, bias, out);
     if (!through || out.count > 0) return;
     // Pressed all but out of the triangle on its other side it goes back the way it came; by its
     // deepest corner where its lowest side is over another, for which this one pushes too.
     TriangleAxis back;
     back.separation = back.apart = front.separation;
-    lay_face(triangle, pair, turned, front, back, reach, bias, out);
+    lay_face(triangle, pair, turned, front, back, speculative_margin, bias, out);
     if (out.count > 0) return;
     const Vec3 deepest = pair.turn * shape.vertices[front.vertex] + pair.shift;
     out.normal = triangle.normal;

@@ -1,8 +1,8 @@
 #include "narrowphase/solid/solid_pairs.hpp"
 
 #include "kernels/geometry/shape_bounds.hpp"
-#include "narrowphase/solid/image_touches.hpp"
-#include "narrowphase/solid/touch_spheres.hpp"
+#include "narrowphase/solid/image_candidates.hpp"
+#include "narrowphase/solid/sphere_candidates.hpp"
 #include "narrowphase/solid/voxel_pairs.hpp"
 
 #include <algorithm>
@@ -26,34 +26,36 @@ double error_of(const Shapes& shapes, ShapeRef shape)
 
 // How far two boxes are apart along the axis of the first that parts them most; below 0 where none
 // does.
-double gap_between(const Box3& a, const Box3& b)
+double separation_between(const Box3& a, const Box3& b)
 {
     return std::max((a.lower - b.upper).maxCoeff(), (b.lower - a.upper).maxCoeff());
 }
 
 // How far the two are apart at least: their boxes as each sees the other's.
-double least_gap(const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pose& other_in_solid)
+double
+least_separation(const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pose& other_in_solid)
 {
-    const double gap = gap_between(shape_bounds(shapes, solid, Pose{}),
-                                   shape_bounds(shapes, other, other_in_solid));
-    if (other.kind != ShapeKind::solid && other.kind != ShapeKind::box) return gap;
-    return std::max(gap,
-                    gap_between(shape_bounds(shapes, other, Pose{}),
-                                shape_bounds(shapes, solid, other_in_solid.inverse())));
+    const double separation = separation_between(shape_bounds(shapes, solid, Pose{}),
+                                                 shape_bounds(shapes, other, other_in_solid));
+    if (other.kind != ShapeKind::solid && other.kind != ShapeKind::box) return separation;
+    return std::max(separation,
+                    separation_between(shape_bounds(shapes, other, Pose{}),
+                                       shape_bounds(shapes, solid, other_in_solid.inverse())));
 }
 
 // The other's spheres against this one, told from this one.
-void touch_from_other(const Shapes& shapes,
-                      ShapeRef solid,
-                      ShapeRef other,
-                      const Pose& other_in_solid,
-                      double reach,
-                      std::vector<SurfaceTouch>& touches)
+void find_candidates_from_other(const Shapes& shapes,
+                                ShapeRef solid,
+                                ShapeRef other,
+                                const Pose& other_in_solid,
+                                double speculative_margin,
+                                std::vector<ContactCandidate>& candidates)
 {
-    touch_by_spheres(shapes, other, solid, other_in_solid.inverse(), reach, {}, touches);
-    for (SurfaceTouch& touch : touches) {
-        touch.position = other_in_solid * touch.position;
-        touch.normal = other_in_solid.orientation * -touch.normal;
+    find_sphere_candidates(shapes, other, solid, other_in_solid.inverse(), speculative_margin, {},
+                           candidates);
+    for (ContactCandidate& candidate : candidates) {
+        candidate.position = other_in_solid * candidate.position;
+        candidate.normal = other_in_solid.orientation * -candidate.normal;
     }
 }
 
@@ -63,30 +65,35 @@ SolidAnswer collide_solid(const Shapes& shapes,
                           ShapeRef solid,
                           ShapeRef other,
                           const Pose& other_in_solid,
-                          double reach,
+                          double speculative_margin,
                           std::vector<PatchManifold>& out)
 {
     SolidAnswer answer;
-    answer.apart = least_gap(shapes, solid, other, other_in_solid) - error_of(shapes, solid)
+    answer.apart = least_separation(shapes, solid, other, other_in_solid) - error_of(shapes, solid)
         - error_of(shapes, other);
-    if (answer.apart > reach) return answer;
-    thread_local std::vector<SurfaceTouch> touches;
-    touches.clear();
-    const SolidWay way = shapes.solids[solid.index].way;
-    const SolidWay other_way =
-        other.kind == ShapeKind::solid ? shapes.solids[other.index].way : SolidWay::voxels;
-    if (way == SolidWay::depth_image || other_way == SolidWay::depth_image)
-        touch_by_depth_image(shapes, solid, other, other_in_solid, reach, touches);
-    else if (way == SolidWay::spheres)
-        touch_by_spheres(shapes, solid, other, other_in_solid, reach, {}, touches);
-    else if (other_way == SolidWay::spheres)
-        touch_from_other(shapes, solid, other, other_in_solid, reach, touches);
+    if (answer.apart > speculative_margin) return answer;
+    thread_local std::vector<ContactCandidate> candidates;
+    candidates.clear();
+    const SolidRepresentation representation = shapes.solids[solid.index].representation;
+    const SolidRepresentation other_representation = other.kind == ShapeKind::solid
+        ? shapes.solids[other.index].representation
+        : SolidRepresentation::voxels;
+    if (representation == SolidRepresentation::depth_image
+        || other_representation == SolidRepresentation::depth_image)
+        find_image_candidates(shapes, solid, other, other_in_solid, speculative_margin, candidates);
+    else if (representation == SolidRepresentation::spheres)
+        find_sphere_candidates(shapes, solid, other, other_in_solid, speculative_margin, {},
+                               candidates);
+    else if (other_representation == SolidRepresentation::spheres)
+        find_candidates_from_other(shapes, solid, other, other_in_solid, speculative_margin,
+                                   candidates);
     else
-        answer.apart = std::max(answer.apart,
-                                touch_by_voxels(shapes, shapes.solids[solid.index], other,
-                                                other_in_solid, reach, touches));
+        answer.apart =
+            std::max(answer.apart,
+                     find_voxel_candidates(shapes, shapes.solids[solid.index], other,
+                                           other_in_solid, speculative_margin, candidates));
     const double size = std::min(size_of(shapes, solid), size_of(shapes, other));
-    answer.left_out = make_patches(touches, reach, size, out);
+    answer.left_out = make_patches(candidates, speculative_margin, size, out);
     return answer;
 }
 

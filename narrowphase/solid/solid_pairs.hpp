@@ -9,15 +9,16 @@ namespace throng {
 /// What else is told of a pair.
 ///
 ///   left_out  touches that overlap and that no manifold had room for (see make_patches())
-///   apart     m, where there is no touch: none will be within reach before points of the two have
-///             come closer by what this is more than the reach. At most their distance
+///   apart     m, where there is no touch: none will be within the margin before points of the two
+///             have come closer by what this is more than the speculative margin. At most their
+///             distance
 struct SolidAnswer {
     std::size_t left_out = 0;
     double apart = 0;
 };
 
-/// Where a solid touches another shape of any kind, out to `reach`: manifolds in the solid's frame,
-/// normals from the solid to the other, in order of patch.
+/// Where a solid touches another shape of any kind, out to `speculative_margin`: manifolds in the
+/// solid's frame, normals from the solid to the other, in order of patch.
 ///
 ///   other      sphere, capsule, cylinder, box, hull, plane, mesh (its front faces) or solid
 ///   other_in_solid  its pose in the solid's frame
@@ -29,7 +30,7 @@ SolidAnswer collide_solid(const Shapes& shapes,
                           ShapeRef solid,
                           ShapeRef other,
                           const Pose& other_in_solid,
-                          double reach,
+                          double speculative_margin,
                           std::vector<PatchManifold>& out);
 
 }  // namespace throng

@@ -32,8 +32,8 @@ inline std::uint32_t root_count(const SphereTree& tree)
 ///
 ///   reached  (node) -> bool; of a node that is not, nothing below is looked at
 ///   visit    (node, which)
-template <class Reached, class Visit>
-void visit_spheres(const SphereTree& tree, Reached reached, Visit visit)
+template <class Reached, class Visitor>
+void visit_spheres(const SphereTree& tree, Reached reached, Visitor visit)
 {
     using detail::SpherePlace;
     std::vector<SpherePlace> waiting;
@@ -53,8 +53,8 @@ void visit_spheres(const SphereTree& tree, Reached reached, Visit visit)
 ///
 ///   reached  (node of a, node of b) -> bool
 ///   visit    (node of a, node of b)
-template <class Reached, class Visit>
-void visit_sphere_pairs(const SphereTree& a, const SphereTree& b, Reached reached, Visit visit)
+template <class Reached, class Visitor>
+void visit_sphere_pairs(const SphereTree& a, const SphereTree& b, Reached reached, Visitor visit)
 {
     using detail::SpherePlace;
     std::vector<std::pair<SpherePlace, SpherePlace>> waiting;

@@ -112,7 +112,7 @@ void ConvexSide::sample(LeafSample<double>& leaf) const
 void MeshSide::bound(LeafSample<double>& places) const
 {
     // Behind as in front: a ball this far from all triangles has no touch in it.
-    const double behind = std::max(deepest_ - reach_, 0.0);
+    const double behind = std::max(deepest_ - speculative_margin_, 0.0);
     for (std::size_t i = 0; i < places.count; ++i) {
         const double asked = places.within[i] + behind;
         const bool near = comes_within(mesh_, place_of(places, i), asked);
@@ -122,7 +122,7 @@ void MeshSide::bound(LeafSample<double>& places) const
 
 void MeshSide::sample(LeafSample<double>& leaf) const
 {
-    const double furthest = std::max(reach_, deepest_);
+    const double furthest = std::max(speculative_margin_, deepest_);
     std::uint32_t beside = kNoTriangle;  // points of a leaf are neighbors
     for (std::size_t i = 0; i < leaf.count; ++i) {
         const Vec3 place = place_of(leaf, i);
@@ -153,12 +153,12 @@ public:
     Walk(const SurfacePoints& points,
          const Other& other,
          const Pose& pose,
-         double reach,
-         std::vector<PointTouch>& out)
+         double speculative_margin,
+         std::vector<PointCandidate>& out)
         : points_(points), other_(other), turn_(pose.orientation.toRotationMatrix()),
           back_(turn_.transpose().template cast<Real>()),
           shift_((turn_.transpose() * -pose.position).template cast<Real>()),
-          reach_(static_cast<Real>(reach)), out_(out)
+          speculative_margin_(static_cast<Real>(speculative_margin)), out_(out)
     { }
 
     double run()
@@ -208,7 +208,7 @@ private:
         places.count = std::min(nodes.size(), Places::kPoints);
         for (std::size_t i = 0; i < places.count; ++i) {
             const SurfacePoints::Node& node = points_.nodes[nodes[i]];
-            places.within[i] = reach_ + Real{node.radius};
+            places.within[i] = speculative_margin_ + Real{node.radius};
             places.x[i] = Real{node.center.x()};
             places.y[i] = Real{node.center.y()};
             places.z[i] = Real{node.center.z()};
@@ -252,7 +252,7 @@ private:
         for (std::size_t i = 0; i < places.count; ++i) {
             const Real distance = places.distance[i];
             least_ = std::min(least_, distance);
-            if (distance <= reach_ && distance < other_.furthest())
+            if (distance <= speculative_margin_ && distance < other_.furthest())
                 take(of[i], double{distance},
                      {double{places.gx[i]}, double{places.gy[i]}, double{places.gz[i]}});
         }
@@ -276,9 +276,9 @@ private:
     Mat3 turn_;
     Mat3T<Real> back_;
     Vec3T<Real> shift_;
-    Real reach_;
+    Real speculative_margin_;
     Real least_ = std::numeric_limits<Real>::infinity();
-    std::vector<PointTouch>& out_;
+    std::vector<PointCandidate>& out_;
 };
 
 }  // namespace
@@ -287,15 +287,15 @@ template <class Other>
 double walk_surface(const SurfacePoints& points,
                     const Other& other,
                     const Pose& pose,
-                    double reach,
-                    std::vector<PointTouch>& out)
+                    double speculative_margin,
+                    std::vector<PointCandidate>& out)
 {
-    return Walk<Other>(points, other, pose, reach, out).run();
+    return Walk<Other>(points, other, pose, speculative_margin, out).run();
 }
 
 #define THRONG_INSTANTIATE(Other)                                                                  \
     template double walk_surface<Other>(const SurfacePoints&, const Other&, const Pose&, double,   \
-                                        std::vector<PointTouch>&);
+                                        std::vector<PointCandidate>&);
 THRONG_INSTANTIATE(FieldSide)
 THRONG_INSTANTIATE(ConvexSide)
 THRONG_INSTANTIATE(MeshSide)

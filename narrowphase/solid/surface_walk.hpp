@@ -27,9 +27,9 @@ struct LeafSample {
     Number distance[kPoints], gx[kPoints], gy[kPoints], gz[kPoints];  // gradient 0: not told
 };
 
-/// Features of touches: which side's points they are, and which of them.
-enum class TouchSide : std::uint32_t { a = 0, b = 1U << 30, probe = 2U << 30, edge = 3U << 30 };
-inline std::uint32_t touch_feature(TouchSide side, std::size_t index)
+/// Features of candidates: which side's points they are, and which of them.
+enum class CandidateSide : std::uint32_t { a = 0, b = 1U << 30, probe = 2U << 30, edge = 3U << 30 };
+inline std::uint32_t candidate_feature(CandidateSide side, std::size_t index)
 {
     return static_cast<std::uint32_t>(side) | (static_cast<std::uint32_t>(index) & 0x3fffffffU);
 }
@@ -79,8 +79,8 @@ class MeshSide {
 public:
     using Real = double;
 
-    MeshSide(const Mesh& mesh, double reach, double deepest)
-        : mesh_(mesh), reach_(reach), deepest_(deepest)
+    MeshSide(const Mesh& mesh, double speculative_margin, double deepest)
+        : mesh_(mesh), speculative_margin_(speculative_margin), deepest_(deepest)
     { }
     double furthest() const { return std::numeric_limits<double>::infinity(); }
     void bound(LeafSample<double>& places) const;
@@ -88,28 +88,29 @@ public:
 
 private:
     const Mesh& mesh_;
-    double reach_, deepest_;
+    double speculative_margin_, deepest_;
 };
 
 /// A walked point that the other shape touches, in the walked solid's frame.
 ///
 ///   outward  unit, out of the other shape
-struct PointTouch {
+struct PointCandidate {
     std::uint32_t point = 0;
     Vec3 position, outward;
     double distance = 0;
 };
 
-/// Appends the points that `other` touches, out to `reach`, in order of point. For the sides above.
-/// Answers a distance that no point is nearer than to the other shape, which may be less than it is
-/// by much: where nothing comes within reach it is no less than the reach.
+/// Appends the points that `other` touches, out to `speculative_margin`, in order of point. For the
+/// sides above. Answers a distance that no point is nearer than to the other shape, which may be
+/// less than it is by much: where nothing comes within the margin it is no less than the
+/// speculative margin.
 ///
 ///   pose  of the other shape in the frame of the points
 template <class Other>
 double walk_surface(const SurfacePoints& points,
                     const Other& other,
                     const Pose& pose,
-                    double reach,
-                    std::vector<PointTouch>& out);
+                    double speculative_margin,
+                    std::vector<PointCandidate>& out);
 
 }  // namespace throng

@@ -8,42 +8,44 @@
 namespace throng {
 namespace {
 
-std::vector<PointTouch>& scratch()
+std::vector<PointCandidate>& scratch()
 {
-    thread_local std::vector<PointTouch> found;
+    thread_local std::vector<PointCandidate> found;
     found.clear();
     return found;
 }
 
 // Points of a: out of the other shape is from b to a.
 template <class Other>
-double touch_points_of_a(const Solid& a,
-                         const Other& other,
-                         const Pose& other_in_a,
-                         double reach,
-                         std::vector<SurfaceTouch>& out)
+double find_points_of_a(const Solid& a,
+                        const Other& other,
+                        const Pose& other_in_a,
+                        double speculative_margin,
+                        std::vector<ContactCandidate>& out)
 {
-    std::vector<PointTouch>& found = scratch();
-    const double apart = walk_surface(a.points, other, other_in_a, reach, found);
-    for (const PointTouch& touch : found)
-        out.push_back({touch.position - touch.outward * (touch.distance / 2), -touch.outward,
-                       touch.distance, touch_feature(TouchSide::a, touch.point)});
+    std::vector<PointCandidate>& found = scratch();
+    const double apart = walk_surface(a.points, other, other_in_a, speculative_margin, found);
+    for (const PointCandidate& candidate : found)
+        out.push_back({candidate.position - candidate.outward * (candidate.distance / 2),
+                       -candidate.outward, candidate.distance,
+                       candidate_feature(CandidateSide::a, candidate.point)});
     return apart;
 }
 
-double touch_points_of_b(const Solid& a,
-                         const Solid& b,
-                         const Pose& b_in_a,
-                         double reach,
-                         std::vector<SurfaceTouch>& out)
+double find_points_of_b(const Solid& a,
+                        const Solid& b,
+                        const Pose& b_in_a,
+                        double speculative_margin,
+                        std::vector<ContactCandidate>& out)
 {
-    std::vector<PointTouch>& found = scratch();
-    const double apart = walk_surface(b.points, FieldSide(a), b_in_a.inverse(), reach, found);
+    std::vector<PointCandidate>& found = scratch();
+    const double apart =
+        walk_surface(b.points, FieldSide(a), b_in_a.inverse(), speculative_margin, found);
     const Mat3 turn = b_in_a.orientation.toRotationMatrix();
-    for (const PointTouch& touch : found) {
-        const Vec3 between = touch.position - touch.outward * (touch.distance / 2);
-        out.push_back({turn * between + b_in_a.position, turn * touch.outward, touch.distance,
-                       touch_feature(TouchSide::b, touch.point)});
+    for (const PointCandidate& candidate : found) {
+        const Vec3 between = candidate.position - candidate.outward * (candidate.distance / 2);
+        out.push_back({turn * between + b_in_a.position, turn * candidate.outward,
+                       candidate.distance, candidate_feature(CandidateSide::b, candidate.point)});
     }
     return apart;
 }
@@ -58,35 +60,37 @@ double deepest_behind(const Solid& a, const FieldSide& field)
 
 }  // namespace
 
-double touch_by_voxels(const Shapes& shapes,
-                       const Solid& a,
-                       ShapeRef other,
-                       const Pose& other_in_a,
-                       double reach,
-                       std::vector<SurfaceTouch>& out)
+double find_voxel_candidates(const Shapes& shapes,
+                             const Solid& a,
+                             ShapeRef other,
+                             const Pose& other_in_a,
+                             double speculative_margin,
+                             std::vector<ContactCandidate>& out)
 {
     const bool has_field = !a.field.empty();
     double apart = std::numeric_limits<double>::infinity();
     switch (other.kind) {
     case ShapeKind::solid: {
         const Solid& b = shapes.solids[other.index];
-        if (!b.field.empty()) apart = touch_points_of_a(a, FieldSide(b), other_in_a, reach, out);
-        if (has_field) apart = std::min(apart, touch_points_of_b(a, b, other_in_a, reach, out));
+        if (!b.field.empty())
+            apart = find_points_of_a(a, FieldSide(b), other_in_a, speculative_margin, out);
+        if (has_field)
+            apart = std::min(apart, find_points_of_b(a, b, other_in_a, speculative_margin, out));
         return apart;
     }
     case ShapeKind::mesh: {
         const Mesh& mesh = shapes.meshes[other.index];
         const FieldSide field(a);
-        const MeshSide side(mesh, reach, deepest_behind(a, field));
-        apart = touch_points_of_a(a, side, other_in_a, reach, out);
-        if (has_field) probe_mesh(a, mesh, other_in_a, reach, out);
+        const MeshSide side(mesh, speculative_margin, deepest_behind(a, field));
+        apart = find_points_of_a(a, side, other_in_a, speculative_margin, out);
+        if (has_field) probe_mesh(a, mesh, other_in_a, speculative_margin, out);
         break;
     }
     default:
-        apart = touch_points_of_a(a, ConvexSide(shapes, other), other_in_a, reach, out);
+        apart = find_points_of_a(a, ConvexSide(shapes, other), other_in_a, speculative_margin, out);
         // A plane has nothing of its own.
         if (!has_field || other.kind == ShapeKind::plane) return apart;
-        probe_convex(shapes, a, other, other_in_a, reach, out);
+        probe_convex(shapes, a, other, other_in_a, speculative_margin, out);
     }
     // What sticks out of the other may be between the points, and is told by the field.
     return apart - a.points.spacing - a.field.voxel;

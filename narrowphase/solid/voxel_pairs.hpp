@@ -8,8 +8,8 @@
 
 namespace throng {
 
-/// Appends the touches of solid a with another shape, out to `reach`, in a's frame: points of a's
-/// surface by the other's distance, and what sticks out of the other by a's field.
+/// Appends the candidates of solid a with another shape, out to `speculative_margin`, in a's frame:
+/// points of a's surface by the other's distance, and what sticks out of the other by a's field.
 ///
 ///   other  solid    its points by a's field; a's by its field (each where it has them)
 ///          sphere, capsule, cylinder, box, hull
@@ -26,15 +26,16 @@ namespace throng {
 /// crossing.
 ///
 /// Balls that fill what is round are looked up out to the field's band less the diagonal of a
-/// cell; larger ones are left to the points of a. The band should be the reach and two voxels.
+/// cell; larger ones are left to the points of a. The band should be the speculative margin and two
+/// voxels.
 ///
 /// Answers a distance: where nothing is told, nothing will be before points of the two have come
-/// closer by what it is more than the reach.
-double touch_by_voxels(const Shapes& shapes,
-                       const Solid& a,
-                       ShapeRef other,
-                       const Pose& other_in_a,
-                       double reach,
-                       std::vector<SurfaceTouch>& out);
+/// closer by what it is more than the speculative margin.
+double find_voxel_candidates(const Shapes& shapes,
+                             const Solid& a,
+                             ShapeRef other,
+                             const Pose& other_in_a,
+                             double speculative_margin,
+                             std::vector<ContactCandidate>& out);
 
 }  // namespace throng

@@ -27,24 +27,27 @@ struct Probe {
 
 class Prober {
 public:
-    Prober(const Solid& a, const Pose& pose, double reach, std::vector<SurfaceTouch>& out)
+    Prober(const Solid& a,
+           const Pose& pose,
+           double speculative_margin,
+           std::vector<ContactCandidate>& out)
         : bricks_(a.field), furthest_(a.field.band - kDiagonal * a.field.voxel),
           box_(FieldSide(a).box()), turn_(pose.orientation.toRotationMatrix()),
-          position_(pose.position), reach_(reach), out_(out)
+          position_(pose.position), speculative_margin_(speculative_margin), out_(out)
     { }
 
     double voxel() const { return bricks_.voxel; }
 
-    void touch(const Probe& probe) const
+    void probe(const Probe& probe) const
     {
         const Vec3 place = turn_ * probe.place + position_;
-        const double wide = reach_ + probe.radius;
+        const double wide = speculative_margin_ + probe.radius;
         if (((place - box_.upper).array() > wide).any()
             || ((box_.lower - place).array() > wide).any())
             return;
         const FieldSample<double> here = sample_bricks<double>(bricks_, place);
         const double separation = here.distance - probe.radius;
-        if (!(separation <= reach_) || !(here.distance < furthest_)) return;
+        if (!(separation <= speculative_margin_) || !(here.distance < furthest_)) return;
         const Vec3 own = turn_ * probe.normal;
         const double steep = here.gradient.norm();
         Vec3 normal = here.gradient;
@@ -65,8 +68,8 @@ public:
         const Vec3 start = turn_ * from + position_, way = turn_ * (to - from);
         double first = 0, last = 1;
         for (Eigen::Index k = 0; k < 3; ++k) {
-            const double low = box_.lower[k] - reach_ - radius - start[k];
-            const double high = box_.upper[k] + reach_ + radius - start[k];
+            const double low = box_.lower[k] - speculative_margin_ - radius - start[k];
+            const double high = box_.upper[k] + speculative_margin_ + radius - start[k];
             if (std::abs(way[k]) * 1e9 < high - low) {  // level: as good as at its start
                 if (low > 0 || high < 0) return {1, 0};
                 continue;
@@ -92,8 +95,8 @@ private:
     Box3 box_;
     Mat3 turn_;
     Vec3 position_;
-    double reach_;
-    std::vector<SurfaceTouch>& out_;
+    double speculative_margin_;
+    std::vector<ContactCandidate>& out_;
 };
 
 // Places along a line, a voxel apart or less, counted from its start whatever part of it is near.
@@ -106,8 +109,9 @@ void probe_line(
     if (!(first <= last)) return;
     for (double i = std::ceil(first * parts); i <= last * parts; ++i) {
         probe.place = from + (to - from) * (i / parts);
-        probe.feature = touch_feature(TouchSide::edge, line * 4097 + static_cast<std::size_t>(i));
-        prober.touch(probe);
+        probe.feature =
+            candidate_feature(CandidateSide::edge, line * 4097 + static_cast<std::size_t>(i));
+        prober.probe(probe);
     }
 }
 
@@ -121,7 +125,8 @@ double cone_of(const Vec3& mean, const Vec3& face)
 void probe_polytope(const Prober& prober, const PolytopeView& shape)
 {
     for (std::size_t v = 0; v < shape.vertices.size(); ++v)
-        prober.touch({shape.vertices[v], 0, Vec3::Zero(), -1, touch_feature(TouchSide::probe, v)});
+        prober.probe(
+            {shape.vertices[v], 0, Vec3::Zero(), -1, candidate_feature(CandidateSide::probe, v)});
     for (std::size_t e = 0; e < shape.edges.size(); ++e) {
         const Hull::Edge& edge = shape.edges[e];
         const Vec3 normal = (shape.normals[edge.left] + shape.normals[edge.right]).normalized();
@@ -165,8 +170,8 @@ void probe_cylinder(const Prober& prober, const Cylinder& cylinder)
             const Vec3 place(cylinder.radius * out.x(), cylinder.radius * out.y(),
                              side * cylinder.half_length);
             const Vec3 normal = kSlant * Vec3(out.x(), out.y(), side);
-            prober.touch({place, 0, normal, cone_of(normal, Vec3(0, 0, side)),
-                          touch_feature(TouchSide::probe, side < 0 ? i : i + kMostRim)});
+            prober.probe({place, 0, normal, cone_of(normal, Vec3(0, 0, side)),
+                          candidate_feature(CandidateSide::probe, side < 0 ? i : i + kMostRim)});
         }
 }
 
@@ -182,16 +187,17 @@ void probe_convex(const Shapes& shapes,
                   const Solid& a,
                   ShapeRef other,
                   const Pose& other_in_a,
-                  double reach,
-                  std::vector<SurfaceTouch>& out)
+                  double speculative_margin,
+                  std::vector<ContactCandidate>& out)
 {
-    const Prober prober(a, other_in_a, reach, out);
-    const Probe round{Vec3::Zero(), 0, Vec3::Zero(), -1, touch_feature(TouchSide::probe, 0)};
+    const Prober prober(a, other_in_a, speculative_margin, out);
+    const Probe round{Vec3::Zero(), 0, Vec3::Zero(), -1,
+                      candidate_feature(CandidateSide::probe, 0)};
     switch (other.kind) {
     case ShapeKind::sphere: {
         Probe ball = round;
         ball.radius = shapes.spheres[other.index].radius;
-        prober.touch(ball);
+        prober.probe(ball);
         return;
     }
     case ShapeKind::capsule: {
@@ -217,27 +223,27 @@ void probe_convex(const Shapes& shapes,
 void probe_mesh(const Solid& a,
                 const Mesh& mesh,
                 const Pose& mesh_in_a,
-                double reach,
-                std::vector<SurfaceTouch>& out)
+                double speculative_margin,
+                std::vector<ContactCandidate>& out)
 {
     // The solid's box as the mesh sees it.
     const Box3 box = FieldSide(a).box();
     const Mat3 turn = mesh_in_a.orientation.toRotationMatrix();
     const Vec3 middle = turn.transpose() * (0.5 * (box.lower + box.upper) - mesh_in_a.position);
-    const Vec3 half =
-        turn.transpose().cwiseAbs() * (0.5 * (box.upper - box.lower)) + Vec3::Constant(reach);
+    const Vec3 half = turn.transpose().cwiseAbs() * (0.5 * (box.upper - box.lower))
+        + Vec3::Constant(speculative_margin);
     thread_local std::vector<std::uint32_t> near;
     thread_local std::vector<MeshCorner> corners;
     near.clear();
     corners.clear();
     find_triangles(mesh, {middle - half, middle + half}, near);
 
-    const Prober prober(a, mesh_in_a, reach, out);
+    const Prober prober(a, mesh_in_a, speculative_margin, out);
     for (const std::uint32_t t : near)
         for (std::uint32_t e = 0; e < 3; ++e) {
             const std::uint32_t from = mesh.triangles[t][e], to = mesh.triangles[t][(e + 1) % 3];
             corners.push_back({from, t});
-            const std::int32_t beyond = mesh.beyond[t][e];
+            const std::int32_t beyond = mesh.adjacent[t][e];
             const bool own = beyond < static_cast<std::int32_t>(t);
             if (!own || (mesh.convex_edges[t] >> e & 1) == 0) continue;
             Vec3 normal = mesh.normals[t];
@@ -260,8 +266,8 @@ void probe_mesh(const Solid& a,
         for (std::size_t i = begin; i < end; ++i)
             cone = std::min(cone, cone_of(normal, mesh.normals[corners[i].triangle]));
         const std::uint32_t vertex = corners[begin].vertex;
-        prober.touch(
-            {mesh.vertices[vertex], 0, normal, cone, touch_feature(TouchSide::probe, vertex)});
+        prober.probe({mesh.vertices[vertex], 0, normal, cone,
+                      candidate_feature(CandidateSide::probe, vertex)});
     }
 }
 

@@ -1,11 +1,11 @@
-// Solve: what one visit of the solver to a manifold takes, with its rows in a core's own cache and
-// in scenes that are larger than any cache.
+// Solve: what one iteration of the solver to a manifold takes, with its rows in a core's own cache
+// and in scenes that are larger than any cache.
 //
 // Rows are those of a scene in contact, so the mixture of points, bodies and colors is that of a
 // step; those in cache are a sample of the same rows with their bodies put side by side. Both are
 // timed in turn, and `of_cache` is what a manifold of the whole costs beside one of the sample:
 // memory's share, whatever else the machine does.
-#include "kernels/solver/sweep.hpp"
+#include "kernels/solver/solve_kernels.hpp"
 #include "perf/support.hpp"
 #include "pipeline/world/world_state.hpp"
 #include "throng/catalog.hpp"
@@ -19,29 +19,29 @@
 namespace throng::perf {
 namespace {
 
-// Visits between two restores. A step of four substeps makes twelve; left to themselves the rows
-// would come to rest and work on numbers that no longer change.
+// Iterations between two restores. A step of four substeps makes twelve; left to themselves the
+// rows would come to rest and work on numbers that no longer change.
 constexpr int kVisits = 12;
 
 // Half of a core's second cache: blocks, points and bodies together.
 constexpr std::size_t kCacheBytes = 512 << 10;
 
-enum class Kernel : std::uint8_t { push, relax, warm_start };
+enum class Kernel : std::uint8_t { solve_biased, relax, warm_start };
 constexpr const char* kKernelNames[] = {"push", "relax", "warm_start"};
 
-/// Rows with the runs of blocks to visit, in order: slice by slice.
+/// Rows with the runs of blocks to iteration, in order: slice by slice.
 template <class Real>
 struct Visited {
-    Rows<Real> rows;
+    ContactConstraints<Real> constraints;
     std::vector<std::vector<Color>> slices;
     std::size_t manifolds = 0;
 
-    /// What a visit has to bring in.
+    /// What an iteration has to bring in.
     std::size_t bytes() const
     {
-        return rows.blocks.size() * sizeof(rows.blocks[0])
-            + rows.points.size() * sizeof(rows.points[0])
-            + rows.bodies.size() * sizeof(rows.bodies[0]);
+        return constraints.blocks.size() * sizeof(constraints.blocks[0])
+            + constraints.points.size() * sizeof(constraints.points[0])
+            + constraints.bodies.size() * sizeof(constraints.bodies[0]);
     }
 };
 
@@ -60,32 +60,36 @@ std::size_t manifolds_of(const Layout& layout, std::size_t block)
 
 // Every so many blocks, so that all colors are in the sample, with what belongs to them.
 template <class Real>
-Visited<Real> sample_of(const Rows<Real>& rows, const Layout& layout)
+Visited<Real> sample_of(const ContactConstraints<Real>& constraints, const Layout& layout)
 {
     Visited<Real> sample;
     sample.slices.resize(1);
     std::map<std::int32_t, std::int32_t> places;
-    const auto seat = [&](std::int32_t body) {
+    const auto solver_index_of = [&](std::int32_t body) {
         const auto [at, fresh] =
-            places.try_emplace(body, static_cast<std::int32_t>(sample.rows.bodies.size()));
-        if (fresh) sample.rows.bodies.push_back(rows.bodies[static_cast<std::size_t>(body)]);
+            places.try_emplace(body, static_cast<std::int32_t>(sample.constraints.bodies.size()));
+        if (fresh)
+            sample.constraints.bodies.push_back(constraints.bodies[static_cast<std::size_t>(body)]);
         return at->second;
     };
-    const std::size_t a_block = sizeof(ContactBlock<Real>) + 4 * sizeof(PointRows<Real>)
-        + 2 * kBlock * sizeof(SolverBody<Real>);
-    const std::size_t stride = std::max<std::size_t>(1, rows.blocks.size() * a_block / kCacheBytes);
-    for (std::size_t place = 0; place < rows.blocks.size(); place += stride) {
-        ContactBlock<Real> block = rows.blocks[place];
-        const auto points = rows.points.begin() + block.first_point;
-        block.first_point = static_cast<std::uint32_t>(sample.rows.points.size());
-        sample.rows.points.insert(sample.rows.points.end(), points, points + block.points);
+    const std::size_t a_block = sizeof(ContactConstraintWide<Real>)
+        + 4 * sizeof(ContactPointWide<Real>) + 2 * kBlock * sizeof(SolverBody<Real>);
+    const std::size_t stride =
+        std::max<std::size_t>(1, constraints.blocks.size() * a_block / kCacheBytes);
+    for (std::size_t place = 0; place < constraints.blocks.size(); place += stride) {
+        ContactConstraintWide<Real> block = constraints.blocks[place];
+        const auto points = constraints.points.begin() + block.first_point;
+        block.first_point = static_cast<std::uint32_t>(sample.constraints.points.size());
+        sample.constraints.points.insert(sample.constraints.points.end(), points,
+                                         points + block.points);
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
-            block.a[lane] = seat(block.a[lane]);
-            block.b[lane] = seat(block.b[lane]);
+            block.a[lane] = solver_index_of(block.a[lane]);
+            block.b[lane] = solver_index_of(block.b[lane]);
         }
-        sample.rows.blocks.push_back(block);
+        sample.constraints.blocks.push_back(block);
         sample.manifolds += manifolds_of(layout, place);
-        sample.slices[0].push_back({static_cast<std::uint32_t>(sample.rows.blocks.size() - 1), 1});
+        sample.slices[0].push_back(
+            {static_cast<std::uint32_t>(sample.constraints.blocks.size() - 1), 1});
     }
     return sample;
 }
@@ -93,7 +97,7 @@ Visited<Real> sample_of(const Rows<Real>& rows, const Layout& layout)
 struct SceneSize {
     const char* scene;
     int size, steps;   // those that pass before
-    int together = 4;  // visits to a slice, where an island is cut: those of two substeps
+    int together = 4;  // iterations to a slice, where an island is cut: those of two substeps
 };
 
 /// The rows of a scene after some steps, made at the first call.
@@ -113,14 +117,14 @@ const Sampled<Real>& rows_of(const SceneSize& asked)
     made = std::make_unique<Sampled<Real>>();
     const auto& data = std::get<Step<Real>>(state_of(world).step).data;
     const auto& layout = std::get<Layout>(data);
-    made->whole.rows = std::get<Rows<Real>>(data);
+    made->whole.constraints = std::get<ContactConstraints<Real>>(data);
     for (const Slice& slice : layout.slices) {
         const auto first = layout.colors.begin() + slice.first_color;
         made->whole.slices.emplace_back(first, first + slice.colors);
     }
-    for (std::size_t block = 0; block < made->whole.rows.blocks.size(); ++block)
+    for (std::size_t block = 0; block < made->whole.constraints.blocks.size(); ++block)
         made->whole.manifolds += manifolds_of(layout, block);
-    made->sample = sample_of(made->whole.rows, layout);
+    made->sample = sample_of(made->whole.constraints, layout);
     return *made;
 }
 
@@ -132,36 +136,36 @@ double thread_seconds()
     return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) / 1e9;
 }
 
-/// Time of a visit to all rows, s, on the mean over kVisits from the given start; so many together
-/// as in a step: walls have three a substep and go there and back, heaps two.
+/// Time of an iteration to all rows, s, on the mean over kVisits from the given start; so many
+/// together as in a step: walls have three a substep and go there and back, heaps two.
 template <class Real>
 double time_visits(const SolveKernels<Real>& kernels,
                    Kernel kernel,
                    const Visited<Real>& start,
                    int together,
-                   Rows<Real>& rows)
+                   ContactConstraints<Real>& constraints)
 {
-    rows.blocks = start.rows.blocks;
-    rows.points = start.rows.points;
-    rows.bodies = start.rows.bodies;
-    const RowsView<Real> view = RowsView<Real>::of(rows);
-    Visit<Real> visit;
-    visit.inverse_substep = 240;
-    visit.push_limit = 3;
-    visit.push = kernel == Kernel::push;
-    visit.normal_sweeps = visit.push ? 2 : 1;
+    constraints.blocks = start.constraints.blocks;
+    constraints.points = start.constraints.points;
+    constraints.bodies = start.constraints.bodies;
+    const ContactConstraintsView<Real> view = ContactConstraintsView<Real>::of(constraints);
+    SolverIteration<Real> iteration;
+    iteration.inverse_substep = 240;
+    iteration.push_limit = 3;
+    iteration.use_bias = kernel == Kernel::solve_biased;
+    iteration.normal_iterations = iteration.use_bias ? 2 : 1;
     const auto visit_slice = [&](std::size_t, std::size_t slice) {
         for (const Color& color : start.slices[slice]) {
             const std::size_t first = color.first, end = first + color.count;
             if (kernel == Kernel::warm_start)
-                kernels.warm_start(view, first, end, visit);
+                kernels.warm_start(view, first, end, iteration);
             else
-                kernels.sweep(view, first, end, visit);
+                kernels.solve(view, first, end, iteration);
         }
     };
     const double begin = thread_seconds();
     for (int i = 0; i < kVisits; i += together)
-        rows.wave.run(static_cast<std::size_t>(together), start.slices.size(), visit_slice);
+        constraints.wave.run(static_cast<std::size_t>(together), start.slices.size(), visit_slice);
     return (thread_seconds() - begin) / kVisits;
 }
 
@@ -172,9 +176,9 @@ void time_in_cache(benchmark::State& state,
                    Kernel kernel)
 {
     const Visited<Real>& sample = rows_of<Real>(scene).sample;
-    Rows<Real> rows;
+    ContactConstraints<Real> constraints;
     for ([[maybe_unused]] auto iteration : state)
-        state.SetIterationTime(time_visits(kernels, kernel, sample, kVisits, rows));
+        state.SetIterationTime(time_visits(kernels, kernel, sample, kVisits, constraints));
     state.counters["a_manifold"] = time_of_one(sample.manifolds);
     state.counters["KiB"] = static_cast<double>(sample.bytes()) / 1024;
 }
@@ -185,7 +189,7 @@ void time_scene(benchmark::State& state, const SceneSize& scene, Kernel kernel, 
 {
     const SolveKernels<float>& kernels = solve_kernels<float>();
     const Sampled<float>& sampled = rows_of<float>(scene);
-    Rows<float> whole, sample;
+    ContactConstraints<float> whole, sample;
     double of_whole = 1e30, of_sample = 1e30;
     for ([[maybe_unused]] auto iteration : state) {
         const double in_cache =
@@ -215,7 +219,7 @@ constexpr Bounded kLarge[] = {{{"pile", 10'000, 60}, 1.3},
                               {{"wall", 10'000, 5}, 1.3},
                               {{"pile", 100'000, 40}, 1.6},
                               {{"wall", 100'000, 2, 3}, 1.6}};
-constexpr Kernel kKernels[] = {Kernel::push, Kernel::relax, Kernel::warm_start};
+constexpr Kernel kKernels[] = {Kernel::solve_biased, Kernel::relax, Kernel::warm_start};
 
 template <class Real>
 void register_in_cache(const std::string& number)

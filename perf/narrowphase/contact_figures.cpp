@@ -88,9 +88,9 @@ measure_contacts(const Shapes& shapes, const Build& build, const Effort& effort)
     const bool too_many = std::max(build.vertices_a, build.vertices_b) > kMostAxes;
     Effort here = effort;
     if (too_many) here.pairs = std::min<std::size_t>(effort.pairs, 8);
-    for (const Meeting& meeting : {kTouching, kDeep})
+    for (const PairCase& pair_case : {kTouching, kDeep})
         for (const Motion& motion : {kSmall, kLarge}) {
-            const RollingPairs rolling(shapes, build, meeting, motion, here.pairs);
+            const RollingPairs rolling(shapes, build, pair_case, motion, here.pairs);
             const bool boxes = rolling.pairs[0].b.kind == ShapeKind::box;
             // Of two hulls of thousands GJK alone; beside a box the other ways still end.
             const bool gjk_alone = too_many && std::min(build.vertices_a, build.vertices_b) > 0;
@@ -102,7 +102,7 @@ measure_contacts(const Shapes& shapes, const Build& build, const Effort& effort)
                 turns.push_back(colliding<double>(shapes, rolling));
             }
             take_turns(turns, here);
-            ContactRow row{build.name, meeting.name, motion.name, turns[0].best};
+            ContactRow row{build.name, pair_case.name, motion.name, turns[0].best};
             if (!gjk_alone) {
                 row.sat = turns[1].best;
                 row.auto_float = turns[2].best;

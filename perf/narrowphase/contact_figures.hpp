@@ -10,7 +10,7 @@ namespace throng::perf {
 /// what `auto` takes in either number type.
 struct ContactRow {
     std::string build;
-    std::string_view meeting, motion;
+    std::string_view pair_case, motion;
     double gjk = kNone, sat = kNone, auto_float = kNone, auto_double = kNone;  // ns
 };
 

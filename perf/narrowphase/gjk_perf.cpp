@@ -20,8 +20,8 @@ constexpr double kReach = 0.02;  // m, as in a pile of bodies of 1 m
 
 struct Case {
     const char* name;
-    double gap;    // m
-    double reach;  // m
+    double clearance;           // m
+    double speculative_margin;  // m
     Question question;
 };
 // clang-format off
@@ -49,7 +49,7 @@ MethodAnswer ask(const char* method, const ConvexPair& pair)
 }
 
 // b moved along the way it lies until the gap is the one wanted.
-Pose meeting_pose(const Shapes& shapes, ShapeRef a, ShapeRef b, double gap, Random& random)
+Pose meeting_pose(const Shapes& shapes, ShapeRef a, ShapeRef b, double clearance, Random& random)
 {
     Pose pose{Vec3::Zero(), random_turn(random, 3)};
     const Vec3 from = random_direction(random);
@@ -58,7 +58,7 @@ Pose meeting_pose(const Shapes& shapes, ShapeRef a, ShapeRef b, double gap, Rand
         const double middle = (near + far) / 2;
         pose.position = middle * from;
         const ConvexPair pair(shapes, a, b, pose);
-        (ask("gjk", pair).separation < gap ? near : far) = middle;
+        (ask("gjk", pair).separation < clearance ? near : far) = middle;
     }
     return pose;
 }
@@ -68,7 +68,7 @@ struct Scene {
     std::vector<HullsMoving> moving;
     std::vector<std::unique_ptr<ConvexPair>> pairs;  // step by step
 
-    Scene(std::size_t vertices, double gap)
+    Scene(std::size_t vertices, double clearance)
     {
         Random random(1);
         constexpr std::uint32_t kHulls = 16;
@@ -79,7 +79,7 @@ struct Scene {
             const ShapeRef a{ShapeKind::hull, random.below(kHulls)};
             const ShapeRef b{ShapeKind::hull, random.below(kHulls)};
             HullsMoving one{&shapes.hulls[a.index], &shapes.hulls[b.index], {}};
-            Pose pose = meeting_pose(shapes, a, b, gap, random);
+            Pose pose = meeting_pose(shapes, a, b, clearance, random);
             const Vec3 drift = random_direction(random) * 0.001;
             const Quat turn = random_turn(random, 0.005);
             for (std::size_t step = 0; step < kSteps; ++step) {
@@ -120,12 +120,12 @@ public:
     double best = 1e300;  // ns, of one question
 };
 
-void time_pairs(benchmark::State& state, std::size_t vertices, const Case& meeting, bool warm)
+void time_pairs(benchmark::State& state, std::size_t vertices, const Case& pair_case, bool warm)
 {
-    const Scene scene(vertices, meeting.gap);
+    const Scene scene(vertices, pair_case.clearance);
     const MethodStart start = warm ? MethodStart::cached : MethodStart::cold;
     std::vector<Turn> ours{Turn("gjk"), Turn("sat")}, theirs;
-    const auto peers = make_hull_peers(scene.moving, meeting.question);
+    const auto peers = make_hull_peers(scene.moving, pair_case.question);
     for (const auto& peer : peers) theirs.emplace_back(peer->name);
     std::vector<std::vector<MethodMemory>> memory(ours.size(), std::vector<MethodMemory>(kPairs));
 
@@ -134,24 +134,27 @@ void time_pairs(benchmark::State& state, std::size_t vertices, const Case& meeti
             const auto method = find_convex_method(ours[i].name)->ask;
             ours[i].run([&](std::size_t pair, std::size_t step) {
                 const ConvexPair& asked = *scene.pairs[step * kPairs + pair];
-                return method(asked, meeting.reach, start, memory[i][pair]).separation;
+                return method(asked, pair_case.speculative_margin, start, memory[i][pair])
+                    .separation;
             });
         }
         for (std::size_t i = 0; i < theirs.size(); ++i)
             theirs[i].run([&](std::size_t pair, std::size_t step) {
-                return peers[i]->ask(pair, step, meeting.reach, warm);
+                return peers[i]->ask(pair, step, pair_case.speculative_margin, warm);
             });
     }
     double off = 0;
-    if (meeting.question != Question::whether && !peers.empty())
+    if (pair_case.question != Question::whether && !peers.empty())
         for (std::size_t i = 0; i < kPairs; ++i) {
             MethodMemory fresh;
             const ConvexPair& asked = *scene.pairs[i];
-            const double truth = find_convex_method("gjk")
-                                     ->ask(asked, meeting.reach, MethodStart::cold, fresh)
-                                     .separation;
+            const double truth =
+                find_convex_method("gjk")
+                    ->ask(asked, pair_case.speculative_margin, MethodStart::cold, fresh)
+                    .separation;
             for (const auto& peer : peers)
-                off = std::max(off, std::abs(peer->ask(i, 0, meeting.reach, false) - truth));
+                off = std::max(
+                    off, std::abs(peer->ask(i, 0, pair_case.speculative_margin, false) - truth));
         }
     state.counters["off"] = off;
     for (const Turn& turn : ours) state.counters[turn.name + "_ns"] = turn.best;
@@ -166,11 +169,11 @@ void time_pairs(benchmark::State& state, std::size_t vertices, const Case& meeti
 void register_benchmarks()
 {
     for (const std::size_t vertices : {8, 32, 128, 1000})
-        for (const Case& meeting : kCases)
+        for (const Case& pair_case : kCases)
             for (const bool warm : {false, true}) {
                 const std::string name =
-                    std::to_string(vertices) + "/" + meeting.name + (warm ? "/warm" : "/cold");
-                benchmark::RegisterBenchmark(name.c_str(), time_pairs, vertices, meeting, warm)
+                    std::to_string(vertices) + "/" + pair_case.name + (warm ? "/warm" : "/cold");
+                benchmark::RegisterBenchmark(name.c_str(), time_pairs, vertices, pair_case, warm)
                     ->Iterations(30)
                     ->Unit(benchmark::kMillisecond);
             }

@@ -28,14 +28,15 @@ public:
         for (const HullsMoving& pair : pairs) pairs_.push_back(std::make_unique<Pair>(pair));
     }
 
-    double ask(std::size_t pair, std::size_t step, double reach, bool warm) override
+    double ask(std::size_t pair, std::size_t step, double speculative_margin, bool warm) override
     {
         Pair& asked = *pairs_[pair];
         if (!warm) asked.detector.setCachedSeparatingAxis({0, 1, 0});
         btGjkPairDetector::ClosestPointInput input;
         input.m_transformA.setIdentity();
         input.m_transformB = asked.poses[step];
-        input.m_maximumDistanceSquared = static_cast<btScalar>(std::min(reach * reach, 1e18));
+        input.m_maximumDistanceSquared =
+            static_cast<btScalar>(std::min(speculative_margin * speculative_margin, 1e18));
         btPointCollector found;
         asked.detector.getClosestPoints(input, found, nullptr);
         return found.m_hasResult ? found.m_distance : 1e9;

@@ -28,10 +28,12 @@ public:
     HullPeer(const HullPeer&) = delete;
     HullPeer& operator=(const HullPeer&) = delete;
 
-    /// m, the distance, or minus the depth; some number above the reach where it is that far.
+    /// m, the distance, or minus the depth; some number above the speculative margin where it is
+    /// that far.
     ///
     ///   warm   with what it remembers of the pair, if it remembers anything
-    virtual double ask(std::size_t pair, std::size_t step, double reach, bool warm) = 0;
+    virtual double
+    ask(std::size_t pair, std::size_t step, double speculative_margin, bool warm) = 0;
 
     std::string name;
 };

@@ -9,13 +9,13 @@ namespace throng::perf {
 inline constexpr double kReach = 0.02;  // m, as in a pile of bodies of 1 m
 
 // Within reach of the far ones is nothing, so that they need no more than to be told so.
-inline constexpr Meeting kFar{"far", 2, kReach};
-inline constexpr Meeting kNear{"near", 0.1, 1e9};
+inline constexpr PairCase kFar{"far", 2, kReach};
+inline constexpr PairCase kNear{"near", 0.1, 1e9};
 // Nearer than what double can be asked to tell for good: where verdicts go wrong, if they do.
-inline constexpr Meeting kGrazing{"grazing", 1e-12, kReach, true};
-inline constexpr Meeting kTouching{"touching", -0.005, kReach};
-inline constexpr Meeting kDeep{"deep", -0.2, kReach};
-inline constexpr Meeting kMeetings[] = {kFar, kNear, kGrazing, kTouching, kDeep};
+inline constexpr PairCase kGrazing{"grazing", 1e-12, kReach, true};
+inline constexpr PairCase kTouching{"touching", -0.005, kReach};
+inline constexpr PairCase kDeep{"deep", -0.2, kReach};
+inline constexpr PairCase kPairCases[] = {kFar, kNear, kGrazing, kTouching, kDeep};
 
 // A body that settles, and one that tumbles at some 6 rad/s.
 inline constexpr Motion kSmall{"small", 0.002};
@@ -47,7 +47,7 @@ struct Worth {
 struct Row {
     std::string_view method;
     std::string build;
-    std::string_view meeting;
+    std::string_view pair_case;
     double cold = kNone, plain = kNone, warm_small = kNone, warm_large = kNone;  // ns
     Worth worth;
 };
@@ -57,7 +57,7 @@ struct Row {
 ///   unproved  m, raised to the worst that any truth is not proved to
 void measure_meeting(const Shapes& shapes,
                      const Build& build,
-                     const Meeting& meeting,
+                     const PairCase& pair_case,
                      const Effort& effort,
                      double& unproved,
                      std::vector<Row>& rows);

@@ -46,11 +46,11 @@ std::string share_text(int part, int all)
 using Pick = double (*)(const Row&);
 
 // The worth of a method in one kind of meeting, over all builds.
-std::string worth_text(const std::vector<Row>& rows, std::string_view method, const char* meeting)
+std::string worth_text(const std::vector<Row>& rows, std::string_view method, const char* pair_case)
 {
     Worth all;
     for (const Row& row : rows) {
-        if (row.method != method || row.meeting != meeting) continue;
+        if (row.method != method || row.pair_case != pair_case) continue;
         all.asked += row.worth.asked;
         all.wrong += row.worth.wrong;
         all.undecided += row.worth.undecided;
@@ -76,20 +76,20 @@ void print_methods(const std::vector<Row>& rows,
     std::printf("\n%s\n\n%-9s %-12s", title, "", "");
     for (const Build& build : builds) std::printf(" %15s", build.name.c_str());
     std::printf("%s\n", worth ? "  error             wrong  undecided" : "");
-    for (const Meeting& meeting : kMeetings)
+    for (const PairCase& pair_case : kPairCases)
         for (const ConvexMethod& method : convex_methods()) {
-            std::printf("%-9s %-12s", meeting.name, std::string(method.name).c_str());
+            std::printf("%-9s %-12s", pair_case.name, std::string(method.name).c_str());
             for (const Build& build : builds) {
                 const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& one) {
                     return one.method == method.name && one.build == build.name
-                        && one.meeting == meeting.name;
+                        && one.pair_case == pair_case.name;
                 });
                 const std::string text = row == rows.end()
                     ? "-"
                     : time_text(first(*row)) + "/" + time_text(second(*row));
                 std::printf(" %15s", text.c_str());
             }
-            std::printf("%s\n", worth ? worth_text(rows, method.name, meeting.name).c_str() : "");
+            std::printf("%s\n", worth ? worth_text(rows, method.name, pair_case.name).c_str() : "");
         }
 }
 
@@ -100,7 +100,7 @@ void print_contacts(const std::vector<ContactRow>& rows)
                 "", "", "motion", "gjk", "sat", "auto float", "auto double");
     for (const ContactRow& row : rows)
         std::printf("%-14s %-9s %-6s %10s %10s %12s %12s\n", row.build.c_str(),
-                    std::string(row.meeting).c_str(), std::string(row.motion).c_str(),
+                    std::string(row.pair_case).c_str(), std::string(row.motion).c_str(),
                     time_text(row.gjk).c_str(), time_text(row.sat).c_str(),
                     time_text(row.auto_float).c_str(), time_text(row.auto_double).c_str());
 }
@@ -121,7 +121,7 @@ bool write_json(const char* file,
     for (const Row& row : rows) {
         JsonMembers members;
         members.add("method", json_string(row.method));
-        members.add("separation", json_string(row.meeting));
+        members.add("separation", json_string(row.pair_case));
         members.add("vertices", json_string(row.build));
         members.add("cold_ns", number_or_null(row.cold));
         members.add("plain_ns", number_or_null(row.plain));
@@ -140,7 +140,7 @@ bool write_json(const char* file,
     for (const ContactRow& row : contacts) {
         JsonMembers members;
         members.add("pair", json_string(row.build));
-        members.add("separation", json_string(row.meeting));
+        members.add("separation", json_string(row.pair_case));
         members.add("motion", json_string(row.motion));
         members.add("gjk_ns", number_or_null(row.gjk));
         members.add("sat_ns", number_or_null(row.sat));
@@ -167,8 +167,8 @@ int run(bool quick, const char* json)
     for (const Build& build : builds) {
         std::fprintf(stderr, "%s\n", build.name.c_str());
         const Shapes shapes = make_shapes(build);
-        for (const Meeting& meeting : kMeetings)
-            measure_meeting(shapes, build, meeting, effort, unproved, rows);
+        for (const PairCase& pair_case : kPairCases)
+            measure_meeting(shapes, build, pair_case, effort, unproved, rows);
     }
     print_methods(
         rows, builds, "One question, ns: cold / warm along a small motion",

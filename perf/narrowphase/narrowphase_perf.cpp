@@ -18,13 +18,13 @@ constexpr std::size_t kPairs = 1024;
 constexpr double kOverlap = 0.005, kReach = 0.02;  // m, as in a pile of bodies of 1 m
 
 // How a pair meets: turned any way, as in a heap just dropped; end on end or face on face, as in a
-// stack; a's side along b's upper face; or as in a heap, but just out of reach.
-enum class Meeting { anyhow, standing, lying, apart };
+// stack; a's side along b's upper face; or as in a heap, but just beyond the margin.
+enum class PairCase { anyhow, standing, lying, apart };
 
 struct Case {
     const char* name;
     ShapeKind a, b;
-    Meeting meeting = Meeting::anyhow;
+    PairCase pair_case = PairCase::anyhow;
 };
 
 // clang-format off
@@ -32,30 +32,30 @@ constexpr Case kCases[] = {
     {"sphere_sphere",           ShapeKind::sphere,   ShapeKind::sphere},
     {"sphere_capsule",          ShapeKind::sphere,   ShapeKind::capsule},
     {"sphere_box",              ShapeKind::sphere,   ShapeKind::box},
-    {"sphere_box_apart",        ShapeKind::sphere,   ShapeKind::box,      Meeting::apart},
+    {"sphere_box_apart",        ShapeKind::sphere,   ShapeKind::box,      PairCase::apart},
     {"sphere_hull",             ShapeKind::sphere,   ShapeKind::hull},
     {"capsule_capsule",         ShapeKind::capsule,  ShapeKind::capsule},
-    {"capsule_capsule_lying",   ShapeKind::capsule,  ShapeKind::capsule,  Meeting::lying},
-    {"capsule_capsule_apart",   ShapeKind::capsule,  ShapeKind::capsule,  Meeting::apart},
+    {"capsule_capsule_lying",   ShapeKind::capsule,  ShapeKind::capsule,  PairCase::lying},
+    {"capsule_capsule_apart",   ShapeKind::capsule,  ShapeKind::capsule,  PairCase::apart},
     {"capsule_box",             ShapeKind::capsule,  ShapeKind::box},
-    {"capsule_box_standing",    ShapeKind::capsule,  ShapeKind::box,      Meeting::standing},
-    {"capsule_box_lying",       ShapeKind::capsule,  ShapeKind::box,      Meeting::lying},
-    {"capsule_box_apart",       ShapeKind::capsule,  ShapeKind::box,      Meeting::apart},
+    {"capsule_box_standing",    ShapeKind::capsule,  ShapeKind::box,      PairCase::standing},
+    {"capsule_box_lying",       ShapeKind::capsule,  ShapeKind::box,      PairCase::lying},
+    {"capsule_box_apart",       ShapeKind::capsule,  ShapeKind::box,      PairCase::apart},
     {"capsule_hull",            ShapeKind::capsule,  ShapeKind::hull},
-    {"capsule_hull_apart",      ShapeKind::capsule,  ShapeKind::hull,     Meeting::apart},
+    {"capsule_hull_apart",      ShapeKind::capsule,  ShapeKind::hull,     PairCase::apart},
     {"box_box",                 ShapeKind::box,      ShapeKind::box},
-    {"box_box_lying",           ShapeKind::box,      ShapeKind::box,      Meeting::standing},
+    {"box_box_lying",           ShapeKind::box,      ShapeKind::box,      PairCase::standing},
     {"hull_hull",               ShapeKind::hull,     ShapeKind::hull},
     {"cylinder_box",            ShapeKind::cylinder, ShapeKind::box},
-    {"cylinder_box_standing",   ShapeKind::cylinder, ShapeKind::box,      Meeting::standing},
-    {"cylinder_box_lying",      ShapeKind::cylinder, ShapeKind::box,      Meeting::lying},
+    {"cylinder_box_standing",   ShapeKind::cylinder, ShapeKind::box,      PairCase::standing},
+    {"cylinder_box_lying",      ShapeKind::cylinder, ShapeKind::box,      PairCase::lying},
     {"cylinder_cylinder",       ShapeKind::cylinder, ShapeKind::cylinder},
-    {"cylinder_cylinder_lying", ShapeKind::cylinder, ShapeKind::cylinder, Meeting::standing},
+    {"cylinder_cylinder_lying", ShapeKind::cylinder, ShapeKind::cylinder, PairCase::standing},
     {"sphere_plane",            ShapeKind::sphere,   ShapeKind::plane},
     {"capsule_plane",           ShapeKind::capsule,  ShapeKind::plane},
     {"cylinder_plane",          ShapeKind::cylinder, ShapeKind::plane},
     {"box_plane",               ShapeKind::box,      ShapeKind::plane},
-    {"box_plane_lying",         ShapeKind::box,      ShapeKind::plane,    Meeting::standing},
+    {"box_plane_lying",         ShapeKind::box,      ShapeKind::plane,    PairCase::standing},
 };
 // clang-format on
 
@@ -88,11 +88,11 @@ Pose touching_pose(const Shapes& shapes, const Case& pair, Random& random)
     Pose pose;
     Vec3 from = random_direction(random);
     const double angle = random.uniform(0, 2 * std::numbers::pi);
-    const bool standing = pair.meeting == Meeting::standing;
+    const bool standing = pair.pair_case == PairCase::standing;
     if (standing) {
         pose.orientation = Eigen::AngleAxisd(angle, Vec3::UnitZ())
             * Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX());
-    } else if (pair.meeting == Meeting::lying) {
+    } else if (pair.pair_case == PairCase::lying) {
         // Their axes side by side for rods, a's axis along the face of a box.
         const bool rods = pair.a == pair.b;
         pose.orientation = Eigen::AngleAxisd(angle, Vec3::UnitZ())
@@ -113,7 +113,7 @@ Pose touching_pose(const Shapes& shapes, const Case& pair, Random& random)
         collide<double>(shapes, {pair.a, 0}, {pair.b, 0}, pose, 0, cache, found);
         (found.count > 0 ? touching : apart) = middle;
     }
-    const bool apart_for_good = pair.meeting == Meeting::apart;
+    const bool apart_for_good = pair.pair_case == PairCase::apart;
     pose.position = (apart_for_good ? touching + 3 * kReach : touching - kOverlap) * from;
     return pose;
 }

@@ -28,14 +28,17 @@ struct Cone {
     Vec3 offset;
     double inner;  // m, radii of the balls inside both
 
-    double reach(double best) const { return best + inner; }
-    bool holds(const Vec3& unit, double best) const { return offset.dot(unit) >= reach(best); }
+    double inner_distance(double best) const { return best + inner; }
+    bool holds(const Vec3& unit, double best) const
+    {
+        return offset.dot(unit) >= inner_distance(best);
+    }
     // The same for an arc of normals about a middle one, rad to either side.
     bool may_hold(const Vec3& middle, double half, double best) const
     {
         const double far = offset.norm();
-        if (reach(best) <= 0 || !(far > 0)) return true;
-        const double widest = std::acos(std::min(1.0, reach(best) / far)) + half;
+        if (inner_distance(best) <= 0 || !(far > 0)) return true;
+        const double widest = std::acos(std::min(1.0, inner_distance(best) / far)) + half;
         return offset.dot(middle) >= far * std::cos(std::min(widest, 3.1));
     }
 };
@@ -227,8 +230,8 @@ PairTruth distance_truth(const PolytopePair& pair,
         const QuadTruth truth =
             quad_truth(nearest_corners(pair.a, normal, at_a), nearest_corners(pair.b, back, at_b));
         const double proved = quad_separation_along(all_a, all_b, truth.normal);
-        const double gap = std::abs(truth.separation - proved);
-        if (gap < best.unproved) best = {truth.separation, gap};
+        const double clearance = std::abs(truth.separation - proved);
+        if (clearance < best.unproved) best = {truth.separation, clearance};
         normal = truth.normal;
     }
     return best;

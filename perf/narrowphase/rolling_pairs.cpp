@@ -46,7 +46,7 @@ Shapes make_shapes(const Build& build)
 
 RollingPairs::RollingPairs(const Shapes& shapes,
                            const Build& build,
-                           const Meeting& meeting,
+                           const PairCase& pair_case,
                            const Motion& motion,
                            std::size_t count)
 {
@@ -59,15 +59,16 @@ RollingPairs::RollingPairs(const Shapes& shapes,
         Quat orientation = random_turn(random, 3);
         const Quat round = turn(random_direction(random), motion.angle);
         const Quat about = turn(random_direction(random), motion.angle);
-        const double wanted = meeting.either && i % 2 == 1 ? -meeting.gap : meeting.gap;
+        const double wanted =
+            pair_case.either && i % 2 == 1 ? -pair_case.clearance : pair_case.clearance;
         double found = 1;
         for (std::size_t step = 0; step < kSteps; ++step) {
             // Along the way that b lies, nearer or further until the gap is the one wanted.
             double near = 0, far = 4;
             for (int halving = 0; halving < 46; ++halving) {
                 found = (near + far) / 2;
-                const double gap = separation(shapes, one, {found * from, orientation});
-                (gap < wanted ? near : far) = found;
+                const double clearance = separation(shapes, one, {found * from, orientation});
+                (clearance < wanted ? near : far) = found;
             }
             one.b_in_a.push_back({found * from, orientation});
             one.asked.push_back(

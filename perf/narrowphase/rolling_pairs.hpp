@@ -17,11 +17,11 @@ struct Build {
     std::size_t vertices_a = 0, vertices_b = 0;  // 0: a box
 };
 
-struct Meeting {
+struct PairCase {
     const char* name;
-    double gap;           // m, below 0 minus the depth
-    double reach;         // m
-    bool either = false;  // every second pair is as deep as the others are apart
+    double clearance;           // m, below 0 minus the depth
+    double speculative_margin;  // m
+    bool either = false;        // every second pair is as deep as the others are apart
 };
 
 /// rad a step, of b round a and of b about itself.
@@ -36,7 +36,7 @@ constexpr std::size_t kSteps = 8;
 struct RollingPairs {
     RollingPairs(const Shapes& shapes,
                  const Build& build,
-                 const Meeting& meeting,
+                 const PairCase& pair_case,
                  const Motion& motion,
                  std::size_t count);
 

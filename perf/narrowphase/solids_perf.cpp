@@ -1,10 +1,10 @@
 // Solids: what a pair of bodies that are not convex takes, by the way they are taken, and what it
 // takes to make each way's data and to read them back.
 //
-// Noisy lumps about 1 m across. `near` overlaps by 5 mm somewhere, `apart` is twice the reach from
-// touching, with bounds that mostly overlap still. `cold` finds the touches; `warm` is what a step
-// does about a pair that it knows: solids that have hardly moved since move their manifolds, hulls
-// begin with what they remember. Level sets are in voxel_perf.cpp.
+// Noisy lumps about 1 m across. `near` overlaps by 5 mm somewhere, `apart` is twice the speculative
+// margin from touching, with bounds that mostly overlap still. `cold` finds the touches; `warm` is
+// what a step does about a pair that it knows: solids that have hardly moved since move their
+// manifolds, hulls begin with what they remember. Level sets are in voxel_perf.cpp.
 #include "cooking/decomposition/parts_cache.hpp"
 #include "cooking/repair/mesh_health.hpp"
 #include "cooking/sphere_trees/spheres_cache.hpp"
@@ -171,7 +171,7 @@ void move_touches(benchmark::State& state, const std::string& way, bool apart)
         for (const Known& pair : known) {
             benchmark::DoNotOptimize(
                 furthest_moved_near(pair.then, pair.now, radius_a + kReach, radius_b));
-            FoundManifold<double> found{{}, pair.then, kReach};
+            CachedManifold<double> found{{}, pair.then, kReach};
             LocalManifold<double> moved;
             for (const PatchManifold& patch : pair.patches) {
                 found.manifold = patch.manifold;
@@ -185,7 +185,7 @@ void move_touches(benchmark::State& state, const std::string& way, bool apart)
     tell(state, manifolds, points);
 }
 
-// Hulls of the two whose boxes are within reach of one another: what the broad phase hands on.
+// Hulls of the two whose boxes are within the margin of one another: what the broad phase hands on.
 struct HullPairPlace {
     ShapeRef a, b;
     PoseT<float> b_in_a;
@@ -239,7 +239,7 @@ const Mesh& mesh_of_many(std::uint32_t triangles)
     Mesh& mesh = made[triangles];
     if (mesh.triangles.empty()) {
         TriangleSoup soup = lump(triangles, 1);
-        mesh = mend(std::move(soup.vertices), std::move(soup.triangles)).mesh;
+        mesh = repair(std::move(soup.vertices), std::move(soup.triangles)).mesh;
     }
     return mesh;
 }
@@ -248,7 +248,7 @@ void make_healthy(benchmark::State& state, std::uint32_t triangles)
 {
     const TriangleSoup soup = lump(triangles, 1);
     for ([[maybe_unused]] auto iteration : state)
-        benchmark::DoNotOptimize(mend(soup.vertices, soup.triangles));
+        benchmark::DoNotOptimize(repair(soup.vertices, soup.triangles));
 }
 
 void make_parts(benchmark::State& state, std::uint32_t triangles)
@@ -271,7 +271,7 @@ void make_spheres(benchmark::State& state, std::uint32_t triangles)
 void make_layers(benchmark::State& state, std::uint32_t triangles)
 {
     Solid solid;
-    solid.way = SolidWay::depth_image;
+    solid.representation = SolidRepresentation::depth_image;
     solid.mesh = mesh_of_many(triangles);
     solid.rays = kAutoRays;
     for ([[maybe_unused]] auto iteration : state) benchmark::DoNotOptimize(layers_of(solid));
@@ -304,16 +304,16 @@ void read_spheres(benchmark::State& state, std::uint32_t triangles)
 
 void register_pairs(bool apart)
 {
-    const std::string meeting = apart ? "apart/" : "near/";
+    const std::string pair_case = apart ? "apart/" : "near/";
     const auto add = [](const std::string& name, auto&&... all) {
         benchmark::RegisterBenchmark(name.c_str(), all...)->Unit(benchmark::kMicrosecond);
     };
     for (const std::string way : {"voxels", "spheres", "depth_image"}) {
-        add("pair/" + way + "/" + meeting + "cold", find_touches, way, apart);
-        add("pair/" + way + "/" + meeting + "warm", move_touches, way, apart);
+        add("pair/" + way + "/" + pair_case + "cold", find_touches, way, apart);
+        add("pair/" + way + "/" + pair_case + "warm", move_touches, way, apart);
     }
-    add("pair/parts/" + meeting + "cold", collide_parts, apart, false);
-    add("pair/parts/" + meeting + "warm", collide_parts, apart, true);
+    add("pair/parts/" + pair_case + "cold", collide_parts, apart, false);
+    add("pair/parts/" + pair_case + "warm", collide_parts, apart, true);
 }
 
 void register_makers(std::uint32_t triangles)

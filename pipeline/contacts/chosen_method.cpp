@@ -46,7 +46,7 @@ int slabs_of(BoundsFilter dial)
 
 }  // namespace
 
-ChosenMethod::ChosenMethod(const Conditions& conditions,
+ChosenMethod::ChosenMethod(const StepContext& context,
                            const Pairs& pairs,
                            const Shapes& shapes,
                            const Colliders& colliders,
@@ -54,8 +54,8 @@ ChosenMethod::ChosenMethod(const Conditions& conditions,
                            std::size_t blocks,
                            MethodPairs& memories)
     : shapes_(shapes), colliders_(colliders), bounds_(bounds), memories_(memories),
-      method_(method_of(conditions.settings.narrowphase)), start_(conditions.settings.method_start),
-      filter_(conditions.settings.bounds_filter), slabs_(slabs_of(filter_))
+      method_(method_of(context.settings.narrowphase)), start_(context.settings.method_start),
+      filter_(context.settings.bounds_filter), slabs_(slabs_of(filter_))
 {
     memories_.fell_back = 0;
     memories_.fallbacks.assign(blocks, 0);
@@ -74,7 +74,7 @@ ChosenMethod::ChosenMethod(const Conditions& conditions,
                            const ShapeRef shape = colliders.shape[i];
                            if (!ends(shape.kind)) continue;
                            const Pose& placed = bounds.placed[i];
-                           memories_.bounds[i] = k_dop_of(core_of<double>(shapes, shape),
+                           memories_.bounds[i] = k_dop_of(convex_core_of<double>(shapes, shape),
                                                           placed.orientation.toRotationMatrix(),
                                                           placed.position, slabs_);
                        }
@@ -86,7 +86,7 @@ bool ChosenMethod::parts(const PairPlace& pair) const
     // In float the two may seem nearer by so much than they are.
     constexpr double kRounding = 1e-6;
     const double outer = colliders_.outer_radius[pair.a] + colliders_.outer_radius[pair.b];
-    const double apart = pair.reach + kRounding * outer;
+    const double apart = pair.speculative_margin + kRounding * outer;
     if (filter_ == BoundsFilter::sphere) {
         const Vec3 between = bounds_.placed[pair.b].position - bounds_.placed[pair.a].position;
         return between.squaredNorm() > (outer + apart) * (outer + apart);
@@ -106,7 +106,8 @@ bool ChosenMethod::collide(std::size_t i,
     const Pose seen = seen_from_first(pair.a, pair.b, shapes_, colliders_, bounds_);
     MethodMemory fresh;
     MethodMemory& memory = start_ == MethodStart::cached ? memories_.of_pair[i] : fresh;
-    if (collide_by(*method_, start_, shapes_, a, b, seen, pair.reach, memory, out)) return true;
+    if (collide_by(*method_, start_, shapes_, a, b, seen, pair.speculative_margin, memory, out))
+        return true;
     ++memories_.fallbacks[block];
     return false;
 }

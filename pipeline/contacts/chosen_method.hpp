@@ -13,7 +13,7 @@ public:
     /// After the list of pairs has changed `memories` follows it; filters get the bounds of now.
     ///
     ///   blocks  of pairs, that collide() is told apart by
-    ChosenMethod(const Conditions& conditions,
+    ChosenMethod(const StepContext& context,
                  const Pairs& pairs,
                  const Shapes& shapes,
                  const Colliders& colliders,
@@ -28,7 +28,7 @@ public:
         return (method_ || filters()) && ends(a) && ends(b);
     }
 
-    /// Whether the filter shows them to be out of reach.
+    /// Whether the filter shows them to be beyond the margin.
     bool parts(const PairPlace& pair) const;
 
     /// Where the two touch, in a's frame. False where `auto` has to answer.

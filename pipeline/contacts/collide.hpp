@@ -15,13 +15,14 @@ namespace throng {
 struct PairPlace {
     std::uint32_t a = 0, b = 0;  // colliders
     std::uint32_t body_a = 0, body_b = 0;
-    double reach = 0;  // m, of both together
+    double speculative_margin = 0;  // m, of both together
 };
 
 inline PairPlace place_of(PairKey key, const Colliders& colliders, const Bounds& bounds)
 {
     const std::uint32_t a = first_of(key), b = second_of(key);
-    return {a, b, colliders.body[a], colliders.body[b], bounds.reach[a] + bounds.reach[b]};
+    return {a, b, colliders.body[a], colliders.body[b],
+            bounds.speculative_margin[a] + bounds.speculative_margin[b]};
 }
 
 /// From the center of a pair's first shape to that of its second, m. Where both are at one place no
@@ -43,10 +44,10 @@ inline Vec3 between_centers(std::uint32_t first,
 /// How far a pair that touched in the last step is looked at, m. A fast body looks for no contacts
 /// ahead, but for those with what it slides on: it would lose that to a breath, and fall into it,
 /// at every other step.
-inline double kept_reach(const PairPlace& pair, const Bounds& bounds)
+inline double kept_speculative_margin(const PairPlace& pair, const Bounds& bounds)
 {
-    return std::max(bounds.reach[pair.a], bounds.kept[pair.a])
-        + std::max(bounds.reach[pair.b], bounds.kept[pair.b]);
+    return std::max(bounds.speculative_margin[pair.a], bounds.kept[pair.a])
+        + std::max(bounds.speculative_margin[pair.b], bounds.kept[pair.b]);
 }
 
 /// The axes of one of a pair as it is looked at. A sphere has none of its own and takes the
@@ -109,7 +110,7 @@ PoseT<Real> rounded(const Pose& pose)
 inline const Vec3&
 anchor_origin(std::uint32_t body, std::uint32_t other, const BodyStates& states, const Poses& poses)
 {
-    return poses.position[states.kind[body] == BodyKind::still ? other : body];
+    return poses.position[states.kind[body] == BodyKind::static_ ? other : body];
 }
 
 /// Turns a manifold in collider a's frame into a contact in world axes, anchors from the centers of
@@ -124,7 +125,7 @@ void make_contact(const LocalManifold<Real>& manifold,
     const Mat3T<Real> axes =
         QuatT<Real>(placed_a.orientation.template cast<Real>()).toRotationMatrix();
     const Vec3T<Real> offset_a = (placed_a.position - center_a).template cast<Real>();
-    contact.between = (center_a - center_b).template cast<Real>();
+    contact.center_offset = (center_a - center_b).template cast<Real>();
     contact.normal = axes * manifold.normal;
     contact.count = manifold.count;
     for (int k = 0; k < manifold.count; ++k) {
@@ -132,14 +133,14 @@ void make_contact(const LocalManifold<Real>& manifold,
         auto& to = contact.points[static_cast<std::size_t>(k)];
         const Vec3T<Real> middle = axes * from.position;
         const Vec3T<Real> half = contact.normal * (from.separation / 2);
-        to.from_a = middle + offset_a - half;
+        to.anchor_a = middle + offset_a - half;
         to.separation = from.separation;
         to.feature = from.feature;
         to.impulse = 0;
     }
     contact.friction.setZero();
     contact.rolling.setZero();
-    contact.twist = 0;
+    contact.torsional_impulse = 0;
 }
 
 /// Radius of the side that a shape turns along a direction, where turning the shape leaves that
@@ -181,16 +182,16 @@ template <class Real>
 void turn_round(Contact<Real>& contact)
 {
     for (int k = 0; k < contact.count; ++k)
-        contact.points[static_cast<std::size_t>(k)].from_a = contact.from_b(k);
+        contact.points[static_cast<std::size_t>(k)].anchor_a = contact.anchor_b(k);
     contact.normal = -contact.normal;
-    contact.between = -contact.between;
+    contact.center_offset = -contact.center_offset;
     std::swap(contact.round_a, contact.round_b);
 }
 
 /// Impulses of the last step are for its substep; a step of another length scales them.
-inline double impulse_scale(const Conditions& conditions)
+inline double impulse_scale(const StepContext& context)
 {
-    return conditions.last_substep > 0 ? conditions.substep() / conditions.last_substep : 0.0;
+    return context.last_substep > 0 ? context.substep() / context.last_substep : 0.0;
 }
 
 /// The same for a contact that stays as it is.
@@ -201,7 +202,7 @@ void scale_impulses(Contact<Real>& contact, Real scale)
         contact.points[static_cast<std::size_t>(k)].impulse *= scale;
     contact.friction *= scale;
     contact.rolling *= scale;
-    contact.twist *= scale;
+    contact.torsional_impulse *= scale;
 }
 
 }  // namespace throng

@@ -146,7 +146,7 @@ void put_in_order(ConvexContacts<Real>& contacts)
             follow(
                 contacts.order, contacts.found,
                 [&](std::size_t n) { return contacts.found_gathered[n]; },
-                [](const FoundManifold<Real>&) {});
+                [](const CachedManifold<Real>&) {});
         contacts.free.clear();
     }
     contacts.astray.assign(contacts.contacts.size(), 0);

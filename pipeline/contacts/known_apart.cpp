@@ -37,15 +37,16 @@ public:
         for (std::size_t i = begin; i < end; ++i) {
             if (i + kAhead < keys_.size())
                 __builtin_prefetch(&boxes_[second_of(keys_[i + kAhead])]);
-            const bool meet = boxes_[first_of(keys_[i])].overlaps(boxes_[second_of(keys_[i])]);
+            const bool overlap = boxes_[first_of(keys_[i])].overlaps(boxes_[second_of(keys_[i])]);
             near_[count] = static_cast<std::uint32_t>(i);
-            count += meet ? 1 : 0;
-            part_if(!meet, i);
+            count += overlap ? 1 : 0;
+            part_if(!overlap, i);
         }
         return count;
     }
 
-    // Not even what they have come since they were last looked at brings the others within reach.
+    // Not even what they have come since they were last looked at brings the others within the
+    // margin.
     std::size_t at_travels(std::size_t begin, std::size_t end)
     {
         std::size_t count = 0;
@@ -70,11 +71,12 @@ public:
                 __builtin_prefetch(&boxes_[second_of(keys_[near_[k + kAhead]])]);
             const std::uint32_t i = near_[k];
             const NearBox &a = boxes_[first_of(keys_[i])], &b = boxes_[second_of(keys_[i])];
-            const bool meet = a.overlaps(b);
+            const bool overlap = a.overlaps(b);
             near_[kept] = i;
-            kept += meet ? 1 : 0;
-            if (meet) continue;
-            note_apart(keys_[i], gap_between(a, b), contacts_.travels, contacts_.apart_until[i]);
+            kept += overlap ? 1 : 0;
+            if (overlap) continue;
+            note_apart(keys_[i], separation_between(a, b), contacts_.travels,
+                       contacts_.apart_until[i]);
             part_if(true, i);
         }
         return kept;
@@ -110,9 +112,9 @@ std::size_t find_near(const Pairs& pairs,
     return look.at_boxes_of_near(look.at_travels(begin, end));
 }
 
-void note_apart(PairKey key, double beyond_reach, const Travels& travels, float& apart_until)
+void note_apart(PairKey key, double beyond_margin, const Travels& travels, float& apart_until)
 {
-    const double until = approach(key, travels) + beyond_reach;
+    const double until = approach(key, travels) + beyond_margin;
     apart_until = static_cast<float>(until - kRounding * std::abs(until));
 }
 

@@ -24,7 +24,7 @@ std::size_t find_near(const Pairs& pairs,
                       std::vector<std::uint32_t>& parted,
                       std::span<std::uint32_t> near);
 
-/// Notes that the two of a pair are further apart than their reach by so much.
-void note_apart(PairKey key, double beyond_reach, const Travels& travels, float& apart_until);
+/// Notes that the two of a pair are further apart than their speculative margin by so much.
+void note_apart(PairKey key, double beyond_margin, const Travels& travels, float& apart_until);
 
 }  // namespace throng

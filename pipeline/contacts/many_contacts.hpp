@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/parallel/blocks.hpp"
-#include "kernels/solver/contact_rows.hpp"
+#include "kernels/solver/contact_packing.hpp"
 #include "pipeline/contacts/collide.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ inline std::uint32_t old_place(const Pairs& pairs, std::uint32_t pair)
 ///
 ///   find  (pair's place, its colliders, its contacts of the last step, block, entries to add to)
 template <class Real, class Find>
-void refresh_contacts(const Conditions& conditions,
+void refresh_contacts(const StepContext& context,
                       const Pairs& pairs,
                       std::span<const std::uint32_t> listed,
                       const Colliders& colliders,
@@ -48,7 +48,7 @@ void refresh_contacts(const Conditions& conditions,
 {
     std::swap(contacts.entries, contacts.before);
     contacts.entries.clear();
-    const Real scale = static_cast<Real>(impulse_scale(conditions));
+    const Real scale = static_cast<Real>(impulse_scale(context));
     contacts.of_block.start(block_count(listed.size(), grain));
     for_each_block(listed.size(), grain,
                    [&](std::size_t begin, std::size_t end, std::size_t block) {

@@ -22,8 +22,8 @@ bool find_or_recycle(const Shapes& shapes,
                      const Colliders& colliders,
                      const Bounds& bounds,
                      const PairPlace& pair,
-                     const FoundManifold<Real>* kept,
+                     const CachedManifold<Real>* kept,
                      PairCache& cache,
-                     FoundManifold<Real>& out);
+                     CachedManifold<Real>& out);
 
 }  // namespace throng

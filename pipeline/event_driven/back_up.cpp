@@ -1,7 +1,8 @@
 // Back up: the step is cut where bodies first touch, as often as it takes, for those concerned.
 //
-// A group of bodies that may meet (carry_groups.cpp) flies from touch to touch: none ever overlap.
-#include "pipeline/event_driven/group_flight.hpp"
+// A group of bodies that may meet (step_event_driven.cpp) flies from touch to touch: none ever
+// overlap.
+#include "pipeline/event_driven/event_driven_group.hpp"
 
 #include <algorithm>
 
@@ -18,51 +19,52 @@ constexpr double kWhole = 1 - 1e-12;
 constexpr double kCloser = 0.125;
 // Spans that went well before a longer one is tried.
 constexpr int kCalm = 4;
-// Of its gap a pair that touches may lose this share while it rests; it is given back after.
+// Of its separation a pair that touches may lose this share while it rests; it is given back after.
 constexpr double kKept = 0.9;
 
 }  // namespace
 
 // Whether none will have come nearer than a quarter of the tolerance at the end of the way ahead;
 // of those that are there already, whether none will have come much nearer.
-bool GroupFlight::stay_apart(double time)
+bool EventDrivenGroup::stay_apart(double time)
 {
     for (const PairKey key : pairs_) {
         double least = tolerance_of(key) / 4;
-        if (const auto now = gap_now_.find(key); now != gap_now_.end()) {
-            const double gap = now->second;
-            if (gap <= 0 && depth_error(key) > 0) continue;
-            const double deeper = gap - least * (1 - kKept);
-            least = std::min(least, gap > 0 ? gap * kKept : deeper);
+        if (const auto now = separation_now_.find(key); now != separation_now_.end()) {
+            const double separation = now->second;
+            if (separation <= 0 && depth_error(key) > 0) continue;
+            const double deeper = separation - least * (1 - kKept);
+            least = std::min(least, separation > 0 ? separation * kKept : deeper);
         }
         const std::uint32_t a = scene_.colliders.body[first_of(key)];
         const std::uint32_t b = scene_.colliders.body[second_of(key)];
-        const double reach = std::max(least, 0.0);
-        if (gap_of(key, end_of(a, time), end_of(b, time), reach) < least) return false;
+        const double speculative_margin = std::max(least, 0.0);
+        if (separation_of(key, end_of(a, time), end_of(b, time), speculative_margin) < least)
+            return false;
     }
     return true;
 }
 
-void GroupFlight::back_up()
+void EventDrivenGroup::back_up()
 {
-    const double dt = scene_.conditions.settings.dt, whole = scene_.conditions.substep();
+    const double dt = scene_.context.settings.dt, whole = scene_.context.substep();
     double time = 0, span = whole;
     int calm = kCalm;
     while (time < dt * kWhole && may_go_on()) {
         double next = std::min(span, dt - time);
         if (dt - time - next < dt * (1 - kWhole)) next = dt - time;
-        touches_.clear();
+        contacts_.clear();
         if (!fly(time, next)) break;
         find_pairs(time, next);
-        list_touches(time);
-        if (strike()) continue;
-        if (rest(next)) find_pairs(time, next);
+        list_contacts(time);
+        if (resolve_impacts()) continue;
+        if (solve_resting(next)) find_pairs(time, next);
         const FirstImpact first = look_ahead(pairs_, time, next);
-        const bool meets = first.impact.meeting == Meeting::meet;
+        const bool meets = first.impact.state == ToiState::hit;
         if (meets) {
             next *= first.impact.time;
             fly(time, next);
-            rest(next);
+            solve_resting(next);
         }
         if (!stay_apart(time + next)) {
             span = next / 2;
@@ -78,7 +80,7 @@ void GroupFlight::back_up()
         const std::uint32_t a = scene_.colliders.body[first_of(key)];
         const std::uint32_t b = scene_.colliders.body[second_of(key)];
         const double tolerance = tolerance_of(key), wider = 2 * tolerance;
-        if (gap_of(key, pose_at(a, time), pose_at(b, time), wider) > tolerance)
+        if (separation_of(key, pose_at(a, time), pose_at(b, time), wider) > tolerance)
             span = std::max(next * kCloser, dt * kLeastSpan);
     }
     outcome_.held = time < dt * kWhole;

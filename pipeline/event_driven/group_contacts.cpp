@@ -11,7 +11,7 @@
 #include "kernels/solver/carried_points.hpp"
 #include "kernels/solver/driven_contacts.hpp"
 #include "pipeline/contacts/collide.hpp"
-#include "pipeline/event_driven/group_flight.hpp"
+#include "pipeline/event_driven/event_driven_group.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ constexpr int kMostPasses = 500;    // of impacts at a moment; what still closes
 constexpr int kMostStrikes = 1000;  // of a pair in a step
 // Slower than this, of the greatest speed, nobody closes.
 constexpr double kRounding = 1e-11;
-// The share of what is missing to the gap at rest that a span gives back.
+// The share of what is missing to the separation at rest that a span gives back.
 constexpr double kPartShare = 0.5;
 // As far as this, in tolerances, at the end of a span, bodies are not held.
 constexpr double kClear = 2;
@@ -36,7 +36,7 @@ constexpr double kAlike = 1.01;
 }  // namespace
 
 // Those carried come first; below 0 for what stands still.
-std::int32_t GroupFlight::seat_of(std::uint32_t body)
+std::int32_t EventDrivenGroup::index_of(std::uint32_t body)
 {
     if (const std::int32_t member = member_of(body); member >= 0) return member;
     const Velocities& velocities = scene_.velocities;
@@ -44,102 +44,105 @@ std::int32_t GroupFlight::seat_of(std::uint32_t body)
         scene_.states.kind[body] == BodyKind::kinematic || scene_.states.carries(body);
     if (!moves || (velocities.linear[body].isZero(0) && velocities.angular[body].isZero(0)))
         return -1;
-    const auto at = std::find(seats_.begin(), seats_.end(), body);
-    const auto place = static_cast<std::size_t>(at - seats_.begin());
-    if (at == seats_.end()) seats_.push_back(body);
+    const auto at = std::find(members_.begin(), members_.end(), body);
+    const auto place = static_cast<std::size_t>(at - members_.begin());
+    if (at == members_.end()) members_.push_back(body);
     return static_cast<std::int32_t>(place);
 }
 
-void GroupFlight::list_touches(double time)
+void EventDrivenGroup::list_contacts(double time)
 {
-    touches_.clear();
-    gap_now_.clear();
-    seats_.assign(bodies_.begin(), bodies_.end());
-    for (const PairKey key : pairs_) list_touches_of(key, time);
+    contacts_.clear();
+    separation_now_.clear();
+    members_.assign(bodies_.begin(), bodies_.end());
+    for (const PairKey key : pairs_) list_contacts_of(key, time);
 }
 
-void GroupFlight::list_touches_of(PairKey key, double time)
+void EventDrivenGroup::list_contacts_of(PairKey key, double time)
 {
     const Colliders& colliders = scene_.colliders;
-    const double tolerance = tolerance_of(key), reach = tolerance * kAlike;
+    const double tolerance = tolerance_of(key), speculative_margin = tolerance * kAlike;
     const auto place = [&](std::uint32_t collider) {
         return pose_at(colliders.body[collider], time);
     };
-    const double least = gap_of(key, place(first_of(key)), place(second_of(key)), reach);
-    if (met_.manifolds.empty()) return;
-    gap_now_[key] = least;
-    const std::uint32_t a = met_.first, b = met_.second;
-    const Surfaces::Meeting meeting =
+    const double least =
+        separation_of(key, place(first_of(key)), place(second_of(key)), speculative_margin);
+    if (manifolds_.manifolds.empty()) return;
+    separation_now_[key] = least;
+    const std::uint32_t a = manifolds_.first, b = manifolds_.second;
+    const Surfaces::MaterialPair materials =
         scene_.surfaces.between(colliders.material[a], colliders.material[b]);
-    Touch touch;
-    touch.key = key;
-    touch.body_a = colliders.body[a];
-    touch.body_b = colliders.body[b];
-    touch.tolerance = tolerance;
-    touch.rest_gap = tolerance / 2;
-    touch.restitution = meeting.restitution;
-    touch.least_speed = std::sqrt(2 * scene_.conditions.gravity.norm() * tolerance);
-    touch.point.a = seat_of(touch.body_a);
-    touch.point.b = seat_of(touch.body_b);
-    touch.point.friction = meeting.friction;
-    touch.point.rolling = meeting.rolling_friction;
-    for (const LocalManifold<double>& found : met_.manifolds)
-        add_touches(found, place(a).position, place(b).position, touch);
+    GroupContact contact;
+    contact.key = key;
+    contact.body_a = colliders.body[a];
+    contact.body_b = colliders.body[b];
+    contact.tolerance = tolerance;
+    contact.rest_separation = tolerance / 2;
+    contact.restitution = materials.restitution;
+    contact.least_speed = std::sqrt(2 * scene_.context.gravity.norm() * tolerance);
+    contact.point.a = index_of(contact.body_a);
+    contact.point.b = index_of(contact.body_b);
+    contact.point.friction = materials.friction;
+    contact.point.rolling = materials.rolling_friction;
+    for (const LocalManifold<double>& found : manifolds_.manifolds)
+        add_contacts(found, place(a).position, place(b).position, contact);
 }
 
 // Who is driven walks on what bears it.
-Vec3 GroupFlight::walk_at(const Touch& touch) const
+Vec3 EventDrivenGroup::walk_at(const GroupContact& contact) const
 {
     const auto drive = [&](std::uint32_t body) {
-        return scene_.states.movable(body) ? scene_.drives.of(body) : nullptr;
+        return scene_.states.movable(body) ? scene_.prescribed.of(body) : nullptr;
     };
     const auto rolls = [&](bool is_b) {
-        const std::uint32_t body = is_b ? touch.body_b : touch.body_a;
-        return (is_b ? touch.round_b : touch.round_a) > 0 && rule_.turns
+        const std::uint32_t body = is_b ? contact.body_b : contact.body_a;
+        return (is_b ? contact.round_b : contact.round_a) > 0 && rule_.turns
             && !(scene_.masses.inverse_inertia[body] == Sym3{});
     };
     const auto velocity = [&](bool is_b) -> Vec3 {
-        const std::uint32_t body = is_b ? touch.body_b : touch.body_a;
+        const std::uint32_t body = is_b ? contact.body_b : contact.body_a;
         return scene_.velocities.linear[body]
-            + scene_.velocities.angular[body].cross(is_b ? touch.point.arm_b : touch.point.arm_a);
+            + scene_.velocities.angular[body].cross(is_b ? contact.point.arm_b
+                                                         : contact.point.arm_a);
     };
-    return walk_of(drive(touch.body_a), drive(touch.body_b), touch.point.normal,
-                   up_of(scene_.conditions.gravity), rolls, velocity);
+    return walk_of(drive(contact.body_a), drive(contact.body_b), contact.point.normal,
+                   up_of(scene_.context.gravity), rolls, velocity);
 }
 
-// The points of one manifold, of bodies at these positions; `touch` is what they have in common.
-void GroupFlight::add_touches(const LocalManifold<double>& found,
-                              const Vec3& a,
-                              const Vec3& b,
-                              Touch touch)
+// The points of one manifold, of bodies at these positions; `contact` is what they have in common.
+void EventDrivenGroup::add_contacts(const LocalManifold<double>& found,
+                                    const Vec3& a,
+                                    const Vec3& b,
+                                    GroupContact contact)
 {
-    DirectPoint& point = touch.point;
-    point.normal = (met_.at_first.orientation * found.normal).normalized();
+    DirectPoint& point = contact.point;
+    point.normal = (manifolds_.at_first.orientation * found.normal).normalized();
     const auto round = [&](std::uint32_t collider, std::uint32_t body) {
         const Colliders& colliders = scene_.colliders;
         const Quat turn = scene_.poses.orientation[body] * colliders.local[collider].orientation;
         return round_radius(scene_.shapes, colliders.shape[collider], {Vec3::Zero(), turn},
                             point.normal);
     };
-    touch.round_a = round(met_.first, touch.body_a);
-    touch.round_b = round(met_.second, touch.body_b);
+    contact.round_a = round(manifolds_.first, contact.body_a);
+    contact.round_b = round(manifolds_.second, contact.body_b);
     for (int k = 0; k < found.count; ++k) {
         const auto& at = found.points[static_cast<std::size_t>(k)];
-        const Vec3 middle = met_.at_first * at.position, half = point.normal * (at.separation / 2);
-        touch.gap = at.separation;
+        const Vec3 middle = manifolds_.at_first * at.position,
+                   half = point.normal * (at.separation / 2);
+        contact.separation = at.separation;
         point.arm_a = middle - half - a;
         point.arm_b = middle + half - b;
-        if (!scene_.drives.body.empty()) point.walk = walk_at(touch);
-        touches_.push_back(touch);
+        if (!scene_.prescribed.body.empty()) point.walk = walk_at(contact);
+        contacts_.push_back(contact);
     }
 }
 
 // As they are, or as they will be at the end of the way ahead.
-GroupFlight::Motions GroupFlight::motions(bool ends) const
+EventDrivenGroup::Motions EventDrivenGroup::motions(bool ends) const
 {
-    Motions bodies(seats_.size());
-    for (std::size_t i = 0; i < seats_.size(); ++i) {
-        const std::uint32_t body = seats_[i];
+    Motions bodies(members_.size());
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        const std::uint32_t body = members_[i];
         const bool carried = i < bodies_.size();
         bodies[i].velocity = carried && ends ? ends_[i].velocity : scene_.velocities.linear[body];
         bodies[i].spin = carried && ends ? ends_[i].spin : scene_.velocities.angular[body];
@@ -152,27 +155,27 @@ GroupFlight::Motions GroupFlight::motions(bool ends) const
     return bodies;
 }
 
-double GroupFlight::restitution_of(const Touch& touch) const
+double EventDrivenGroup::restitution_of(const GroupContact& contact) const
 {
-    const auto strikes = strikes_.find(touch.key);
-    const bool worn = strikes != strikes_.end() && strikes->second >= kMostStrikes;
-    return worn ? 0 : touch.restitution;
+    const auto is_hit = impact_counts_.find(contact.key);
+    const bool worn = is_hit != impact_counts_.end() && is_hit->second >= kMostStrikes;
+    return worn ? 0 : contact.restitution;
 }
 
 // Gives those that close among the touches from `begin` to before `end` back their share of what
 // stops them. False if none does.
-bool GroupFlight::reflect(std::size_t begin, std::size_t end, Motions& bodies)
+bool EventDrivenGroup::reflect(std::size_t begin, std::size_t end, Motions& bodies)
 {
     std::vector<std::size_t> hits;
     std::vector<DirectPoint> points;
     std::vector<double> speeds, restitution;
     for (std::size_t i = begin; i < end; ++i) {
-        const double speed = speed_apart(touches_[i].point, bodies);
-        if (!(speed < -touches_[i].least_speed)) continue;
+        const double speed = relative_normal_velocity(contacts_[i].point, bodies);
+        if (!(speed < -contacts_[i].least_speed)) continue;
         hits.push_back(i);
         speeds.push_back(-speed);
-        restitution.push_back(restitution_of(touches_[i]));
-        points.push_back(touches_[i].point);
+        restitution.push_back(restitution_of(contacts_[i]));
+        points.push_back(contacts_[i].point);
         points.back().friction = points.back().rolling = 0;
     }
     if (hits.empty()) return false;
@@ -186,11 +189,11 @@ bool GroupFlight::reflect(std::size_t begin, std::size_t end, Motions& bodies)
 }
 
 // Pair by pair: the points of one meet together.
-bool GroupFlight::reflect_in_order(Motions& bodies)
+bool EventDrivenGroup::reflect_in_order(Motions& bodies)
 {
     bool any = false;
-    for (std::size_t begin = 0, end = 0; begin < touches_.size(); begin = end) {
-        while (end < touches_.size() && touches_[end].key == touches_[begin].key) ++end;
+    for (std::size_t begin = 0, end = 0; begin < contacts_.size(); begin = end) {
+        while (end < contacts_.size() && contacts_[end].key == contacts_[begin].key) ++end;
         any = reflect(begin, end, bodies) || any;
     }
     return any;
@@ -198,13 +201,13 @@ bool GroupFlight::reflect_in_order(Motions& bodies)
 
 // The impacts of reflected bodies with friction, where every struck point leaves with the speed
 // that it has now. False, and nothing done, where that takes energy that nobody gave.
-bool GroupFlight::leave_as_reflected(std::vector<DirectPoint>& points, Motions& bodies)
+bool EventDrivenGroup::leave_as_reflected(std::vector<DirectPoint>& points, Motions& bodies)
 {
     const Motions before = motions(false);
     const double work = work_of(points, before, bodies);
     double size = 0;
     for (const DirectPoint& point : points)
-        size += point.impulse.norm() * velocity_between(point, before).norm();
+        size += point.impulse.norm() * relative_velocity(point, before).norm();
     std::vector<DirectPoint> held = points;
     for (DirectPoint& point : held) point.impulse.setZero();
     Motions after = before;
@@ -217,54 +220,57 @@ bool GroupFlight::leave_as_reflected(std::vector<DirectPoint>& points, Motions& 
 
 // Friction of impacts. Where points that leave as they are reflected would win energy, friction
 // bears its share of what struck instead, and they leave as they come.
-void GroupFlight::grip(Motions& bodies)
+void EventDrivenGroup::apply_friction(Motions& bodies)
 {
     std::vector<DirectPoint> points;
     std::vector<std::size_t> struck;
     bool grips = false;
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
         if (!(struck_[i] > 0)) continue;
         struck.push_back(i);
-        points.push_back(touches_[i].point);
+        points.push_back(contacts_[i].point);
         points.back().impulse = points.back().normal * struck_[i];
-        points.back().least = std::max(0.0, speed_apart(points.back(), bodies));
+        points.back().least = std::max(0.0, relative_normal_velocity(points.back(), bodies));
         grips = grips || points.back().friction > 0 || points.back().rolling > 0;
     }
     if (grips && !leave_as_reflected(points, bodies))
-        for (DirectPoint& point : points) rub(point.normal.dot(point.impulse), point, bodies);
+        for (DirectPoint& point : points)
+            apply_impact_friction(point.normal.dot(point.impulse), point, bodies);
     for (std::size_t k = 0; k < struck.size(); ++k)
-        note_push(touches_[struck[k]], points[k].impulse);
+        note_push(contacts_[struck[k]], points[k].impulse);
 }
 
-void GroupFlight::note_push(const Touch& touch, const Vec3& impulse)
+void EventDrivenGroup::note_push(const GroupContact& contact, const Vec3& impulse)
 {
-    outcome_.pushes.try_emplace(touch.body_a, Vec3::Zero()).first->second -= impulse;
-    outcome_.pushes.try_emplace(touch.body_b, Vec3::Zero()).first->second += impulse;
+    outcome_.pushes.try_emplace(contact.body_a, Vec3::Zero()).first->second -= impulse;
+    outcome_.pushes.try_emplace(contact.body_b, Vec3::Zero()).first->second += impulse;
 }
 
 // Impacts of this moment. False if there is none.
-bool GroupFlight::strike()
+bool EventDrivenGroup::resolve_impacts()
 {
     Motions bodies = motions(false);
     double greatest = 0;
-    for (const Touch& touch : touches_)
-        greatest = std::max(greatest, std::abs(speed_apart(touch.point, bodies)));
+    for (const GroupContact& contact : contacts_)
+        greatest = std::max(greatest, std::abs(relative_normal_velocity(contact.point, bodies)));
     bool any = false;
-    for (Touch& touch : touches_) {
-        touch.least_speed = std::max(touch.least_speed, kRounding * greatest);
+    for (GroupContact& contact : contacts_) {
+        contact.least_speed = std::max(contact.least_speed, kRounding * greatest);
         any = any
-            || (restitution_of(touch) > 0 && speed_apart(touch.point, bodies) < -touch.least_speed);
+            || (restitution_of(contact) > 0
+                && relative_normal_velocity(contact.point, bodies) < -contact.least_speed);
     }
     if (!any) return false;
-    struck_.assign(touches_.size(), 0);
-    const bool together = scene_.conditions.settings.impact_law == ImpactLaw::simultaneous;
+    struck_.assign(contacts_.size(), 0);
+    const bool together = scene_.context.settings.impact_law == ImpactLaw::simultaneous;
     int passes = 0;
     while (passes < kMostPasses && may_go_on()
-           && (together ? reflect(0, touches_.size(), bodies) : reflect_in_order(bodies)))
+           && (together ? reflect(0, contacts_.size(), bodies) : reflect_in_order(bodies)))
         ++passes;
-    grip(bodies);
-    for (std::size_t i = 0; i < touches_.size(); ++i)
-        if (struck_[i] > 0) strikes_[touches_[i].key] += passes < kMostPasses ? 1 : kMostStrikes;
+    apply_friction(bodies);
+    for (std::size_t i = 0; i < contacts_.size(); ++i)
+        if (struck_[i] > 0)
+            impact_counts_[contacts_[i].key] += passes < kMostPasses ? 1 : kMostStrikes;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         scene_.velocities.linear[bodies_[i]] = bodies[i].velocity;
         scene_.velocities.angular[bodies_[i]] = bodies[i].spin;
@@ -273,17 +279,17 @@ bool GroupFlight::strike()
 }
 
 // All impacts of this moment.
-void GroupFlight::settle_impacts()
+void EventDrivenGroup::settle_impacts()
 {
-    for (int left = kMostStrikes; left > 0 && strike() && may_go_on();) --left;
+    for (int left = kMostStrikes; left > 0 && resolve_impacts() && may_go_on();) --left;
 }
 
 // What rests is pressed as it was in the span before: then the solve has little left to do.
-void GroupFlight::guess(double span, std::vector<DirectPoint>& points) const
+void EventDrivenGroup::guess(double span, std::vector<DirectPoint>& points) const
 {
     auto before = pressing_.begin();
     for (std::size_t k = 0; k < points.size(); ++k) {
-        const PairKey key = touches_[resting_[k]].key;
+        const PairKey key = contacts_[resting_[k]].key;
         while (before != pressing_.end() && before->key < key) ++before;
         if (before == pressing_.end() || before->key != key) continue;
         points[k].impulse = before->force * span;
@@ -293,49 +299,50 @@ void GroupFlight::guess(double span, std::vector<DirectPoint>& points) const
 }
 
 // Who is carried by what turns meets it where the middle of the way ahead finds the two.
-void GroupFlight::carry(const Touch& touch,
-                        const Motions& bodies,
-                        double half,
-                        DirectPoint& point) const
+void EventDrivenGroup::carry(const GroupContact& contact,
+                             const Motions& bodies,
+                             double half,
+                             DirectPoint& point) const
 {
-    const auto body = [&](std::int32_t seat) {
-        return seat < 0 ? DirectBody{} : bodies[static_cast<std::size_t>(seat)];
+    const auto body = [&](std::int32_t member) {
+        return member < 0 ? DirectBody{} : bodies[static_cast<std::size_t>(member)];
     };
     const DirectBody a = body(point.a), b = body(point.b);
     const auto carried_by = [&](const DirectBody& carrier, const DirectBody& carried) {
-        return carries(carrier.spin, ease_of(carrier), ease_of(carried),
-                       scene_.conditions.settings.dt);
+        return carries(carrier.spin, inverse_mass_of(carrier), inverse_mass_of(carried),
+                       scene_.context.settings.dt);
     };
     const bool by_a = carried_by(a, b);
     if (!by_a && !carried_by(b, a)) return;
     if (!point.walk.isZero(0)) return;  // it is told for where it was
-    const Vec3 core_a = point.arm_a - point.normal * touch.round_a;
-    const Vec3 core_b = point.arm_b + point.normal * touch.round_b;
+    const Vec3 core_a = point.arm_a - point.normal * contact.round_a;
+    const Vec3 core_b = point.arm_b + point.normal * contact.round_b;
     carry_arms(carried_side(Vec3::Zero(), Quat::Identity(), a, core_a, half),
                carried_side(Vec3::Zero(), Quat::Identity(), b, core_b, half),
-               goes_with_b(touch.round_a, touch.round_b, by_a), point);
+               goes_with_b(contact.round_a, contact.round_b, by_a), point);
 }
 
 // Holds those that would be too near at the end of the way ahead. False if there are none.
-bool GroupFlight::rest(double span)
+bool EventDrivenGroup::solve_resting(double span)
 {
     const Motions bodies = motions(true), now = motions(false);
     std::vector<DirectPoint> points;
     resting_.clear();
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
-        const Touch& touch = touches_[i];
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const GroupContact& contact = contacts_[i];
         // Who has just bounced flies, and falls back in a span of its own; but for those that would
         // not come out of one another by that.
-        const double parting = speed_apart(touch.point, now);
-        if (restitution_of(touch) > 0 && parting > touch.least_speed
-            && touch.gap + parting * span > -kSunk * touch.tolerance)
+        const double separating_speed = relative_normal_velocity(contact.point, now);
+        if (restitution_of(contact) > 0 && separating_speed > contact.least_speed
+            && contact.separation + separating_speed * span > -kSunk * contact.tolerance)
             continue;
-        const double gap = touch.gap + speed_apart(touch.point, bodies) * span;
-        if (gap > kClear * touch.tolerance) continue;
+        const double separation =
+            contact.separation + relative_normal_velocity(contact.point, bodies) * span;
+        if (separation > kClear * contact.tolerance) continue;
         resting_.push_back(i);
-        points.push_back(touch.point);
-        points.back().least = -std::max(touch.gap - touch.rest_gap, 0.0) / span;
-        carry(touch, now, span / 2, points.back());
+        points.push_back(contact.point);
+        points.back().least = -std::max(contact.separation - contact.rest_separation, 0.0) / span;
+        carry(contact, now, span / 2, points.back());
     }
     if (resting_.empty()) return false;
     guess(span, points);
@@ -344,26 +351,27 @@ bool GroupFlight::rest(double span)
     pressing_.clear();
     for (std::size_t k = 0; k < points.size(); ++k)
         pressing_.push_back(
-            {touches_[resting_[k]].key, points[k].impulse / span, points[k].torque / span});
+            {contacts_[resting_[k]].key, points[k].impulse / span, points[k].torque / span});
     pressed_ = std::move(points);
     part(span, held);
     return true;
 }
 
 // Those nearer than they rest are moved apart, on top of what else they do.
-void GroupFlight::part(double span, const Motions& solved)
+void EventDrivenGroup::part(double span, const Motions& solved)
 {
     std::vector<DirectPoint> points;
     bool any = false;
     for (const std::size_t at : resting_) {
-        const Touch& touch = touches_[at];
-        points.push_back(touch.point);
+        const GroupContact& contact = contacts_[at];
+        points.push_back(contact.point);
         points.back().friction = points.back().rolling = 0;
-        points.back().least = -std::max(touch.gap - touch.rest_gap, 0.0) / span;
-        if (!(touch.gap < touch.rest_gap * (1 - kRounding))) continue;
+        points.back().least = -std::max(contact.separation - contact.rest_separation, 0.0) / span;
+        if (!(contact.separation < contact.rest_separation * (1 - kRounding))) continue;
         any = true;
-        points.back().least = std::min((touch.rest_gap - touch.gap) * kPartShare / span,
-                                       scene_.conditions.settings.push_limit);
+        points.back().least =
+            std::min((contact.rest_separation - contact.separation) * kPartShare / span,
+                     scene_.context.settings.push_limit);
     }
     Motions ways = solved;
     if (any) solve(ways, points);
@@ -371,12 +379,12 @@ void GroupFlight::part(double span, const Motions& solved)
 }
 
 // Bodies that a contact may hold go where the solve has them go; others fly.
-void GroupFlight::end_with(const Motions& speeds, const Motions& ways, double span)
+void EventDrivenGroup::end_with(const Motions& speeds, const Motions& ways, double span)
 {
     for (const std::size_t at : resting_)
-        for (const std::int32_t seat : {touches_[at].point.a, touches_[at].point.b}) {
-            const auto i = static_cast<std::size_t>(seat);
-            if (seat < 0 || i >= bodies_.size()) continue;
+        for (const std::int32_t member : {contacts_[at].point.a, contacts_[at].point.b}) {
+            const auto i = static_cast<std::size_t>(member);
+            if (member < 0 || i >= bodies_.size()) continue;
             End& end = ends_[i];
             const std::uint32_t body = bodies_[i];
             end.flew = false;

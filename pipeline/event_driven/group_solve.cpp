@@ -1,5 +1,5 @@
 // Group solve: the points of a group solved together, and point by point where that fails.
-#include "pipeline/event_driven/group_flight.hpp"
+#include "pipeline/event_driven/event_driven_group.hpp"
 #include "pipeline/solvers/solve_direct.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace throng {
 
 namespace {
 
-// Visits to every point, where the joint solve comes to no sound answer.
+// Iterations to every point, where the joint solve comes to no sound answer.
 constexpr int kPlainSweeps = 200;
 // In work, of a point in a factorisation.
 constexpr std::size_t kPointWork = 2;
@@ -19,11 +19,11 @@ constexpr double kFaster = 100;
 
 }  // namespace
 
-void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
+void EventDrivenGroup::solve(Motions& bodies, std::vector<DirectPoint>& points)
 {
     const Motions before = bodies;
     const DirectAnswer answer =
-        solver_.solve(bodies, points, asked_effort(scene_.conditions.settings));
+        solver_.solve(bodies, points, asked_effort(scene_.context.settings));
     spend(points.size() * (1 + kPointWork * static_cast<std::size_t>(answer.steps)));
     const bool sound = std::all_of(bodies.begin(), bodies.end(), [](const DirectBody& body) {
         return holdable(body.velocity) && holdable(body.spin);
@@ -36,38 +36,39 @@ void GroupFlight::solve(Motions& bodies, std::vector<DirectPoint>& points)
     outcome_.residual = std::max(outcome_.residual, 1.0);
     bodies = before;
     for (DirectPoint& point : points) point.impulse = point.torque = Vec3::Zero();
-    sweep_points(bodies, points);
+    solve_points(bodies, points);
     spend(points.size() * kPlainSweeps / 4);
 }
 
 // m/s, by how much the points close faster than they may, at worst.
-double GroupFlight::worst_miss(const Motions& bodies, const std::vector<DirectPoint>& points)
+double EventDrivenGroup::worst_miss(const Motions& bodies, const std::vector<DirectPoint>& points)
 {
     double worst = 0;
     for (const DirectPoint& point : points)
-        worst = std::max(worst, point.least - speed_apart(point, bodies));
+        worst = std::max(worst, point.least - relative_normal_velocity(point, bodies));
     return worst;
 }
 
 // m/s, at the points.
-double GroupFlight::fastest_at(const Motions& bodies, const std::vector<DirectPoint>& points)
+double EventDrivenGroup::fastest_at(const Motions& bodies, const std::vector<DirectPoint>& points)
 {
     double fastest = 0;
     for (const DirectPoint& point : points)
-        fastest = std::max(fastest, velocity_between(point, bodies).norm() + std::abs(point.least));
+        fastest =
+            std::max(fastest, relative_velocity(point, bodies).norm() + std::abs(point.least));
     return fastest;
 }
 
 // Point by point, and what came nearest is kept: where what moves by itself wants more than there
 // is room for, no answer will do, and pushing on only throws bodies about.
-void GroupFlight::sweep_points(Motions& bodies, std::vector<DirectPoint>& points)
+void EventDrivenGroup::solve_points(Motions& bodies, std::vector<DirectPoint>& points)
 {
     Motions nearest = bodies;
     std::vector<DirectPoint> nearest_points = points;
     double least = worst_miss(bodies, points);
     const double most = kFaster * fastest_at(bodies, points);
-    for (int sweep = 0; sweep < kPlainSweeps && least > 0; ++sweep) {
-        for (DirectPoint& point : points) push(point, bodies);
+    for (int iteration = 0; iteration < kPlainSweeps && least > 0; ++iteration) {
+        for (DirectPoint& point : points) solve_point(point, bodies);
         const double missed = worst_miss(bodies, points);
         if (!(missed < least) || !(fastest_at(bodies, points) <= most)) continue;
         least = missed;
@@ -78,26 +79,26 @@ void GroupFlight::sweep_points(Motions& bodies, std::vector<DirectPoint>& points
     points = std::move(nearest_points);
 }
 
-// One visit to a point: to its least speed along the normal, then against sliding, within what the
-// normal impulse allows. It resists no rolling.
-void GroupFlight::push(DirectPoint& point, Motions& bodies)
+// One iteration to a point: to its least speed along the normal, then against sliding, within what
+// the normal impulse allows. It resists no rolling.
+void EventDrivenGroup::solve_point(DirectPoint& point, Motions& bodies)
 {
     const auto change = [&](const Vec3& impulse) {
         apply_impulse(point, impulse - point.impulse, bodies);
         point.impulse = impulse;
     };
-    const double normal_ease = ease_along(point, point.normal, bodies);
+    const double normal_ease = inverse_mass_along(point, point.normal, bodies);
     if (!(normal_ease > 0)) return;
     const double before = point.normal.dot(point.impulse);
-    const double missing = point.least - speed_apart(point, bodies);
+    const double missing = point.least - relative_normal_velocity(point, bodies);
     const double normal = std::max(before + missing / normal_ease, 0.0);
     change(point.impulse + point.normal * (normal - before));
 
-    Vec3 slide = velocity_between(point, bodies);
+    Vec3 slide = relative_velocity(point, bodies);
     slide -= point.normal * point.normal.dot(slide);
     const double sliding = slide.norm(), most = point.friction * normal;
     Vec3 across = point.impulse - point.normal * normal;
-    if (sliding > 0) across -= slide / ease_along(point, slide / sliding, bodies);
+    if (sliding > 0) across -= slide / inverse_mass_along(point, slide / sliding, bodies);
     const double length = across.norm();
     if (length > most) across *= most / length;
     change(point.normal * normal + across);

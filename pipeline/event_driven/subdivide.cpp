@@ -1,5 +1,5 @@
 // Subdivide: a step in pieces, each done again as two halves while it ends in overlap, for those
-// concerned (carry_groups.cpp).
+// concerned (step_event_driven.cpp).
 //
 // A piece is flown, those that touched as it began are held, and then it is looked at: two that
 // overlap by more than the tolerance, or that have met on the way and come out on the other side,
@@ -7,7 +7,7 @@
 // every touch is late, by the shortest piece at most. What touches then bounces, or is held from
 // there on at half the tolerance from one another, as it is in back_up.cpp.
 #include "kernels/math/rotation.hpp"
-#include "pipeline/event_driven/group_flight.hpp"
+#include "pipeline/event_driven/event_driven_group.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -32,15 +32,15 @@ constexpr int kCloser = 2;
 }  // namespace
 
 // m, by how much two overlap at the end of the way ahead; not above 0 where they do not.
-double GroupFlight::depth_of(PairKey key, double end)
+double EventDrivenGroup::depth_of(PairKey key, double end)
 {
     const std::uint32_t a = scene_.colliders.body[first_of(key)];
     const std::uint32_t b = scene_.colliders.body[second_of(key)];
-    return -gap_of(key, end_of(a, end), end_of(b, end), 0);
+    return -separation_of(key, end_of(a, end), end_of(b, end), 0);
 }
 
 // Whether two go so far past one another that they might meet and part again unseen.
-bool GroupFlight::may_pass(PairKey key, double begin, double span) const
+bool EventDrivenGroup::may_pass(PairKey key, double begin, double span) const
 {
     const Colliders& colliders = scene_.colliders;
     const std::uint32_t first = first_of(key), second = second_of(key);
@@ -64,7 +64,7 @@ bool GroupFlight::may_pass(PairKey key, double begin, double span) const
 
 // m, the radius of the smallest sphere that stands for a solid, or what of its triangles is too
 // small to be told; infinity for all else.
-double GroupFlight::least_piece(std::uint32_t collider) const
+double EventDrivenGroup::least_piece(std::uint32_t collider) const
 {
     double least = std::numeric_limits<double>::infinity();
     const ShapeRef shape = scene_.colliders.shape[collider];
@@ -76,7 +76,7 @@ double GroupFlight::least_piece(std::uint32_t collider) const
     return least;
 }
 
-bool GroupFlight::is_mesh(PairKey key) const
+bool EventDrivenGroup::is_mesh(PairKey key) const
 {
     const auto& shape = scene_.colliders.shape;
     return shape[first_of(key)].kind == ShapeKind::mesh
@@ -84,7 +84,7 @@ bool GroupFlight::is_mesh(PairKey key) const
 }
 
 // Whether the piece just flown may stay as it is, and what it is told to have come to.
-bool GroupFlight::ends_well(double begin, double span, bool shortest)
+bool EventDrivenGroup::ends_well(double begin, double span, bool shortest)
 {
     std::vector<PairKey> fast;
     double deepest = 0;
@@ -93,8 +93,8 @@ bool GroupFlight::ends_well(double begin, double span, bool shortest)
         const double depth = depth_of(key, begin + span);
         deepest = std::max(deepest, depth);
         double most = tolerance_of(key);
-        const auto now = gap_now_.find(key);
-        const bool touched = now != gap_now_.end();
+        const auto now = separation_now_.find(key);
+        const bool touched = now != separation_now_.end();
         if (touched) most = std::max(most, kRounding * most - now->second);
         if (!(depth <= most)) {
             const auto before = too_deep_.find(key);
@@ -108,7 +108,7 @@ bool GroupFlight::ends_well(double begin, double span, bool shortest)
             fast.push_back(key);
         }
     }
-    if (!fast.empty() && look_ahead(fast, begin, span).impact.meeting == Meeting::meet) {
+    if (!fast.empty() && look_ahead(fast, begin, span).impact.state == ToiState::hit) {
         if (!shortest) return false;
         deep = true;
     }
@@ -118,25 +118,25 @@ bool GroupFlight::ends_well(double begin, double span, bool shortest)
 }
 
 // False where it has to be done again, in halves; nothing has moved then.
-bool GroupFlight::carry_piece(double begin, double span, bool shortest)
+bool EventDrivenGroup::advance_piece(double begin, double span, bool shortest)
 {
     if (!fly(begin, span)) {
         outcome_.held = true;
         return true;
     }
-    rest(span);
+    solve_resting(span);
     find_pairs(begin, span);
     if (!ends_well(begin, span, shortest)) return false;
     commit();
-    const auto touched = gap_now_;
-    list_touches(begin + span);
-    if (go_to_touch(touched, begin + span)) list_touches(begin + span);
+    const auto touched = separation_now_;
+    list_contacts(begin + span);
+    if (go_to_touch(touched, begin + span)) list_contacts(begin + span);
     settle_impacts();
     return true;
 }
 
 // Takes those of a pair that are carried along their ways for a time, back where it is below 0.
-void GroupFlight::go_along(PairKey key, double time)
+void EventDrivenGroup::go_along(PairKey key, double time)
 {
     for (const std::uint32_t at : {first_of(key), second_of(key)}) {
         const std::uint32_t body = scene_.colliders.body[at];
@@ -145,19 +145,20 @@ void GroupFlight::go_along(PairKey key, double time)
         scene_.poses.position[body] += velocity * time;
         scene_.poses.orientation[body] =
             turned(scene_.poses.orientation[body], scene_.velocities.angular[body], time);
-        velocity += scene_.conditions.gravity * time;
+        velocity += scene_.context.gravity * time;
     }
 }
 
 // s, until two that close touch; below 0 where they did. Not a number where they do not close.
-double GroupFlight::time_to_touch(PairKey key, double time)
+double EventDrivenGroup::time_to_touch(PairKey key, double time)
 {
     const std::uint32_t a = scene_.colliders.body[first_of(key)];
     const std::uint32_t b = scene_.colliders.body[second_of(key)];
-    const double gap = gap_of(key, pose_at(a, time), pose_at(b, time), 2 * tolerance_of(key));
-    if (met_.manifolds.size() != 1) return std::numeric_limits<double>::quiet_NaN();
-    const LocalManifold<double>& found = met_.manifolds.front();
-    const Vec3 normal = met_.at_first.orientation * found.normal;
+    const double separation =
+        separation_of(key, pose_at(a, time), pose_at(b, time), 2 * tolerance_of(key));
+    if (manifolds_.manifolds.size() != 1) return std::numeric_limits<double>::quiet_NaN();
+    const LocalManifold<double>& found = manifolds_.manifolds.front();
+    const Vec3 normal = manifolds_.at_first.orientation * found.normal;
     const auto speed = [&](std::uint32_t body, const Vec3& at) {
         const Vec3 arm = at - scene_.poses.position[body];
         return normal.dot(scene_.velocities.linear[body]
@@ -165,38 +166,38 @@ double GroupFlight::time_to_touch(PairKey key, double time)
     };
     double closing = 0;
     for (int k = 0; k < found.count; ++k) {
-        const Vec3 at = met_.at_first * found.points[static_cast<std::size_t>(k)].position;
+        const Vec3 at = manifolds_.at_first * found.points[static_cast<std::size_t>(k)].position;
         closing = std::max(closing,
-                           speed(scene_.colliders.body[met_.first], at)
-                               - speed(scene_.colliders.body[met_.second], at));
+                           speed(scene_.colliders.body[manifolds_.first], at)
+                               - speed(scene_.colliders.body[manifolds_.second], at));
     }
-    return closing > 0 ? gap / closing : std::numeric_limits<double>::quiet_NaN();
+    return closing > 0 ? separation / closing : std::numeric_limits<double>::quiet_NaN();
 }
 
 // Whether a body may be taken along its way: nothing but gravity bends it, and it touches nobody
 // but whom it has met. Who stands still need not be.
-bool GroupFlight::may_go(std::uint32_t collider, std::map<std::uint32_t, int>& touches) const
+bool EventDrivenGroup::may_go(std::uint32_t collider, std::map<std::uint32_t, int>& touches) const
 {
     const std::uint32_t body = scene_.colliders.body[collider];
-    if (member_of(body) < 0) return scene_.states.kind[body] == BodyKind::still;
+    if (member_of(body) < 0) return scene_.states.kind[body] == BodyKind::static_;
     const Forces& forces = scene_.forces;
     const bool pulled = body < forces.force.size() && !forces.force[body].isZero(0);
     return touches[body] == 1 && scene_.masses.inverse_mass[body] > 0 && !pulled
-        && !forces.follow(body);
+        && !forces.depends_on_state(body);
 }
 
 // Two that have met in the piece just flown, and touch nobody else, are taken to where they touch:
 // what is left of the search for it would turn their normal. None goes for longer than a few
 // shortest pieces. False where nothing moved.
-bool GroupFlight::go_to_touch(const std::map<PairKey, double>& touched, double time)
+bool EventDrivenGroup::go_to_touch(const std::map<PairKey, double>& touched, double time)
 {
     std::map<std::uint32_t, int> touches;  // of each body
-    for (const auto& [key, gap] : gap_now_)
+    for (const auto& [key, separation] : separation_now_)
         for (const std::uint32_t at : {first_of(key), second_of(key)})
             ++touches[scene_.colliders.body[at]];
-    const double most = scene_.conditions.substep() * kLate;
+    const double most = scene_.context.substep() * kLate;
     bool any = false;
-    for (const auto& [key, gap] : gap_now_) {
+    for (const auto& [key, separation] : separation_now_) {
         if (touched.count(key) > 0) continue;
         const bool alone = may_go(first_of(key), touches) && may_go(second_of(key), touches);
         double gone = 0;
@@ -211,15 +212,15 @@ bool GroupFlight::go_to_touch(const std::map<PairKey, double>& touched, double t
     return any;
 }
 
-void GroupFlight::subdivide()
+void EventDrivenGroup::subdivide()
 {
-    const Settings& settings = scene_.conditions.settings;
-    const double substep = scene_.conditions.substep();
+    const Settings& settings = scene_.context.settings;
+    const double substep = scene_.context.substep();
     const std::uint64_t whole = std::uint64_t{1}
         << (settings.halvings > 0 ? settings.halvings : kHalvings);
     outcome_.held = !fly(0, substep);
     find_pairs(0, substep);
-    list_touches(0);
+    list_contacts(0);
     settle_impacts();
     for (int k = 0; k < settings.substeps && !outcome_.held; ++k) {
         too_deep_.clear();
@@ -230,8 +231,8 @@ void GroupFlight::subdivide()
             const auto share = [&](std::uint64_t pieces) {
                 return static_cast<double>(pieces) / static_cast<double>(whole);
             };
-            if (!carry_piece((k + share(done)) * substep, share(size) * substep,
-                             size == 1 || !may_go_on())) {
+            if (!advance_piece((k + share(done)) * substep, share(size) * substep,
+                               size == 1 || !may_go_on())) {
                 size /= 2;
                 continue;
             }

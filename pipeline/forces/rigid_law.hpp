@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/dynamics/rigid_motion.hpp"
-#include "pipeline/step/conditions.hpp"
+#include "pipeline/step/step_context.hpp"
 
 namespace throng {
 
@@ -15,21 +15,21 @@ inline const IntegratorRow& integrator_of(const Settings& settings, bool acted_o
     return chosen(kicked ? Integrator::semi_implicit : settings.integrator, acted_on);
 }
 
-inline RigidRule rigid_rule(const Conditions& conditions)
+inline RigidRule rigid_rule(const StepContext& context)
 {
     using Law = RigidRule::Gyroscopic;
     RigidRule rule;
-    rule.gravity = conditions.gravity;
-    rule.time = conditions.time;
-    rule.turns = conditions.has(Effect::rotation);
-    rule.rotation = conditions.settings.rotation;
-    rule.gyroscopic = !conditions.has(Effect::gyroscopic)        ? Law::off
-        : conditions.settings.gyroscopic == Gyroscopic::implicit ? Law::implicit
-                                                                 : Law::direct;
+    rule.gravity = context.gravity;
+    rule.time = context.time;
+    rule.turns = context.has(Effect::rotation);
+    rule.rotation = context.settings.rotation;
+    rule.gyroscopic = !context.has(Effect::gyroscopic)        ? Law::off
+        : context.settings.gyroscopic == Gyroscopic::implicit ? Law::implicit
+                                                              : Law::direct;
     // Methods of first order keep the damped gyroscopic torque, which never gains energy.
     constexpr bool kActedOn = true;  // by its pivot
-    rule.momentum_on_pivots = conditions.settings.gyroscopic != Gyroscopic::off
-        && chosen(conditions.settings.integrator, kActedOn).order > 1;
+    rule.momentum_on_pivots = context.settings.gyroscopic != Gyroscopic::off
+        && chosen(context.settings.integrator, kActedOn).order > 1;
     return rule;
 }
 

@@ -25,12 +25,12 @@ std::string trouble_with_convex(const ShapeDescription& shape)
     return trouble_with(shape);
 }
 
-QueryVerdict verdict_of(Touch touch)
+QueryVerdict verdict_of(OverlapState touch)
 {
     switch (touch) {
-    case Touch::apart:
+    case OverlapState::apart:
         return QueryVerdict::apart;
-    case Touch::touching:
+    case OverlapState::touching:
         return QueryVerdict::touching;
     default:
         return QueryVerdict::undecided;
@@ -51,10 +51,10 @@ std::string unknown_method(std::string_view method)
     return "there is no method " + in_quotes(method) + "; there are: " + either_of(names);
 }
 
-std::string trouble_with(const Pose& pose, double reach)
+std::string trouble_with(const Pose& pose, double max_separation)
 {
     if (std::string trouble = trouble_with(pose); !trouble.empty()) return trouble;
-    if (!(reach >= 0)) return "reach is below 0 or no number; give a distance in m";
+    if (!(max_separation >= 0)) return "reach is below 0 or no number; give a distance in m";
     return {};
 }
 
@@ -140,22 +140,24 @@ ConvexQuery& ConvexQuery::operator=(ConvexQuery&&) noexcept = default;
 
 const std::string& ConvexQuery::trouble() const { return inside_->trouble; }
 
-ConvexAnswer
-ConvexQuery::ask(std::string_view method, const Pose& b_in_a, MethodStart start, double reach)
+ConvexAnswer ConvexQuery::ask(std::string_view method,
+                              const Pose& b_in_a,
+                              MethodStart start,
+                              double max_separation)
 {
     if (!inside_->trouble.empty()) return refusal(inside_->trouble);
     const ConvexMethod* const found = find_convex_method(method);
     if (found == nullptr) return refusal(unknown_method(method));
     if (!found->serves(*inside_->pair))
         return refusal("method " + in_quotes(method) + " serves boxes and hulls alone");
-    if (std::string trouble = trouble_with(b_in_a, reach); !trouble.empty())
+    if (std::string trouble = trouble_with(b_in_a, max_separation); !trouble.empty())
         return refusal(std::move(trouble));
 
     inside_->pair->place({b_in_a.position, b_in_a.orientation.normalized()});
     const auto at = static_cast<std::size_t>(found - convex_methods().data());
-    const MethodAnswer told =
-        found->ask(*inside_->pair, std::min(reach, kAnywhere), start, inside_->memories[at]);
-    return {verdict_of(told.touch),
+    const MethodAnswer told = found->ask(*inside_->pair, std::min(max_separation, kAnywhere), start,
+                                         inside_->memories[at]);
+    return {verdict_of(told.overlap),
             {},
             told.separation,
             told.normal,
@@ -183,9 +185,9 @@ ConvexAnswer ConvexQuery::ask_trees(const Pose& b_in_a, int k)
         for (const PolytopeView* shape : {&pair->a, &pair->b}) trees.emplace_back(*shape, k);
     }
     inside_->pair->place({b_in_a.position, b_in_a.orientation.normalized()});
-    const MethodAnswer told = ask_k_dop_trees(*inside_->pair->polytopes(), trees[0], trees[1]);
+    const MethodAnswer told = query_k_dop_trees(*inside_->pair->polytopes(), trees[0], trees[1]);
     ConvexAnswer answer;
-    answer.verdict = verdict_of(told.touch);
+    answer.verdict = verdict_of(told.overlap);
     answer.rounds = told.rounds;
     answer.cut_short = told.cut_short;
     return answer;

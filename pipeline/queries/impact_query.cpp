@@ -35,8 +35,8 @@ ShapeRef append(Shapes& shapes, const ShapeDescription& shape)
 ImpactAnswer answer_of(const Impact& impact, double duration)
 {
     return {{},
-            impact.meeting != Meeting::none,
-            impact.meeting == Meeting::at_start,
+            impact.state != ToiState::separated,
+            impact.state == ToiState::touching_at_start,
             impact.time * duration,
             impact.distance,
             impact.normal,
@@ -59,7 +59,7 @@ std::string trouble_with(const ShapeMotion& motion)
     return {};
 }
 
-Sweep sweep_of(const ShapeMotion& motion, double duration)
+RigidTrajectory trajectory_of(const ShapeMotion& motion, double duration)
 {
     return {{motion.pose.position, motion.pose.orientation.normalized()},
             motion.velocity * duration,
@@ -124,9 +124,9 @@ ImpactAnswer ImpactQuery::ask(const ShapeMotion& a,
         return refusal(std::move(trouble));
 
     const ImpactRule rule = impact_rule(method, tolerance * size());
-    const MovingShape moving_a{inside_->a, sweep_of(a, duration), Pose{}};
-    const MovingShape moving_b{inside_->b, sweep_of(b, duration), Pose{}};
-    return answer_of(impact_time(inside_->shapes, moving_a, moving_b, 0, 1, rule), duration);
+    const MovingShape moving_a{inside_->a, trajectory_of(a, duration), Pose{}};
+    const MovingShape moving_b{inside_->b, trajectory_of(b, duration), Pose{}};
+    return answer_of(time_of_impact(inside_->shapes, moving_a, moving_b, 0, 1, rule), duration);
 }
 
 ImpactAnswer ask_linear_paths(const LinearQuestion& question, ToiMethod method, double tolerance)
@@ -137,7 +137,7 @@ ImpactAnswer ask_linear_paths(const LinearQuestion& question, ToiMethod method, 
     if (!(tolerance >= 0)) return refusal("tolerance is below 0 or no number; give a length in m");
     const LinearPaths paths{question.edges ? PathKind::edge_edge : PathKind::vertex_face,
                             question.from, question.to};
-    return answer_of(impact_time(paths, method, tolerance), 1);
+    return answer_of(time_of_impact(paths, method, tolerance), 1);
 }
 
 }  // namespace throng

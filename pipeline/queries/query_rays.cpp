@@ -47,14 +47,14 @@ double slack_of(const Ray& ray, double distance)
 }  // namespace
 
 struct QueryScene::Search {
-    Ray ray;                    // as far as to look next
-    double reach = -kInfinity;  // m, what has been looked at
-    double end = -kInfinity;    // m, where nothing is left to meet
-    double first = 0;           // m, where the boxes begin
-    double stride = 0;          // m, how far from there to look next
+    Ray ray;                       // as far as to look next
+    double searched = -kInfinity;  // m, what has been looked at
+    double end = -kInfinity;       // m, where nothing is left to meet
+    double first = 0;              // m, where the boxes begin
+    double stride = 0;             // m, how far from there to look next
 };
 
-void QueryScene::meet(const RayQuery& query,
+void QueryScene::cast(const RayQuery& query,
                       const Ray& ray,
                       std::uint32_t collider,
                       Best& best) const
@@ -64,29 +64,29 @@ void QueryScene::meet(const RayQuery& query,
     const Quat back = it.placed.orientation.conjugate();
     const LocalRay local{back * (ray.from - it.placed.position), back * ray.along,
                          std::min(query.max_distance, best.distance)};
-    const RayMeeting met = throng::cast_ray(*shapes_, it.shape, local);
+    const LocalRayHit met = throng::cast_ray(*shapes_, it.shape, local);
     if (met.found() && beats(met.distance, collider, best))
         best = {met.distance, collider, met.normal};
 }
 
 // Boxes in the order in which the ray enters them, until the next one lies beyond the answer.
-void QueryScene::meet_candidates(const RayQuery& query,
-                                 const Search& search,
-                                 std::span<const std::uint32_t> candidates,
-                                 Order& order,
-                                 Best& best) const
+void QueryScene::cast_at_candidates(const RayQuery& query,
+                                    const Search& search,
+                                    std::span<const std::uint32_t> candidates,
+                                    Order& order,
+                                    Best& best) const
 {
     order.clear();
     for (const std::uint32_t collider : candidates) {
         const double enter = part_within(search.ray, boxes_[collider]).first;
         // Entered within what has been looked at: it was a candidate before.
-        const bool seen = enter + slack_of(search.ray, enter) < search.reach;
+        const bool seen = enter + slack_of(search.ray, enter) < search.searched;
         if (!seen) order.emplace_back(enter, collider);
     }
     std::sort(order.begin(), order.end());
     for (const auto& [enter, collider] : order) {
         if (enter > best.distance + slack_of(search.ray, best.distance)) break;
-        meet(query, search.ray, collider, best);
+        cast(query, search.ray, collider, best);
     }
 }
 
@@ -111,14 +111,14 @@ void QueryScene::search_met(std::span<const RayQuery> rays, std::span<Best> best
     std::vector<Search> searches(rays.size());
     const auto is_done = [&](std::uint32_t i) {
         const bool met =
-            best[i].collider != kNobody && (any || best[i].distance <= searches[i].reach);
-        return met || searches[i].reach >= searches[i].end;
+            best[i].collider != kNoBody && (any || best[i].distance <= searches[i].searched);
+        return met || searches[i].searched >= searches[i].end;
     };
     for_each_block(rays.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
             searches[i] = search_for(rays[i]);
             for (const std::uint32_t plane : planes_)
-                meet(rays[i], searches[i].ray, plane, best[i]);
+                cast(rays[i], searches[i].ray, plane, best[i]);
         }
     });
     for (std::uint32_t i = 0; i < rays.size(); ++i)
@@ -131,9 +131,9 @@ void QueryScene::search_met(std::span<const RayQuery> rays, std::span<Best> best
             Order order;
             for (std::size_t k = begin; k < end; ++k) {
                 const std::uint32_t i = open[k];
-                meet_candidates(rays[i], searches[i], candidates_.of(k), order, best[i]);
+                cast_at_candidates(rays[i], searches[i], candidates_.of(k), order, best[i]);
                 Search& search = searches[i];
-                search.reach = search.ray.longest;
+                search.searched = search.ray.longest;
                 search.stride *= kGrowth;
                 search.ray.longest = std::min(search.end, search.first + search.stride);
             }
@@ -144,7 +144,7 @@ void QueryScene::search_met(std::span<const RayQuery> rays, std::span<Best> best
 
 RayHit QueryScene::hit_of(const RayQuery& ray, const Best& best) const
 {
-    if (best.collider == kNobody) return {};
+    if (best.collider == kNoBody) return {};
     const Collider& it = colliders_[best.collider];
     return {true,
             id(best.collider),
@@ -173,7 +173,7 @@ void QueryScene::find_blocked(std::span<const RayQuery> rays, std::span<std::uin
         best_.assign(count, {});
         search_met(rays.subspan(first, count), best_, true);
         for (std::size_t i = 0; i < count; ++i)
-            blocked[first + i] = best_[i].collider != kNobody ? 1 : 0;
+            blocked[first + i] = best_[i].collider != kNoBody ? 1 : 0;
     };
     run_in_batches(rays.size(), cast_some);
 }

@@ -81,7 +81,7 @@ QueryScene::QueryScene(const WorldState& state)
     const BodyStates& states = state.get<BodyStates>();
     std::vector<double> sizes;
     for (std::uint32_t body = 0; body < states.kind.size(); ++body) {
-        if (states.kind[body] == BodyKind::gone) continue;
+        if (states.kind[body] == BodyKind::removed) continue;
         for (std::uint32_t part = 0; part < all.count[body]; ++part) {
             const std::size_t i = all.begin[body] + part;
             const auto own = static_cast<std::uint32_t>(colliders_.size());
@@ -119,7 +119,7 @@ bool QueryScene::beats(double distance, std::uint32_t collider, const Best& best
 
 NearestHit QueryScene::hit_of(const PointQuery& query, const Best& best) const
 {
-    if (best.collider == kNobody) return {};
+    if (best.collider == kNoBody) return {};
     const Collider& it = colliders_[best.collider];
     const bool inside = best.distance == 0;
     return {true, id(best.collider), it.part, best.distance,

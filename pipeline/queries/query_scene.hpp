@@ -32,7 +32,7 @@ private:
     /// the point of it that is nearest.
     struct Best {
         double distance = std::numeric_limits<double>::infinity();
-        std::uint32_t collider = kNobody;
+        std::uint32_t collider = kNoBody;
         Vec3 local = Vec3::Zero();
     };
     struct Search;
@@ -53,12 +53,12 @@ private:
     BodyId id(std::uint32_t collider) const;
     bool beats(double distance, std::uint32_t collider, const Best& best) const;
 
-    void meet(const RayQuery& query, const Ray& ray, std::uint32_t collider, Best& best) const;
-    void meet_candidates(const RayQuery& query,
-                         const Search& search,
-                         std::span<const std::uint32_t> candidates,
-                         Order& order,
-                         Best& best) const;
+    void cast(const RayQuery& query, const Ray& ray, std::uint32_t collider, Best& best) const;
+    void cast_at_candidates(const RayQuery& query,
+                            const Search& search,
+                            std::span<const std::uint32_t> candidates,
+                            Order& order,
+                            Best& best) const;
     Search search_for(const RayQuery& query) const;
     void search_met(std::span<const RayQuery> rays, std::span<Best> best, bool any);
 

@@ -26,22 +26,22 @@ bool has_flat_faces(ShapeRef shape)
         || shape.kind == ShapeKind::mesh;
 }
 
-SharedVolume ask_images(const VolumePair& pair, int rays) { return shared_by_images(pair, rays); }
+SharedVolume by_images(const VolumePair& pair, int rays) { return shared_by_images(pair, rays); }
 
-SharedVolume ask_single_layer(const VolumePair& pair, int rays)
+SharedVolume by_single_layer(const VolumePair& pair, int rays)
 {
     return shared_by_images(pair, rays, Layers::single);
 }
 
-SharedVolume ask_voxels(const VolumePair& pair, int cells) { return shared_by_voxels(pair, cells); }
+SharedVolume by_voxels(const VolumePair& pair, int cells) { return shared_by_voxels(pair, cells); }
 
-SharedVolume ask_exact(const VolumePair& pair, int)
+SharedVolume by_exact(const VolumePair& pair, int)
 {
     if (pair.a.kind == ShapeKind::mesh || pair.b.kind == ShapeKind::mesh)
         return shared_exactly(pair);
     const ConvexPair convex(pair.shapes, pair.a, pair.b, pair.b_in_a);
     MethodMemory memory;
-    const MethodAnswer told = ask_clip_volume(convex, 0, MethodStart::cold, memory);
+    const MethodAnswer told = query_clip_volume(convex, 0, MethodStart::cold, memory);
     if (!(told.volume > 0)) return {};
     return {told.volume, told.center, Vec3::Zero(), 0};
 }
@@ -53,10 +53,10 @@ struct VolumeWay {
 
 // clang-format off
 constexpr VolumeWay kWays[] = {
-    {{"exact", "cuts parts of the one by parts of the other", false, false, true}, ask_exact},
-    {{"voxels", "counts the centers of cells inside both", false, true, false}, ask_voxels},
-    {{"depth_image", "adds up what rays share, layer by layer", true, true, false}, ask_images},
-    {{"single_layer", "the same from first way in to last way out: fills holes", true, true, false}, ask_single_layer},
+    {{"exact", "cuts parts of the one by parts of the other", false, false, true}, by_exact},
+    {{"voxels", "counts the centers of cells inside both", false, true, false}, by_voxels},
+    {{"depth_image", "adds up what rays share, layer by layer", true, true, false}, by_images},
+    {{"single_layer", "the same from first way in to last way out: fills holes", true, true, false}, by_single_layer},
 };
 // clang-format on
 
@@ -68,7 +68,8 @@ std::string trouble_with_mesh(const MeshShape& shape, Mesh& mesh)
     mesh = std::move(built.mesh);
     if (!is_closed(mesh)) {
         std::ptrdiff_t rims = 0;
-        for (const auto& beyond : mesh.beyond) rims += std::count(beyond.begin(), beyond.end(), -1);
+        for (const auto& beyond : mesh.adjacent)
+            rims += std::count(beyond.begin(), beyond.end(), -1);
         return "mesh: open, " + std::to_string(rims)
             + " edges of triangles have no other one beyond; wanted a closed mesh";
     }

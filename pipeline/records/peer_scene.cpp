@@ -46,8 +46,8 @@ PeerShape peer_shape(const Shapes& shapes, ShapeRef shape, const Pose& local)
 }
 
 // The description behind each body, in the order of ids.
-template <class Visit>
-void for_each_stated(const Scene& scene, const Visit& visit)
+template <class Visitor>
+void for_each_stated(const Scene& scene, const Visitor& visit)
 {
     for (const BodyDescription& body : scene.bodies) visit(body);
     for (const Instances& group : scene.instances)

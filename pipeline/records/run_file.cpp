@@ -355,19 +355,19 @@ struct Frames {
 
 /// Room on the disk behind what a file holds. Asked for before HDF5 writes anything: what it has
 /// once failed to write it forgets, and chunks that were whole with it.
-class Room {
+class DiskSpace {
 public:
-    explicit Room(const std::string& path)
+    explicit DiskSpace(const std::string& path)
     {
         if (std::filesystem::is_regular_file(path))
             file_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     }
-    ~Room()
+    ~DiskSpace()
     {
         if (file_ >= 0) ::close(file_);
     }
-    Room(const Room&) = delete;
-    Room& operator=(const Room&) = delete;
+    DiskSpace(const DiskSpace&) = delete;
+    DiskSpace& operator=(const DiskSpace&) = delete;
 
     /// Throws RunFileError where so many bytes cannot be added to so many that there are. Where the
     /// file system cannot keep room there is no promise.
@@ -416,7 +416,7 @@ Handle create_file(const std::string& path)
 
 struct RunFile::Inside {
     Inside(const std::string& path, const Scene& scene, const World& world, const RunFacts& facts)
-        : file(create_file(path)), room(path), bodies(world.bodies())
+        : file(create_file(path)), disk_space(path), bodies(world.bodies())
     {
         write_facts(file, world, facts);
         write_bodies(file, scene, world);
@@ -434,7 +434,7 @@ struct RunFile::Inside {
 
     void write()
     {
-        room.keep(size(), most_bytes(frames->cut, bodies.size()));
+        disk_space.keep(size(), most_bytes(frames->cut, bodies.size()));
         frames->write();
     }
 
@@ -452,7 +452,7 @@ struct RunFile::Inside {
     }
 
     Handle file;
-    Room room;
+    DiskSpace disk_space;
     std::vector<BodyId> bodies;
     std::unique_ptr<Frames> frames;  // closed before the file
     Clock::time_point flushed;
@@ -506,7 +506,7 @@ void RunFile::close()
     inside_->frames.reset();
     const std::size_t bytes = inside_->size();
     checked(inside_->file.close(), "the file");
-    inside_->room.give_back(bytes);
+    inside_->disk_space.give_back(bytes);
     inside_.reset();
     if (trouble) throw *trouble;
 }

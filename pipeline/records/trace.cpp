@@ -79,7 +79,7 @@ private:
 
     Row& row_of_thread();
     void add(const Event& event);
-    std::vector<std::size_t> slots_in_order() const;
+    std::vector<std::size_t> kept_indices_in_order() const;
     static void write_bar(std::string_view name,
                           std::string_view kind,
                           std::size_t row,
@@ -87,12 +87,12 @@ private:
                           Clock::time_point zero,
                           std::ostream& out);
     void write_arrows(const std::vector<Wait>& waits,
-                      std::size_t slot,
+                      std::size_t kept_index,
                       Clock::time_point zero,
                       std::ostream& out) const;
 
     const std::uint64_t id_;  // no two traces share one, not even one after another
-    std::size_t slot_ = 0;
+    std::size_t kept_index_ = 0;
     std::uint64_t begun_ = 0;
     std::vector<Step> kept_;
     std::mutex guard_;  // of rows_, not of what is in them
@@ -124,12 +124,12 @@ Trace::Inside::Inside(std::size_t steps_kept)
 
 void Trace::Inside::begin_step(std::uint64_t number)
 {
-    slot_ = begun_++ % kept_.size();
-    for (Row& row : rows_) row.steps[slot_].clear();
-    kept_[slot_] = {number, Clock::now(), {}};
+    kept_index_ = begun_++ % kept_.size();
+    for (Row& row : rows_) row.steps[kept_index_].clear();
+    kept_[kept_index_] = {number, Clock::now(), {}};
 }
 
-void Trace::Inside::end_step() { kept_[slot_].end = Clock::now(); }
+void Trace::Inside::end_step() { kept_[kept_index_].end = Clock::now(); }
 
 Trace::Inside::Row& Trace::Inside::row_of_thread()
 {
@@ -153,7 +153,7 @@ Trace::Inside::Row& Trace::Inside::row_of_thread()
 void Trace::Inside::add(const Event& event)
 {
     Row& row = row_of_thread();
-    std::vector<Event>& events = row.steps[slot_];
+    std::vector<Event>& events = row.steps[kept_index_];
     if (events.size() < kMostEvents)
         events.push_back(event);
     else
@@ -180,22 +180,23 @@ std::uint64_t Trace::Inside::left_out() const
     return sum;
 }
 
-std::vector<std::size_t> Trace::Inside::slots_in_order() const
+std::vector<std::size_t> Trace::Inside::kept_indices_in_order() const
 {
-    std::vector<std::size_t> slots;
+    std::vector<std::size_t> kept_indices;
     for (std::uint64_t step = begun_ - steps(); step < begun_; ++step)
-        slots.push_back(step % kept_.size());
-    return slots;
+        kept_indices.push_back(step % kept_.size());
+    return kept_indices;
 }
 
 void Trace::Inside::write(std::string_view label,
                           const std::vector<Wait>& waits,
                           std::ostream& out) const
 {
-    const std::vector<std::size_t> slots = slots_in_order();
-    const Clock::time_point zero = slots.empty() ? Clock::time_point() : kept_[slots[0]].begin;
+    const std::vector<std::size_t> kept_indices = kept_indices_in_order();
+    const Clock::time_point zero =
+        kept_indices.empty() ? Clock::time_point() : kept_[kept_indices[0]].begin;
     out << R"({"displayTimeUnit": "ms", "otherData": {"run": )" << quoted(label) << R"(, "steps": )"
-        << slots.size() << R"(, "left_out": )" << left_out() << "},\n\"traceEvents\": [\n";
+        << kept_indices.size() << R"(, "left_out": )" << left_out() << "},\n\"traceEvents\": [\n";
     // Row 0 is of the steps, the others are those of threads.
     const auto name_row = [&](std::size_t row, const std::string& name) {
         out << R"({"ph": "M", "name": "thread_name", "pid": 1, "tid": )" << row
@@ -206,15 +207,15 @@ void Trace::Inside::write(std::string_view label,
         out << ",\n";
         name_row(row, "thread " + std::to_string(row));
     }
-    for (const std::size_t slot : slots) {
-        const Step& step = kept_[slot];
+    for (const std::size_t kept_index : kept_indices) {
+        const Step& step = kept_[kept_index];
         write_bar("step " + std::to_string(step.number), "step", 0,
                   {{}, kWholeStage, step.begin, step.end}, zero, out);
         for (std::size_t row = 0; row < rows_.size(); ++row)
-            for (const Event& event : rows_[row].steps[slot])
+            for (const Event& event : rows_[row].steps[kept_index])
                 write_bar(event.stage, event.block == kWholeStage ? "stage" : "block", row + 1,
                           event, zero, out);
-        write_arrows(waits, slot, zero, out);
+        write_arrows(waits, kept_index, zero, out);
     }
     out << "\n]}\n";
 }
@@ -236,7 +237,7 @@ void Trace::Inside::write_bar(std::string_view name,
 
 // From the end of a stage to the beginning of one that waits for it.
 void Trace::Inside::write_arrows(const std::vector<Wait>& waits,
-                                 std::size_t slot,
+                                 std::size_t kept_index,
                                  Clock::time_point zero,
                                  std::ostream& out) const
 {
@@ -246,7 +247,7 @@ void Trace::Inside::write_arrows(const std::vector<Wait>& waits,
     };
     const auto place_of = [&](std::string_view stage) {
         for (std::size_t row = 0; row < rows_.size(); ++row)
-            for (const Event& event : rows_[row].steps[slot])
+            for (const Event& event : rows_[row].steps[kept_index])
                 if (event.block == kWholeStage && event.stage == stage)
                     return Place{&event, row + 1};
         return Place{};
@@ -254,7 +255,7 @@ void Trace::Inside::write_arrows(const std::vector<Wait>& waits,
     for (std::size_t i = 0; i < waits.size(); ++i) {
         const Place from = place_of(waits[i].earlier), to = place_of(waits[i].later);
         if (from.event == nullptr || to.event == nullptr) continue;
-        const std::uint64_t id = kept_[slot].number * waits.size() + i;
+        const std::uint64_t id = kept_[kept_index].number * waits.size() + i;
         const auto write_end = [&](const char* kind, std::size_t row, Clock::time_point at) {
             out << ",\n"
                 << R"({"ph": ")" << kind

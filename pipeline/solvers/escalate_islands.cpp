@@ -27,19 +27,21 @@ Effort effort_for(double strain)
     return strain <= kByFour ? Effort{4} : strain <= kExactStrain ? Effort{16} : Effort{16, true};
 }
 
-void escalate_islands(const Conditions& conditions, const Islands& islands, Stubborn& stubborn)
+void escalate_islands(const StepContext& context,
+                      const Islands& islands,
+                      OverloadedIslands& overloaded)
 {
-    stubborn.efforts.assign(islands.size(), {});
-    stubborn.escalated = stubborn.missed = 0;
-    const auto substeps = static_cast<std::size_t>(conditions.settings.substeps);
+    overloaded.efforts.assign(islands.size(), {});
+    overloaded.escalated = overloaded.missed = 0;
+    const auto substeps = static_cast<std::size_t>(context.settings.substeps);
     std::size_t left = kBudget;
     for (std::size_t island = 0; island < islands.size(); ++island) {
         double strain = 0;
         bool exactly = false;
         for (std::uint32_t k = islands.body_begin[island]; k < islands.body_begin[island + 1];
              ++k) {
-            const double of_body = stubborn.of(islands.bodies[k]);
-            if (!is_stubborn(of_body)) continue;
+            const double of_body = overloaded.of(islands.bodies[k]);
+            if (!is_overloaded(of_body)) continue;
             strain = std::max(strain, std::abs(of_body));
             exactly = exactly || of_body < 0;
         }
@@ -54,14 +56,15 @@ void escalate_islands(const Conditions& conditions, const Islands& islands, Stub
         };
         while (effort.times > 1
                && (cost() > left
-                   || (!effort.direct && conditions.substep() / effort.times < kFinestSubstep))) {
+                   || (!effort.direct && context.substep() / effort.times < kFinestSubstep))) {
             effort.times /= 4;
             effort.direct = false;
         }
         left -= cost();
-        stubborn.efforts[island] = effort;
-        stubborn.escalated += effort.times > 1 ? 1 : 0;
-        stubborn.missed += effort.times < wanted.times || (wanted.direct && !effort.direct) ? 1 : 0;
+        overloaded.efforts[island] = effort;
+        overloaded.escalated += effort.times > 1 ? 1 : 0;
+        overloaded.missed +=
+            effort.times < wanted.times || (wanted.direct && !effort.direct) ? 1 : 0;
     }
 }
 

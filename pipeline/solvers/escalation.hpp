@@ -1,12 +1,13 @@
 // Escalation: islands whose loads are too much for the solver, found by what their contacts bear.
 //
-// A soft contact gives way under its load. Where it gives way so far that it turns rigid, one visit
-// a substep no longer settles it, and the less the higher a body stands on others: that is what a
-// heavy box on a light one, a tower, a column of dice and a house of cards have in common.
+// A soft contact gives way under its load. Where it gives way so far that it turns rigid, one
+// iteration a substep no longer settles it, and the less the higher a body stands on others: that
+// is what a heavy box on a light one, a tower, a column of dice and a house of cards have in
+// common.
 #pragma once
 
 #include "kernels/solver/direct/direct.hpp"
-#include "pipeline/solvers/row_maker.hpp"
+#include "pipeline/solvers/constraint_builder.hpp"
 
 namespace throng {
 
@@ -16,7 +17,7 @@ namespace throng {
 inline constexpr double kStrained = 2, kRelieved = 1.2;
 
 /// Whether a body of that strain belongs to a stubborn island, and not to one on the way there.
-inline bool is_stubborn(double strain) { return strain < 0 || strain > 1; }
+inline bool is_overloaded(double strain) { return strain < 0 || strain > 1; }
 
 /// Strain beyond which the finest substeps do not do.
 inline constexpr double kExactStrain = 256 * kStrained;
@@ -41,13 +42,13 @@ inline constexpr DirectEffort kExactEffort = {.steps = 24, .enough = 1e-7, .pivo
 /// before somebody heavy, and while he is as deep. Islands of more than a batch of contacts
 /// are not looked at: what is so great holds itself up sideways, or is beyond the budget.
 template <class Real>
-void note_strain(const Conditions& conditions,
+void note_strain(const StepContext& context,
                  const Islands& islands,
                  const Layout& layout,
                  const ActiveContacts& active,
                  const Masses& masses,
                  const Velocities& velocities,
-                 const RowMaker<Real>& maker,
-                 Stubborn& stubborn);
+                 const ConstraintBuilder<Real>& builder,
+                 OverloadedIslands& overloaded);
 
 }  // namespace throng

@@ -1,6 +1,6 @@
 // Island exchange: an island taken from the step's data, and its answer given back.
 #include "kernels/solver/driven_contacts.hpp"
-#include "pipeline/solvers/whole_island.hpp"
+#include "pipeline/solvers/island_solver.hpp"
 
 namespace throng {
 
@@ -40,19 +40,19 @@ void guess(const Contact<Real>& contact, std::span<DirectPoint> points)
     if (!(load > 0)) return;
     middle /= load;
     const Vec3 friction = in_double(contact.friction);
-    const double rest = double{contact.twist}
+    const double rest = double{contact.torsional_impulse}
         + points.front().normal.dot((middle_of(points) - middle).cross(friction));
     double spread = 0;
     for (std::size_t k = 0; k < points.size(); ++k)
         spread += double{contact.points[k].impulse}
             * points[k].normal.cross(points[k].arm_a - middle).squaredNorm();
-    const double twist = points.size() > 1 && spread > 0 ? rest / spread : 0;
+    const double torsional_share = points.size() > 1 && spread > 0 ? rest / spread : 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
         DirectPoint& point = points[k];
         const auto impulse = double{contact.points[k].impulse};
         const Vec3 round = point.normal.cross(point.arm_a - middle);
-        point.impulse =
-            point.normal * impulse + friction * (impulse / load) + round * (twist * impulse);
+        point.impulse = point.normal * impulse + friction * (impulse / load)
+            + round * (torsional_share * impulse);
         point.torque = in_double(contact.rolling) * (impulse / load);
     }
 }
@@ -60,126 +60,132 @@ void guess(const Contact<Real>& contact, std::span<DirectPoint> points)
 }  // namespace
 
 template <class Real>
-WholeIsland::WholeIsland(const DirectScene<Real>& scene, const Batch& batch)
+IslandSolver::IslandSolver(const DirectScene<Real>& scene, const Batch& batch)
 {
     const Slice& slice = scene.layout.slices[batch.first_slice];
     effort_ = scene.effort;
-    left_ = effort_.steps * (2 + scene.conditions.settings.substeps);
-    up_ = up_of(scene.conditions.gravity);
-    spins_ = scene.conditions.settings.response != Response::kinematic;
+    left_ = effort_.steps * (2 + scene.context.settings.substeps);
+    up_ = up_of(scene.context.gravity);
+    spins_ = scene.context.settings.response != Response::kinematic;
     take_bodies(scene, slice);
     take_forces(scene, slice);
     for (std::uint32_t i = 0; i < slice.contacts; ++i)
         take_contact(scene, slice, slice.first_contact + i);
-    gaps_.resize(touches_.size());
+    separations_.resize(contacts_.size());
 }
 
 template <class Real>
-void WholeIsland::take_bodies(const DirectScene<Real>& scene, const Slice& slice)
+void IslandSolver::take_bodies(const DirectScene<Real>& scene, const Slice& slice)
 {
     const Layout& layout = scene.layout;
-    const auto add = [&](std::uint32_t slot, bool dynamic, bool advances) {
-        IslandSeat seat;
-        seat.body = layout.body_of_slot[slot];
-        seat.dynamic = dynamic;
-        seat.advances = advances;
-        const bool uneven = scene.facts.masses.spins_unevenly[seat.body] != 0;
-        seat.precesses = dynamic && uneven && scene.conditions.has(Effect::gyroscopic);
-        seat.position = scene.poses.position[seat.body];
-        seat.orientation = scene.poses.orientation[seat.body];
-        if (dynamic && scene.conditions.effects.meets(kForces)) {
-            seat.pull = scene.pulls.linear[seat.body];
-            seat.twist = scene.pulls.angular[seat.body];
+    const auto add = [&](std::uint32_t solver_index, bool dynamic, bool advances) {
+        IslandBody island_body;
+        island_body.body = layout.body_of_solver_index[solver_index];
+        island_body.dynamic = dynamic;
+        island_body.advances = advances;
+        const bool uneven = scene.facts.masses.gyroscopic_kind[island_body.body] != 0;
+        island_body.precesses = dynamic && uneven && scene.context.has(Effect::gyroscopic);
+        island_body.position = scene.poses.position[island_body.body];
+        island_body.orientation = scene.poses.orientation[island_body.body];
+        if (dynamic && scene.context.effects.meets(kForces)) {
+            island_body.acceleration = scene.accelerations.linear[island_body.body];
+            island_body.angular_acceleration = scene.accelerations.angular[island_body.body];
         }
         DirectBody body;
-        body.velocity = scene.velocities.linear[seat.body];
-        body.spin = scene.velocities.angular[seat.body];
-        const bool turns = dynamic && scene.conditions.has(Effect::rotation);
-        if (dynamic) body.inverse_mass = scene.facts.masses.inverse_mass[seat.body];
-        seats_.push_back(seat);
+        body.velocity = scene.velocities.linear[island_body.body];
+        body.spin = scene.velocities.angular[island_body.body];
+        const bool turns = dynamic && scene.context.has(Effect::rotation);
+        if (dynamic) body.inverse_mass = scene.facts.masses.inverse_mass[island_body.body];
+        bodies_.push_back(island_body);
         after_.push_back(body);
-        inertia_.push_back(scene.facts.masses.inertia[seat.body]);
-        inverse_inertia_.push_back(turns ? scene.facts.masses.inverse_inertia[seat.body] : Sym3{});
+        inertia_.push_back(scene.facts.masses.inertia[island_body.body]);
+        inverse_inertia_.push_back(turns ? scene.facts.masses.inverse_inertia[island_body.body]
+                                         : Sym3{});
     };
     for (std::uint32_t i = 0; i < slice.dynamic; ++i) add(slice.first_body + i, true, true);
     // Those that stay where they are while their surface moves come last.
-    std::uint32_t visitors = slice.kinematic;
+    std::uint32_t kinematic_copies = slice.kinematic;
     for (std::uint32_t i = 0; i < slice.contacts; ++i) {
         const std::uint32_t lane = layout.lane[slice.first_contact + i];
-        for (const std::int32_t slot : {layout.slot_a[lane], layout.slot_b[lane]})
-            if (slot > 0 && !layout.movable(slot))
-                visitors =
-                    std::max(visitors, static_cast<std::uint32_t>(slot) - slice.first_visitor + 1);
+        for (const std::int32_t solver_index :
+             {layout.solver_index_a[lane], layout.solver_index_b[lane]})
+            if (solver_index > 0 && !layout.movable(solver_index))
+                kinematic_copies = std::max(kinematic_copies,
+                                            static_cast<std::uint32_t>(solver_index)
+                                                - slice.first_kinematic_copy + 1);
     }
-    for (std::uint32_t i = 0; i < visitors; ++i)
-        add(slice.first_visitor + i, false, i < slice.kinematic);
+    for (std::uint32_t i = 0; i < kinematic_copies; ++i)
+        add(slice.first_kinematic_copy + i, false, i < slice.kinematic);
 }
 
 template <class Real>
-void WholeIsland::take_forces(const DirectScene<Real>& scene, const Slice& slice)
+void IslandSolver::take_forces(const DirectScene<Real>& scene, const Slice& slice)
 {
     const Set<Effect> follow = {Effect::forces, Effect::springs, Effect::attractors, Effect::pivot};
-    if (!scene.conditions.effects.meets(follow)) return;
+    if (!scene.context.effects.meets(follow)) return;
     std::vector<std::uint32_t> bodies;
-    for (std::uint32_t i = 0; i < slice.dynamic; ++i) bodies.push_back(seats_[i].body);
-    following_ = std::make_unique<FollowingForces>(scene.conditions, scene.facts, bodies);
-    if (following_->followers().empty()) following_.reset();
+    for (std::uint32_t i = 0; i < slice.dynamic; ++i) bodies.push_back(bodies_[i].body);
+    state_forces_ = std::make_unique<StateDependentForces>(scene.context, scene.facts, bodies);
+    if (state_forces_->forced_bodies().empty()) state_forces_.reset();
 }
 
-std::int32_t WholeIsland::seat_of(const Layout& layout, const Slice& slice, std::int32_t slot) const
+std::int32_t
+IslandSolver::index_of(const Layout& layout, const Slice& slice, std::int32_t solver_index) const
 {
-    if (slot == 0) return -1;
-    if (layout.movable(slot)) return slot - static_cast<std::int32_t>(slice.first_body);
-    return slot - static_cast<std::int32_t>(slice.first_visitor)
+    if (solver_index == 0) return -1;
+    if (layout.movable(solver_index))
+        return solver_index - static_cast<std::int32_t>(slice.first_body);
+    return solver_index - static_cast<std::int32_t>(slice.first_kinematic_copy)
         + static_cast<std::int32_t>(slice.dynamic);
 }
 
 template <class Real>
-void WholeIsland::take_contact(const DirectScene<Real>& scene,
-                               const Slice& slice,
-                               std::uint32_t place)
+void IslandSolver::take_contact(const DirectScene<Real>& scene,
+                                const Slice& slice,
+                                std::uint32_t place)
 {
     const auto& entry = scene.active.entries[scene.layout.contacts[place]];
-    const Contact<Real>& contact = scene.maker.contact_of(entry);
+    const Contact<Real>& contact = scene.builder.contact_of(entry);
     const std::uint32_t lane = scene.layout.lane[place];
-    IslandTouch touch;
-    touch.contact = place;
-    touch.a = seat_of(scene.layout, slice, scene.layout.slot_a[lane]);
-    touch.b = seat_of(scene.layout, slice, scene.layout.slot_b[lane]);
-    touch.normal = in_double(contact.normal).normalized();
-    touch.round_a = double{contact.round_a};
-    touch.round_b = double{contact.round_b};
-    const bool exact = !scene.active.meetings.empty();
-    const Surfaces::Meeting meeting = exact
-        ? scene.active.meetings[scene.layout.contacts[place]]
-        : Surfaces::Meeting{double{entry.friction}, double{entry.restitution},
-                            double{entry.rolling_friction}};
-    touch.restitution = meeting.restitution;
-    touch.extent = double{entry.extent};
-    touch.tolerance = kTolerance<Real> * touch.extent;
+    IslandContact island_contact;
+    island_contact.contact = place;
+    island_contact.a = index_of(scene.layout, slice, scene.layout.solver_index_a[lane]);
+    island_contact.b = index_of(scene.layout, slice, scene.layout.solver_index_b[lane]);
+    island_contact.normal = in_double(contact.normal).normalized();
+    island_contact.round_a = double{contact.round_a};
+    island_contact.round_b = double{contact.round_b};
+    const bool exact = !scene.active.materials.empty();
+    const Surfaces::MaterialPair materials = exact
+        ? scene.active.materials[scene.layout.contacts[place]]
+        : Surfaces::MaterialPair{double{entry.friction}, double{entry.restitution},
+                                 double{entry.rolling_friction}};
+    island_contact.restitution = materials.restitution;
+    island_contact.extent = double{entry.extent};
+    island_contact.tolerance = kTolerance<Real> * island_contact.extent;
     DirectPoint point;
-    point.a = touch.a;
-    point.b = touch.b;
-    point.normal = touch.normal;
-    point.friction = meeting.friction;
-    point.rolling = meeting.rolling_friction;
-    const auto drive = [&](std::int32_t slot) {
-        return scene.layout.movable(slot)
-            ? scene.drives.of(scene.layout.body_of_slot[static_cast<std::size_t>(slot)])
-            : nullptr;
+    point.a = island_contact.a;
+    point.b = island_contact.b;
+    point.normal = island_contact.normal;
+    point.friction = materials.friction;
+    point.rolling = materials.rolling_friction;
+    const auto drive = [&](std::int32_t solver_index) {
+        return scene.layout.movable(solver_index) ? scene.prescribed.of(
+                   scene.layout.body_of_solver_index[static_cast<std::size_t>(solver_index)])
+                                                  : nullptr;
     };
-    const DriveVelocity* const by_a = drive(scene.layout.slot_a[lane]);
-    const DriveVelocity* const by_b = drive(scene.layout.slot_b[lane]);
+    const PrescribedVelocity* const by_a = drive(scene.layout.solver_index_a[lane]);
+    const PrescribedVelocity* const by_b = drive(scene.layout.solver_index_b[lane]);
     for (int k = 0; k < contact.count; ++k) {
         const auto& from = contact.points[static_cast<std::size_t>(k)];
-        touch.point = static_cast<std::uint32_t>(k);
-        touch.gap = double{from.separation};
-        point.arm_a = in_double(from.from_a);
-        point.arm_b = point.arm_a + touch.normal * touch.gap + in_double(contact.between);
-        touch.arm_a = point.arm_a - touch.normal * touch.round_a;
-        touch.arm_b = point.arm_b + touch.normal * touch.round_b;
-        if (by_a != nullptr || by_b != nullptr) walks_.push_back({touches_.size(), by_a, by_b});
-        touches_.push_back(touch);
+        island_contact.point = static_cast<std::uint32_t>(k);
+        island_contact.separation = double{from.separation};
+        point.arm_a = in_double(from.anchor_a);
+        point.arm_b = point.arm_a + island_contact.normal * island_contact.separation
+            + in_double(contact.center_offset);
+        island_contact.arm_a = point.arm_a - island_contact.normal * island_contact.round_a;
+        island_contact.arm_b = point.arm_b + island_contact.normal * island_contact.round_b;
+        if (by_a != nullptr || by_b != nullptr) walks_.push_back({contacts_.size(), by_a, by_b});
+        contacts_.push_back(island_contact);
         points_.push_back(point);
     }
     const auto count = static_cast<std::size_t>(contact.count);
@@ -187,34 +193,34 @@ void WholeIsland::take_contact(const DirectScene<Real>& scene,
 }
 
 template <class Real>
-void WholeIsland::give_states(const DirectScene<Real>& scene,
-                              const Slice& slice,
-                              Rows<Real>& rows) const
+void IslandSolver::give_states(const DirectScene<Real>& scene,
+                               const Slice& slice,
+                               ContactConstraints<Real>& constraints) const
 {
-    using Settled = typename Rows<Real>::Settled;
+    using Settled = typename ContactConstraints<Real>::Settled;
     for (std::uint32_t i = 0; i < slice.dynamic; ++i) {
-        const IslandSeat& seat = seats_[i];
-        const Vec3 position = scene.poses.position[seat.body] + seat.moved;
-        Quat orientation = seat.turned * seat.orientation;
+        const IslandBody& island_body = bodies_[i];
+        const Vec3 position = scene.poses.position[island_body.body] + island_body.moved;
+        Quat orientation = island_body.turned * island_body.orientation;
         orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
         const bool sound = holdable(position, orientation, after_[i].velocity, after_[i].spin);
-        rows.settled[slice.first_body + i] = sound ? Settled::yes : Settled::lost;
+        constraints.settled[slice.first_body + i] = sound ? Settled::yes : Settled::lost;
         if (!sound) continue;
-        scene.poses.position[seat.body] = position;
-        scene.poses.orientation[seat.body] = orientation;
-        scene.velocities.linear[seat.body] = after_[i].velocity;
-        scene.velocities.angular[seat.body] = after_[i].spin;
+        scene.poses.position[island_body.body] = position;
+        scene.poses.orientation[island_body.body] = orientation;
+        scene.velocities.linear[island_body.body] = after_[i].velocity;
+        scene.velocities.angular[island_body.body] = after_[i].spin;
     }
 }
 
 // Of the points from `first` on, which are those of the contact.
 template <class Real>
-void WholeIsland::give_impulses(std::size_t first, Contact<Real>& contact) const
+void IslandSolver::give_impulses(std::size_t first, Contact<Real>& contact) const
 {
     const auto points = std::span(points_).subspan(first, static_cast<std::size_t>(contact.count));
     const Vec3 middle = middle_of(points);
     Vec3 friction = Vec3::Zero(), rolling = Vec3::Zero();
-    double twist = 0;
+    double torsional_sum = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const DirectPoint& point = points[k];
         const double normal = point.normal.dot(point.impulse);
@@ -222,28 +228,31 @@ void WholeIsland::give_impulses(std::size_t first, Contact<Real>& contact) const
         contact.points[k].impulse = static_cast<Real>(std::max(normal, 0.0));
         friction += across;
         rolling += point.torque;
-        twist += point.normal.dot((point.arm_a - middle).cross(across));
+        torsional_sum += point.normal.dot((point.arm_a - middle).cross(across));
     }
     contact.friction = friction.template cast<Real>();
     contact.rolling = rolling.template cast<Real>();
-    contact.twist = static_cast<Real>(points.size() > 1 ? twist : 0);
+    contact.torsional_impulse = static_cast<Real>(points.size() > 1 ? torsional_sum : 0);
 }
 
 template <class Real>
-void WholeIsland::finish(const DirectScene<Real>& scene, const Batch& batch, Rows<Real>& rows) const
+void IslandSolver::finish(const DirectScene<Real>& scene,
+                          const Batch& batch,
+                          ContactConstraints<Real>& constraints) const
 {
-    give_states(scene, scene.layout.slices[batch.first_slice], rows);
-    for (std::size_t first = 0; first < touches_.size();) {
-        const std::uint32_t entry = scene.layout.contacts[touches_[first].contact];
-        Contact<Real>& contact = scene.maker.contact_of(scene.active.entries[entry]);
+    give_states(scene, scene.layout.slices[batch.first_slice], constraints);
+    for (std::size_t first = 0; first < contacts_.size();) {
+        const std::uint32_t entry = scene.layout.contacts[contacts_[first].contact];
+        Contact<Real>& contact = scene.builder.contact_of(scene.active.entries[entry]);
         give_impulses(first, contact);
         first += static_cast<std::size_t>(contact.count);
     }
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template WholeIsland::WholeIsland(const DirectScene<Real>&, const Batch&);                     \
-    template void WholeIsland::finish(const DirectScene<Real>&, const Batch&, Rows<Real>&) const;
+    template IslandSolver::IslandSolver(const DirectScene<Real>&, const Batch&);                   \
+    template void IslandSolver::finish(const DirectScene<Real>&, const Batch&,                     \
+                                       ContactConstraints<Real>&) const;
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -12,7 +12,7 @@
 // speed that it leaves with.
 //
 // Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
-#include "pipeline/solvers/whole_island.hpp"
+#include "pipeline/solvers/island_solver.hpp"
 
 #include <algorithm>
 
@@ -29,22 +29,22 @@ constexpr double kRounding = 1e-11;
 }  // namespace
 
 // Those that were touching as the substep began, or came to touch within it.
-void WholeIsland::list_touching(double threshold)
+void IslandSolver::list_touching(double threshold)
 {
     touching_.clear();
     bool any = false;
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
-        const bool touches =
-            gaps_[i] <= touches_[i].tolerance || points_[i].normal.dot(points_[i].impulse) > 0;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const bool touches = separations_[i] <= contacts_[i].tolerance
+            || points_[i].normal.dot(points_[i].impulse) > 0;
         if (!touches) continue;
         touching_.push_back(i);
-        any = any || (touches_[i].restitution > 0 && approach(i, struck_) < -threshold);
+        any = any || (contacts_[i].restitution > 0 && approach(i, struck_) < -threshold);
     }
     if (!any) touching_.clear();
 }
 
 // Reflects those that close among the touching from `begin` to before `end`. False if none does.
-bool WholeIsland::reflect(std::size_t begin, std::size_t end, double least_speed)
+bool IslandSolver::reflect(std::size_t begin, std::size_t end, double least_speed)
 {
     hits_.clear();
     struck_points_.clear();
@@ -59,7 +59,7 @@ bool WholeIsland::reflect(std::size_t begin, std::size_t end, double least_speed
         point.impulse = point.torque = Vec3::Zero();
         hits_.push_back(at);
         hit_speeds_.push_back(-speed);
-        hit_restitution_.push_back(touches_[at].restitution);
+        hit_restitution_.push_back(contacts_[at].restitution);
         struck_points_.push_back(point);
     }
     if (hits_.empty()) return false;
@@ -74,32 +74,32 @@ bool WholeIsland::reflect(std::size_t begin, std::size_t end, double least_speed
 }
 
 // Contact by contact: the points of one meet together.
-bool WholeIsland::reflect_in_order(double least_speed)
+bool IslandSolver::reflect_in_order(double least_speed)
 {
     bool any = false;
     for (std::size_t begin = 0, end = 0; begin < touching_.size(); begin = end) {
-        const std::uint32_t contact = touches_[touching_[begin]].contact;
-        while (end < touching_.size() && touches_[touching_[end]].contact == contact) ++end;
+        const std::uint32_t contact = contacts_[touching_[begin]].contact;
+        while (end < touching_.size() && contacts_[touching_[end]].contact == contact) ++end;
         any = reflect(begin, end, least_speed) || any;
     }
     return any;
 }
 
 // What the impacts did, J, but for rounding; and more than friction and rest may leave of that.
-bool WholeIsland::gains(double work) const
+bool IslandSolver::gains(double work) const
 {
     double size = 0;
     for (const DirectPoint& point : others_) {
-        const double speed = velocity_between(point, before_).norm();
-        size =
-            std::max(size, point.impulse.norm() * (speed + velocity_between(point, after_).norm()));
+        const double speed = relative_velocity(point, before_).norm();
+        size = std::max(size,
+                        point.impulse.norm() * (speed + relative_velocity(point, after_).norm()));
     }
     return work_of(others_, free_, after_) > work + kRounding * size;
 }
 
 // What gravity did in the substep, resting contacts and friction: every struck point leaves with
 // the speed that it has now.
-void WholeIsland::hold_struck()
+void IslandSolver::hold_struck()
 {
     after_ = free_;
     for (std::size_t i = 0; i < others_.size(); ++i)
@@ -108,7 +108,7 @@ void WholeIsland::hold_struck()
 }
 
 // The same on top of the impacts.
-void WholeIsland::add_to_struck()
+void IslandSolver::add_to_struck()
 {
     after_ = free_;
     for (std::size_t i = 0; i < after_.size(); ++i) {
@@ -120,21 +120,21 @@ void WholeIsland::add_to_struck()
 
 // By impacts with friction each point leaves as fast as without, unless that takes energy that
 // nobody gave: then friction bears its share of the impulse, and the point leaves as it comes.
-void WholeIsland::settle_after_impacts()
+void IslandSolver::settle_after_impacts()
 {
-    bool grips = false;
+    bool has_friction = false;
     double work = 0;
     others_ = points_;
     for (std::size_t i = 0; i < others_.size(); ++i) {
         DirectPoint& point = others_[i];
         const bool struck = struck_impulse_[i] > 0;
-        grips = grips || (struck && (point.friction > 0 || point.rolling > 0));
+        has_friction = has_friction || (struck && (point.friction > 0 || point.rolling > 0));
         point.least = struck ? 0 : std::min(point.least, 0.0);
         point.impulse = point.torque = Vec3::Zero();
         if (struck)
             work += 0.5 * struck_impulse_[i] * (approach(i, before_) + approach(i, struck_));
     }
-    if (grips) {
+    if (has_friction) {
         hold_struck();
         if (!gains(work)) return;
     }
@@ -143,7 +143,7 @@ void WholeIsland::settle_after_impacts()
         DirectPoint& point = struck_points_[i];
         point.impulse = point.normal * struck_impulse_[i];
         point.torque.setZero();
-        if (struck_impulse_[i] > 0) rub(struck_impulse_[i], point, struck_);
+        if (struck_impulse_[i] > 0) apply_impact_friction(struck_impulse_[i], point, struck_);
         if (struck_impulse_[i] > 0) others_[i].least = 0;
     }
     add_to_struck();
@@ -153,11 +153,11 @@ void WholeIsland::settle_after_impacts()
     }
 }
 
-bool WholeIsland::bounce(const Conditions& conditions)
+bool IslandSolver::bounce(const StepContext& context)
 {
-    if (!conditions.has(Effect::restitution)) return false;
+    if (!context.has(Effect::restitution)) return false;
     // Slower than what gravity gives in two steps is resting, not bouncing.
-    const double threshold = 2 * conditions.gravity.norm() * conditions.settings.dt;
+    const double threshold = 2 * context.gravity.norm() * context.settings.dt;
     struck_ = before_;
     for (std::size_t i = 0; i < struck_.size(); ++i)
         struck_[i].inverse_inertia = free_[i].inverse_inertia;
@@ -167,8 +167,8 @@ bool WholeIsland::bounce(const Conditions& conditions)
     for (const std::size_t at : touching_)
         greatest = std::max(greatest, std::abs(approach(at, struck_)));
     const double least_speed = std::max(threshold, kRounding * greatest);
-    struck_impulse_.assign(touches_.size(), 0);
-    const bool together = conditions.settings.impact_law == ImpactLaw::simultaneous;
+    struck_impulse_.assign(contacts_.size(), 0);
+    const bool together = context.settings.impact_law == ImpactLaw::simultaneous;
     for (int pass = 0; pass < kMostPasses; ++pass)
         if (!(together ? reflect(0, touching_.size(), least_speed) : reflect_in_order(least_speed)))
             break;

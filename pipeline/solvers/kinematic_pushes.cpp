@@ -4,7 +4,7 @@
 // Of each velocity the part along the normal that closes is taken away, half of it from each of two
 // that can move, whatever their masses; the part across is slowed by friction. Nothing is
 // conserved.
-#include "pipeline/solvers/whole_island.hpp"
+#include "pipeline/solvers/island_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,36 +19,37 @@ constexpr int kSweeps = 8;
 
 // kg, what a change of the speed of b against a takes: the mean over those that can move, as each
 // is changed by its share whatever it weighs.
-double WholeIsland::mass_of(const DirectPoint& point) const
+double IslandSolver::mass_of(const DirectPoint& point) const
 {
     double sum = 0;
-    int movers = 0;
+    int moving = 0;
     const auto [a, b] = shares_of(point);
-    for (const auto& [seat, share] : {std::pair(point.a, a), std::pair(point.b, b)}) {
+    for (const auto& [body_index, share] : {std::pair(point.a, a), std::pair(point.b, b)}) {
         if (!(share > 0)) continue;
-        sum += share / after_[static_cast<std::size_t>(seat)].inverse_mass;
-        ++movers;
+        sum += share / after_[static_cast<std::size_t>(body_index)].inverse_mass;
+        ++moving;
     }
-    return movers > 0 ? sum / movers : 0;
+    return moving > 0 ? sum / moving : 0;
 }
 
 // How much of a push falls to each: half, or all of it where the other cannot move.
-std::pair<double, double> WholeIsland::shares_of(const DirectPoint& point) const
+std::pair<double, double> IslandSolver::shares_of(const DirectPoint& point) const
 {
-    const auto moves = [&](std::int32_t seat) {
-        return seat >= 0 && after_[static_cast<std::size_t>(seat)].inverse_mass > 0;
+    const auto moves = [&](std::int32_t body_index) {
+        return body_index >= 0 && after_[static_cast<std::size_t>(body_index)].inverse_mass > 0;
     };
     const bool a = moves(point.a), b = moves(point.b);
     return {a ? b ? 0.5 : 1.0 : 0.0, b ? a ? 0.5 : 1.0 : 0.0};
 }
 
-void WholeIsland::stop_approach(std::size_t at)
+void IslandSolver::stop_approach(std::size_t at)
 {
     DirectPoint& point = points_[at];
     const double closing = -approach(at, after_);
-    if (gaps_[at] > 0 || !(closing > 0)) return;
-    const auto velocity = [&](std::int32_t seat) -> Vec3 {
-        return seat < 0 ? Vec3(Vec3::Zero()) : after_[static_cast<std::size_t>(seat)].velocity;
+    if (separations_[at] > 0 || !(closing > 0)) return;
+    const auto velocity = [&](std::int32_t body_index) -> Vec3 {
+        return body_index < 0 ? Vec3(Vec3::Zero())
+                              : after_[static_cast<std::size_t>(body_index)].velocity;
     };
     const Vec3 between = velocity(point.b) - velocity(point.a) - point.walk;
     const Vec3 sliding = between - point.normal * point.normal.dot(between);
@@ -62,35 +63,34 @@ void WholeIsland::stop_approach(std::size_t at)
 }
 
 // By so much at most from where place_points() found the two.
-void WholeIsland::push_apart(std::size_t at, double most)
+void IslandSolver::push_out(std::size_t at, double most)
 {
-    if (!(gaps_[at] < -touches_[at].tolerance)) return;
-    const double way = std::min(0.0, gaps_[at] + most) - gap_now(at);
+    if (!(separations_[at] < -contacts_[at].tolerance)) return;
+    const double way = std::min(0.0, separations_[at] + most) - separation_now(at);
     if (!(way > 0)) return;
     const DirectPoint& point = points_[at];
     const auto [a, b] = shares_of(point);
-    if (a > 0) seats_[static_cast<std::size_t>(point.a)].moved -= a * way * point.normal;
-    if (b > 0) seats_[static_cast<std::size_t>(point.b)].moved += b * way * point.normal;
+    if (a > 0) bodies_[static_cast<std::size_t>(point.a)].moved -= a * way * point.normal;
+    if (b > 0) bodies_[static_cast<std::size_t>(point.b)].moved += b * way * point.normal;
 }
 
-void WholeIsland::separate(const Conditions& conditions)
+void IslandSolver::separate(const StepContext& context)
 {
-    const double time = conditions.substep(), most = conditions.settings.push_limit * time;
-    const int sweeps =
-        conditions.settings.iterations > 0 ? conditions.settings.iterations : kSweeps;
+    const double time = context.substep(), most = context.settings.push_limit * time;
+    const int iterations = context.settings.iterations > 0 ? context.settings.iterations : kSweeps;
     place_points();
-    move_freely(conditions, time);
+    move_freely(context, time);
     for (DirectPoint& point : points_) point.impulse = point.torque = Vec3::Zero();
-    for (int sweep = 0; sweep < sweeps; ++sweep)
-        for (std::size_t i = 0; i < touches_.size(); ++i) stop_approach(i);
+    for (int iteration = 0; iteration < iterations; ++iteration)
+        for (std::size_t i = 0; i < contacts_.size(); ++i) stop_approach(i);
     going_ = after_;
     advance(time);
     place_points();
-    if (end_following())
-        for (int sweep = 0; sweep < sweeps; ++sweep)
-            for (std::size_t i = 0; i < touches_.size(); ++i) stop_approach(i);
-    for (int sweep = 0; sweep < sweeps; ++sweep)
-        for (std::size_t i = 0; i < touches_.size(); ++i) push_apart(i, most);
+    if (end_state_forces())
+        for (int iteration = 0; iteration < iterations; ++iteration)
+            for (std::size_t i = 0; i < contacts_.size(); ++i) stop_approach(i);
+    for (int iteration = 0; iteration < iterations; ++iteration)
+        for (std::size_t i = 0; i < contacts_.size(); ++i) push_out(i, most);
 }
 
 }  // namespace throng

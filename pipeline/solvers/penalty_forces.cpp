@@ -7,7 +7,7 @@
 // what should not roll creeps.
 //
 // Source: Cundall and Strack, A discrete numerical model for granular assemblies (1979).
-#include "pipeline/solvers/whole_island.hpp"
+#include "pipeline/solvers/island_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ constexpr double kStepsToPart = 4;
 }  // namespace
 
 // What a point is to the step.
-struct WholeIsland::Give {
+struct IslandSolver::Give {
     double stiffness = 0, damping = 0;  // N/m, N s/m
     double longest = 0;                 // s, of a step that keeps it from growing
     std::uint32_t share = 1;            // of how many points what it bears is a part
@@ -49,40 +49,43 @@ struct WholeIsland::Give {
 
 // Whether the two overlap, or come to within that time: a spring that they fall into for a whole
 // substep holds more than they bring with them.
-bool WholeIsland::presses(std::size_t at, const Conditions& conditions, double ahead) const
+bool IslandSolver::presses(std::size_t at, const StepContext& context, double ahead) const
 {
-    const double closing = conditions.gravity.norm() * ahead - approach(at, after_);
-    return gaps_[at] < std::max(0.0, closing) * ahead;
+    const double closing = context.gravity.norm() * ahead - approach(at, after_);
+    return separations_[at] < std::max(0.0, closing) * ahead;
 }
 
 // Who bears how many points that overlap, or come to within that time.
-void WholeIsland::count_touching(const Conditions& conditions, double ahead)
+void IslandSolver::count_touching(const StepContext& context, double ahead)
 {
-    pressed_.assign(seats_.size(), 0);
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
-        if (!presses(i, conditions, ahead)) continue;
-        for (const std::int32_t seat : {touches_[i].a, touches_[i].b})
-            if (seat >= 0) ++pressed_[static_cast<std::size_t>(seat)];
+    pressed_.assign(bodies_.size(), 0);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        if (!presses(i, context, ahead)) continue;
+        for (const std::int32_t body_index : {contacts_[i].a, contacts_[i].b})
+            if (body_index >= 0) ++pressed_[static_cast<std::size_t>(body_index)];
     }
 }
 
 // Points that share a body add up: each takes its part of what the step bears.
-WholeIsland::Give WholeIsland::give_of(std::size_t at, const Settings& settings, double time) const
+IslandSolver::Give
+IslandSolver::give_of(std::size_t at, const Settings& settings, double time) const
 {
-    const IslandTouch& touch = touches_[at];
+    const IslandContact& contact = contacts_[at];
     std::uint32_t share = 1;
-    for (const std::int32_t seat : {touch.a, touch.b})
-        if (seat >= 0) share = std::max(share, pressed_[static_cast<std::size_t>(seat)]);
-    const double ease = ease_along(points_[at], touch.normal, after_) * share;
-    if (!(ease > 0)) return {};
+    for (const std::int32_t body_index : {contact.a, contact.b})
+        if (body_index >= 0)
+            share = std::max(share, pressed_[static_cast<std::size_t>(body_index)]);
+    const double inverse_mass = inverse_mass_along(points_[at], contact.normal, after_) * share;
+    if (!(inverse_mass > 0)) return {};
     Give give;
-    give.stiffness = settings.penalty_stiffness > 0 ? settings.penalty_stiffness
-                                                    : kSwing * kSwing / (time * time * ease);
-    const double frequency = std::sqrt(give.stiffness * ease);
-    const double damped = kDamped * (1 - touch.restitution);
-    give.damping =
-        settings.penalty_damping >= 0 ? settings.penalty_damping : 2 * damped * frequency / ease;
-    const double ratio = 0.5 * give.damping * ease / frequency;
+    give.stiffness = settings.penalty_stiffness > 0
+        ? settings.penalty_stiffness
+        : kSwing * kSwing / (time * time * inverse_mass);
+    const double frequency = std::sqrt(give.stiffness * inverse_mass);
+    const double damped = kDamped * (1 - contact.restitution);
+    give.damping = settings.penalty_damping >= 0 ? settings.penalty_damping
+                                                 : 2 * damped * frequency / inverse_mass;
+    const double ratio = 0.5 * give.damping * inverse_mass / frequency;
     give.longest = 2 * (std::sqrt(1 + ratio * ratio) - ratio) / frequency;
     give.share = share;
     return give;
@@ -90,32 +93,33 @@ WholeIsland::Give WholeIsland::give_of(std::size_t at, const Settings& settings,
 
 // Overlap that nothing pressed in was found as it is: made so, or come to beside what contacts had
 // looked for. Its spring would give back what nobody put in; it is let go at the push limit.
-void WholeIsland::find_unearned(const Conditions& conditions)
+void IslandSolver::find_unearned(const StepContext& context)
 {
     // As the step begins: later substeps see on their way what presses, and would take what a part
     // of such a spring gives for a load that had pressed the rest of it in.
     for (std::size_t i = 0; i < unearned_.size(); ++i)
-        unearned_[i] = std::min(unearned_[i], std::max(0.0, -gaps_[i]));
+        unearned_[i] = std::min(unearned_[i], std::max(0.0, -separations_[i]));
     if (!unearned_.empty()) return;
-    const double time = conditions.substep();
-    unearned_.assign(touches_.size(), 0);
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
-        if (!(gaps_[i] < -kShallow * touches_[i].extent)) continue;
-        const double stiffness = give_of(i, conditions.settings, time).stiffness;
+    const double time = context.substep();
+    unearned_.assign(contacts_.size(), 0);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        if (!(separations_[i] < -kShallow * contacts_[i].extent)) continue;
+        const double stiffness = give_of(i, context.settings, time).stiffness;
         if (!(stiffness > 0)) continue;
         const Vec3& normal = points_[i].normal;
         const double borne = normal.dot(points_[i].impulse) / (time * stiffness);
         const double speed = approach(i, after_);
-        const double ease = ease_along(points_[i], touches_[i].normal, after_);
-        double pressed = kPressed * std::sqrt(borne * borne + speed * speed / (stiffness * ease));
+        const double inverse_mass = inverse_mass_along(points_[i], contacts_[i].normal, after_);
+        double pressed =
+            kPressed * std::sqrt(borne * borne + speed * speed / (stiffness * inverse_mass));
         // Who bore nothing yet has come in since, and no further than he closes.
         if (!(borne > 0)) pressed = std::min(pressed, std::max(0.0, -speed * time));
-        unearned_[i] = std::max(0.0, -gaps_[i] - pressed);
+        unearned_[i] = std::max(0.0, -separations_[i] - pressed);
     }
 }
 
 // What friction held as the step began, N.
-void WholeIsland::find_held(double time)
+void IslandSolver::find_held(double time)
 {
     if (!held_.empty()) return;
     for (const DirectPoint& point : points_)
@@ -124,34 +128,38 @@ void WholeIsland::find_held(double time)
 
 // A spring that holds what has slid since the two stick, with a damper that stops half of the
 // sliding in a substep, all their points together, up to what friction bears under a push, N s.
-void WholeIsland::resist_sliding(std::size_t at, double push, double time, std::uint32_t share)
+void IslandSolver::resist_sliding(std::size_t at,
+                                  double normal_force,
+                                  double time,
+                                  std::uint32_t share)
 {
     DirectPoint& point = points_[at];
     const auto across = [&](const Vec3& v) { return Vec3(v - point.normal * point.normal.dot(v)); };
-    const Vec3 sliding = across(velocity_between(point, before_));
-    const double ease = widest_ease(point, before_) * share;
-    if (!(ease > 0)) return;
-    const double most = point.friction * push;
+    const Vec3 sliding = across(relative_velocity(point, before_));
+    const double inverse_mass = widest_inverse_mass(point, before_) * share;
+    if (!(inverse_mass > 0)) return;
+    const double most = point.friction * normal_force;
     const auto within = [&](const Vec3& impulse) -> Vec3 {
         const double size = std::sqrt(impulse.squaredNorm());
         return size > most ? Vec3(impulse * (most / size)) : impulse;
     };
-    const Vec3 spring = across(held_[at]) * time - sliding * (kSwing * kSwing / ease);
+    const Vec3 spring = across(held_[at]) * time - sliding * (kSwing * kSwing / inverse_mass);
     held_[at] = within(spring) / time;
-    const Vec3 impulse = within(spring - sliding * (kSlidingDamped / ease));
+    const Vec3 impulse = within(spring - sliding * (kSlidingDamped / inverse_mass));
     point.impulse += impulse;
     apply_impulse(point, impulse, after_);
 }
 
 // Dampers that stop half of the turning between two, likewise.
-void WholeIsland::damp_turning(DirectPoint& point, double push, std::uint32_t share)
+void IslandSolver::damp_turning(DirectPoint& point, double normal_force, std::uint32_t share)
 {
-    const Vec3 turning = spin_between(point, before_);
+    const Vec3 turning = relative_spin(point, before_);
     const double fast = std::sqrt(turning.squaredNorm());
     if (!(fast > 0)) return;
-    const double ease = ease_about(point, turning / fast, before_) * share;
-    if (!(ease > 0)) return;
-    const Vec3 torque = turning * (-std::min(0.5 / ease, point.rolling * push / fast));
+    const double inverse_mass = inverse_inertia_about(point, turning / fast, before_) * share;
+    if (!(inverse_mass > 0)) return;
+    const Vec3 torque =
+        turning * (-std::min(0.5 / inverse_mass, point.rolling * normal_force / fast));
     point.torque += torque;
     apply_torque(point, torque, after_);
 }
@@ -159,58 +167,58 @@ void WholeIsland::damp_turning(DirectPoint& point, double push, std::uint32_t sh
 // What comes in faster than what rests may, and touches within that time, goes by the law of
 // impacts: a spring of auto, which a few parts of a substep turn round, gives back by its damper
 // and the step more or less than restitution has it. A spring that is asked for is what it is.
-void WholeIsland::throw_back(const Conditions& conditions, double time)
+void IslandSolver::throw_back(const StepContext& context, double time)
 {
-    const Settings& settings = conditions.settings;
+    const Settings& settings = context.settings;
     if (settings.penalty_stiffness > 0 || settings.penalty_damping >= 0) return;
     // Slower than what gravity gives in two steps is resting, not bouncing.
     double greatest = 0;
-    for (std::size_t i = 0; i < touches_.size(); ++i)
+    for (std::size_t i = 0; i < contacts_.size(); ++i)
         greatest = std::max(greatest, -approach(i, after_));
-    const double least =
-        std::max(2 * conditions.gravity.norm() * settings.dt, kRounding * greatest);
+    const double least = std::max(2 * context.gravity.norm() * settings.dt, kRounding * greatest);
     if (!(greatest > least)) return;
     struck_ = after_;
     for (int round = 0; round < kImpactRounds; ++round) {
         touching_.clear();
-        for (std::size_t i = 0; i < touches_.size(); ++i) {
+        for (std::size_t i = 0; i < contacts_.size(); ++i) {
             const double speed = approach(i, struck_);
-            if (speed < -least && gaps_[i] + speed * time < 0) touching_.push_back(i);
+            if (speed < -least && separations_[i] + speed * time < 0) touching_.push_back(i);
         }
         if (touching_.empty()) break;
-        struck_impulse_.assign(touches_.size(), 0);
+        struck_impulse_.assign(contacts_.size(), 0);
         reflect_in_order(least);
         for (const std::size_t at : touching_) {
             points_[at].impulse += points_[at].normal * struck_impulse_[at];
-            if (struck_impulse_[at] > 0) rub(struck_impulse_[at], points_[at], struck_);
+            if (struck_impulse_[at] > 0)
+                apply_impact_friction(struck_impulse_[at], points_[at], struck_);
         }
     }
     after_ = struck_;
 }
 
 // All forces are of the velocities before, so that no order of touches has a say.
-void WholeIsland::push_by_forces(const Conditions& conditions, double time)
+void IslandSolver::apply_penalty_forces(const StepContext& context, double time)
 {
     place_points();
-    throw_back(conditions, time);
+    throw_back(context, time);
     // The velocities before are those that took the bodies here: of the middle of the last part.
-    carry_arms(-time / 2, conditions.settings.dt);
-    move_freely(conditions, time);
-    count_touching(conditions, 0);
+    carry_arms(-time / 2, context.settings.dt);
+    move_freely(context, time);
+    count_touching(context, 0);
     // What is too stiff for the cut, with those who came to press in the middle of a substep, gives
     // way as far as that bears.
-    Settings softened = conditions.settings;
+    Settings softened = context.settings;
     softened.penalty_stiffness = softened.penalty_damping = -1;
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
-        const double pressed = -gaps_[i] - unearned_[i];
-        const double let_go = unearned_[i] / (kStepsToPart * conditions.settings.dt);
-        unearned_[i] -= std::min(let_go, conditions.settings.push_limit) * time;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const double pressed = -separations_[i] - unearned_[i];
+        const double let_go = unearned_[i] / (kStepsToPart * context.settings.dt);
+        unearned_[i] -= std::min(let_go, context.settings.push_limit) * time;
         if (!(pressed > 0)) {
             held_[i].setZero();
             continue;
         }
         DirectPoint& point = points_[i];
-        Give give = give_of(i, conditions.settings, time);
+        Give give = give_of(i, context.settings, time);
         if (give.longest < time) give = give_of(i, softened, time);
         const double force =
             std::max(0.0, give.stiffness * pressed - give.damping * approach(i, before_));
@@ -224,26 +232,26 @@ void WholeIsland::push_by_forces(const Conditions& conditions, double time)
     advance(time);
 }
 
-void WholeIsland::penalise(const Conditions& conditions)
+void IslandSolver::penalise(const StepContext& context)
 {
-    const double time = conditions.substep();
+    const double time = context.substep();
     place_points();
     turn_inertias();
-    count_touching(conditions, time);
-    find_unearned(conditions);
+    count_touching(context, time);
+    find_unearned(context);
     find_held(time);
     double longest = time;
-    if (following_) longest = std::min(longest, kWithinSprings * following_->longest_step());
-    for (std::size_t i = 0; i < touches_.size(); ++i) {
+    if (state_forces_) longest = std::min(longest, kWithinSprings * state_forces_->longest_step());
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
         points_[i].impulse = points_[i].torque = Vec3::Zero();
-        if (!presses(i, conditions, time)) continue;
-        const double bears = give_of(i, conditions.settings, time).longest;
+        if (!presses(i, context, time)) continue;
+        const double bears = give_of(i, context.settings, time).longest;
         if (bears > 0 && bears < time) longest = std::min(longest, kWithin * bears);
     }
     const int cuts = static_cast<int>(
         std::min(std::ceil(time / longest), static_cast<double>(kMostPenaltyCuts)));
     cuts_ = std::max(cuts_, cuts);
-    for (int cut = 0; cut < cuts; ++cut) push_by_forces(conditions, time / cuts);
+    for (int cut = 0; cut < cuts; ++cut) apply_penalty_forces(context, time / cuts);
 }
 
 }  // namespace throng

@@ -1,39 +1,40 @@
 // Solve batch: all passes of a step over the contacts and bodies of one batch.
 //
-// A batch of small islands is one task that goes through all substeps while its rows stay in cache.
-// A big island goes slice by slice, each pass a slice behind the one before it: what a pass has
-// brought into cache serves the passes that follow, and threads work on slices that share no body.
-// Either way the order within an island is that of its slices and their colors, which ids and
+// A batch of small islands is one task that goes through all substeps while its constraints stay in
+// cache. A big island goes slice by slice, each pass a slice behind the one before it: what a pass
+// has brought into cache serves the passes that follow, and threads work on slices that share no
+// body. Either way the order within an island is that of its slices and their colors, which ids and
 // positions alone decide.
 #pragma once
 
 #include "kernels/dynamics/rigid_motion.hpp"
-#include "pipeline/solvers/row_maker.hpp"
+#include "pipeline/solvers/constraint_builder.hpp"
 #include "pipeline/step/step_data.hpp"
 
 namespace throng {
 
-/// Relaxing visits that a batch gets in a substep: one quietens a heap, and where most bodies lie
-/// on one another by their faces, as in towers and walls, a second one leaves a hundredth of the
-/// energy. Where there are many substeps it keeps pushes from braking what rubs.
-int relax_visits(const Settings& settings, const Batch& batch);
+/// Relaxing iterations that a batch gets in a substep: one quietens a heap, and where most bodies
+/// lie on one another by their faces, as in towers and walls, a second one leaves a hundredth of
+/// the energy. Where there are many substeps it keeps pushes from braking what rubs.
+int relax_iterations(const Settings& settings, const Batch& batch);
 /// Those of an island with finer substeps, whose settings these are: what it gains by a push has a
 /// long way to go where many stand on one another.
-int finer_relax_visits(const Settings& settings, const Batch& batch);
+int finer_relax_iterations(const Settings& settings, const Batch& batch);
 /// The mean of that over all contacts; 0 where there are none.
-double mean_relax_visits(const Settings& settings, const Layout& layout);
+double mean_relax_iterations(const Settings& settings, const Layout& layout);
 
-/// Makes the rows of a batch, solves them, moves its bodies, and gives the contacts their impulses.
-/// A wide batch uses all threads of the pool; of others, many may be solved at the same time.
+/// Makes the constraints of a batch, solves them, moves its bodies, and gives the contacts their
+/// impulses. A wide batch uses all threads of the pool; of others, many may be solved at the same
+/// time.
 ///
 ///   facts  as the step began
 template <class Real>
-void solve_batch(const Conditions& conditions,
+void solve_batch(const StepContext& context,
                  const RigidFacts& facts,
                  const Layout& layout,
                  const Batch& batch,
-                 const RowMaker<Real>& maker,
-                 Rows<Real>& rows,
-                 Parting& parting);
+                 const ConstraintBuilder<Real>& builder,
+                 ContactConstraints<Real>& constraints,
+                 SplitImpulse& split_impulse);
 
 }  // namespace throng

@@ -7,7 +7,7 @@
 
 #include "kernels/dynamics/rigid_motion.hpp"
 #include "kernels/solver/direct/direct.hpp"
-#include "pipeline/solvers/row_maker.hpp"
+#include "pipeline/solvers/constraint_builder.hpp"
 
 namespace throng {
 
@@ -21,33 +21,34 @@ inline DirectEffort asked_effort(const Settings& settings)
 /// What an island is solved from, and its answer given to.
 template <class Real>
 struct DirectScene {
-    const Conditions& conditions;
+    const StepContext& context;
     const DirectEffort& effort;  // a solve
     const Layout& layout;
     const ActiveContacts& active;
     const RigidFacts& facts;  // as the step began, of the bodies of any batch not yet solved
-    const Pulls& pulls;
-    const Drives& drives;
-    const RowMaker<Real>& maker;
+    const ExternalAcceleration& accelerations;
+    const PrescribedVelocities& prescribed;
+    const ConstraintBuilder<Real>& builder;
     Poses& poses;
     Velocities& velocities;
 };
 
 /// Makes room for what direct batches will tell, if there are any.
 template <class Real>
-void start_direct(const Layout& layout, Rows<Real>& rows, Trouble& trouble);
+void start_direct(const Layout& layout,
+                  ContactConstraints<Real>& constraints,
+                  StepDiagnostics& diagnostics);
 
-/// Solves a direct batch, moves its bodies, and gives the contacts their impulses; the bodies'
-/// seats among the rows stay as they were, and are marked settled. Tells the trouble of the batch:
-/// the greatest residual, and how often a substep was cut. Many batches may be solved at the same
-/// time.
+/// Solves a direct batch, moves its bodies, and gives the contacts their impulses; the solver
+/// bodies stay as they were, and are marked settled. Fills in the diagnostics of the batch: the
+/// greatest residual, and how often a substep was cut. Many batches may be solved at the same time.
 template <class Real>
 void solve_direct(const DirectScene<Real>& scene,
                   const Batch& batch,
-                  Rows<Real>& rows,
-                  Trouble& trouble);
+                  ContactConstraints<Real>& constraints,
+                  StepDiagnostics& diagnostics);
 
 /// Sums up what direct batches told.
-void finish_direct(const Conditions& conditions, const Layout& layout, Trouble& trouble);
+void finish_direct(const StepContext& context, const Layout& layout, StepDiagnostics& diagnostics);
 
 }  // namespace throng

@@ -1,11 +1,12 @@
-// Solve impulses: contacts into rows, rows into impulses, velocities and poses, batch by batch.
+// Solve impulses: contacts into constraints, constraints into impulses, velocities and poses, batch
+// by batch.
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solver/solver_bodies.hpp"
-#include "pipeline/forces/following_forces.hpp"
+#include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/solvers/escalation.hpp"
-#include "pipeline/solvers/parting.hpp"
 #include "pipeline/solvers/solve_batch.hpp"
 #include "pipeline/solvers/solve_direct.hpp"
+#include "pipeline/solvers/split_impulse.hpp"
 #include "pipeline/step/inner_rows.hpp"
 #include "pipeline/step/stages.hpp"
 
@@ -18,43 +19,43 @@ namespace {
 
 constexpr std::size_t kBodies = 512;  // a block
 
-// What calls for forces that change as bodies go: see following_forces.hpp.
-constexpr Set<Effect> kFollowing = {Effect::springs, Effect::attractors, Effect::pivot};
+// What calls for forces that change as bodies go: see state_dependent_forces.hpp.
+constexpr Set<Effect> kStateDependent = {Effect::springs, Effect::attractors, Effect::pivot};
 
-constexpr std::array<InnerRow, 12> solve_rows(std::string_view friction)
+constexpr std::array<InnerRow, 12> soft_step_rows(std::string_view friction)
 {
     return {{
-        {"make_rows", {Effect::contact}, "before the first substep"},
-        {"bounce", {Effect::restitution}, "as each substep begins"},
+        {"prepare_constraints", {Effect::contact}, "before the first substep"},
+        {"apply_restitution", {Effect::restitution}, "as each substep begins"},
         {"add_gravity", {Effect::gravity}, "each substep"},
         {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
-        {"begin_following", kFollowing, "each substep"},
+        {"begin_state_forces", kStateDependent, "each substep"},
         {"warm_start", {Effect::contact}, "in the first substep"},
-        {"push_contacts", {Effect::contact}, "each visit"},
-        {friction, {Effect::friction}, "each visit", true},
-        {"resist_rolling", {Effect::rolling_friction}, "each visit", true},
+        {"solve_biased", {Effect::contact}, "each iteration"},
+        {friction, {Effect::friction}, "each iteration", true},
+        {"solve_rolling_friction", {Effect::rolling_friction}, "each iteration", true},
         {"move_bodies", {Effect::motion}, "each substep"},
         {"turn_bodies", {Effect::rotation}, "each substep"},
-        {"relax_contacts", {Effect::contact}, "each substep"},
+        {"relax", {Effect::contact}, "each substep"},
     }};
 }
 
 // By where friction acts, then by its cone.
 constexpr std::array<InnerRow, 12> kSolveTables[2][2] = {
-    {solve_rows("hold_friction"), solve_rows("hold_in_pyramid")},
-    {solve_rows("hold_at_points"), solve_rows("hold_at_points_in_pyramid")}};
+    {soft_step_rows("solve_friction"), soft_step_rows("solve_friction_pyramid")},
+    {soft_step_rows("solve_point_friction"), soft_step_rows("solve_point_friction_pyramid")}};
 
 constexpr InnerRow kDirectTable[] = {
     {"take_islands", {Effect::contact}, "before the first substep"},
     {"place_points", {Effect::contact}, "each substep"},
     {"add_gravity", {Effect::gravity}, "each substep"},
     {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
-    {"begin_following", kFollowing, "each substep"},
+    {"begin_state_forces", kStateDependent, "each substep"},
     {"solve_exactly", {Effect::contact}, "each substep"},
-    {"hold_friction", {Effect::friction}, "each substep", true},
-    {"resist_rolling", {Effect::rolling_friction}, "each substep", true},
+    {"solve_friction", {Effect::friction}, "each substep", true},
+    {"solve_rolling_friction", {Effect::rolling_friction}, "each substep", true},
     {"part_overlaps", {Effect::contact}, "each substep"},
-    {"bounce", {Effect::restitution}, "each substep"},
+    {"apply_restitution", {Effect::restitution}, "each substep"},
     {"move_bodies", {Effect::motion}, "each substep"},
     {"turn_bodies", {Effect::rotation}, "each substep"},
 };
@@ -65,10 +66,10 @@ constexpr InnerRow kPenaltyTable[] = {
     {"place_points", {Effect::contact}, "each part of a substep"},
     {"add_gravity", {Effect::gravity}, "each part of a substep"},
     {"turn_gyroscopic", {Effect::gyroscopic}, "each part of a substep"},
-    {"begin_following", kFollowing, "each part of a substep"},
-    {"push_by_forces", {Effect::contact}, "each part of a substep"},
+    {"begin_state_forces", kStateDependent, "each part of a substep"},
+    {"apply_penalty_forces", {Effect::contact}, "each part of a substep"},
     {"damp_sliding", {Effect::friction}, "each part of a substep", true},
-    {"resist_rolling", {Effect::rolling_friction}, "each part of a substep", true},
+    {"solve_rolling_friction", {Effect::rolling_friction}, "each part of a substep", true},
     {"move_bodies", {Effect::motion}, "each part of a substep"},
     {"turn_bodies", {Effect::rotation}, "each part of a substep"},
 };
@@ -77,32 +78,35 @@ constexpr InnerRow kKinematicTable[] = {
     {"take_islands", {Effect::contact}, "before the first substep"},
     {"add_gravity", {Effect::gravity}, "each substep"},
     {"turn_gyroscopic", {Effect::gyroscopic}, "each substep"},
-    {"begin_following", kFollowing, "each substep"},
-    {"stop_approach", {Effect::contact}, "each sweep of a substep"},
-    {"slow_sliding", {Effect::friction}, "each sweep of a substep", true},
+    {"begin_state_forces", kStateDependent, "each substep"},
+    {"stop_approach", {Effect::contact}, "each iteration of a substep"},
+    {"slow_sliding", {Effect::friction}, "each iteration of a substep", true},
     {"move_bodies", {Effect::motion}, "each substep"},
     {"turn_bodies", {Effect::rotation}, "each substep"},
-    {"push_apart", {Effect::contact}, "each sweep of a substep"},
+    {"push_out", {Effect::contact}, "each iteration of a substep"},
 };
 
 // Gives one body its new state. False, and the body as it was, when that is not sound.
 template <class Real>
-bool take_back(const SolverBody<Real>& seat,
-               const SpinInertia<Real>* inertia,
+bool take_back(const SolverBody<Real>& solver_body,
+               const GyroscopicInertia<Real>* inertia,
                std::uint32_t body,
                Poses& poses,
                Velocities& velocities)
 {
-    const Vec3 moved(double{seat.drift[0]}, double{seat.drift[1]}, double{seat.drift[2]});
-    const Vec3 v(double{seat.motion[0]}, double{seat.motion[1]}, double{seat.motion[2]});
-    const Vec3 spin(double{seat.motion[4]}, double{seat.motion[5]}, double{seat.motion[6]});
+    const Vec3 moved(double{solver_body.delta_pose[0]}, double{solver_body.delta_pose[1]},
+                     double{solver_body.delta_pose[2]});
+    const Vec3 v(double{solver_body.motion[0]}, double{solver_body.motion[1]},
+                 double{solver_body.motion[2]});
+    const Vec3 spin(double{solver_body.motion[4]}, double{solver_body.motion[5]},
+                    double{solver_body.motion[6]});
     const bool goes_along = inertia != nullptr && inertia->share[6] > 0;
-    const Vec3 w = goes_along ? spin_frame(seat, inertia) * spin : spin;
+    const Vec3 w = goes_along ? spin_frame(solver_body, inertia) * spin : spin;
     const Vec3 position = poses.position[body] + moved;
-    Quat orientation = turn_of(seat) * poses.orientation[body];
+    Quat orientation = turn_of(solver_body) * poses.orientation[body];
     const double length = std::sqrt(orientation.squaredNorm());
     orientation.coeffs() /= length;
-    if (ran_away(seat) || !holdable(position, orientation, v, w)) return false;
+    if (ran_away(solver_body) || !holdable(position, orientation, v, w)) return false;
     poses.position[body] = position;
     poses.orientation[body] = orientation;
     velocities.linear[body] = v;
@@ -129,73 +133,77 @@ std::span<const InnerRow> solve_table(const Settings& settings)
 
 // Whether stiff springs pull at bodies of an island. Exact solves take turns with them, which over
 // long substeps does not come together.
-bool is_stiff(const Conditions& conditions,
+bool is_stiff(const StepContext& context,
               const RigidFacts& facts,
               const Layout& layout,
               const Batch& batch)
 {
     if (facts.forces.springs.empty()) return false;
     const Slice& slice = layout.slices[batch.first_slice];
-    return FollowingForces(conditions, facts,
-                           std::span(layout.body_of_slot).subspan(slice.first_body, slice.dynamic))
+    return StateDependentForces(
+               context, facts,
+               std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic))
         .stiff();
 }
 
 template <class Real>
-void solve_impulses(const Conditions& conditions,
+void solve_impulses(const StepContext& context,
                     const Islands& islands,
                     const Layout& layout,
                     const ActiveContacts& active,
                     const Colliders& colliders,
                     const Masses& masses,
                     const Forces& forces,
-                    const Pulls& pulls,
-                    const Drives& drives,
-                    Rows<Real>& rows,
+                    const ExternalAcceleration& accelerations,
+                    const PrescribedVelocities& prescribed,
+                    ContactConstraints<Real>& constraints,
                     ConvexContacts<Real>& convex,
                     MeshContacts<Real>& meshes,
                     SolidContacts<Real>& solids,
                     Poses& poses,
                     Velocities& velocities,
-                    Parting& parting,
-                    Stubborn& stubborn,
-                    Trouble& trouble)
+                    SplitImpulse& split_impulse,
+                    OverloadedIslands& overloaded,
+                    StepDiagnostics& diagnostics)
 {
-    trouble.quarantined.clear();
-    const RowMaker<Real> maker(conditions, layout, active, convex, meshes, solids, rows);
+    diagnostics.quarantined.clear();
+    const ConstraintBuilder<Real> builder(context, layout, active, convex, meshes, solids,
+                                          constraints);
     const RigidFacts facts{forces, masses, poses, velocities};
-    const bool escalates = conditions.settings.solver != Solver::direct
-        && conditions.settings.response == Response::impulse;
-    const DirectEffort effort = escalates ? kExactEffort : asked_effort(conditions.settings);
-    const DirectScene<Real> direct{conditions, effort, layout, active, facts,
-                                   pulls,      drives, maker,  poses,  velocities};
-    start_direct(layout, rows, trouble);
-    start_parting(layout, parting);
+    const bool escalates =
+        context.settings.solver != Solver::direct && context.settings.response == Response::impulse;
+    const DirectEffort effort = escalates ? kExactEffort : asked_effort(context.settings);
+    const DirectScene<Real> direct{context,       effort,     layout,  active, facts,
+                                   accelerations, prescribed, builder, poses,  velocities};
+    start_direct(layout, constraints, diagnostics);
+    start_split_impulse(layout, split_impulse);
     if (!solids.entries.empty() || any_compound(colliders))
-        part_wedged(active, colliders, maker, parting);
+        split_wedged(active, colliders, builder, split_impulse);
     const auto solve_finer = [&](const Batch& batch) {
-        Conditions finer = conditions;
+        StepContext finer = context;
         finer.settings.substeps *= batch.times;
         // Its overlap is that of the usual ones, which these would push apart as much faster.
         finer.settings.push_limit /= batch.times;
-        finer.settings.relax_iterations = finer_relax_visits(finer.settings, batch);
-        const RowMaker<Real> with(finer, layout, active, convex, meshes, solids, rows);
+        finer.settings.relax_iterations = finer_relax_iterations(finer.settings, batch);
+        const ConstraintBuilder<Real> with(finer, layout, active, convex, meshes, solids,
+                                           constraints);
         const Slice& slice = layout.slices[batch.first_slice];
         // Impulses are kept as of the substep that the settings say.
         with.scale_impulses(slice, Real(1) / Real(batch.times));
-        solve_batch(finer, facts, layout, batch, with, rows, parting);
+        solve_batch(finer, facts, layout, batch, with, constraints, split_impulse);
         with.scale_impulses(slice, Real(batch.times));
     };
     // No island is escalated while bodies of it part: what makes contacts stiffer would throw
     // those apart that are deep in one another.
     const auto solve = [&](const Batch& batch) {
-        const bool usual = escalates && parting.some && anybody_parts(layout, batch, parting);
-        if (batch.direct && !usual && !(escalates && is_stiff(conditions, facts, layout, batch)))
-            solve_direct(direct, batch, rows, trouble);
+        const bool usual =
+            escalates && split_impulse.some && uses_split_impulse(layout, batch, split_impulse);
+        if (batch.direct && !usual && !(escalates && is_stiff(context, facts, layout, batch)))
+            solve_direct(direct, batch, constraints, diagnostics);
         else if (batch.times > 1 && !usual)
             solve_finer(batch);
         else
-            solve_batch(conditions, facts, layout, batch, maker, rows, parting);
+            solve_batch(context, facts, layout, batch, builder, constraints, split_impulse);
     };
     // Big islands use all threads themselves, so they go one after another.
     for (const Batch& batch : layout.batches)
@@ -205,36 +213,38 @@ void solve_impulses(const Conditions& conditions,
             if (!layout.batches[i].wide) solve(layout.batches[i]);
     });
 
-    finish_direct(conditions, layout, trouble);
-    note_strain(conditions, islands, layout, active, masses, velocities, maker, stubborn);
-    follow_parting(parting);
+    finish_direct(context, layout, diagnostics);
+    note_strain(context, islands, layout, active, masses, velocities, builder, overloaded);
+    update_split_impulse(split_impulse);
 
     // In order of bodies, of which many arrays are written.
-    const std::size_t bodies = layout.slot.size();
-    trouble.of_block.start(block_count(bodies, kBodies));
+    const std::size_t bodies = layout.solver_index.size();
+    diagnostics.of_block.start(block_count(bodies, kBodies));
     for_each_block(bodies, kBodies, [&](std::size_t begin, std::size_t end, std::size_t block) {
         for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body) {
-            const std::uint32_t slot = layout.slot[body];
-            if (slot == Layout::kNoSlot) continue;
-            using Settled = typename Rows<Real>::Settled;
-            const Settled settled = rows.settled.empty() ? Settled::no : rows.settled[slot];
+            const std::uint32_t solver_index = layout.solver_index[body];
+            if (solver_index == Layout::kNoSolverIndex) continue;
+            using Settled = typename ContactConstraints<Real>::Settled;
+            const Settled settled =
+                constraints.settled.empty() ? Settled::no : constraints.settled[solver_index];
             if (settled == Settled::yes) continue;
-            const SpinInertia<Real>* const inertia =
-                rows.inertias.empty() ? nullptr : &rows.inertias[slot];
+            const GyroscopicInertia<Real>* const inertia =
+                constraints.inertias.empty() ? nullptr : &constraints.inertias[solver_index];
             if (settled == Settled::lost
-                || !take_back(rows.bodies[slot], inertia, body, poses, velocities))
-                trouble.of_block[block].push_back(body);
+                || !take_back(constraints.bodies[solver_index], inertia, body, poses, velocities))
+                diagnostics.of_block[block].push_back(body);
         }
     });
-    trouble.of_block.append_to(trouble.quarantined);
+    diagnostics.of_block.append_to(diagnostics.quarantined);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void solve_impulses<Real>(                                                            \
-        const Conditions&, const Islands&, const Layout&, const ActiveContacts&, const Colliders&, \
-        const Masses&, const Forces&, const Pulls&, const Drives&, Rows<Real>&,                    \
-        ConvexContacts<Real>&, MeshContacts<Real>&, SolidContacts<Real>&, Poses&, Velocities&,     \
-        Parting&, Stubborn&, Trouble&);
+        const StepContext&, const Islands&, const Layout&, const ActiveContacts&,                  \
+        const Colliders&, const Masses&, const Forces&, const ExternalAcceleration&,               \
+        const PrescribedVelocities&, ContactConstraints<Real>&, ConvexContacts<Real>&,             \
+        MeshContacts<Real>&, SolidContacts<Real>&, Poses&, Velocities&, SplitImpulse&,             \
+        OverloadedIslands&, StepDiagnostics&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -37,12 +37,12 @@ bool helps(const Settings& settings)
         && settings.solver != Solver::direct;
 }
 
-// How easily a body gives way, 1/kg. Who cannot be moved, only turned, gives way by levers about as
-// much as his mass would.
-double ease_of(const Masses& masses, std::uint32_t body)
+// How easily a body gives way, 1/kg. Who cannot be moved, only turned, gives way by lever arms
+// about as much as his mass would.
+double inverse_mass_of(const Masses& masses, std::uint32_t body)
 {
-    const double ease = masses.inverse_mass[body], mass = masses.mass[body];
-    return ease == 0 && mass > 0 ? 1 / mass : ease;
+    const double inverse_mass = masses.inverse_mass[body], mass = masses.mass[body];
+    return inverse_mass == 0 && mass > 0 ? 1 / mass : inverse_mass;
 }
 
 // N s, of all points; and times the ease with which the lesser mass gives way: m/s.
@@ -52,28 +52,29 @@ speed_borne(const ActiveContacts::Entry& entry, const Contact<Real>& contact, co
 {
     double impulse = 0;
     for (std::size_t k = 0; k < entry.points; ++k) impulse += double{contact.points[k].impulse};
-    return impulse * (ease_of(masses, entry.body_a) + ease_of(masses, entry.body_b));
+    return impulse
+        * (inverse_mass_of(masses, entry.body_a) + inverse_mass_of(masses, entry.body_b));
 }
 
 template <class Real>
 class Gauge {
 public:
-    Gauge(const Conditions& conditions,
+    Gauge(const StepContext& context,
           const Islands& islands,
           const Layout& layout,
           const ActiveContacts& active,
           const Masses& masses,
           const Velocities& velocities,
-          const RowMaker<Real>& maker,
-          Stubborn& stubborn)
+          const ConstraintBuilder<Real>& builder,
+          OverloadedIslands& overloaded)
         : islands_(islands), layout_(layout), active_(active), masses_(masses),
-          velocities_(velocities), maker_(maker), stubborn_(stubborn),
-          resting_(kResting * conditions.gravity.norm()), step_(conditions.settings.dt)
+          velocities_(velocities), builder_(builder), overloaded_(overloaded),
+          resting_(kResting * context.gravity.norm()), step_(context.settings.dt)
     {
         for (int points = 1; points <= 4; ++points) {
-            const double omega = contact_frequency(conditions, points);
+            const double omega = contact_frequency(context, points);
             per_speed_[points - 1] =
-                1 / (omega * omega * conditions.substep() * rigid_overlap(1, points));
+                1 / (omega * omega * context.substep() * rigid_overlap(1, points));
         }
     }
 
@@ -130,8 +131,8 @@ private:
     {
         const ActiveContacts::Entry& entry = active_.entries[place];
         if (!(entry.extent > 0)) return 0;
-        return speed_borne(entry, maker_.contact_of(entry), masses_) * per_speed_[entry.points - 1u]
-            / double{entry.extent};
+        return speed_borne(entry, builder_.contact_of(entry), masses_)
+            * per_speed_[entry.points - 1u] / double{entry.extent};
     }
 
     // Whether any contact does; give_of() without its division.
@@ -139,7 +140,7 @@ private:
     {
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            const double held = speed_borne(entry, maker_.contact_of(entry), masses_)
+            const double held = speed_borne(entry, builder_.contact_of(entry), masses_)
                 * per_speed_[entry.points - 1u];
             return held > kAllBut * least * double{entry.extent};
         });
@@ -161,7 +162,7 @@ private:
     {
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            const double overlap{maker_.contact_of(entry).overlap(entry.points)};
+            const double overlap{builder_.contact_of(entry).overlap(entry.points)};
             const double held = give_of(place) * rigid_overlap(double{entry.extent}, entry.points);
             return overlap > kDeep * held;
         });
@@ -189,8 +190,9 @@ private:
 
     std::uint32_t lighter(const ActiveContacts::Entry& entry) const
     {
-        const auto& ease = masses_.inverse_mass;
-        return ease[entry.body_a] > ease[entry.body_b] ? entry.body_a : entry.body_b;
+        const auto& inverse_mass = masses_.inverse_mass;
+        return inverse_mass[entry.body_a] > inverse_mass[entry.body_b] ? entry.body_a
+                                                                       : entry.body_b;
     }
     // Of who can be moved.
     bool is_heavy_for(std::uint32_t body, std::uint32_t light) const
@@ -201,7 +203,7 @@ private:
     // m/s, of the middles of two bodies.
     double approach(const ActiveContacts::Entry& entry) const
     {
-        const Vec3T<Real>& normal = maker_.contact_of(entry).normal;
+        const Vec3T<Real>& normal = builder_.contact_of(entry).normal;
         return (velocities_.linear[entry.body_a] - velocities_.linear[entry.body_b])
             .dot(normal.template cast<double>());
     }
@@ -212,7 +214,7 @@ private:
         if (contacts.size() > kExactContacts) return false;
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            const double overlap{maker_.contact_of(entry).overlap(entry.points)};
+            const double overlap{builder_.contact_of(entry).overlap(entry.points)};
             return overlap > share * double{entry.extent};
         });
     }
@@ -222,16 +224,16 @@ private:
     {
         constexpr int kUnreached = 0xffff;
         const auto height = [&](std::uint32_t body) -> int {
-            const std::uint32_t slot = layout_.slot[body];
-            return slot == Layout::kNoSlot ? 0 : stubborn_.height[slot];
+            const std::uint32_t solver_index = layout_.solver_index[body];
+            return solver_index == Layout::kNoSolverIndex ? 0 : overloaded_.height[solver_index];
         };
         const auto lower = [&](std::uint32_t body, int below) {
             if (height(body) <= below + 1) return false;
-            stubborn_.height[layout_.slot[body]] = static_cast<std::uint16_t>(below + 1);
+            overloaded_.height[layout_.solver_index[body]] = static_cast<std::uint16_t>(below + 1);
             return true;
         };
         for (const std::uint32_t body : bodies_of(island))
-            stubborn_.height[layout_.slot[body]] = kUnreached;
+            overloaded_.height[layout_.solver_index[body]] = kUnreached;
         for (bool lowered = true; lowered;) {
             lowered = false;
             for (const std::uint32_t contact : contacts_of(island)) {
@@ -248,10 +250,10 @@ private:
 
     double strain_before(std::size_t island) const
     {
-        if (stubborn_.strained.empty()) return 0;
+        if (overloaded_.strained.empty()) return 0;
         double most = 0;
         for (const std::uint32_t body : bodies_of(island))
-            most = std::max(most, std::abs(double{stubborn_.of(body)}));
+            most = std::max(most, std::abs(double{overloaded_.of(body)}));
         return most;
     }
 
@@ -260,8 +262,8 @@ private:
     const ActiveContacts& active_;
     const Masses& masses_;
     const Velocities& velocities_;
-    const RowMaker<Real>& maker_;
-    Stubborn& stubborn_;
+    const ConstraintBuilder<Real>& builder_;
+    OverloadedIslands& overloaded_;
     double resting_;       // m/s
     double step_;          // s
     double per_speed_[4];  // s, by points, less one: overlap over the rigid share of the extent
@@ -270,40 +272,41 @@ private:
 }  // namespace
 
 template <class Real>
-void note_strain(const Conditions& conditions,
+void note_strain(const StepContext& context,
                  const Islands& islands,
                  const Layout& layout,
                  const ActiveContacts& active,
                  const Masses& masses,
                  const Velocities& velocities,
-                 const RowMaker<Real>& maker,
-                 Stubborn& stubborn)
+                 const ConstraintBuilder<Real>& builder,
+                 OverloadedIslands& overloaded)
 {
-    const std::size_t count = helps(conditions.settings) ? islands.size() : 0;
-    stubborn.of_island.resize(count);
-    stubborn.height.resize(layout.body_of_slot.size());
-    const Gauge<Real> gauge(conditions, islands, layout, active, masses, velocities, maker,
-                            stubborn);
+    const std::size_t count = helps(context.settings) ? islands.size() : 0;
+    overloaded.of_island.resize(count);
+    overloaded.height.resize(layout.body_of_solver_index.size());
+    const Gauge<Real> gauge(context, islands, layout, active, masses, velocities, builder,
+                            overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) stubborn.of_island[i] = float(gauge.strain_of(i));
+        for (std::size_t i = begin; i < end; ++i)
+            overloaded.of_island[i] = float(gauge.strain_of(i));
     });
 
-    for (const std::uint32_t body : stubborn.strained) stubborn.forget(body);
-    stubborn.strained.clear();
+    for (const std::uint32_t body : overloaded.strained) overloaded.forget(body);
+    overloaded.strained.clear();
     for (std::size_t i = 0; i < count; ++i) {
-        if (stubborn.of_island[i] == 0) continue;
-        stubborn.strain.resize(layout.slot.size(), 0);
+        if (overloaded.of_island[i] == 0) continue;
+        overloaded.strain.resize(layout.solver_index.size(), 0);
         for (std::uint32_t k = islands.body_begin[i]; k < islands.body_begin[i + 1]; ++k) {
-            stubborn.strain[islands.bodies[k]] = stubborn.of_island[i];
-            stubborn.strained.push_back(islands.bodies[k]);
+            overloaded.strain[islands.bodies[k]] = overloaded.of_island[i];
+            overloaded.strained.push_back(islands.bodies[k]);
         }
     }
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void note_strain<Real>(const Conditions&, const Islands&, const Layout&,              \
+    template void note_strain<Real>(const StepContext&, const Islands&, const Layout&,             \
                                     const ActiveContacts&, const Masses&, const Velocities&,       \
-                                    const RowMaker<Real>&, Stubborn&);
+                                    const ConstraintBuilder<Real>&, OverloadedIslands&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

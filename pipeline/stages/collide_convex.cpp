@@ -6,7 +6,7 @@
 // and have hardly moved against one another since are not collided anew: most of a heap at rest.
 #include "kernels/dynamics/travels.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "kernels/solver/contact_rows.hpp"
+#include "kernels/solver/contact_packing.hpp"
 #include "narrowphase/convex/wide/box_pairs.hpp"
 #include "narrowphase/dispatch.hpp"
 #include "pipeline/contacts/chosen_method.hpp"
@@ -34,7 +34,7 @@ struct BoxBatch {
 template <class Real>
 class Collision {
 public:
-    Collision(const Conditions& conditions,
+    Collision(const StepContext& context,
               const Pairs& pairs,
               const Shapes& shapes,
               const Colliders& colliders,
@@ -45,10 +45,10 @@ public:
               ConvexContacts<Real>& contacts)
         : pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds), poses_(poses),
           states_(states), chosen_(chosen), contacts_(contacts),
-          scale_(static_cast<Real>(impulse_scale(conditions)))
+          scale_(static_cast<Real>(impulse_scale(context)))
     { }
 
-    void look_at(std::size_t begin, std::size_t end, std::size_t block)
+    void process(std::size_t begin, std::size_t end, std::size_t block)
     {
         static thread_local BoxBatch boxes;  // keeps its room from block to block
         boxes.places.clear();
@@ -88,7 +88,7 @@ private:
         const std::uint32_t b = second_of(key);
         __builtin_prefetch(&bounds_.placed[b]);
         __builtin_prefetch(&bounds_.placed[b].orientation.w());
-        __builtin_prefetch(&bounds_.reach[b]);
+        __builtin_prefetch(&bounds_.speculative_margin[b]);
         __builtin_prefetch(&colliders_.shape[b]);
         __builtin_prefetch(&colliders_.body[b]);
     }
@@ -96,9 +96,9 @@ private:
     void keep_touching(std::size_t i, PairPlace& pair, std::size_t block) const
     {
         if (contacts_.of_pair[i].contact == PairState::kApart) return;
-        const double kept = kept_reach(pair, bounds_);
-        if (!(kept > pair.reach)) return;
-        pair.reach = kept;
+        const double kept = kept_speculative_margin(pair, bounds_);
+        if (!(kept > pair.speculative_margin)) return;
+        pair.speculative_margin = kept;
         contacts_.followed_of_block[block].push_back(static_cast<std::uint32_t>(i));
     }
 
@@ -141,16 +141,16 @@ private:
         const double radius_a = shapes_.spheres[colliders_.shape[pair.a].index].radius;
         const double radius_b = shapes_.spheres[colliders_.shape[pair.b].index].radius;
         const double radii = radius_a + radius_b, distance = between.norm();
-        if (distance - radii > pair.reach) return part(i, block);
+        if (distance - radii > pair.speculative_margin) return part(i, block);
         // One inside the other, centers and all: out by the top, as good a way as any.
         const Vec3 normal = distance > 0 ? Vec3(between / distance) : Vec3(Vec3::UnitZ());
         const Vec3& origin_a = anchor_origin(pair.body_a, pair.body_b, states_, poses_);
         const Vec3& origin_b = anchor_origin(pair.body_b, pair.body_a, states_, poses_);
         Contact<Real> contact;
         contact.normal = normal.cast<Real>();
-        contact.between = (origin_a - origin_b).template cast<Real>();
+        contact.center_offset = (origin_a - origin_b).template cast<Real>();
         contact.count = 1;
-        contact.points[0].from_a =
+        contact.points[0].anchor_a =
             (normal * radius_a + (center_a - origin_a)).template cast<Real>();
         contact.points[0].separation = static_cast<Real>(distance - radii);
         contact.round_a = static_cast<Real>(radius_a);
@@ -171,7 +171,7 @@ private:
         boxes.places.push_back(static_cast<std::uint32_t>(i));
         boxes.pairs.push_back(
             box_pair({back * offset, QuatT<float>(back * b.orientation.cast<float>())},
-                     half(pair.a), half(pair.b), static_cast<float>(pair.reach)));
+                     half(pair.a), half(pair.b), static_cast<float>(pair.speculative_margin)));
     }
 
     void collide_batch(BoxBatch& boxes, std::size_t block)
@@ -208,7 +208,7 @@ private:
         LocalManifold<Real> manifold;
         PairCache cache = contacts_.of_pair[i].cache;
         collide(shapes_, colliders_.shape[first], colliders_.shape[second], rounded<Real>(seen),
-                static_cast<Real>(pair.reach), cache, manifold);
+                static_cast<Real>(pair.speculative_margin), cache, manifold);
         contacts_.of_pair[i].cache = cache;
         chosen_.note_fallback(cache, block);
         take(i, pair, turned, manifold, block);
@@ -219,7 +219,7 @@ private:
         PairState& state = contacts_.of_pair[i];
         const bool touched = state.contact != PairState::kApart;
         PairCache cache = state.cache;
-        FoundManifold<Real> found;
+        CachedManifold<Real> found;
         const bool anew =
             find_or_recycle(shapes_, colliders_, bounds_, pair,
                             touched ? &contacts_.found[state.contact] : nullptr, cache, found);
@@ -228,8 +228,8 @@ private:
         if (!anew) return;
         chosen_.note_fallback(cache, block);
         if (found.manifold.count == 0)
-            note_apart(pairs_.keys[i], double{cache.apart} - pair.reach, contacts_.travels,
-                       contacts_.apart_until[i]);
+            note_apart(pairs_.keys[i], double{cache.apart} - pair.speculative_margin,
+                       contacts_.travels, contacts_.apart_until[i]);
         else if (touched)
             contacts_.found[state.contact] = found;
         else
@@ -283,7 +283,7 @@ private:
 template <class Real>
 void forget_found(ConvexContacts<Real>& contacts)
 {
-    FoundManifold<Real> nothing;
+    CachedManifold<Real> nothing;
     nothing.b_in_a.position.setConstant(std::numeric_limits<Real>::quiet_NaN());
     contacts.found.assign(contacts.contacts.size(), nothing);
     contacts.apart_until.assign(contacts.apart_until.size(), 0.0F);
@@ -292,7 +292,7 @@ void forget_found(ConvexContacts<Real>& contacts)
 }  // namespace
 
 template <class Real>
-void collide_convex(const Conditions& conditions,
+void collide_convex(const StepContext& context,
                     const Pairs& pairs,
                     const Shapes& shapes,
                     const Colliders& colliders,
@@ -307,19 +307,20 @@ void collide_convex(const Conditions& conditions,
     contacts.begun.resize(blocks);
     contacts.parted.start(blocks);
     contacts.followed_of_block.start(bounds.fast.empty() ? 0 : blocks);
-    ChosenMethod chosen(conditions, pairs, shapes, colliders, bounds, blocks, method_pairs);
+    ChosenMethod chosen(context, pairs, shapes, colliders, bounds, blocks, method_pairs);
     const bool recycles = !shapes.hulls.empty() && !chosen.has_method();
     if (recycles && !contacts.recycles) forget_found(contacts);
     contacts.recycles = recycles;
     if (contacts.recycles) {
         resize_closely(contacts.apart_until, pairs.keys.size());
-        follow_colliders(bounds.placed, colliders.outer_radius, bounds.reach, contacts.travels);
+        follow_colliders(bounds.placed, colliders.outer_radius, bounds.speculative_margin,
+                         contacts.travels);
     }
     for_each_block(pairs.keys.size(), kGrain,
                    [&](std::size_t begin, std::size_t end, std::size_t block) {
-                       Collision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states,
+                       Collision<Real>(context, pairs, shapes, colliders, bounds, poses, states,
                                        chosen, contacts)
-                           .look_at(begin, end, block);
+                           .process(begin, end, block);
                    });
     contacts.followed.clear();
     contacts.followed_of_block.append_to(contacts.followed);
@@ -329,7 +330,7 @@ void collide_convex(const Conditions& conditions,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void collide_convex<Real>(const Conditions&, const Pairs&, const Shapes&,             \
+    template void collide_convex<Real>(const StepContext&, const Pairs&, const Shapes&,            \
                                        const Colliders&, const Bounds&, const Poses&,              \
                                        const BodyStates&, ConvexContacts<Real>&, MethodPairs&);
 THRONG_INSTANTIATE(float)

@@ -25,7 +25,7 @@ public:
     using Found = typename Contacts::Found;
     using Entry = typename Contacts::Entry;
 
-    SolidCollision(const Conditions& conditions,
+    SolidCollision(const StepContext& context,
                    const Pairs& pairs,
                    const Shapes& shapes,
                    const Colliders& colliders,
@@ -33,9 +33,9 @@ public:
                    const Poses& poses,
                    const BodyStates& states,
                    Contacts& contacts)
-        : conditions_(conditions), pairs_(pairs), shapes_(shapes), colliders_(colliders),
-          bounds_(bounds), poses_(poses), states_(states), contacts_(contacts),
-          scale_(static_cast<Real>(impulse_scale(conditions)))
+        : context_(context), pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds),
+          poses_(poses), states_(states), contacts_(contacts),
+          scale_(static_cast<Real>(impulse_scale(context)))
     { }
 
     void run()
@@ -44,8 +44,8 @@ public:
         const std::size_t blocks = block_count(pairs_.on_solid.size(), kGrain);
         contacts_.found_of_block.start(blocks);
         contacts_.patches_of_block.start(blocks);
-        const auto find = [&](auto&&... all) { look_at(all...); };
-        refresh_contacts<Real>(conditions_, pairs_, pairs_.on_solid, colliders_, bounds_, states_,
+        const auto find = [&](auto&&... all) { process(all...); };
+        refresh_contacts<Real>(context_, pairs_, pairs_.on_solid, colliders_, bounds_, states_,
                                kGrain, contacts_, find);
         join_finds();
     }
@@ -63,7 +63,7 @@ private:
         return {pair.b, pair.a, true};
     }
 
-    void look_at(std::uint32_t i,
+    void process(std::uint32_t i,
                  const PairPlace& pair,
                  std::span<const Entry> old,
                  std::size_t block,
@@ -76,8 +76,9 @@ private:
         const std::span kept = items_of(contacts_.found_before.pairs, old_place(pairs_, i));
         const std::size_t first = out.size();
         Found found;
-        if (kept.empty() || !recycle_all(kept.front(), sides, pose, pair.reach, block, found, out))
-            find_anew(sides, pose, pair.reach, block, found, out);
+        if (kept.empty()
+            || !recycle_all(kept.front(), sides, pose, pair.speculative_margin, block, found, out))
+            find_anew(sides, pose, pair.speculative_margin, block, found, out);
         found.pair = i;
         contacts_.found_of_block[block].push_back(found);
         for (std::size_t n = first; n < out.size(); ++n)
@@ -86,7 +87,7 @@ private:
 
     void find_anew(const Sides& sides,
                    const Pose& pose,
-                   double reach,
+                   double speculative_margin,
                    std::size_t block,
                    Found& found,
                    ContactEntries<Real>& out)
@@ -95,12 +96,12 @@ private:
         const std::size_t first = patches.size();
         const SolidAnswer answer =
             collide_solid(shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
-                          pose, reach, patches);
+                          pose, speculative_margin, patches);
         for (std::size_t k = first; k < patches.size(); ++k)
             add(sides, patches[k].patch, patches[k].manifold, out);
         found.count = static_cast<std::uint32_t>(patches.size() - first);
         found.b_in_a = pose;
-        found.reach = reach;
+        found.speculative_margin = speculative_margin;
         found.apart = answer.apart;
         found.left_out = answer.left_out;
     }
@@ -109,24 +110,26 @@ private:
     bool recycle_all(const Found& kept,
                      const Sides& sides,
                      const Pose& pose,
-                     double reach,
+                     double speculative_margin,
                      std::size_t block,
                      Found& found,
                      ContactEntries<Real>& out)
     {
-        const double near = colliders_.outer_radius[sides.solid] + std::max(reach, kept.reach);
+        const double near = colliders_.outer_radius[sides.solid]
+            + std::max(speculative_margin, kept.speculative_margin);
         const double moved =
             furthest_moved_near(kept.b_in_a, pose, near, colliders_.outer_radius[sides.other]);
         double most = kRecycled * least_extent(sides);
-        if (kept.count == 0) most = std::max(most, kept.apart - kept.reach);
-        // What was out of reach then may be within a greater reach now.
-        if (!(moved + std::max(0.0, reach - kept.reach) <= most)) return false;
-        FoundManifold<double> then{{}, kept.b_in_a, kept.reach};
+        if (kept.count == 0) most = std::max(most, kept.apart - kept.speculative_margin);
+        // What was beyond the margin then may be within a greater margin now.
+        if (!(moved + std::max(0.0, speculative_margin - kept.speculative_margin) <= most))
+            return false;
+        CachedManifold<double> then{{}, kept.b_in_a, kept.speculative_margin};
         LocalManifold<double> now;
         const auto begin = contacts_.found_before.patches.begin() + kept.first;
         for (auto patch = begin; patch != begin + kept.count; ++patch) {
             then.manifold = patch->manifold;
-            move_manifold(then, pose, reach, now);
+            move_manifold(then, pose, speculative_margin, now);
             contacts_.patches_of_block[block].push_back(*patch);
             if (now.count > 0) add(sides, patch->patch, now, out);
         }
@@ -206,7 +209,7 @@ private:
         }
     }
 
-    const Conditions& conditions_;
+    const StepContext& context_;
     const Pairs& pairs_;
     const Shapes& shapes_;
     const Colliders& colliders_;
@@ -220,7 +223,7 @@ private:
 }  // namespace
 
 template <class Real>
-void collide_solids(const Conditions& conditions,
+void collide_solids(const StepContext& context,
                     const Pairs& pairs,
                     const Shapes& shapes,
                     const Colliders& colliders,
@@ -229,12 +232,11 @@ void collide_solids(const Conditions& conditions,
                     const BodyStates& states,
                     SolidContacts<Real>& contacts)
 {
-    SolidCollision<Real>(conditions, pairs, shapes, colliders, bounds, poses, states, contacts)
-        .run();
+    SolidCollision<Real>(context, pairs, shapes, colliders, bounds, poses, states, contacts).run();
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void collide_solids<Real>(const Conditions&, const Pairs&, const Shapes&,             \
+    template void collide_solids<Real>(const StepContext&, const Pairs&, const Shapes&,            \
                                        const Colliders&, const Bounds&, const Poses&,              \
                                        const BodyStates&, SolidContacts<Real>&);
 THRONG_INSTANTIATE(float)

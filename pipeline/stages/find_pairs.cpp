@@ -12,10 +12,13 @@ namespace {
 constexpr std::size_t kMergeGrain = 1 << 14;  // pairs a block: some 30 microseconds of work
 
 // A half-space has no useful box: its pairs are cut by the plane itself, as far as it may move.
-bool box_reaches_plane(const Box3& box, const Plane& plane, const Pose& placed, double reach)
+bool box_reaches_plane(const Box3& box,
+                       const Plane& plane,
+                       const Pose& placed,
+                       double speculative_margin)
 {
     const Vec3 normal = placed.orientation * plane.normal;
-    const double offset = plane.offset + normal.dot(placed.position) + reach;
+    const double offset = plane.offset + normal.dot(placed.position) + speculative_margin;
     const Vec3 lowest = (normal.array() > 0).select(box.lower, box.upper);
     return normal.dot(lowest) <= offset;
 }
@@ -27,7 +30,7 @@ bool may_touch(PairKey key, const Bounds& bounds, const Shapes& shapes, const Co
         const ShapeRef shape = colliders.shape[plane];
         if (shape.kind == ShapeKind::plane
             && !box_reaches_plane(bounds.boxes[other], shapes.planes[shape.index],
-                                  bounds.placed[plane], bounds.reach[plane]))
+                                  bounds.placed[plane], bounds.speculative_margin[plane]))
             return false;
     }
     return true;

@@ -13,11 +13,11 @@ namespace {
 constexpr std::size_t kGrain = 2048;  // pairs a block: some 10 microseconds of work
 
 // What two materials do to one another. Most contacts of a scene are of the same two.
-class Meetings {
+class PairMaterials {
 public:
-    explicit Meetings(const Surfaces& surfaces) : surfaces_(surfaces) { }
+    explicit PairMaterials(const Surfaces& surfaces) : surfaces_(surfaces) { }
 
-    const Surfaces::Meeting& of(std::uint32_t a, std::uint32_t b)
+    const Surfaces::MaterialPair& of(std::uint32_t a, std::uint32_t b)
     {
         if (a != a_ || b != b_) last_ = surfaces_.between(a_ = a, b_ = b);
         return last_;
@@ -25,8 +25,8 @@ public:
 
 private:
     const Surfaces& surfaces_;
-    std::uint32_t a_ = kNobody, b_ = kNobody;
-    Surfaces::Meeting last_;
+    std::uint32_t a_ = kNoBody, b_ = kNoBody;
+    Surfaces::MaterialPair last_;
 };
 
 // One call of the stage.
@@ -46,14 +46,14 @@ public:
     {
         make_places(convex.of_pair);
         for_each_block(convex.of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
-            Meetings meetings(surfaces_);
+            PairMaterials pair_materials(surfaces_);
             std::size_t at = active_.begin[block];
-            Surfaces::Meeting meeting;
+            Surfaces::MaterialPair materials;
             for (std::size_t i = begin; i < end; ++i)
                 if (const Contact<Real>* contact = convex.at(i); contact && contact->count > 0)
-                    at +=
-                        take(i, *contact, convex.of_pair[i].contact, ContactList::convex, meetings,
-                             active_.entries[at], kInAllDigits ? active_.meetings[at] : meeting)
+                    at += take(i, *contact, convex.of_pair[i].contact, ContactList::convex,
+                               pair_materials, active_.entries[at],
+                               kInAllDigits ? active_.materials[at] : materials)
                         ? 1
                         : 0;
             active_.end[block] = at;
@@ -63,15 +63,16 @@ public:
 
     void gather(const ManyContacts<Real>& contacts, ContactList list)
     {
-        Meetings meetings(surfaces_);
+        PairMaterials pair_materials(surfaces_);
         for (std::size_t i = 0; i < contacts.entries.size(); ++i) {
             const auto& [pair, part, contact] = contacts.entries[i];
             ActiveContacts::Entry entry;
-            Surfaces::Meeting meeting;
-            if (contact.count == 0 || !take(pair, contact, i, list, meetings, entry, meeting))
+            Surfaces::MaterialPair materials;
+            if (contact.count == 0
+                || !take(pair, contact, i, list, pair_materials, entry, materials))
                 continue;
             active_.entries.push_back(entry);
-            if (kInAllDigits) active_.meetings.push_back(meeting);
+            if (kInAllDigits) active_.materials.push_back(materials);
         }
     }
 
@@ -92,7 +93,7 @@ private:
         });
         std::partial_sum(active_.begin.begin(), active_.begin.end(), active_.begin.begin());
         resize_closely(active_.entries, active_.begin.back());
-        if (kInAllDigits) active_.meetings.resize(active_.entries.size());
+        if (kInAllDigits) active_.materials.resize(active_.entries.size());
     }
 
     // Contacts of sleepers left some places free.
@@ -108,36 +109,36 @@ private:
         for (std::size_t block = 0; block < active_.end.size(); ++block) {
             const std::size_t begin = active_.begin[block], end = active_.end[block];
             if (begin != size) join(active_.entries, begin, end, size);
-            if (kInAllDigits && begin != size) join(active_.meetings, begin, end, size);
+            if (kInAllDigits && begin != size) join(active_.materials, begin, end, size);
             size += end - begin;
         }
         active_.entries.resize(size);
-        if (kInAllDigits) active_.meetings.resize(size);
+        if (kInAllDigits) active_.materials.resize(size);
     }
 
     // False where nobody can be pushed.
     bool take(std::size_t pair,
               const Contact<Real>& contact,
-              std::size_t slot,
+              std::size_t list_index,
               ContactList list,
-              Meetings& meetings,
+              PairMaterials& pair_materials,
               ActiveContacts::Entry& entry,
-              Surfaces::Meeting& in_all_digits) const
+              Surfaces::MaterialPair& in_all_digits) const
     {
         const std::uint32_t a = first_of(pairs_.keys[pair]), b = second_of(pairs_.keys[pair]);
         const std::uint32_t body_a = colliders_.body[a], body_b = colliders_.body[b];
         if (!states_.movable(body_a) && !states_.movable(body_b)) return false;
-        const auto& meeting = meetings.of(colliders_.material[a], colliders_.material[b]);
-        if (kInAllDigits) in_all_digits = meeting;
+        const auto& materials = pair_materials.of(colliders_.material[a], colliders_.material[b]);
+        if (kInAllDigits) in_all_digits = materials;
         const double extent = std::min(colliders_.inner_extent[a], colliders_.inner_extent[b]);
         entry = {body_a,
                  body_b,
-                 static_cast<std::uint32_t>(slot),
+                 static_cast<std::uint32_t>(list_index),
                  list,
                  static_cast<std::uint8_t>(contact.count),
-                 static_cast<float>(meeting.friction),
-                 static_cast<float>(meeting.restitution),
-                 static_cast<float>(meeting.rolling_friction),
+                 static_cast<float>(materials.friction),
+                 static_cast<float>(materials.restitution),
+                 static_cast<float>(materials.rolling_friction),
                  static_cast<float>(extent)};
         return true;
     }

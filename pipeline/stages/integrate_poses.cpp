@@ -6,8 +6,8 @@
 #include "kernels/dynamics/stiff_flight.hpp"
 #include "kernels/math/rotation.hpp"
 #include "kernels/parallel/blocks.hpp"
-#include "pipeline/forces/following_forces.hpp"
 #include "pipeline/forces/rigid_law.hpp"
+#include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
@@ -18,30 +18,28 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;  // bodies a block: some 20 microseconds of work
 
-FlightRule rule_of(const Conditions& conditions)
+FlightRule rule_of(const StepContext& context)
 {
     FlightRule rule;
-    rule.substep = conditions.substep();
-    rule.substeps = conditions.settings.substeps;
+    rule.substep = context.substep();
+    rule.substeps = context.settings.substeps;
     for (int axis = 0; axis < 3; ++axis)
-        rule.gravity[axis] = conditions.has(Effect::gravity) ? conditions.gravity[axis] : 0;
-    rule.turns = conditions.has(Effect::rotation);
+        rule.gravity[axis] = context.has(Effect::gravity) ? context.gravity[axis] : 0;
+    rule.turns = context.has(Effect::rotation);
     using Precession = FlightRule::Precession;
-    if (conditions.has(Effect::gyroscopic)
-        && conditions.settings.gyroscopic == Gyroscopic::implicit)
-        rule.precession = conditions.settings.integrator == Integrator::auto_
-            ? Precession::split
-            : Precession::implicit;
+    if (context.has(Effect::gyroscopic) && context.settings.gyroscopic == Gyroscopic::implicit)
+        rule.precession = context.settings.integrator == Integrator::auto_ ? Precession::split
+                                                                           : Precession::implicit;
     return rule;
 }
 
 FlightArrays arrays_of(const Masses& masses, Poses& poses, Velocities& velocities)
 {
     if (poses.position.empty()) return {};
-    return {poses.position[0].data(),    poses.orientation[0].coeffs().data(),
-            velocities.linear[0].data(), velocities.angular[0].data(),
-            &masses.inertia[0].xx,       masses.inverse_mass.data(),
-            masses.spins_unevenly.data()};
+    return {poses.position[0].data(),     poses.orientation[0].coeffs().data(),
+            velocities.linear[0].data(),  velocities.angular[0].data(),
+            &masses.inertia[0].xx,        masses.inverse_mass.data(),
+            masses.gyroscopic_kind.data()};
 }
 
 // A body turned through the step by what its angular momentum does, in as many parts as it takes.
@@ -67,21 +65,21 @@ bool turn_in_parts(const FlightRule& rule,
 }
 
 // The same by as many substeps.
-void turn_by_steps(const Conditions& conditions,
+void turn_by_steps(const StepContext& context,
                    const Masses& masses,
                    std::uint32_t body,
                    Quat& orientation,
                    Vec3& angular)
 {
     // In body axes: about them the angular velocity stays as it is while the body turns by it.
-    const bool precesses = conditions.has(Effect::gyroscopic) && masses.spins_unevenly[body] != 0;
-    const auto torque = conditions.settings.gyroscopic == Gyroscopic::implicit
+    const bool precesses = context.has(Effect::gyroscopic) && masses.gyroscopic_kind[body] != 0;
+    const auto torque = context.settings.gyroscopic == Gyroscopic::implicit
         ? after_gyroscopic_torque_local
         : after_explicit_gyroscopic_torque_local;
     Vec3 w = orientation.conjugate() * angular;
-    for (int step = 0; step < conditions.settings.substeps; ++step) {
-        if (precesses) w = torque(w, masses.inertia[body], conditions.substep());
-        orientation = orientation * exponential(conditions.substep() * w);
+    for (int step = 0; step < context.settings.substeps; ++step) {
+        if (precesses) w = torque(w, masses.inertia[body], context.substep());
+        orientation = orientation * exponential(context.substep() * w);
     }
     orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
     if (precesses) angular = orientation * w;
@@ -89,26 +87,26 @@ void turn_by_steps(const Conditions& conditions,
 
 // What the wide kernel leaves: any inertia, any speed. False, and the body as it was, where it
 // would become what a step cannot hold.
-bool fly_one(const Conditions& conditions,
+bool fly_one(const StepContext& context,
              const FlightRule& rule,
              const Masses& masses,
              std::uint32_t body,
              Poses& poses,
              Velocities& velocities)
 {
-    const double h = conditions.substep(), n = conditions.settings.substeps;
-    const bool falls = conditions.has(Effect::gravity) && masses.inverse_mass[body] > 0;
-    const Vec3 pull = falls ? conditions.gravity : Vec3(Vec3::Zero());
+    const double h = context.substep(), n = context.settings.substeps;
+    const bool falls = context.has(Effect::gravity) && masses.inverse_mass[body] > 0;
+    const Vec3 pull = falls ? context.gravity : Vec3(Vec3::Zero());
     const Vec3 linear = velocities.linear[body] + pull * (n * h);
     const Vec3 position = poses.position[body] + velocities.linear[body] * (n * h)
         + pull * (h * h * (n * (n + 1) / 2));
     Quat orientation = poses.orientation[body];
     Vec3 angular = velocities.angular[body];
-    if (conditions.has(Effect::rotation)) {
+    if (context.has(Effect::rotation)) {
         const bool split =
-            rule.precession == FlightRule::Precession::split && masses.spins_unevenly[body] != 0;
+            rule.precession == FlightRule::Precession::split && masses.gyroscopic_kind[body] != 0;
         if (!split || !turn_in_parts(rule, masses.principal_of(body), orientation, angular))
-            turn_by_steps(conditions, masses, body, orientation, angular);
+            turn_by_steps(context, masses, body, orientation, angular);
     }
     if (!holdable(position, orientation, linear, angular)) return false;
     poses.position[body] = position;
@@ -121,19 +119,21 @@ bool fly_one(const Conditions& conditions,
 // Bodies by the law of rigid motion: any integrator, any rotation, any forces.
 class LawFlight {
 public:
-    LawFlight(const Conditions& conditions,
+    LawFlight(const StepContext& context,
               const RigidFacts& facts,
               Poses& poses,
               Velocities& velocities,
               Flights& flights)
-        : conditions_(conditions), rule_(rigid_rule(conditions)), facts_(facts), poses_(poses),
+        : context_(context), rule_(rigid_rule(context)), facts_(facts), poses_(poses),
           velocities_(velocities), flights_(flights)
     { }
 
     /// Each body for itself, but for those that springs join: they go together.
     ///
     ///   bodies  ascending
-    void fly(const std::vector<std::uint32_t>& bodies, const BodyStates& states, Trouble& trouble)
+    void fly(const std::vector<std::uint32_t>& bodies,
+             const BodyStates& states,
+             StepDiagnostics& diagnostics)
     {
         flights_.memory.resize(states.kind.size());
         const Forces& forces = facts_.forces;
@@ -145,8 +145,8 @@ public:
                 const std::uint32_t body = bodies[i];
                 if (!states.moves(body)) continue;
                 const std::uint32_t group =
-                    body < forces.group_of.size() ? forces.group_of[body] : kNobody;
-                if (group == kNobody) {
+                    body < forces.group_of.size() ? forces.group_of[body] : kNoBody;
+                if (group == kNoBody) {
                     carry(law, {&body, 1}, landings[block]);
                     continue;
                 }
@@ -159,8 +159,8 @@ public:
         });
         for (const auto& list : landings)
             for (const Landing& landing : list)
-                if (!land(landing)) trouble.quarantined.push_back(landing.body);
-        std::sort(trouble.quarantined.begin(), trouble.quarantined.end());
+                if (!land(landing)) diagnostics.quarantined.push_back(landing.body);
+        std::sort(diagnostics.quarantined.begin(), diagnostics.quarantined.end());
     }
 
 private:
@@ -173,14 +173,14 @@ private:
     void
     carry(RigidMotion& law, std::span<const std::uint32_t> bodies, std::vector<Landing>& landings)
     {
-        const double span = conditions_.substep();
+        const double span = context_.substep();
         law.take(bodies, flights_);
         // Of a group on whom springs act there is no other.
         const IntegratorRow& integrator =
-            integrator_of(conditions_.settings, facts_.forces.act_on(bodies.front()));
-        IntegratorRoom room;
-        for (int step = 0; step < conditions_.settings.substeps; ++step) {
-            law.advance(integrator, step * span, span, room);
+            integrator_of(context_.settings, facts_.forces.act_on(bodies.front()));
+        IntegratorScratch scratch;
+        for (int step = 0; step < context_.settings.substeps; ++step) {
+            law.advance(integrator, step * span, span, scratch);
             law.settle();
         }
         note(law, bodies, landings);
@@ -191,7 +191,7 @@ private:
                       std::span<const std::uint32_t> bodies,
                       std::vector<Landing>& landings)
     {
-        if (by_stiff_springs(conditions_, facts_, bodies))
+        if (by_stiff_springs(context_, facts_, bodies))
             carry_stiff(bodies, landings);
         else
             carry(law, bodies, landings);
@@ -199,9 +199,9 @@ private:
 
     void carry_stiff(std::span<const std::uint32_t> bodies, std::vector<Landing>& landings)
     {
-        const double span = conditions_.substep();
+        const double span = context_.substep();
         StiffFlight flight(rule_, facts_, bodies, flights_);
-        for (int step = 0; step < conditions_.settings.substeps; ++step)
+        for (int step = 0; step < context_.settings.substeps; ++step)
             flight.carry(step * span, span);
         note(flight.law(), bodies, landings);
     }
@@ -243,7 +243,7 @@ private:
         return true;
     }
 
-    const Conditions& conditions_;
+    const StepContext& context_;
     RigidRule rule_;
     RigidFacts facts_;
     Poses& poses_;
@@ -260,7 +260,7 @@ bool falls_wide(const Settings& settings)
 
 }  // namespace
 
-void integrate_poses(const Conditions& conditions,
+void integrate_poses(const StepContext& context,
                      const Islands& islands,
                      const Masses& masses,
                      const BodyStates& states,
@@ -268,41 +268,40 @@ void integrate_poses(const Conditions& conditions,
                      Flights& flights,
                      Poses& poses,
                      Velocities& velocities,
-                     Trouble& trouble)
+                     StepDiagnostics& diagnostics)
 {
     // Without contact there are no islands: every awake body flies.
-    const bool alone = !conditions.has(Effect::contact) && !conditions.effects.meets(kCarried);
-    if (alone) trouble.quarantined.clear();
+    const bool alone = !context.has(Effect::contact) && !context.effects.meets(kEventDriven);
+    if (alone) diagnostics.quarantined.clear();
 
-    const FlightRule rule = rule_of(conditions);
+    const FlightRule rule = rule_of(context);
     const FlightArrays arrays = arrays_of(masses, poses, velocities);
     const FlyKernel kernel = fly_kernel();
     const bool wide =
-        !conditions.has(Effect::gyroscopic) || rule.precession != FlightRule::Precession::none;
+        !context.has(Effect::gyroscopic) || rule.precession != FlightRule::Precession::none;
     const auto fly = [&](const std::vector<std::uint32_t>& bodies) {
-        trouble.of_block.start(block_count(bodies.size(), kGrain));
+        diagnostics.of_block.start(block_count(bodies.size(), kGrain));
         for_each_block(bodies.size(), kGrain, [&](auto begin, auto end, auto block) {
             std::array<std::uint32_t, kGrain> chosen, left;
             std::size_t count = 0;
             for (std::size_t i = begin; i < end; ++i)
                 if (states.moves(bodies[i])) chosen[count++] = bodies[i];
             if (wide) count = kernel(rule, arrays, chosen.data(), count, left.data());
-            auto& lost = trouble.of_block[block];
+            auto& lost = diagnostics.of_block[block];
             for (std::size_t i = 0; i < count; ++i)
-                if (!fly_one(conditions, rule, masses, wide ? left[i] : chosen[i], poses,
-                             velocities))
+                if (!fly_one(context, rule, masses, wide ? left[i] : chosen[i], poses, velocities))
                     lost.push_back(wide ? left[i] : chosen[i]);
         });
-        trouble.of_block.append_to(trouble.quarantined);
+        diagnostics.of_block.append_to(diagnostics.quarantined);
     };
-    const auto& free = alone ? states.movers.dynamic : islands.lone;
+    const auto& free = alone ? states.active_bodies.dynamic : islands.lone;
     const auto by_law = [&](const std::vector<std::uint32_t>& bodies) {
-        LawFlight(conditions, {forces, masses, poses, velocities}, poses, velocities, flights)
-            .fly(bodies, states, trouble);
+        LawFlight(context, {forces, masses, poses, velocities}, poses, velocities, flights)
+            .fly(bodies, states, diagnostics);
     };
-    if (!falls_wide(conditions.settings)) {
+    if (!falls_wide(context.settings)) {
         by_law(free);
-    } else if (!conditions.effects.meets(kForces)) {
+    } else if (!context.effects.meets(kForces)) {
         fly(free);
     } else {
         std::vector<std::uint32_t> falling, acted_on;
@@ -311,7 +310,7 @@ void integrate_poses(const Conditions& conditions,
         fly(falling);
         by_law(acted_on);
     }
-    fly(states.movers.kinematic);
+    fly(states.active_bodies.kinematic);
 }
 
 }  // namespace throng

@@ -5,12 +5,15 @@
 
 namespace throng {
 
-void quarantine_bodies(Trouble& trouble, BodyStates& states, Masses& masses, Velocities& velocities)
+void quarantine_bodies(StepDiagnostics& diagnostics,
+                       BodyStates& states,
+                       Masses& masses,
+                       Velocities& velocities)
 {
-    std::sort(trouble.quarantined.begin(), trouble.quarantined.end());
-    for (const std::uint32_t body : trouble.quarantined) {
+    std::sort(diagnostics.quarantined.begin(), diagnostics.quarantined.end());
+    for (const std::uint32_t body : diagnostics.quarantined) {
         states.quarantined[body] = 1;
-        states.kind[body] = BodyKind::still;
+        states.kind[body] = BodyKind::static_;
         states.awake[body] = 0;
         masses.inverse_mass[body] = 0;
         masses.inverse_inertia[body] = {};

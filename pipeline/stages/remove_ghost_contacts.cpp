@@ -2,8 +2,8 @@
 // or the side of the next one is no bump.
 //
 // A body that a face bears cannot come below that face's plane. So what another collider beside it
-// shows no higher than that plane is out of its reach as long as the face bears it; pairs are
-// collided one by one, and cannot know. A contact is taken for such a ghost where
+// shows no higher than that plane is out of its speculative margin as long as the face bears it;
+// pairs are collided one by one, and cannot know. A contact is taken for such a ghost where
 //
 // - another of the same shape is along a face of its partner, pushes another way, and comes first,
 // - all its points lie in the plane of that face, or below,
@@ -37,8 +37,8 @@ constexpr double kLevel = 2e-3, kBeyond = 0.1;
 // A contact of a shape that can be pushed with what may have a flush neighbor, seen from the shape.
 template <class Real>
 struct Seen {
-    std::uint32_t mover = 0, other = 0;  // colliders
-    std::uint32_t part = 0;              // triangle of a mesh
+    std::uint32_t moving = 0, other = 0;  // colliders
+    std::uint32_t part = 0;               // triangle of a mesh
     bool mover_first = false;
     Contact<Real>* contact = nullptr;
 
@@ -64,7 +64,7 @@ public:
     {
         for (std::size_t i = 0; i < roles_.size(); ++i) {
             const std::uint32_t body = colliders.body[i];
-            if (body == kNobody) continue;
+            if (body == kNoBody) continue;
             if (states.movable(body)) roles_[i] = kPushed;
             if (states.dynamic(body) && colliders.count[body] < 2) continue;
             roles_[i] |= colliders.shape[i].kind == ShapeKind::plane ? kPlane : kRimmed;
@@ -80,12 +80,12 @@ public:
         const std::size_t count = pairs_to_look_at();
         bool some = false;
         const auto mark = [&](PairKey key) {
-            for_each_side(key, [&](std::uint32_t mover, std::uint32_t other, bool) {
-                std::uint8_t& touches = touches_[mover];
+            for_each_side(key, [&](std::uint32_t moving, std::uint32_t other, bool) {
+                std::uint8_t& touches = touches_[moving];
                 const std::uint8_t number = (touches & kOne) != 0 ? kMore : kOne;
                 const std::uint8_t rim = roles_[other] & kRimmed;
                 touches = static_cast<std::uint8_t>(touches | number | rim);
-                some = some || meets_ghosts(mover);
+                some = some || meets_ghosts(moving);
             });
         };
         for (std::size_t i = 0; i < count; ++i)
@@ -117,12 +117,12 @@ public:
     void remove()
     {
         const auto before = [](const Seen<Real>& a, const Seen<Real>& b) {
-            return a.mover < b.mover;
+            return a.moving < b.moving;
         };
         std::stable_sort(seen_.begin(), seen_.end(), before);
         const std::span all(seen_);
         for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
-            while (end < all.size() && all[end].mover == all[begin].mover) ++end;
+            while (end < all.size() && all[end].moving == all[begin].moving) ++end;
             if (end - begin > 1) judge(all.subspan(begin, end - begin));
         }
         for (const Seen<Real>& ghost : all)
@@ -156,9 +156,9 @@ private:
         return may_have_neighbors(first_of(key)) || may_have_neighbors(second_of(key));
     }
     // Planes have no rims: what is borne by them alone meets none.
-    bool meets_ghosts(std::uint32_t mover) const
+    bool meets_ghosts(std::uint32_t moving) const
     {
-        return (touches_[mover] & kMoreAndRim) == kMoreAndRim;
+        return (touches_[moving] & kMoreAndRim) == kMoreAndRim;
     }
 
     // Calls action(mover, other, mover_first) for each of the two that can be pushed, where the
@@ -172,8 +172,8 @@ private:
 
     void note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& list) const
     {
-        for_each_side(key, [&](std::uint32_t mover, std::uint32_t other, bool mover_first) {
-            if (meets_ghosts(mover)) list.push_back({mover, other, part, mover_first, &contact});
+        for_each_side(key, [&](std::uint32_t moving, std::uint32_t other, bool mover_first) {
+            if (meets_ghosts(moving)) list.push_back({moving, other, part, mover_first, &contact});
         });
     }
 
@@ -182,7 +182,7 @@ private:
     {
         if (a == b) return true;
         const auto moves = [&](std::uint32_t body) {
-            return states_.kind[body] != BodyKind::still
+            return states_.kind[body] != BodyKind::static_
                 && !(velocities_.linear[body].isZero(0) && velocities_.angular[body].isZero(0));
         };
         if (states_.dynamic(a) || states_.dynamic(b)) return false;
@@ -191,18 +191,18 @@ private:
             && velocities_.angular[b].isZero(0) && moves(a) == moves(b);
     }
 
-    void look_at(Seen<Real>& seen) const
+    void process(Seen<Real>& seen) const
     {
         const Contact<Real>& contact = *seen.contact;
-        const Vec3& center = poses_.position[colliders_.body[seen.mover]];
+        const Vec3& center = poses_.position[colliders_.body[seen.moving]];
         const Vec3 normal = contact.normal.template cast<double>().normalized();
         seen.normal = seen.mover_first ? Vec3(-normal) : normal;
         seen.nearest = contact.points[0].separation;
         for (int k = 0; k < contact.count; ++k) {
             const double separation = contact.points[static_cast<std::size_t>(k)].separation;
             const Vec3 on_mover =
-                (seen.mover_first ? contact.points[static_cast<std::size_t>(k)].from_a
-                                  : contact.from_b(k))
+                (seen.mover_first ? contact.points[static_cast<std::size_t>(k)].anchor_a
+                                  : contact.anchor_b(k))
                     .template cast<double>();
             seen.at[static_cast<std::size_t>(k)] = center + on_mover - seen.normal * separation;
             seen.nearest = std::min(seen.nearest, separation);
@@ -240,7 +240,7 @@ private:
         if (ghost.other != face.other) return true;
         const ShapeRef shape = colliders_.shape[ghost.other];
         if (shape.kind != ShapeKind::mesh || ghost.face) return false;
-        const auto& beyond = shapes_.meshes[shape.index].beyond[ghost.part & ~kBehind];
+        const auto& beyond = shapes_.meshes[shape.index].adjacent[ghost.part & ~kBehind];
         return std::any_of(beyond.begin(), beyond.end(), [](std::int32_t t) { return t < 0; });
     }
 
@@ -278,7 +278,7 @@ private:
 
     bool hides(const Seen<Real>& face, const Seen<Real>& ghost) const
     {
-        const double size = colliders_.inner_extent[ghost.mover], level = kLevel * size;
+        const double size = colliders_.inner_extent[ghost.moving], level = kLevel * size;
         const double along = face.normal.dot(ghost.normal);
         if (!face.face || along > kAlike) return false;
         if (face.nearest > std::max(level, std::min(ghost.nearest, kBeyond * size))) return false;
@@ -296,7 +296,7 @@ private:
 
     void judge(std::span<Seen<Real>> of_shape) const
     {
-        for (Seen<Real>& seen : of_shape) look_at(seen);
+        for (Seen<Real>& seen : of_shape) process(seen);
         for (Seen<Real>& ghost : of_shape)
             ghost.hidden = std::any_of(of_shape.begin(), of_shape.end(), [&](const auto& face) {
                 return &face != &ghost && hides(face, ghost);

@@ -1,7 +1,7 @@
 // Update bounds: poses into boxes. A body that stays within its margin keeps its box, and the broad
 // phase is not asked about it.
+#include "broadphase/active_bounds.hpp"
 #include "broadphase/margins.hpp"
-#include "broadphase/mover_bounds.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/step/fast_bodies.hpp"
@@ -19,23 +19,23 @@ namespace {
 constexpr std::size_t kGrain = 1024;  // bodies a block: some 20 microseconds of work
 
 // A plane has no size to take a share of: it looks only as far as it moves.
-double resting_reach(const Colliders& colliders, std::size_t collider)
+double resting_margin(const Colliders& colliders, std::size_t collider)
 {
     const bool plane = colliders.shape[collider].kind == ShapeKind::plane;
-    return plane ? 0 : kRestingReach * colliders.inner_extent[collider];
+    return plane ? 0 : kRestingMargin * colliders.inner_extent[collider];
 }
 
 Box3 grown(const Box3& box, double by) { return {box.lower.array() - by, box.upper.array() + by}; }
 
 // What the box, grown, holds in float: rounded outward by two units in the last place and more.
-NearBox near_box(const Box3& tight, double reach)
+NearBox near_box(const Box3& tight, double speculative_margin)
 {
     constexpr float kOutward = 3 * 0x1p-24f;
     constexpr float kLeast = std::numeric_limits<float>::min();
     NearBox box{};
     for (int axis = 0; axis < 3; ++axis) {
-        const auto lower = static_cast<float>(tight.lower[axis] - reach);
-        const auto upper = static_cast<float>(tight.upper[axis] + reach);
+        const auto lower = static_cast<float>(tight.lower[axis] - speculative_margin);
+        const auto upper = static_cast<float>(tight.upper[axis] + speculative_margin);
         box.lower[axis] = lower - (std::abs(lower) * kOutward + kLeast);
         box.upper[axis] = upper + (std::abs(upper) * kOutward + kLeast);
     }
@@ -49,24 +49,25 @@ NearBox nowhere()
     return {{kNever, kNever, kNever, kNever}, {kNever, kNever, kNever, kNever}};
 }
 
-struct Mover {
-    Vec3 velocity;  // m/s, of the collider's middle
-    double sweep;   // m/s, of its fastest point besides
-    double widest;  // m, turning takes no point further than this
+struct ActiveBody {
+    Vec3 velocity;     // m/s, of the collider's middle
+    double tip_speed;  // m/s, of its fastest point besides
+    double widest;     // m, turning takes no point further than this
 };
 
-Mover mover_of(const Colliders& colliders,
-               const Velocities& velocities,
-               const Pose& placed,
-               const Poses& poses,
-               std::size_t collider)
+ActiveBody mover_of(const Colliders& colliders,
+                    const Velocities& velocities,
+                    const Pose& placed,
+                    const Poses& poses,
+                    std::size_t collider)
 {
     const std::uint32_t body = colliders.body[collider];
     const Vec3& spin = velocities.angular[body];
     const Vec3 arm = placed.position - poses.position[body];
     // A plane has no furthest point; one that stands has no fast one either.
-    const double sweep = spin.isZero(0) ? 0 : spin.norm() * colliders.outer_radius[collider];
-    return {velocities.linear[body] + spin.cross(arm), sweep, 2 * colliders.outer_radius[collider]};
+    const double tip_speed = spin.isZero(0) ? 0 : spin.norm() * colliders.outer_radius[collider];
+    return {velocities.linear[body] + spin.cross(arm), tip_speed,
+            2 * colliders.outer_radius[collider]};
 }
 
 float rounded_up(double x)
@@ -82,7 +83,7 @@ void note_form(const Shapes& shapes, const Colliders& colliders, std::size_t at,
     const Pose& local = colliders.local[at];
     Vec3 half = Vec3::Zero();
     double round = 0;
-    MoverForm form = MoverForm::box;
+    ActiveBoundsForm form = ActiveBoundsForm::box;
     switch (shape.kind) {
     case ShapeKind::sphere:
         round = shapes.spheres[shape.index].radius;
@@ -94,21 +95,21 @@ void note_form(const Shapes& shapes, const Colliders& colliders, std::size_t at,
     case ShapeKind::cylinder:
         half.z() = shapes.cylinders[shape.index].half_length;
         round = shapes.cylinders[shape.index].radius;
-        form = MoverForm::cylinder;
+        form = ActiveBoundsForm::cylinder;
         break;
     case ShapeKind::box:
         half = shapes.boxes[shape.index].half_extents;
         break;
     default:
-        form = MoverForm::other;
+        form = ActiveBoundsForm::other;
     }
     const bool centered = local.position.isZero(0) && local.orientation.vec().isZero(0);
     const double greatest = std::max(half.maxCoeff(), round);
     // Sizes that float would hold badly go the long way.
     if (!centered || !(greatest < 1e30) || !(colliders.inner_extent[at] > 1e-30))
-        form = MoverForm::other;
+        form = ActiveBoundsForm::other;
     bounds.form[at] = static_cast<std::uint8_t>(form);
-    if (form == MoverForm::other) return;
+    if (form == ActiveBoundsForm::other) return;
     for (int axis = 0; axis < 3; ++axis) bounds.half[axis][at] = rounded_up(half[axis]);
     bounds.round[at] = rounded_up(round);
 }
@@ -116,29 +117,29 @@ void note_form(const Shapes& shapes, const Colliders& colliders, std::size_t at,
 // One call of the stage.
 class Update {
 public:
-    Update(const Conditions& conditions,
+    Update(const StepContext& context,
            const Shapes& shapes,
            const Colliders& colliders,
            const Poses& poses,
            const Velocities& velocities,
            const BodyStates& states,
            Bounds& bounds)
-        : dt_(conditions.settings.dt), falls_(conditions.gravity.norm() * dt_ * dt_),
-          shapes_(shapes), colliders_(colliders), poses_(poses), velocities_(velocities),
-          states_(states), bounds_(bounds), tolerance_(conditions.settings.toi_tolerance),
-          sweeps_(conditions.has(Effect::fast_motion))
+        : dt_(context.settings.dt), falls_(context.gravity.norm() * dt_ * dt_), shapes_(shapes),
+          colliders_(colliders), poses_(poses), velocities_(velocities), states_(states),
+          bounds_(bounds), tolerance_(context.settings.toi_tolerance),
+          sweeps_(context.has(Effect::fast_motion))
     { }
 
     void run()
     {
-        make_room();
+        grow_lists();
         const std::vector<std::uint32_t> touched = take_touched();
         bounds_.asked.clear();
         if (!bounds_.fast.empty()) std::fill(bounds_.kept.begin(), bounds_.kept.end(), 0.0);
         bounds_.fast.clear();
-        bounds_.hurried = Bounds::kNone;
-        of_movers(states_.movers.kinematic, 0);
-        of_movers(states_.movers.dynamic, falls_);
+        bounds_.fast_candidate = Bounds::kNone;
+        of_movers(states_.active_bodies.kinematic, 0);
+        of_movers(states_.active_bodies.dynamic, falls_);
         of_others(touched);
         std::vector<std::uint32_t>& fast = bounds_.fast;
         if (!std::is_sorted(fast.begin(), fast.end())) std::sort(fast.begin(), fast.end());
@@ -147,13 +148,13 @@ public:
     }
 
 private:
-    void make_room()
+    void grow_lists()
     {
         const std::size_t count = colliders_.size();
         if (sweeps_ && bounds_.kept.size() != count) bounds_.kept.resize(count, 0.0);
         if (bounds_.boxes.size() == count && bounds_.flags.size() == count) return;
         bounds_.boxes.resize(count);
-        bounds_.reach.resize(count, 0.0);
+        bounds_.speculative_margin.resize(count, 0.0);
         bounds_.near.resize(count, nowhere());
         bounds_.moving.resize(count, 0);
         bounds_.placed.resize(count);
@@ -179,12 +180,12 @@ private:
     // Every collider of some bodies that move: most of them side by side.
     void of_movers(const std::vector<std::uint32_t>& bodies, double falls)
     {
-        const MoverArrays arrays = arrays_of();
+        const ActiveBoundsArrays arrays = arrays_of();
         const MarginRule margin = margin_of();
-        const MoverRule rule{dt_,          kRestingReach,  falls,       margin.base,
-                             margin.steps, margin.longest, margin.loose};
+        const ActiveBoundsRule rule{dt_,          kRestingMargin, falls,       margin.base,
+                                    margin.steps, margin.longest, margin.loose};
         const std::size_t blocks = block_count(bodies.size(), kGrain);
-        bounds_.hurried_of_block.assign(blocks, Bounds::kNone);
+        bounds_.fast_candidate_of_block.assign(blocks, Bounds::kNone);
         if (bounds_.fast_of_block.size() < blocks) bounds_.fast_of_block.resize(blocks);
         in_blocks(bodies.size(), [&](std::size_t begin, std::size_t end, auto& asked) {
             std::array<std::uint32_t, kGrain> colliders, owners, found;
@@ -196,7 +197,8 @@ private:
                     kernel_(rule, arrays, colliders.data(), owners.data(), count, found.data());
                 asked.insert(asked.end(), found.data(), found.data() + left);
                 for (std::size_t i = 0; i < count; ++i)
-                    if (look_at(colliders[i], owners[i])) note_hurried(colliders[i], falls, block);
+                    if (process(colliders[i], owners[i]))
+                        note_fast_candidate(colliders[i], falls, block);
                 count = 0;
             };
             for (std::size_t i = begin; i < end; ++i) {
@@ -204,10 +206,10 @@ private:
                 if (!states_.moves(body)) continue;
                 for (std::uint32_t at = first; at < first + colliders_.count[body]; ++at) {
                     if (bounds_.flags[at] != 0
-                        || bounds_.form[at] == static_cast<std::uint8_t>(MoverForm::other)) {
+                        || bounds_.form[at] == static_cast<std::uint8_t>(ActiveBoundsForm::other)) {
                         if (colliders_.body[at] != body) continue;
                         update(at, asked);
-                        if (look_at(at, body)) note_hurried(at, falls, block);
+                        if (process(at, body)) note_fast_candidate(at, falls, block);
                         continue;
                     }
                     colliders[count] = at;
@@ -218,42 +220,47 @@ private:
             flush();
         });
         for (std::size_t block = 0; block < blocks; ++block) {
-            bounds_.hurried = std::min(bounds_.hurried, bounds_.hurried_of_block[block]);
+            bounds_.fast_candidate =
+                std::min(bounds_.fast_candidate, bounds_.fast_candidate_of_block[block]);
             const std::vector<std::uint32_t>& fast = bounds_.fast_of_block[block];
             bounds_.fast.insert(bounds_.fast.end(), fast.begin(), fast.end());
         }
     }
 
     // Whether a collider may be that of a fast body.
-    bool look_at(std::uint32_t collider, std::uint32_t body) const
+    bool process(std::uint32_t collider, std::uint32_t body) const
     {
-        return bounds_.reach[collider] > kHurriedReach * colliders_.inner_extent[collider]
+        return bounds_.speculative_margin[collider]
+            > kFastCandidateMargin * colliders_.inner_extent[collider]
             || (sweeps_ && states_.marked_fast(body));
     }
 
     // Few ever come here.
-    void note_hurried(std::uint32_t collider, double falls, std::size_t block)
+    void note_fast_candidate(std::uint32_t collider, double falls, std::size_t block)
     {
         const std::uint32_t body = colliders_.body[collider];
-        if (hurries(colliders_, velocities_, body, dt_, falls))
-            bounds_.hurried_of_block[block] = std::min(bounds_.hurried_of_block[block], body);
+        if (is_fast_candidate(colliders_, velocities_, body, dt_, falls))
+            bounds_.fast_candidate_of_block[block] =
+                std::min(bounds_.fast_candidate_of_block[block], body);
         if (!sweeps_ || !states_.dynamic(body)) return;
         const double inner = colliders_.inner_extent[collider];
         const double turning =
             way_of_turning(colliders_, collider, velocities_.angular[body].norm() * dt_);
         const double way = velocities_.linear[body].norm() * dt_ + turning;
-        const double most = states_.marked_fast(body) ? kRestingReach : kAheadOfContacts;
+        const double most = states_.marked_fast(body) ? kRestingMargin : kAheadOfContacts;
         if (!(way > most * inner)) return;
         // It is stopped where it meets something, so that what it only may meet is no contact: one
         // far ahead would turn aside what flies past a corner. Its box holds all of its way. What
         // it touches already it goes on touching, as far ahead as contacts see: a rod that falls
         // over would lose the floor at every other step.
-        const double reach = kHeldReach * tolerance_ * inner, rest = kRestingReach * inner;
-        bounds_.kept[collider] = turning > 0 ? rest : std::max(bounds_.reach[collider], rest);
-        bounds_.reach[collider] = reach;
+        const double speculative_margin = kHeldMargin * tolerance_ * inner,
+                     rest = kRestingMargin * inner;
+        bounds_.kept[collider] =
+            turning > 0 ? rest : std::max(bounds_.speculative_margin[collider], rest);
+        bounds_.speculative_margin[collider] = speculative_margin;
         bounds_.near[collider] =
             near_box(shape_bounds(shapes_, colliders_.shape[collider], bounds_.placed[collider]),
-                     std::max(reach, bounds_.kept[collider]));
+                     std::max(speculative_margin, bounds_.kept[collider]));
         std::vector<std::uint32_t>& fast = bounds_.fast_of_block[block];
         if (fast.empty() || fast.back() != body) fast.push_back(body);
     }
@@ -264,7 +271,7 @@ private:
         in_blocks(touched.size(), [&](std::size_t begin, std::size_t end, auto& asked) {
             for (std::size_t i = begin; i < end; ++i) {
                 const std::uint32_t body = colliders_.body[touched[i]];
-                if (body == kNobody || !states_.moves(body)) update(touched[i], asked);
+                if (body == kNoBody || !states_.moves(body)) update(touched[i], asked);
             }
         });
     }
@@ -304,7 +311,7 @@ private:
         std::inplace_merge(all.begin(), all.begin() + middle, all.end());
     }
 
-    MoverArrays arrays_of()
+    ActiveBoundsArrays arrays_of()
     {
         if (colliders_.size() == 0 || poses_.position.empty()) return {};
         return {poses_.position[0].data(),
@@ -318,7 +325,7 @@ private:
                 colliders_.outer_radius.data(),
                 bounds_.placed[0].position.data(),
                 bounds_.boxes[0].lower.data(),
-                bounds_.reach.data(),
+                bounds_.speculative_margin.data(),
                 bounds_.near[0].lower};
     }
 
@@ -327,7 +334,7 @@ private:
     {
         const bool touched = bounds_.flags[collider] != 0;
         const std::uint32_t body = colliders_.body[collider];
-        if (body == kNobody) {
+        if (body == kNoBody) {
             bounds_.boxes[collider] = {};
             bounds_.near[collider] = nowhere();
             asked.push_back(collider);
@@ -336,39 +343,39 @@ private:
         if (touched) note_form(shapes_, colliders_, collider, bounds_);
         const Pose placed = poses_.at(body) * colliders_.local[collider];
         bounds_.placed[collider] = placed;
-        const bool moving = states_.kind[body] != BodyKind::still;
+        const bool moving = states_.kind[body] != BodyKind::static_;
         bounds_.moving[collider] = moving ? 1 : 0;
         const Box3 tight = shape_bounds(shapes_, colliders_.shape[collider], placed);
         if (!moving) {
-            bounds_.reach[collider] = 0;
+            bounds_.speculative_margin[collider] = 0;
             bounds_.near[collider] = near_box(tight, 0);
             bounds_.boxes[collider] = tight;
             asked.push_back(collider);
             return;
         }
-        const Mover mover = mover_of(colliders_, velocities_, placed, poses_, collider);
+        const ActiveBody active = mover_of(colliders_, velocities_, placed, poses_, collider);
         // Small bodies fall further in a step than a share of their size.
         const double falls = states_.dynamic(body) ? falls_ : 0;
-        const double rest = std::max(resting_reach(colliders_, collider), falls);
-        const double reach =
-            rest + mover.velocity.norm() * dt_ + std::min(mover.sweep * dt_, mover.widest);
-        bounds_.reach[collider] = reach;
-        bounds_.near[collider] = near_box(tight, reach);
+        const double rest = std::max(resting_margin(colliders_, collider), falls);
+        const double speculative_margin =
+            rest + active.velocity.norm() * dt_ + std::min(active.tip_speed * dt_, active.widest);
+        bounds_.speculative_margin[collider] = speculative_margin;
+        bounds_.near[collider] = near_box(tight, speculative_margin);
         if (colliders_.shape[collider].kind == ShapeKind::plane) {
             // Its box holds everything and says nothing of where it is now.
-            if (!touched && reach == 0) return;
+            if (!touched && speculative_margin == 0) return;
             bounds_.boxes[collider] = tight;
             asked.push_back(collider);
             return;
         }
-        const Box3 wanted = grown(tight, reach);
+        const Box3 wanted = grown(tight, speculative_margin);
         const double size = colliders_.inner_extent[collider];
         const MarginRule rule = margin_of();
         Box3& box = bounds_.boxes[collider];
         if (!touched && box.contains(wanted)
-            && !loose(box, wanted, mover.velocity, size, dt_, rule))
+            && !loose(box, wanted, active.velocity, size, dt_, rule))
             return;
-        box = fattened(wanted, mover.velocity, size, dt_, rule);
+        box = fattened(wanted, active.velocity, size, dt_, rule);
         asked.push_back(collider);
     }
 
@@ -381,12 +388,12 @@ private:
     Bounds& bounds_;
     double tolerance_;  // see Settings::toi_tolerance
     bool sweeps_;       // a later stage stops who is fast
-    MoverKernel kernel_ = mover_kernel();
+    ActiveBoundsKernel kernel_ = active_bounds_kernel();
 };
 
 }  // namespace
 
-void update_bounds(const Conditions& conditions,
+void update_bounds(const StepContext& context,
                    const Shapes& shapes,
                    const Colliders& colliders,
                    const Poses& poses,
@@ -396,7 +403,7 @@ void update_bounds(const Conditions& conditions,
 {
     static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(Box3) == 6 * sizeof(double)
                   && sizeof(NearBox) == 8 * sizeof(float));
-    Update(conditions, shapes, colliders, poses, velocities, states, bounds).run();
+    Update(context, shapes, colliders, poses, velocities, states, bounds).run();
 }
 
 }  // namespace throng

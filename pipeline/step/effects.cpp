@@ -2,8 +2,8 @@
 
 #include "broadphase/pair_filter.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
-#include "pipeline/step/conditions.hpp"
 #include "pipeline/step/fast_bodies.hpp"
+#include "pipeline/step/step_context.hpp"
 
 #include <algorithm>
 #include <map>
@@ -70,10 +70,10 @@ public:
         find_contact();
         if (meets()) find_materials();
         find_rotation();
-        if (found_.on.has(Effect::contact) && facts_.conditions.settings.sleep)
+        if (found_.on.has(Effect::contact) && facts_.context.settings.sleep)
             if (const auto body =
                     first_body([&](std::size_t b) { return facts_.states.dynamic(b); });
-                body != kNobody)
+                body != kNoBody)
                 call(Effect::sleeping, name(body));
         return std::move(found_);
     }
@@ -95,23 +95,23 @@ private:
     {
         for (std::uint32_t body = 0; body < facts_.states.kind.size(); ++body)
             if (wanted(body)) return body;
-        return kNobody;
+        return kNoBody;
     }
     bool movable(std::size_t body) const
     {
         return facts_.states.kind[body] == BodyKind::dynamic
             || facts_.states.kind[body] == BodyKind::kinematic;
     }
-    bool meets() const { return found_.on.has(Effect::contact) || found_.on.meets(kCarried); }
+    bool meets() const { return found_.on.has(Effect::contact) || found_.on.meets(kEventDriven); }
     bool has_contact(std::size_t body) const { return meets() && facts_.colliders.count[body] > 0; }
-    // How bodies meet: overlapping, or carried from touch to touch (see carry_groups.cpp).
-    Effect meeting() const
+    // How bodies meet: overlapping, or carried from touch to touch (see step_event_driven.cpp).
+    Effect contact_effect() const
     {
-        const Settings& settings = facts_.conditions.settings;
+        const Settings& settings = facts_.context.settings;
         if (settings.overlap == Overlap::allow || !carries()) return Effect::contact;
         return settings.overlap == Overlap::back_up ? Effect::no_overlap : Effect::little_overlap;
     }
-    bool carries() const { return facts_.conditions.settings.response == Response::impulse; }
+    bool carries() const { return facts_.context.settings.response == Response::impulse; }
 
     // Who hangs on a pivot falls about it, unless it is held by its center.
     bool can_fall(std::size_t body) const
@@ -119,27 +119,28 @@ private:
         if (!movable(body)) return false;
         if (facts_.masses.inverse_mass[body] > 0) return true;
         const Forces& forces = facts_.forces;
-        return forces.on_pivot(body) && !forces.hang[body].isZero(0)
+        return forces.on_pivot(body) && !forces.pivot_to_center[body].isZero(0)
             && facts_.masses.inverse_inertia[body] != Sym3{};
     }
 
     void find_motion()
     {
-        const auto mover = first_body([&](std::size_t body) { return movable(body); });
-        if (mover == kNobody) return;
-        call(Effect::motion, name(mover));
+        const auto moving = first_body([&](std::size_t body) { return movable(body); });
+        if (moving == kNoBody) return;
+        call(Effect::motion, name(moving));
         const auto falls = first_body([&](std::size_t body) { return can_fall(body); });
-        if (!facts_.conditions.gravity.isZero(0) && falls != kNobody)
+        if (!facts_.context.gravity.isZero(0) && falls != kNoBody)
             call(Effect::gravity, "gravity of the scene");
-        if (!facts_.drives.body.empty()) call(Effect::drive, name(facts_.drives.body.front()));
-        const double dt = facts_.conditions.settings.dt;
+        if (!facts_.prescribed.body.empty())
+            call(Effect::drive, name(facts_.prescribed.body.front()));
+        const double dt = facts_.context.settings.dt;
         const auto fast = first_body([&](std::size_t body) {
             if (!movable(body) || facts_.colliders.count[body] == 0) return false;
-            const Vec3& gravity = facts_.conditions.gravity;
+            const Vec3& gravity = facts_.context.gravity;
             const double fall = facts_.states.dynamic(body) ? gravity.norm() * dt * dt : 0;
-            return hurries(facts_.colliders, facts_.velocities, body, dt, fall);
+            return is_fast_candidate(facts_.colliders, facts_.velocities, body, dt, fall);
         });
-        if (fast != kNobody) call(Effect::fast_motion, name(fast));
+        if (fast != kNoBody) call(Effect::fast_motion, name(fast));
     }
 
     void find_forces()
@@ -150,7 +151,7 @@ private:
             if (size == 0) return;
             const auto body = first_body(
                 [&](std::size_t b) { return b < size && facts_.states.dynamic(b) && acts(b); });
-            if (body != kNobody) call(effect, name(body));
+            if (body != kNoBody) call(effect, name(body));
         };
         call_for(Effect::forces, forces.force.size(), [&](std::size_t b) {
             return !forces.force[b].isZero(0) || !forces.torque[b].isZero(0);
@@ -158,7 +159,7 @@ private:
         call_for(Effect::drag, forces.linear_drag.size(), [&](std::size_t b) {
             return forces.linear_drag[b] > 0 || forces.angular_drag[b] > 0;
         });
-        call_for(Effect::pivot, forces.hangs.size(),
+        call_for(Effect::pivot, forces.has_pivot.size(),
                  [&](std::size_t b) { return forces.on_pivot(b); });
         if (!forces.springs.empty()) call(Effect::springs, "spring 0");
         if (!forces.attractors.empty()) call(Effect::attractors, "attractor 0");
@@ -169,27 +170,27 @@ private:
     void find_contact()
     {
         struct Kind {
-            std::uint32_t first = kNobody, second = kNobody;  // bodies
-            std::uint32_t dynamic = kNobody;                  // first dynamic one
+            std::uint32_t first = kNoBody, second = kNoBody;  // bodies
+            std::uint32_t dynamic = kNoBody;                  // first dynamic one
         };
         std::map<std::pair<std::uint32_t, std::uint32_t>, Kind> kinds;
         for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
             const std::uint32_t body = facts_.colliders.body[i];
-            if (body == kNobody) continue;
+            if (body == kNoBody) continue;
             Kind& kind = kinds[{facts_.filter.group[i], facts_.filter.mask[i]}];
-            if (kind.first == kNobody)
+            if (kind.first == kNoBody)
                 kind.first = body;
-            else if (kind.second == kNobody && kind.first != body)
+            else if (kind.second == kNoBody && kind.first != body)
                 kind.second = body;
-            if (kind.dynamic == kNobody && facts_.states.dynamic(body)) kind.dynamic = body;
+            if (kind.dynamic == kNoBody && facts_.states.dynamic(body)) kind.dynamic = body;
         }
         for (const auto& [x, a] : kinds)
             for (const auto& [y, b] : kinds) {
                 if ((x.first & y.second) == 0 || (y.first & x.second) == 0) continue;
-                if (a.dynamic == kNobody) continue;
+                if (a.dynamic == kNoBody) continue;
                 const std::uint32_t other = b.first != a.dynamic ? b.first : b.second;
-                if (other == kNobody) continue;
-                const Effect how = meeting();
+                if (other == kNoBody) continue;
+                const Effect how = contact_effect();
                 call(how, name(a.dynamic) + " may touch " + name(other));
                 // Nobody is swept who is carried from touch to touch.
                 if (how != Effect::contact)
@@ -205,12 +206,12 @@ private:
     void find_surfaces()
     {
         for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
-            if (facts_.colliders.body[i] == kNobody) continue;
+            if (facts_.colliders.body[i] == kNoBody) continue;
             const ShapeRef shape = facts_.colliders.shape[i];
             if (shape.kind == ShapeKind::mesh)
                 call(Effect::mesh_contact, name(facts_.colliders.body[i]));
             if (shape.kind == ShapeKind::solid)
-                call(effect_of(facts_.shapes.solids[shape.index].way),
+                call(effect_of(facts_.shapes.solids[shape.index].representation),
                      name(facts_.colliders.body[i]));
         }
     }
@@ -218,23 +219,23 @@ private:
     // have no rims.
     void find_seams()
     {
-        std::uint32_t unpushed = 0, rimmed = kNobody;
+        std::uint32_t unpushed = 0, rimmed = kNoBody;
         for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
             const std::uint32_t body = facts_.colliders.body[i];
-            if (body == kNobody) continue;
+            if (body == kNoBody) continue;
             const bool dynamic = facts_.states.dynamic(body);
             if (dynamic && facts_.colliders.count[body] < 2) continue;
             unpushed += dynamic ? 2 : 1;
-            if (rimmed == kNobody && facts_.colliders.shape[i].kind != ShapeKind::plane)
+            if (rimmed == kNoBody && facts_.colliders.shape[i].kind != ShapeKind::plane)
                 rimmed = body;
-            if (unpushed > 1 && rimmed != kNobody) return call(Effect::seams, name(rimmed));
+            if (unpushed > 1 && rimmed != kNoBody) return call(Effect::seams, name(rimmed));
         }
     }
-    static Effect effect_of(SolidWay way)
+    static Effect effect_of(SolidRepresentation way)
     {
-        return way == SolidWay::spheres    ? Effect::sphere_contact
-            : way == SolidWay::depth_image ? Effect::image_contact
-                                           : Effect::voxel_contact;
+        return way == SolidRepresentation::spheres    ? Effect::sphere_contact
+            : way == SolidRepresentation::depth_image ? Effect::image_contact
+                                                      : Effect::voxel_contact;
     }
 
     // Of materials that nothing tells apart, the first.
@@ -259,23 +260,23 @@ private:
         std::set<std::uint32_t> on_dynamic, on_any;
         for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
             const std::uint32_t body = facts_.colliders.body[i];
-            if (body == kNobody) continue;
+            if (body == kNoBody) continue;
             on_any.insert(facts_.colliders.material[i]);
             if (facts_.states.dynamic(body)) on_dynamic.insert(facts_.colliders.material[i]);
         }
         const std::vector<std::uint32_t> others = distinct(on_any);
         for (const std::uint32_t a : distinct(on_dynamic))
             for (const std::uint32_t b : others) {
-                const auto meeting = facts_.surfaces.between(a, b);
+                const auto combined = facts_.surfaces.between(a, b);
                 const auto call_if = [&](bool called, Effect effect) {
                     if (!called || found_.on.has(effect)) return;
                     call(effect,
                          "materials " + facts_.material_names[a] + " and "
                              + facts_.material_names[b]);
                 };
-                call_if(meeting.friction > 0, Effect::friction);
-                call_if(meeting.rolling_friction > 0, Effect::rolling_friction);
-                call_if(meeting.restitution > 0, Effect::restitution);
+                call_if(combined.friction > 0, Effect::friction);
+                call_if(combined.rolling_friction > 0, Effect::rolling_friction);
+                call_if(combined.restitution > 0, Effect::restitution);
             }
     }
 
@@ -314,13 +315,13 @@ private:
     void find_rotation()
     {
         const auto turns = first_body([&](std::size_t body) { return can_be_turned(body); });
-        if (turns == kNobody) return;
+        if (turns == kNoBody) return;
         call(Effect::rotation, name(turns));
-        if (facts_.conditions.settings.gyroscopic == Gyroscopic::off) return;
+        if (facts_.context.settings.gyroscopic == Gyroscopic::off) return;
         const auto uneven = first_body([&](std::size_t body) {
-            return facts_.masses.spins_unevenly[body] != 0 && can_be_turned(body);
+            return facts_.masses.gyroscopic_kind[body] != 0 && can_be_turned(body);
         });
-        if (uneven != kNobody) call(Effect::gyroscopic, name(uneven));
+        if (uneven != kNoBody) call(Effect::gyroscopic, name(uneven));
     }
 
     const EffectFacts& facts_;

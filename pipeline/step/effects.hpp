@@ -24,17 +24,17 @@ struct Requests {
     }
 };
 
-struct Conditions;
+struct StepContext;
 struct PairFilter;
 
 /// Everything that decides about effects.
 struct EffectFacts {
-    const Conditions& conditions;
+    const StepContext& context;
     const BodyStates& states;
     const Poses& poses;
     const Velocities& velocities;
     const Masses& masses;
-    const Drives& drives;
+    const PrescribedVelocities& prescribed;
     const Forces& forces;
     const Shapes& shapes;
     const Colliders& colliders;

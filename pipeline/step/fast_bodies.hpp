@@ -9,21 +9,21 @@ namespace throng {
 
 /// Contacts are looked for this far from a resting surface, as a share of the shape's smallest half
 /// extent: far enough that a body at rest never loses its contacts to a breath.
-inline constexpr double kRestingReach = 0.04;
+inline constexpr double kRestingMargin = 0.04;
 
-/// A body is hurried once the reach of a collider is this share of its smallest half extent: half
-/// the extent in a step, and what it looks around at rest. Who is not cannot be fast in this step,
-/// nor, but for a blow, in the next one.
-inline constexpr double kHurriedReach = 0.5 + kRestingReach;
+/// A body is a fast candidate once the speculative margin of a collider is this share of its
+/// smallest half extent: half the extent in a step, and what it looks around at rest. Who is not
+/// cannot be fast in this step, nor, but for a blow, in the next one.
+inline constexpr double kFastCandidateMargin = 0.5 + kRestingMargin;
 
 /// Who goes further in a step than this many smallest half extents looks for no contacts ahead, nor
 /// does who is marked fast and is not at rest. Up to here those that it finds ahead hold it in all
 /// but rare cases.
 inline constexpr double kAheadOfContacts = 2;
 
-/// The reach of such a body, in tolerances of its time of impact: it is held within one. Any more
+/// The margin of such a body, in tolerances of its time of impact: it is held within one. Any more
 /// and what passes close by is turned aside.
-inline constexpr double kHeldReach = 2;
+inline constexpr double kHeldMargin = 2;
 
 /// Up to this angle a step, rad, contacts see turning well enough ahead: no point is further from
 /// the straight way that they take it for than 3 % of that.
@@ -50,14 +50,14 @@ inline bool strays(const Colliders& colliders, std::size_t at, double square)
     return inner > 0 && outer > inner && outer * square > 2 * kStrayed * inner;
 }
 
-/// Whether a body is hurried, of those that have colliders.
+/// Whether a body is a fast candidate, of those that have colliders.
 ///
 ///   falls   m, what gravity may add to its way in a step
-inline bool hurries(const Colliders& colliders,
-                    const Velocities& velocities,
-                    std::size_t body,
-                    double dt,
-                    double falls)
+inline bool is_fast_candidate(const Colliders& colliders,
+                              const Velocities& velocities,
+                              std::size_t body,
+                              double dt,
+                              double falls)
 {
     const double way = velocities.linear[body].norm() * dt;
     const double angle = velocities.angular[body].norm() * dt;
@@ -66,8 +66,9 @@ inline bool hurries(const Colliders& colliders,
         const double inner = colliders.inner_extent[at];
         // A surface has no inside to be passed by turning about itself.
         const double turning = inner > 0 ? way_of_turning(colliders, at, angle) : 0;
-        const double rest = std::max(kRestingReach * inner, falls);
-        if (rest + way + turning > kHurriedReach * inner && way + turning + falls > 0) return true;
+        const double rest = std::max(kRestingMargin * inner, falls);
+        if (rest + way + turning > kFastCandidateMargin * inner && way + turning + falls > 0)
+            return true;
         if (strays(colliders, at, angle * angle)) return true;
     }
     return false;

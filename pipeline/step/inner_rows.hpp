@@ -1,7 +1,7 @@
 // Inner rows: what runs within a stage, as explain prints it.
 #pragma once
 
-#include "pipeline/step/conditions.hpp"
+#include "pipeline/step/step_context.hpp"
 
 #include <span>
 #include <string_view>
@@ -20,6 +20,6 @@ struct InnerRow {
 /// islands within direct_limit; those beyond it go by soft_step's.
 std::span<const InnerRow> solve_table(const Settings& settings);
 /// The inner tables of back_up and of subdivide; empty for every other stage.
-std::span<const InnerRow> carry_table(std::string_view stage);
+std::span<const InnerRow> event_driven_table(std::string_view stage);
 
 }  // namespace throng

@@ -26,11 +26,11 @@ namespace detail {
 
 template <class T, class Tuple>
 struct PlaceIn;
-template <class T, class... Rest>
-struct PlaceIn<T, std::tuple<T, Rest...>> : std::integral_constant<unsigned, 0> { };
-template <class T, class First, class... Rest>
-struct PlaceIn<T, std::tuple<First, Rest...>>
-    : std::integral_constant<unsigned, 1 + PlaceIn<T, std::tuple<Rest...>>::value> { };
+template <class T, class... SleepEvents>
+struct PlaceIn<T, std::tuple<T, SleepEvents...>> : std::integral_constant<unsigned, 0> { };
+template <class T, class First, class... SleepEvents>
+struct PlaceIn<T, std::tuple<First, SleepEvents...>>
+    : std::integral_constant<unsigned, 1 + PlaceIn<T, std::tuple<SleepEvents...>>::value> { };
 
 }  // namespace detail
 

@@ -9,10 +9,10 @@
 namespace throng {
 
 /// Sets the velocities that the user drives.
-void drive_bodies(const Drives&, const BodyStates&, Velocities&);
+void prescribe_velocities(const PrescribedVelocities&, const BodyStates&, Velocities&);
 
 /// Boxes round the shapes of what moves: a body within its margin costs no more than a look.
-void update_bounds(const Conditions&,
+void update_bounds(const StepContext&,
                    const Shapes&,
                    const Colliders&,
                    const Poses&,
@@ -25,7 +25,7 @@ void find_pairs(const Bounds&, const Shapes&, const Colliders&, const PairFilter
 
 /// Pairs of convex shapes into contacts, impulses carried over.
 template <class Real>
-void collide_convex(const Conditions&,
+void collide_convex(const StepContext&,
                     const Pairs&,
                     const Shapes&,
                     const Colliders&,
@@ -37,7 +37,7 @@ void collide_convex(const Conditions&,
 
 /// Pairs with a solid: several contacts each, or what they had while they hardly moved.
 template <class Real>
-void collide_solids(const Conditions&,
+void collide_solids(const StepContext&,
                     const Pairs&,
                     const Shapes&,
                     const Colliders&,
@@ -48,7 +48,7 @@ void collide_solids(const Conditions&,
 
 /// Convex shapes against triangle meshes.
 template <class Real>
-void collide_meshes(const Conditions&,
+void collide_meshes(const StepContext&,
                     const Pairs&,
                     const Shapes&,
                     const Colliders&,
@@ -59,14 +59,14 @@ void collide_meshes(const Conditions&,
 
 /// Wakes whoever is touched by somebody awake, with all that fell asleep with it.
 template <class Real>
-void wake_touched(const Pairs&,
+void wake_islands(const Pairs&,
                   const Colliders&,
                   const Velocities&,
                   const ConvexContacts<Real>&,
                   const SolidContacts<Real>&,
-                  Beds&,
+                  SleepingIslands&,
                   BodyStates&,
-                  Rest&);
+                  SleepEvents&);
 
 /// Contacts with edges and sides of colliders that lie flush with one that bears the body end here.
 template <class Real>
@@ -96,85 +96,85 @@ void split_islands(
     const ActiveContacts&, const BodyStates&, const Forces&, IslandFinder&, Islands&);
 
 /// Stubborn islands by how stubborn they are: who gets more substeps, who the direct solver.
-void escalate_islands(const Conditions&, const Islands&, Stubborn&);
+void escalate_islands(const StepContext&, const Islands&, OverloadedIslands&);
 
 /// Islands into batches, slices, colors and blocks.
-void color_rows(const Conditions&,
-                const Islands&,
-                const Stubborn&,
-                const ActiveContacts&,
-                const BodyStates&,
-                const Poses&,
-                Painter&,
-                Layout&);
+void color_constraints(const StepContext&,
+                       const Islands&,
+                       const OverloadedIslands&,
+                       const ActiveContacts&,
+                       const BodyStates&,
+                       const Poses&,
+                       ConstraintGraph&,
+                       Layout&);
 
 /// Forces that stay as they are through the step into what they do to the velocities of bodies that
 /// touch something. Those that follow the bodies are asked in each substep; and who is in flight
 /// asks for itself, as often as its integrator does.
-void apply_forces(const Conditions&,
+void apply_forces(const StepContext&,
                   const Forces&,
-                  const Rest&,
+                  const SleepEvents&,
                   const Poses&,
                   const Velocities&,
                   const Masses&,
                   const BodyStates&,
-                  Pulls&);
+                  ExternalAcceleration&);
 
-/// Bodies into solver bodies, and room for the rows of their contacts.
+/// Bodies into solver bodies, and room for the constraints of their contacts.
 template <class Real>
-void prepare_rows(const Conditions&,
-                  const Layout&,
-                  const Poses&,
-                  const Velocities&,
-                  const Masses&,
-                  const BodyStates&,
-                  const Pulls&,
-                  const Drives&,
-                  Rows<Real>&);
+void prepare_constraints(const StepContext&,
+                         const Layout&,
+                         const Poses&,
+                         const Velocities&,
+                         const Masses&,
+                         const BodyStates&,
+                         const ExternalAcceleration&,
+                         const PrescribedVelocities&,
+                         ContactConstraints<Real>&);
 
-/// Contacts into rows, rows into impulses, velocities and poses. Substeps live here: see
-/// solve_table().
+/// Contacts into constraints, constraints into impulses, velocities and poses. Substeps live here:
+/// see solve_table().
 template <class Real>
-void solve_impulses(const Conditions&,
+void solve_impulses(const StepContext&,
                     const Islands&,
                     const Layout&,
                     const ActiveContacts&,
                     const Colliders&,
                     const Masses&,
                     const Forces&,
-                    const Pulls&,
-                    const Drives&,
-                    Rows<Real>&,
+                    const ExternalAcceleration&,
+                    const PrescribedVelocities&,
+                    ContactConstraints<Real>&,
                     ConvexContacts<Real>&,
                     MeshContacts<Real>&,
                     SolidContacts<Real>&,
                     Poses&,
                     Velocities&,
-                    Parting&,
-                    Stubborn&,
-                    Trouble&);
+                    SplitImpulse&,
+                    OverloadedIslands&,
+                    StepDiagnostics&);
 
 /// Dynamic bodies in place of all stages of contact, each with those that it may meet in this step:
 /// carried from touch to touch, so that none ever overlap (back_up), or by halves, where what would
 /// end in overlap is done again as two pieces, down to the least (subdivide).
-void carry_groups(const Conditions&,
-                  const Shapes&,
-                  const Surfaces&,
-                  const PairFilter&,
-                  const Colliders&,
-                  const BodyStates&,
-                  const Masses&,
-                  const Forces&,
-                  const Drives&,
-                  Poses&,
-                  Velocities&,
-                  Flights&,
-                  Islands&,
-                  CarriedContacts&,
-                  Trouble&);
+void step_event_driven(const StepContext&,
+                       const Shapes&,
+                       const Surfaces&,
+                       const PairFilter&,
+                       const Colliders&,
+                       const BodyStates&,
+                       const Masses&,
+                       const Forces&,
+                       const PrescribedVelocities&,
+                       Poses&,
+                       Velocities&,
+                       Flights&,
+                       Islands&,
+                       EventDrivenContacts&,
+                       StepDiagnostics&);
 
 /// Bodies that touch nothing: velocities into poses.
-void integrate_poses(const Conditions&,
+void integrate_poses(const StepContext&,
                      const Islands&,
                      const Masses&,
                      const BodyStates&,
@@ -182,40 +182,40 @@ void integrate_poses(const Conditions&,
                      Flights&,
                      Poses&,
                      Velocities&,
-                     Trouble&);
+                     StepDiagnostics&);
 
 /// Bodies that turned non-finite stand still from now on.
-void quarantine_bodies(Trouble&, BodyStates&, Masses&, Velocities&);
+void quarantine_bodies(StepDiagnostics&, BodyStates&, Masses&, Velocities&);
 
 /// Bodies that go so far in a step that they could pass through something: held where they first
 /// meet it, for the contacts of the next step.
 template <class Real>
-void sweep_fast(const Conditions&,
-                const Shapes&,
-                const Colliders&,
-                const Surfaces&,
-                const PairFilter&,
-                const Forces&,
-                const Masses&,
-                const Bounds&,
-                const Pairs&,
-                const BodyStates&,
-                const Rest&,
-                const ConvexContacts<Real>&,
-                const MeshContacts<Real>&,
-                Poses&,
-                Velocities&,
-                FastBodies&);
+void continuous_collision(const StepContext&,
+                          const Shapes&,
+                          const Colliders&,
+                          const Surfaces&,
+                          const PairFilter&,
+                          const Forces&,
+                          const Masses&,
+                          const Bounds&,
+                          const Pairs&,
+                          const BodyStates&,
+                          const SleepEvents&,
+                          const ConvexContacts<Real>&,
+                          const MeshContacts<Real>&,
+                          Poses&,
+                          Velocities&,
+                          FastBodies&);
 
 /// Islands that have been quiet long enough fall asleep.
-void rest_islands(const Conditions&,
-                  const Drives&,
-                  const Forces&,
-                  const Islands&,
-                  const Parting&,
-                  BodyStates&,
-                  Beds&,
-                  Velocities&,
-                  Rest&);
+void sleep_islands(const StepContext&,
+                   const PrescribedVelocities&,
+                   const Forces&,
+                   const Islands&,
+                   const SplitImpulse&,
+                   BodyStates&,
+                   SleepingIslands&,
+                   Velocities&,
+                   SleepEvents&);
 
 }  // namespace throng

@@ -5,15 +5,15 @@
 #include "broadphase/pair_filter.hpp"
 #include "kernels/data/bodies.hpp"
 #include "kernels/data/bounds.hpp"
+#include "kernels/data/contact_constraints.hpp"
 #include "kernels/data/contacts.hpp"
 #include "kernels/data/forces.hpp"
 #include "kernels/data/islands.hpp"
 #include "kernels/data/pairs.hpp"
-#include "kernels/data/rows.hpp"
 #include "kernels/solver/coloring.hpp"
 #include "kernels/solver/islands.hpp"
 #include "narrowphase/alternatives/method_contacts.hpp"
-#include "pipeline/step/conditions.hpp"
+#include "pipeline/step/step_context.hpp"
 
 #include <tuple>
 
@@ -23,7 +23,7 @@ namespace throng {
 inline constexpr int kMostPenaltyCuts = 1000;
 
 /// What a step has to tell of trouble.
-struct Trouble {
+struct StepDiagnostics {
     std::vector<std::uint32_t>
         quarantined;             // bodies that turned non-finite in this step, ascending
     double direct_residual = 0;  // greatest of the islands that were solved directly in this step
@@ -37,8 +37,9 @@ struct Trouble {
     BlockLists<std::uint32_t> of_block;  // scratch
 };
 
-/// Who is moved apart from what it was made deep in (see solvers/parting.hpp), from step to step.
-struct Parting {
+/// Who is moved apart from what it was made deep in (see solvers/split_impulse.hpp), from step to
+/// step.
+struct SplitImpulse {
     static constexpr std::uint16_t kPlaced = 0x4000;
 
     std::vector<std::uint16_t> steps;   // [bodies] for which it may go on, and kPlaced: see place()
@@ -64,7 +65,7 @@ struct Parting {
 ///   strained  bodies whose strain may be above 0
 ///   efforts   [islands] of this step; empty while nobody is stubborn
 ///   escalated, missed  islands of this step that were, and that the budget did not reach
-struct Stubborn {
+struct OverloadedIslands {
     std::vector<float> strain;
     std::vector<std::uint32_t> strained;
     std::vector<Effort> efforts;
@@ -80,8 +81,8 @@ struct Stubborn {
 };
 
 /// Who awoke and who fell asleep in this step.
-struct Rest {
-    std::vector<std::uint32_t> awoken, rested;
+struct SleepEvents {
+    std::vector<std::uint32_t> woke, fell_asleep;
 };
 
 /// Who was swept in this step, and who was held.
@@ -99,7 +100,7 @@ struct FastBodies {
 ///   touching  of those, that touched
 ///   points    of those
 ///   groups    of bodies of which some touched
-struct CarriedContacts {
+struct EventDrivenContacts {
     std::vector<Vec3> force;
     std::size_t pairs = 0, touching = 0, points = 0, groups = 0;
 };
@@ -110,17 +111,17 @@ struct Finder {
 };
 
 template <class Real>
-using StepData = std::tuple<Conditions,
+using StepData = std::tuple<StepContext,
                             Shapes,
                             Surfaces,
                             PairFilter,
-                            Drives,
+                            PrescribedVelocities,
                             Forces,
                             Poses,
                             Velocities,
                             Masses,
                             BodyStates,
-                            Beds,
+                            SleepingIslands,
                             Colliders,
                             Bounds,
                             Finder,
@@ -129,19 +130,19 @@ using StepData = std::tuple<Conditions,
                             MethodPairs,
                             MeshContacts<Real>,
                             SolidContacts<Real>,
-                            Pulls,
+                            ExternalAcceleration,
                             Flights,
                             ActiveContacts,
                             IslandFinder,
                             Islands,
-                            Stubborn,
-                            Painter,
+                            OverloadedIslands,
+                            ConstraintGraph,
                             Layout,
-                            Rows<Real>,
-                            Parting,
-                            CarriedContacts,
-                            Trouble,
-                            Rest,
+                            ContactConstraints<Real>,
+                            SplitImpulse,
+                            EventDrivenContacts,
+                            StepDiagnostics,
+                            SleepEvents,
                             FastBodies>;
 
 }  // namespace throng

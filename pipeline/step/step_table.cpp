@@ -11,27 +11,27 @@ using enum Effect;
 // clang-format off
 template <class Real>
 constexpr Stage<Real> kStep[] = {
-    stage<Real, drive_bodies>         ("drive_bodies",      {drive}),
-    stage<Real, update_bounds>        ("update_bounds",     {contact}),
-    stage<Real, find_pairs>           ("find_pairs",        {contact}),
-    stage<Real, collide_convex<Real>> ("collide_convex",    {contact}),
-    stage<Real, collide_solids<Real>> ("collide_solids",    kSolidContact),
-    stage<Real, wake_touched<Real>>   ("wake_touched",      {sleeping}),
-    stage<Real, collide_meshes<Real>> ("collide_meshes",    {mesh_contact}),
-    stage<Real, remove_ghost_contacts<Real>>("remove_ghost_contacts", {seams}),
-    stage<Real, gather_contacts<Real>>("gather_contacts",   {contact}),
-    stage<Real, split_islands>        ("split_islands",     {contact}),
-    stage<Real, escalate_islands>     ("escalate_islands",  {escalation}),
-    stage<Real, color_rows>           ("color_rows",        {contact}),
-    stage<Real, apply_forces>         ("apply_forces",      kForces),
-    stage<Real, prepare_rows<Real>>   ("prepare_rows",      {contact}),
-    stage<Real, solve_impulses<Real>> ("solve_impulses",    {contact}),
-    stage<Real, carry_groups>         ("back_up",           {no_overlap}),
-    stage<Real, carry_groups>         ("subdivide",         {little_overlap}),
-    stage<Real, integrate_poses>      ("integrate_poses",   {motion}),
-    stage<Real, quarantine_bodies>    ("quarantine_bodies", {motion}),
-    stage<Real, sweep_fast<Real>>     ("sweep_fast",        {fast_motion}),
-    stage<Real, rest_islands>         ("rest_islands",      {sleeping}),
+    stage<Real, prescribe_velocities>        ("prescribe_velocities",  {drive}),
+    stage<Real, update_bounds>               ("update_bounds",         {contact}),
+    stage<Real, find_pairs>                  ("find_pairs",            {contact}),
+    stage<Real, collide_convex<Real>>        ("collide_convex",        {contact}),
+    stage<Real, collide_solids<Real>>        ("collide_solids",        kSolidContact),
+    stage<Real, wake_islands<Real>>          ("wake_islands",          {sleeping}),
+    stage<Real, collide_meshes<Real>>        ("collide_meshes",        {mesh_contact}),
+    stage<Real, remove_ghost_contacts<Real>> ("remove_ghost_contacts", {seams}),
+    stage<Real, gather_contacts<Real>>       ("gather_contacts",       {contact}),
+    stage<Real, split_islands>               ("split_islands",         {contact}),
+    stage<Real, escalate_islands>            ("escalate_islands",      {escalation}),
+    stage<Real, color_constraints>           ("color_constraints",     {contact}),
+    stage<Real, apply_forces>                ("apply_forces",          kForces),
+    stage<Real, prepare_constraints<Real>>   ("prepare_constraints",   {contact}),
+    stage<Real, solve_impulses<Real>>        ("solve_impulses",        {contact}),
+    stage<Real, step_event_driven>           ("back_up",               {no_overlap}),
+    stage<Real, step_event_driven>           ("subdivide",             {little_overlap}),
+    stage<Real, integrate_poses>             ("integrate_poses",       {motion}),
+    stage<Real, quarantine_bodies>           ("quarantine_bodies",     {motion}),
+    stage<Real, continuous_collision<Real>>  ("continuous_collision",  {fast_motion}),
+    stage<Real, sleep_islands>               ("sleep_islands",         {sleeping}),
 };
 // clang-format on
 
@@ -42,8 +42,9 @@ constexpr DataSet data_sets = (DataSet{} | ... | data_set<Real, Kinds>);
 template <class Real>
 consteval bool reads_follow_writes()
 {
-    DataSet ready = data_sets<Real, Conditions, Shapes, Surfaces, PairFilter, Drives, Forces, Poses,
-                              Velocities, Masses, BodyStates, Colliders, Rest, Stubborn>;
+    DataSet ready =
+        data_sets<Real, StepContext, Shapes, Surfaces, PairFilter, PrescribedVelocities, Forces,
+                  Poses, Velocities, Masses, BodyStates, Colliders, SleepEvents, OverloadedIslands>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;

@@ -37,10 +37,10 @@ bool moves_by_itself(const WorldState& state, std::uint32_t body)
 // each place the velocity of half a substep before: beside the height of that time its energy stays
 // what it is, beside that of now it is less on the way down than on the way up, and whoever bounces
 // would seem to win by it.
-double lag_of(const Conditions& conditions)
+double lag_of(const StepContext& context)
 {
-    const bool kicked = falls_by_kicks(conditions.settings.integrator);
-    return kicked && !conditions.effects.meets(kCarried) ? conditions.substep() / 2 : 0;
+    const bool kicked = falls_by_kicks(context.settings.integrator);
+    return kicked && !context.effects.meets(kEventDriven) ? context.substep() / 2 : 0;
 }
 
 // W, the most that drag in the wind gives at a velocity between two.
@@ -117,7 +117,7 @@ void EnergyLedger::Inside::look(const World& world, Look& look) const
     const Velocities& velocities = state.get<Velocities>();
     const Forces& forces = state.get<Forces>();
     const Vec3 gravity = world.gravity();
-    const double lag = lag_of(state.get<Conditions>());
+    const double lag = lag_of(state.get<StepContext>());
     look.bodies.assign(states.kind.size(), {});
     for (std::uint32_t body = 0; body < look.bodies.size(); ++body) {
         if (!states.dynamic(body)) continue;
@@ -131,7 +131,7 @@ void EnergyLedger::Inside::look(const World& world, Look& look) const
             attraction_of(forces, masses, poses, body) - masses.mass[body] * gravity.dot(then);
         if (!forces.field) continue;
         const Wrench wrench =
-            forces.field({body, state.get<Conditions>().time, masses.mass[body],
+            forces.field({body, state.get<StepContext>().time, masses.mass[body],
                           Pose{of.place, poses.orientation[body]}, of.velocity, of.spin});
         of.power = wrench.force.dot(of.velocity) + wrench.torque.dot(of.spin);
     }
@@ -149,7 +149,7 @@ void EnergyLedger::Inside::join_groups(const World& world)
     sets_.reset(count);
     for (std::uint32_t body = 0; body < count; ++body) sets_.add(body);
     const auto join = [&](std::uint32_t a, std::uint32_t b) {
-        if (a != kNobody && b != kNobody && states.dynamic(a) && states.dynamic(b))
+        if (a != kNoBody && b != kNoBody && states.dynamic(a) && states.dynamic(b))
             sets_.join(a, b);
     };
     for (const auto& entry : state.get<ActiveContacts>().entries) join(entry.body_a, entry.body_b);
@@ -161,22 +161,22 @@ void EnergyLedger::Inside::mark_groups(const World& world)
     const WorldState& state = state_of(world);
     const BodyStates& states = state.get<BodyStates>();
     const auto mark = [&](std::uint32_t body) {
-        if (body != kNobody && states.dynamic(body)) groups_[sets_.find(body)].driven = true;
+        if (body != kNoBody && states.dynamic(body)) groups_[sets_.find(body)].driven = true;
     };
-    const auto meet = [&](std::uint32_t a, std::uint32_t b) {
-        if (a != kNobody && moves_by_itself(state, a)) mark(b);
-        if (b != kNobody && moves_by_itself(state, b)) mark(a);
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+        if (a != kNoBody && moves_by_itself(state, a)) mark(b);
+        if (b != kNoBody && moves_by_itself(state, b)) mark(a);
     };
-    for (const std::uint32_t body : state.get<Drives>().body) mark(body);
+    for (const std::uint32_t body : state.get<PrescribedVelocities>().body) mark(body);
     for (const auto& entry : state.get<ActiveContacts>().entries) {
-        meet(entry.body_a, entry.body_b);
+        join(entry.body_a, entry.body_b);
         for (const std::uint32_t body : {entry.body_a, entry.body_b})
             if (states.dynamic(body)) groups_[sets_.find(body)].touches = true;
     }
-    for (const SpringForce& spring : state.get<Forces>().springs) meet(spring.a, spring.b);
+    for (const SpringForce& spring : state.get<Forces>().springs) join(spring.a, spring.b);
     // Who touches whom is not kept where the step is cut at touches.
-    if (!state.get<Conditions>().effects.meets(kCarried)) return;
-    bool any = !state.get<Drives>().body.empty();
+    if (!state.get<StepContext>().effects.meets(kEventDriven)) return;
+    bool any = !state.get<PrescribedVelocities>().body.empty();
     for (std::uint32_t body = 0; body < states.kind.size(); ++body)
         any = any || moves_by_itself(state, body);
     for (OfGroup& group : groups_) {
@@ -219,9 +219,9 @@ void EnergyLedger::Inside::add_up(const World& world)
     }
     const std::vector<SpringForce>& springs = state.get<Forces>().springs;
     for (std::size_t i = 0; i < springs.size(); ++i) {
-        const bool on_a = springs[i].a != kNobody && state.get<BodyStates>().dynamic(springs[i].a);
+        const bool on_a = springs[i].a != kNoBody && state.get<BodyStates>().dynamic(springs[i].a);
         const std::uint32_t body = on_a ? springs[i].a : springs[i].b;
-        if (body == kNobody) continue;
+        if (body == kNoBody) continue;
         OfGroup& group = groups_[sets_.find(body)];
         group.before += before_.springs[i];
         group.after += after_.springs[i];

@@ -16,7 +16,7 @@ namespace {
 
 // At a place of lists that all have it or none.
 template <class... Lists>
-void make_room(std::uint32_t body, Lists&... lists)
+void grow_lists(std::uint32_t body, Lists&... lists)
 {
     const auto one = [&](auto& list, auto none) {
         if (list.size() <= body) list.resize(body + std::size_t{1}, none);
@@ -24,7 +24,7 @@ void make_room(std::uint32_t body, Lists&... lists)
     (one(lists, typename Lists::value_type(Lists::value_type::Zero())), ...);
 }
 
-void make_room(std::uint32_t body, std::vector<double>& a, std::vector<double>& b)
+void grow_lists(std::uint32_t body, std::vector<double>& a, std::vector<double>& b)
 {
     for (auto* const list : {&a, &b})
         if (list->size() <= body) list->resize(body + std::size_t{1}, 0.0);
@@ -37,7 +37,7 @@ void sort_springs(const BodyStates& states, Forces& forces)
     const std::size_t bodies = states.kind.size();
     forces.first_spring.assign(bodies + 1, 0);
     const auto count = [&](std::uint32_t body) {
-        if (body != kNobody) ++forces.first_spring[body + 1];
+        if (body != kNoBody) ++forces.first_spring[body + 1];
     };
     for (const SpringForce& spring : forces.springs) {
         count(spring.a);
@@ -51,16 +51,16 @@ void sort_springs(const BodyStates& states, Forces& forces)
     for (std::uint32_t i = 0; i < forces.springs.size(); ++i) {
         const SpringForce& spring = forces.springs[i];
         for (const std::uint32_t body : {spring.a, spring.b}) {
-            if (body == kNobody) continue;
+            if (body == kNoBody) continue;
             forces.spring_of[next[body]++] = i;
             if (states.dynamic(body)) sets.add(body);
         }
-        if (spring.a != kNobody && spring.b != kNobody && states.dynamic(spring.a)
+        if (spring.a != kNoBody && spring.b != kNoBody && states.dynamic(spring.a)
             && states.dynamic(spring.b))
             sets.join(spring.a, spring.b);
     }
     forces.groups.clear();
-    forces.group_of.assign(bodies, kNobody);
+    forces.group_of.assign(bodies, kNoBody);
     for (std::uint32_t body = 0; body < bodies; ++body) {
         if (!sets.holds(body)) continue;
         const std::uint32_t first = sets.find(body);
@@ -96,20 +96,20 @@ void state_forces(std::uint32_t body,
                   Forces& forces)
 {
     if (!stated.force.isZero(0) || !stated.torque.isZero(0)) {
-        make_room(body, forces.force, forces.torque);
+        grow_lists(body, forces.force, forces.torque);
         forces.force[body] = stated.force;
         forces.torque[body] = stated.torque;
     }
     if (stated.linear_drag != 0 || stated.angular_drag != 0) {
-        make_room(body, forces.linear_drag, forces.angular_drag);
+        grow_lists(body, forces.linear_drag, forces.angular_drag);
         forces.linear_drag[body] = stated.linear_drag;
         forces.angular_drag[body] = stated.angular_drag;
     }
     if (stated.pivot) {
-        make_room(body, forces.hang);
-        forces.hangs.resize(forces.hang.size(), 0);
-        forces.hang[body] = center - *stated.pivot;
-        forces.hangs[body] = 1;
+        grow_lists(body, forces.pivot_to_center);
+        forces.has_pivot.resize(forces.pivot_to_center.size(), 0);
+        forces.pivot_to_center[body] = center - *stated.pivot;
+        forces.has_pivot[body] = 1;
     }
 }
 
@@ -119,15 +119,15 @@ void join_springs(std::span<const Spring> springs,
                   const BodyStates& states,
                   Forces& forces)
 {
-    const auto id = [&](std::uint32_t end) { return end == kNone ? kNobody : ids[end]; };
-    const auto lever = [&](std::uint32_t body, const Vec3& at) {
-        return body == kNobody ? at : Vec3(at - center[body] - forces.hang_of(body));
+    const auto id = [&](std::uint32_t end) { return end == kNone ? kNoBody : ids[end]; };
+    const auto lever_arm = [&](std::uint32_t body, const Vec3& at) {
+        return body == kNoBody ? at : Vec3(at - center[body] - forces.pivot_to_center_of(body));
     };
     for (const Spring& stated : springs) {
         SpringForce spring{id(stated.a),     id(stated.b),   {},           {},
                            stated.stiffness, stated.damping, stated.length};
-        spring.at_a = lever(spring.a, stated.at_a);
-        spring.at_b = lever(spring.b, stated.at_b);
+        spring.at_a = lever_arm(spring.a, stated.at_a);
+        spring.at_b = lever_arm(spring.b, stated.at_b);
         forces.springs.push_back(spring);
     }
     if (!forces.springs.empty()) sort_springs(states, forces);
@@ -137,14 +137,14 @@ void drop_forces(std::span<const std::uint8_t> going, const BodyStates& states, 
 {
     for (std::uint32_t body = 0; body < going.size(); ++body) {
         if (going[body] == 0) continue;
-        for (auto* const list : {&forces.force, &forces.torque, &forces.hang})
+        for (auto* const list : {&forces.force, &forces.torque, &forces.pivot_to_center})
             if (body < list->size()) (*list)[body].setZero();
-        if (body < forces.hangs.size()) forces.hangs[body] = 0;
+        if (body < forces.has_pivot.size()) forces.has_pivot[body] = 0;
         for (auto* const list : {&forces.linear_drag, &forces.angular_drag})
             if (body < list->size()) (*list)[body] = 0;
     }
     if (forces.springs.empty()) return;
-    const auto goes = [&](std::uint32_t body) { return body != kNobody && going[body] != 0; };
+    const auto goes = [&](std::uint32_t body) { return body != kNoBody && going[body] != 0; };
     std::erase_if(forces.springs,
                   [&](const SpringForce& spring) { return goes(spring.a) || goes(spring.b); });
     sort_springs(states, forces);
@@ -153,7 +153,7 @@ void drop_forces(std::span<const std::uint8_t> going, const BodyStates& states, 
 std::vector<std::string>
 unstable_springs(const Forces& forces, const Masses& masses, const Settings& settings)
 {
-    // Then they go by a rule that bears any step: see pipeline/forces/following_forces.hpp.
+    // Then they go by a rule that bears any step: see pipeline/forces/state_dependent_forces.hpp.
     if (bears_stiff_springs(settings.integrator) && settings.response != Response::penalty)
         return {};
     const IntegratorRow& integrator = chosen(settings.integrator, true);

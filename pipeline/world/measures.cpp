@@ -31,9 +31,10 @@ double mesh_depth(const Shapes& shapes, ShapeRef mesh, ShapeRef other, const Pos
     std::vector<TriangleManifold<double>> found;
     collide_mesh<double>(shapes, mesh, other, other_in_mesh, 0.0, found);
     double depth = 0;
-    for (const auto& touch : found)
-        for (int k = 0; k < touch.manifold.count; ++k)
-            depth = std::max(depth, -touch.manifold.points[static_cast<std::size_t>(k)].separation);
+    for (const auto& on_triangle : found)
+        for (int k = 0; k < on_triangle.manifold.count; ++k)
+            depth = std::max(depth,
+                             -on_triangle.manifold.points[static_cast<std::size_t>(k)].separation);
     return depth;
 }
 
@@ -60,7 +61,7 @@ void measure_overlaps(const WorldState& state, Measures& measures)
     std::vector<std::uint32_t> asked;
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t body = colliders.body[i];
-        if (body == kNobody) continue;
+        if (body == kNoBody) continue;
         placed[i] = state.get<Poses>().at(body) * colliders.local[i];
         boxes[i] = shape_bounds(shapes, colliders.shape[i], placed[i]);
         moving[i] = states.dynamic(body) ? 1 : 0;
@@ -80,8 +81,9 @@ void measure_overlaps(const WorldState& state, Measures& measures)
             const Pose b_in_a = pose_seen_from_a(shapes, shape_b, placed[a], placed[b]);
             depth[i] = shape_a.kind == ShapeKind::solid
                 ? solid_depth(shapes, shape_a, shape_b, b_in_a)
-                : shape_a.kind == ShapeKind::mesh ? mesh_depth(shapes, shape_a, shape_b, b_in_a)
-                                                  : overlap_depth(shapes, shape_a, shape_b, b_in_a);
+                : shape_a.kind == ShapeKind::mesh
+                ? mesh_depth(shapes, shape_a, shape_b, b_in_a)
+                : penetration_depth(shapes, shape_a, shape_b, b_in_a);
         }
     });
     double sum = 0;
@@ -133,19 +135,19 @@ std::string World::state_hash() const
     };
     for (std::size_t body = 0; body < states.kind.size(); ++body) {
         hash.add(std::uint64_t{static_cast<std::uint8_t>(states.kind[body])});
-        if (states.kind[body] == BodyKind::gone) continue;
+        if (states.kind[body] == BodyKind::removed) continue;
         add3(poses.position[body]);
         for (int k = 0; k < 4; ++k) hash.add(poses.orientation[body].coeffs()[k]);
         add3(velocities.linear[body]);
         add3(velocities.angular[body]);
         hash.add(std::uint64_t{states.awake[body]});
-        hash.add(states.quiet_time[body]);
+        hash.add(states.sleep_time[body]);
     }
-    const Stubborn& stubborn = state_->get<Stubborn>();
-    for (const std::uint32_t body : stubborn.strained) {
-        if (!is_stubborn(stubborn.of(body))) continue;
+    const OverloadedIslands& overloaded = state_->get<OverloadedIslands>();
+    for (const std::uint32_t body : overloaded.strained) {
+        if (!is_overloaded(overloaded.of(body))) continue;
         hash.add(std::uint64_t{body});
-        hash.add(stubborn.of(body));
+        hash.add(overloaded.of(body));
     }
     const auto add_contact = [&](std::uint64_t key, const auto& contact) {
         if (contact.count == 0) return;
@@ -156,7 +158,7 @@ std::string World::state_hash() const
             hash.add(point.impulse);
         }
         add3(contact.friction);
-        hash.add(contact.twist);
+        hash.add(contact.torsional_impulse);
         add3(contact.rolling);
     };
     const auto kind_of = [&](std::uint32_t collider) {
@@ -164,7 +166,7 @@ std::string World::state_hash() const
     };
     // What a contact will be told from as long as its pair hardly moves.
     const auto add_found = [&](const auto& found) {
-        hash.add(found.reach);
+        hash.add(found.speculative_margin);
         add3(found.b_in_a.position);
         for (int k = 0; k < 4; ++k) hash.add(found.b_in_a.orientation.coeffs()[k]);
         add3(found.manifold.normal);
@@ -209,8 +211,8 @@ std::string World::state_hash() const
             add_many(solids);
             for (const auto& found : solids.found.pairs)
                 for (std::uint32_t k = 0; k < found.count; ++k)
-                    add_found(FoundManifold<double>{solids.found.patches[found.first + k].manifold,
-                                                    found.b_in_a, found.reach});
+                    add_found(CachedManifold<double>{solids.found.patches[found.first + k].manifold,
+                                                     found.b_in_a, found.speculative_margin});
         },
         state_->step);
     return hash.text();
@@ -230,10 +232,10 @@ std::size_t World::memory_bytes() const
     const Shapes& shapes = state_->get<Shapes>();
     std::size_t sum =
         bytes(p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass, m.inertia,
-              m.inverse_inertia, s.kind, s.awake, s.quiet_time, s.bed, c.body, c.shape, c.local,
-              c.material, c.inner_extent, c.outer_radius, b.boxes, b.reach, b.placed, b.near,
-              b.half[0], b.half[1], b.half[2], b.round, b.form, b.flags, shapes.boxes,
-              shapes.spheres, state_->center, state_->names, state_->generation);
+              m.inverse_inertia, s.kind, s.awake, s.sleep_time, s.sleeping_island, c.body, c.shape,
+              c.local, c.material, c.inner_extent, c.outer_radius, b.boxes, b.speculative_margin,
+              b.placed, b.near, b.half[0], b.half[1], b.half[2], b.round, b.form, b.flags,
+              shapes.boxes, shapes.spheres, state_->center, state_->names, state_->generation);
     std::visit(
         [&](const auto& chosen) {
             using Real =
@@ -241,16 +243,17 @@ std::size_t World::memory_bytes() const
                                    float, double>;
             const Pairs& pairs = std::get<Pairs>(chosen.data);
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
-            const auto& rows = std::get<Rows<Real>>(chosen.data);
+            const auto& constraints = std::get<ContactConstraints<Real>>(chosen.data);
             const auto& methods = std::get<MethodPairs>(chosen.data);
             sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.asked, convex.of_pair,
                          convex.contacts, convex.free, convex.astray, convex.gathered, convex.order,
                          convex.found, convex.found_gathered, convex.apart_until,
                          convex.travels.placed, convex.travels.traveled, convex.travels.approach,
                          methods.of_pair, methods.bounds, methods.fallbacks,
-                         std::get<ActiveContacts>(chosen.data).entries, rows.blocks, rows.points,
-                         rows.bounces, rows.rollings, rows.carries, rows.drives, rows.bodies,
-                         rows.inertias);
+                         std::get<ActiveContacts>(chosen.data).entries, constraints.blocks,
+                         constraints.points, constraints.restitutions,
+                         constraints.rolling_frictions, constraints.surface_velocities,
+                         constraints.prescribed, constraints.bodies, constraints.inertias);
         },
         state_->step);
     return sum;

@@ -60,14 +60,14 @@ Sym3 scaled(const Sym3& m, double by)
 // What an impulse turns. Of a needle, the ease of turning about its length is cut to `most` times
 // that of turning across: in world axes the two stand side by side in numbers of one precision, and
 // what rounding takes from the greater must not drown the lesser.
-Sym3 turning_ease(const Sym3& inertia, double most)
+Sym3 turning_inverse_mass(const Sym3& inertia, double most)
 {
     const Mat3 inverse = inertia.matrix().inverse();
     if (inverse.trace() * inertia.matrix().trace() < most) return Sym3::from(inverse);
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia.matrix());
     const Vec3 moments = solver.eigenvalues();  // ascending
-    const Vec3 ease = moments.cwiseMax(moments[2] / most).cwiseInverse();
-    return Sym3::from(solver.eigenvectors() * ease.asDiagonal()
+    const Vec3 inverse_mass = moments.cwiseMax(moments[2] / most).cwiseInverse();
+    return Sym3::from(solver.eigenvectors() * inverse_mass.asDiagonal()
                       * solver.eigenvectors().transpose());
 }
 
@@ -103,13 +103,13 @@ void SceneBuilder::add_materials(const Scene& scene)
     for (const Material& material : scene.materials) add_one(material, material.name);
     default_material_ = static_cast<std::uint32_t>(surfaces.friction.size());
     add_one(Material{}, "(default)");
-    for (const MaterialPair& pair : scene.pairs) {
+    for (const MaterialPairDescription& pair : scene.pairs) {
         const std::uint32_t a = first_material_ + std::min(pair.a, pair.b);
         const std::uint32_t b = first_material_ + std::max(pair.a, pair.b);
-        Surfaces::Meeting meeting = surfaces.between(a, b);
-        meeting.friction = pair.friction.value_or(meeting.friction);
-        meeting.restitution = pair.restitution.value_or(meeting.restitution);
-        surfaces.overrides.push_back({a, b, meeting});
+        Surfaces::MaterialPair combined = surfaces.between(a, b);
+        combined.friction = pair.friction.value_or(combined.friction);
+        combined.restitution = pair.restitution.value_or(combined.restitution);
+        surfaces.overrides.push_back({a, b, combined});
     }
     std::stable_sort(
         surfaces.overrides.begin(), surfaces.overrides.end(),
@@ -164,10 +164,10 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
         }
         PlacedShape operator()(const MeshShape& s) const
         {
-            MendedMesh result = mend_still(s.vertices, s.triangles);
+            RepairedMesh result = mend_still(s.vertices, s.triangles);
             if (!result.trouble.empty()) refuse_mesh(name, result.trouble);
-            for (const std::string& remark : result.remarks)
-                builder.state_.remarks.push_back("shape " + name + ": " + remark);
+            for (const std::string& warning : result.warnings)
+                builder.state_.warnings.push_back("shape " + name + ": " + warning);
             return single(append(shapes.meshes, ShapeKind::mesh, std::move(result.mesh)));
         }
         PlacedShape operator()(const VoxelsShape& s) const { return builder.add_solid(name, s); }
@@ -195,7 +195,7 @@ SceneBuilder::add_solid(const Scene& scene, const std::string& name, const MeshS
 {
     MadeSolid made;
     state_.pool.run([&](std::size_t, std::size_t, std::size_t) {
-        made = make_solid(mesh, state_.get<Conditions>().settings, scene.cache_folder);
+        made = make_solid(mesh, state_.get<StepContext>().settings, scene.cache_folder);
     });
     return add_made(name, std::move(made));
 }
@@ -212,7 +212,7 @@ PlacedShape SceneBuilder::add_made(const std::string& name, MadeSolid made)
 {
     const std::string who = "shape " + name + ": ";
     if (!made.trouble.empty()) refuse_mesh(name, made.trouble);
-    for (const std::string& remark : made.remarks) state_.remarks.push_back(who + remark);
+    for (const std::string& warning : made.warnings) state_.warnings.push_back(who + warning);
     state_.solids.push_back(name + ": " + made.summary);
     PlacedShape placed;
     placed.mass = made.mass;
@@ -291,7 +291,7 @@ void SceneBuilder::weigh(std::uint32_t body,
     put(masses.inverse_mass, body, 0.0);
     put(masses.inertia, body, Sym3{});
     put(masses.inverse_inertia, body, Sym3{});
-    put(masses.spins_unevenly, body, std::uint8_t{0});
+    put(masses.gyroscopic_kind, body, std::uint8_t{0});
     put(masses.symmetry_axis, body, Vec3(Vec3::Zero()));
     const Vec3 natural = shape == nullptr ? Vec3(Vec3::Zero()) : shape->mass.center;
     put(state_.center, body, stated.center.value_or(natural));
@@ -323,9 +323,9 @@ void SceneBuilder::weigh(std::uint32_t body,
     const Sym3& inertia = masses.inertia[body];
     if (inertia.has_products()) put(masses.principal, body, principal_inertia(inertia));
     if (stated.lock_rotation || inertia == Sym3{}) return;
-    const bool in_double = state_.get<Conditions>().settings.precision == Precision::double_;
-    masses.inverse_inertia[body] = turning_ease(inertia, in_double ? 1e14 : 1e6);
-    masses.spins_unevenly[body] = !uneven(inertia) ? 0 : inertia.has_products() ? 2 : 1;
+    const bool in_double = state_.get<StepContext>().settings.precision == Precision::double_;
+    masses.inverse_inertia[body] = turning_inverse_mass(inertia, in_double ? 1e14 : 1e6);
+    masses.gyroscopic_kind[body] = !uneven(inertia) ? 0 : inertia.has_products() ? 2 : 1;
     if (uneven(inertia)) masses.symmetry_axis[body] = symmetry_axis_of(masses.principal_of(body));
 }
 
@@ -355,32 +355,32 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     BodyStates& states = state_.get<BodyStates>();
     const bool moves = stated.motion != Motion::static_;
     put(states.kind, body,
-        !moves                                 ? BodyKind::still
+        !moves                                 ? BodyKind::static_
             : stated.motion == Motion::dynamic ? BodyKind::dynamic
                                                : BodyKind::kinematic);
     put(states.awake, body, std::uint8_t{moves});
     put(states.quarantined, body, std::uint8_t{0});
-    put(states.quiet_time, body, 0.0);
-    put(states.bed, body, kNobody);
+    put(states.sleep_time, body, 0.0);
+    put(states.sleeping_island, body, kNoBody);
     put(state_.motion, body, stated.motion);
     if (!stated.name.empty()) put(state_.names, body, stated.name);
 
-    Drives& drives = state_.get<Drives>();
+    PrescribedVelocities& prescribed = state_.get<PrescribedVelocities>();
     const auto& drive = stated.drive_velocity;
     const Vec3 surface(drive[0].value_or(0), drive[1].value_or(0), drive[2].value_or(0));
-    put(states.conveys, body, std::uint8_t{!moves && !surface.isZero(0)});
+    put(states.is_conveyor, body, std::uint8_t{!moves && !surface.isZero(0)});
     put(states.fast, body, std::uint8_t{moves && stated.fast});
     if (!moves) velocities.linear[body] = surface;
     if (drive[0] || drive[1] || drive[2]) {
         const double free = std::nan("");
-        const auto at = std::lower_bound(drives.body.begin(), drives.body.end(), body);
-        drives.velocity.insert(
-            drives.velocity.begin() + (at - drives.body.begin()),
+        const auto at = std::lower_bound(prescribed.body.begin(), prescribed.body.end(), body);
+        prescribed.velocity.insert(
+            prescribed.velocity.begin() + (at - prescribed.body.begin()),
             {drive[0].value_or(free), drive[1].value_or(free), drive[2].value_or(free)});
-        drives.body.insert(at, body);
+        prescribed.body.insert(at, body);
     }
     note_requests(body, stated);
-    state_.touch(body);
+    state_.mark_changed(body);
     ++state_.alive;
     return {body, state_.generation[body]};
 }
@@ -414,7 +414,7 @@ ShapeRef SceneBuilder::sized(ShapeKind kind, const double* sizes)
 
 // Room for what a scene adds, and not for half as much again. A world that is added to again and
 // again doubles it as any list does.
-void SceneBuilder::make_room(std::size_t bodies)
+void SceneBuilder::grow_lists(std::size_t bodies)
 {
     const auto reserve = [](std::size_t count, auto&... lists) {
         const auto one = [&](auto& list) {
@@ -427,9 +427,9 @@ void SceneBuilder::make_room(std::size_t bodies)
     Masses& m = state_.get<Masses>();
     BodyStates& s = state_.get<BodyStates>();
     reserve(bodies, p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass,
-            m.inertia, m.inverse_inertia, m.spins_unevenly, m.symmetry_axis, s.kind, s.awake,
-            s.quarantined, s.quiet_time, s.bed, s.radius, s.conveys, s.fast, s.movers.dynamic,
-            state_.center, state_.generation, state_.motion);
+            m.inertia, m.inverse_inertia, m.gyroscopic_kind, m.symmetry_axis, s.kind, s.awake,
+            s.quarantined, s.sleep_time, s.sleeping_island, s.radius, s.is_conveyor, s.fast,
+            s.active_bodies.dynamic, state_.center, state_.generation, state_.motion);
     // Most bodies have one collider.
     Colliders& c = state_.get<Colliders>();
     PairFilter& filter = state_.get<PairFilter>();
@@ -451,7 +451,7 @@ void SceneBuilder::add_forces(const Scene& scene, std::span<const BodyId> ids)
 
 std::vector<BodyId> SceneBuilder::add(const Scene& scene)
 {
-    make_room(scene.body_count());
+    grow_lists(scene.body_count());
     add_materials(scene);
     shapes_.reserve(scene.shapes.size());
     moving_.resize(scene.shapes.size());

@@ -15,7 +15,7 @@ bool SceneFields::add(const Scene& scene, std::span<const std::uint32_t> bodies,
     const auto place = static_cast<std::uint32_t>(fields_.size());
     fields_.push_back(std::move(field));
     for (const std::uint32_t body : bodies) {
-        if (field_of_.size() <= body) field_of_.resize(body + std::size_t{1}, kNobody);
+        if (field_of_.size() <= body) field_of_.resize(body + std::size_t{1}, kNoBody);
         field_of_[body] = place;
     }
     gather(forces);
@@ -26,10 +26,10 @@ bool SceneFields::remove(std::span<const std::uint8_t> going, Forces& forces)
 {
     bool changed = false;
     for (std::uint32_t body = 0; body < std::min(going.size(), field_of_.size()); ++body) {
-        if (going[body] == 0 || field_of_[body] == kNobody) continue;
+        if (going[body] == 0 || field_of_[body] == kNoBody) continue;
         Field& field = fields_[field_of_[body]];
         // Its place may be another scene's next.
-        field_of_[body] = kNobody;
+        field_of_[body] = kNoBody;
         if (--field.bodies > 0) continue;
         field = {};
         changed = true;

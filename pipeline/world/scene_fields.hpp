@@ -29,7 +29,7 @@ private:
     void gather(Forces& forces) const;
 
     std::vector<Field> fields_;            // empty ones are gone
-    std::vector<std::uint32_t> field_of_;  // [bodies] kNobody: no field; may be shorter
+    std::vector<std::uint32_t> field_of_;  // [bodies] kNoBody: no field; may be shorter
 };
 
 }  // namespace throng

@@ -1,7 +1,7 @@
 #include "throng/world.hpp"
 
 #include "broadphase/margins.hpp"
-#include "kernels/solver/contact_rows.hpp"
+#include "kernels/solver/contact_packing.hpp"
 #include "kernels/solver/direct/direct.hpp"
 #include "pipeline/solvers/escalation.hpp"
 #include "pipeline/solvers/solve_batch.hpp"
@@ -34,10 +34,10 @@ template <class Real>
 Vec3 impacts_on(std::uint32_t body,
                 const Layout& layout,
                 const ActiveContacts& active,
-                const Rows<Real>& rows)
+                const ContactConstraints<Real>& constraints)
 {
     Vec3 impulse = Vec3::Zero();
-    if (rows.bounces.empty()) return impulse;
+    if (constraints.restitutions.empty()) return impulse;
     for (const Batch& batch : layout.batches) {
         if (batch.direct) continue;
         const Slice &first = layout.slices[batch.first_slice],
@@ -46,8 +46,9 @@ Vec3 impacts_on(std::uint32_t body,
             const auto& entry = active.entries[layout.contacts[i]];
             if (entry.body_a != body && entry.body_b != body) continue;
             const std::size_t lane = layout.lane[i];
-            const Vec3 on_b = impact_impulse(rows, lane / kBlock, static_cast<int>(lane % kBlock))
-                                  .template cast<double>();
+            const Vec3 on_b =
+                impact_impulse(constraints, lane / kBlock, static_cast<int>(lane % kBlock))
+                    .template cast<double>();
             impulse += entry.body_b == body ? on_b : Vec3(-on_b);
         }
     }
@@ -62,13 +63,13 @@ WorldState::WorldState(const Settings& settings, int thread_count) : pool(thread
     // Throws here and not in a step where the environment asks for lanes that cannot be had.
     solve_kernels<float>();
     if (settings.precision == Precision::double_) step.emplace<Step<double>>();
-    get<Conditions>().settings = settings;
+    get<StepContext>().settings = settings;
 }
 
 std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
 {
     if (body.index < generation.size() && generation[body.index] == body.generation
-        && get<BodyStates>().kind[body.index] != BodyKind::gone)
+        && get<BodyStates>().kind[body.index] != BodyKind::removed)
         return body.index;
     throw std::invalid_argument(std::string(caller) + ": body " + std::to_string(body.index)
                                 + " was removed or never was; give one that is alive");
@@ -76,7 +77,7 @@ std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
 
 void WorldState::choose_broad_phase()
 {
-    const BroadPhase asked = get<Conditions>().settings.broadphase;
+    const BroadPhase asked = get<StepContext>().settings.broadphase;
     const Colliders& colliders = get<Colliders>();
     const auto kind = [&] {
         switch (asked) {
@@ -96,11 +97,11 @@ void WorldState::choose_broad_phase()
         const BodyStates& states = get<BodyStates>();
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const std::uint32_t body = colliders.body[i];
-            if (body == kNobody) continue;
+            if (body == kNoBody) continue;
             const Vec3 middle = (get<Poses>().at(body) * colliders.local[i]).position;
             boxes[i] = {middle.array() - colliders.outer_radius[i],
                         middle.array() + colliders.outer_radius[i]};
-            moving[i] = states.kind[body] != BodyKind::still ? 1 : 0;
+            moving[i] = states.kind[body] != BodyKind::static_ ? 1 : 0;
         }
         return choose_finder(boxes, moving);
     }();
@@ -115,22 +116,22 @@ void WorldState::choose_broad_phase()
 
 bool WorldState::nothing_to_do() const
 {
-    const Conditions& conditions = get<Conditions>();
-    return idle && !effects_stale && !movers_stale && get<Bounds>().touched.empty()
-        && conditions.last_substep == conditions.substep();
+    const StepContext& context = get<StepContext>();
+    return idle && !effects_stale && !active_bodies_stale && get<Bounds>().touched.empty()
+        && context.last_substep == context.substep();
 }
 
 void WorldState::follow_stubborn()
 {
-    Stubborn& stubborn = get<Stubborn>();
-    report.islands_escalated += stubborn.escalated;
-    report.escalation_missed += stubborn.missed;
-    stubborn.escalated = stubborn.missed = 0;
-    for (const std::uint32_t body : get<Rest>().rested) stubborn.forget(body);
-    std::uint32_t first = kNobody;
-    for (const std::uint32_t body : stubborn.strained)
-        if (is_stubborn(stubborn.of(body))) first = std::min(first, body);
-    const bool any = first != kNobody;
+    OverloadedIslands& overloaded = get<OverloadedIslands>();
+    report.islands_escalated += overloaded.escalated;
+    report.escalation_missed += overloaded.missed;
+    overloaded.escalated = overloaded.missed = 0;
+    for (const std::uint32_t body : get<SleepEvents>().fell_asleep) overloaded.forget(body);
+    std::uint32_t first = kNoBody;
+    for (const std::uint32_t body : overloaded.strained)
+        if (is_overloaded(overloaded.of(body))) first = std::min(first, body);
+    const bool any = first != kNoBody;
     if (any == effects.on.has(Effect::escalation)) return;
     requests.first[static_cast<std::size_t>(Effect::escalation)].clear();
     if (any) requests.ask(Effect::escalation, called(first));
@@ -146,23 +147,24 @@ std::string WorldState::called(std::uint32_t body) const
 void WorldState::follow_step()
 {
     follow_stubborn();
-    Trouble& trouble = get<Trouble>();
-    Rest& rest = get<Rest>();
-    if (!trouble.quarantined.empty() || !rest.awoken.empty() || !rest.rested.empty())
-        follow_movers(rest.awoken, get<BodyStates>());
-    const Movers& movers = get<BodyStates>().movers;
-    get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size(), movers.dynamic.size());
+    StepDiagnostics& diagnostics = get<StepDiagnostics>();
+    SleepEvents& sleep_events = get<SleepEvents>();
+    if (!diagnostics.quarantined.empty() || !sleep_events.woke.empty()
+        || !sleep_events.fell_asleep.empty())
+        update_active_bodies(sleep_events.woke, get<BodyStates>());
+    const ActiveBodies& active_bodies = get<BodyStates>().active_bodies;
+    get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size(), active_bodies.dynamic.size());
     // A body that has become fast calls for what looks after it from the next step on.
-    if (const std::uint32_t hurried = get<Bounds>().hurried;
-        hurried != kNobody && !effects.on.has(Effect::fast_motion)) {
-        requests.ask(Effect::fast_motion, called(hurried));
+    if (const std::uint32_t fast_candidate = get<Bounds>().fast_candidate;
+        fast_candidate != kNoBody && !effects.on.has(Effect::fast_motion)) {
+        requests.ask(Effect::fast_motion, called(fast_candidate));
         effects_stale = true;
     }
-    if (trouble.quarantined.empty()) return;
-    report.bodies_quarantined += trouble.quarantined.size();
-    for (const std::uint32_t body : trouble.quarantined) touch(body);
+    if (diagnostics.quarantined.empty()) return;
+    report.bodies_quarantined += diagnostics.quarantined.size();
+    for (const std::uint32_t body : diagnostics.quarantined) mark_changed(body);
     effects_stale = true;
-    trouble.quarantined.clear();
+    diagnostics.quarantined.clear();
 }
 
 void WorldState::report_state()
@@ -176,13 +178,13 @@ void WorldState::report_state()
     report.colors = 0;
     for (const Slice& slice : get<Layout>().slices)
         report.colors = std::max<std::size_t>(report.colors, slice.colors);
-    const Settings& settings = get<Conditions>().settings;
+    const Settings& settings = get<StepContext>().settings;
     const bool relaxes =
         settings.solver == Solver::soft_step && settings.response == Response::impulse;
-    report.relax_visits = relaxes ? mean_relax_visits(settings, get<Layout>()) : 0;
-    report.bodies_awake = get<BodyStates>().movers.dynamic.size();
-    if (!effects.on.meets(kCarried)) return;
-    const CarriedContacts& carried = get<CarriedContacts>();
+    report.relax_iterations = relaxes ? mean_relax_iterations(settings, get<Layout>()) : 0;
+    report.bodies_awake = get<BodyStates>().active_bodies.dynamic.size();
+    if (!effects.on.meets(kEventDriven)) return;
+    const EventDrivenContacts& carried = get<EventDrivenContacts>();
     report.pairs = carried.pairs;
     report.manifolds = carried.touching;
     report.contacts = carried.points;
@@ -192,16 +194,16 @@ void WorldState::report_state()
 void WorldState::refresh()
 {
     if (effects_stale) refresh_effects();
-    if (movers_stale) list_movers(get<BodyStates>());
-    movers_stale = false;
+    if (active_bodies_stale) list_active_bodies(get<BodyStates>());
+    active_bodies_stale = false;
 }
 
 void WorldState::warn_of_cuts(int cuts)
 {
     if (cuts <= most_cuts) return;
     most_cuts = cuts;
-    const Settings& settings = get<Conditions>().settings;
-    remarks.push_back(
+    const Settings& settings = get<StepContext>().settings;
+    warnings.push_back(
         "penalty_stiffness: " + dial_value(settings, "penalty_stiffness")
         + " N/m swings wider at a substep of " + number_text(settings.dt / settings.substeps)
         + " s, so each is cut in " + std::to_string(cuts)
@@ -211,9 +213,10 @@ void WorldState::warn_of_cuts(int cuts)
 
 Vec3 WorldState::arm(std::uint32_t body) const
 {
-    const auto& hang = get<Forces>().hang;
-    return body < hang.size() ? Vec3(get<Poses>().orientation[body] * hang[body])
-                              : Vec3(Vec3::Zero());
+    const auto& pivot_to_center = get<Forces>().pivot_to_center;
+    return body < pivot_to_center.size()
+        ? Vec3(get<Poses>().orientation[body] * pivot_to_center[body])
+        : Vec3(Vec3::Zero());
 }
 
 Vec3 WorldState::center_of_mass(std::uint32_t body) const
@@ -229,31 +232,31 @@ Vec3 WorldState::velocity(std::uint32_t body) const
 
 void WorldState::warn_of_substeps()
 {
-    const Settings& settings = get<Conditions>().settings;
-    std::vector<std::string> warnings = unstable_springs(get<Forces>(), get<Masses>(), settings);
+    const Settings& settings = get<StepContext>().settings;
+    std::vector<std::string> found = unstable_springs(get<Forces>(), get<Masses>(), settings);
     // What weight adds in one has few digits left beside a speed of some m/s.
     constexpr double kShortest = 1e-5;
     if (settings.precision == Precision::float_ && settings.dt / settings.substeps < kShortest)
-        warnings.push_back("a substep of " + number_text(settings.dt / settings.substeps)
-                           + " s is too short for float, which takes 1e-05 s and more: what weight"
-                             " adds in it is lost in the digits of a speed; take"
-                             " precision=double");
-    for (std::string& warning : warnings)
-        if (std::find(remarks.begin(), remarks.end(), warning) == remarks.end())
-            remarks.push_back(std::move(warning));
+        found.push_back("a substep of " + number_text(settings.dt / settings.substeps)
+                        + " s is too short for float, which takes 1e-05 s and more: what weight"
+                          " adds in it is lost in the digits of a speed; take"
+                          " precision=double");
+    for (std::string& warning : found)
+        if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
+            warnings.push_back(std::move(warning));
 }
 
 void WorldState::refresh_effects()
 {
     effects_stale = false;
-    movers_stale = true;
-    Conditions& conditions = get<Conditions>();
-    const Set<Effect> before = conditions.effects;
+    active_bodies_stale = true;
+    StepContext& context = get<StepContext>();
+    const Set<Effect> before = context.effects;
     effects =
-        find_effects({conditions, get<BodyStates>(), get<Poses>(), get<Velocities>(), get<Masses>(),
-                      get<Drives>(), get<Forces>(), get<Shapes>(), get<Colliders>(),
+        find_effects({context, get<BodyStates>(), get<Poses>(), get<Velocities>(), get<Masses>(),
+                      get<PrescribedVelocities>(), get<Forces>(), get<Shapes>(), get<Colliders>(),
                       get<Surfaces>(), get<PairFilter>(), requests, names, material_names});
-    conditions.effects = effects.on;
+    context.effects = effects.on;
     empty_unused();
     if (effects.on.has(Effect::contact)) choose_broad_phase();
     std::visit(
@@ -302,7 +305,7 @@ void World::step(int steps)
         } else {
             state.refresh();
             state.idle =
-                state.get<BodyStates>().movers.none() && state.get<Bounds>().touched.empty();
+                state.get<BodyStates>().active_bodies.none() && state.get<Bounds>().touched.empty();
             state.pool.run([&](std::size_t, std::size_t, std::size_t) {
                 std::visit(
                     [&](auto& chosen) {
@@ -315,8 +318,8 @@ void World::step(int steps)
                     },
                     state.step);
             });
-            Conditions& conditions = state.get<Conditions>();
-            conditions.last_substep = conditions.substep();
+            StepContext& context = state.get<StepContext>();
+            context.last_substep = context.substep();
             state.report.contacts_dropped += std::visit(
                 [](const auto& chosen) {
                     using Real = typename std::decay_t<decltype(chosen)>::Number;
@@ -324,16 +327,16 @@ void World::step(int steps)
                 },
                 state.step);
             state.report.fallbacks += state.get<MethodPairs>().fell_back;
-            const Trouble& trouble = state.get<Trouble>();
+            const StepDiagnostics& diagnostics = state.get<StepDiagnostics>();
             state.report.fallbacks +=
-                trouble.direct_left + trouble.held_groups + trouble.deep_pieces;
-            state.report.deepest = std::max(state.report.deepest, trouble.deepest);
-            state.warn_of_cuts(trouble.penalty_cuts);
+                diagnostics.direct_left + diagnostics.held_groups + diagnostics.deep_pieces;
+            state.report.deepest = std::max(state.report.deepest, diagnostics.deepest);
+            state.warn_of_cuts(diagnostics.penalty_cuts);
             state.report.direct_residual =
-                std::max(state.report.direct_residual, trouble.direct_residual);
+                std::max(state.report.direct_residual, diagnostics.direct_residual);
             state.follow_step();
         }
-        state.get<Conditions>().time += settings().dt;
+        state.get<StepContext>().time += settings().dt;
         ++state.report.step;
         state.report.time_ms =
             std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
@@ -341,7 +344,7 @@ void World::step(int steps)
     state.report_state();
 }
 
-const Settings& World::settings() const { return state_->get<Conditions>().settings; }
+const Settings& World::settings() const { return state_->get<StepContext>().settings; }
 
 void World::set_settings(const Settings& settings)
 {
@@ -350,17 +353,17 @@ void World::set_settings(const Settings& settings)
             "set_settings: precision cannot change in a world; make another");
     check_settings(settings, "set_settings");
     state_->get<Flights>() = {};  // numbers of another rotation, or of another law
-    state_->get<Conditions>().settings = settings;
+    state_->get<StepContext>().settings = settings;
     state_->effects_stale = true;
     state_->warn_of_substeps();
 }
 
-Vec3 World::gravity() const { return state_->get<Conditions>().gravity; }
+Vec3 World::gravity() const { return state_->get<StepContext>().gravity; }
 
 void World::set_gravity(const Vec3& gravity)
 {
     if (!gravity.allFinite()) throw std::invalid_argument("set_gravity: give finite numbers, m/s2");
-    state_->get<Conditions>().gravity = gravity;
+    state_->get<StepContext>().gravity = gravity;
     state_->effects_stale = true;
     state_->wake_all();
 }
@@ -373,7 +376,7 @@ std::vector<BodyId> World::bodies() const
     ids.reserve(state_->alive);
     const BodyStates& states = state_->get<BodyStates>();
     for (std::uint32_t body = 0; body < states.kind.size(); ++body)
-        if (states.kind[body] != BodyKind::gone) ids.push_back({body, state_->generation[body]});
+        if (states.kind[body] != BodyKind::removed) ids.push_back({body, state_->generation[body]});
     return ids;
 }
 
@@ -381,7 +384,7 @@ bool World::alive(BodyId body) const
 {
     return body.index < state_->generation.size()
         && state_->generation[body.index] == body.generation
-        && state_->get<BodyStates>().kind[body.index] != BodyKind::gone;
+        && state_->get<BodyStates>().kind[body.index] != BodyKind::removed;
 }
 
 const std::string& World::name(BodyId body) const
@@ -444,10 +447,10 @@ Mat3 World::rotation_matrix(BodyId body) const
 Vec3 World::contact_force(BodyId body) const
 {
     const std::uint32_t at = state_->place_of(body, "contact_force");
-    const double substep = state_->get<Conditions>().last_substep;
+    const double substep = state_->get<StepContext>().last_substep;
     if (substep <= 0) return Vec3::Zero();
-    if (state_->effects.on.meets(kCarried)) {
-        const std::vector<Vec3>& force = state_->get<CarriedContacts>().force;
+    if (state_->effects.on.meets(kEventDriven)) {
+        const std::vector<Vec3>& force = state_->get<EventDrivenContacts>().force;
         return at < force.size() ? force[at] : Vec3(Vec3::Zero());
     }
     Vec3 impulse = Vec3::Zero();
@@ -478,7 +481,7 @@ Vec3 World::contact_force(BodyId body) const
                 if (entry.contact.count > 0) add(entry.pair, entry.contact);
             if (state_->effects.on.has(Effect::restitution))
                 impulse += impacts_on(at, std::get<Layout>(data), std::get<ActiveContacts>(data),
-                                      std::get<Rows<Real>>(data));
+                                      std::get<ContactConstraints<Real>>(data));
         },
         state_->step);
     return impulse / substep;
@@ -486,7 +489,7 @@ Vec3 World::contact_force(BodyId body) const
 
 const StepReport& World::report() const { return state_->report; }
 
-const std::vector<std::string>& World::remarks() const { return state_->remarks; }
+const std::vector<std::string>& World::warnings() const { return state_->warnings; }
 
 const std::vector<std::string>& World::solids() const { return state_->solids; }
 

@@ -16,28 +16,28 @@ namespace throng {
 void WorldState::wake(std::uint32_t body)
 {
     BodyStates& states = get<BodyStates>();
-    states.quiet_time[body] = 0;
-    const std::uint32_t bed = states.bed[body];
-    if (bed == kNobody) return;
-    movers_stale = true;
-    Beds& beds = get<Beds>();
-    for (const std::uint32_t sleeper : beds.sleepers[bed]) {
-        states.awake[sleeper] = 1;
-        states.quiet_time[sleeper] = 0;
-        states.bed[sleeper] = kNobody;
+    states.sleep_time[body] = 0;
+    const std::uint32_t sleeping_island = states.sleeping_island[body];
+    if (sleeping_island == kNoBody) return;
+    active_bodies_stale = true;
+    SleepingIslands& sleeping_islands = get<SleepingIslands>();
+    for (const std::uint32_t sleeping : sleeping_islands.bodies[sleeping_island]) {
+        states.awake[sleeping] = 1;
+        states.sleep_time[sleeping] = 0;
+        states.sleeping_island[sleeping] = kNoBody;
     }
-    beds.sleepers[bed].clear();
-    beds.free.push_back(bed);
+    sleeping_islands.bodies[sleeping_island].clear();
+    sleeping_islands.free.push_back(sleeping_island);
 }
 
-void WorldState::touch(std::uint32_t body)
+void WorldState::mark_changed(std::uint32_t body)
 {
     const Colliders& colliders = get<Colliders>();
     Bounds& bounds = get<Bounds>();
     for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
         bounds.touched.push_back(colliders.begin[body] + i);
-    get<Parting>().place(body);
-    get<Stubborn>().forget(body);
+    get<SplitImpulse>().place(body);
+    get<OverloadedIslands>().forget(body);
 }
 
 void WorldState::wake_neighbors(const std::vector<std::uint8_t>& of)
@@ -107,11 +107,11 @@ void WorldState::wake_all()
 
 void WorldState::quarantine(std::uint32_t body)
 {
-    Trouble trouble;
-    trouble.quarantined = {body};
-    quarantine_bodies(trouble, get<BodyStates>(), get<Masses>(), get<Velocities>());
+    StepDiagnostics diagnostics;
+    diagnostics.quarantined = {body};
+    quarantine_bodies(diagnostics, get<BodyStates>(), get<Masses>(), get<Velocities>());
     ++report.bodies_quarantined;
-    touch(body);
+    mark_changed(body);
     effects_stale = true;
 }
 
@@ -121,7 +121,7 @@ void WorldState::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& 
     const Masses& masses = get<Masses>();
     Velocities& velocities = get<Velocities>();
     wake(body);
-    if (states.kind[body] == BodyKind::still) return;
+    if (states.kind[body] == BodyKind::static_) return;
     // What is locked stays locked.
     const bool moves = !states.dynamic(body) || masses.inverse_mass[body] > 0;
     const bool turns = !states.dynamic(body) || masses.inverse_inertia[body] != Sym3{};
@@ -135,12 +135,12 @@ void WorldState::empty_unused()
 {
     const Set<Effect> on = effects.on;
     if (!on.has(Effect::sleeping)) wake_all();
-    if (!on.has(Effect::escalation)) get<Stubborn>().efforts.clear();
-    if (!on.meets(kCarried)) {
-        Trouble& trouble = get<Trouble>();
-        trouble.held_groups = trouble.deep_pieces = 0;
-        trouble.deepest = 0;
-        get<CarriedContacts>() = {};
+    if (!on.has(Effect::escalation)) get<OverloadedIslands>().efforts.clear();
+    if (!on.meets(kEventDriven)) {
+        StepDiagnostics& diagnostics = get<StepDiagnostics>();
+        diagnostics.held_groups = diagnostics.deep_pieces = 0;
+        diagnostics.deepest = 0;
+        get<EventDrivenContacts>() = {};
     }
     std::visit(
         [&](auto& chosen) {
@@ -152,7 +152,7 @@ void WorldState::empty_unused()
             if (!on.meets(kSolidContact)) empty(SolidContacts<Real>{});
             if (on.has(Effect::contact)) return;
             empty(Pairs{}, ConvexContacts<Real>{}, MethodPairs{}, ActiveContacts{}, Islands{},
-                  Layout{}, Rows<Real>{}, Pulls{});
+                  Layout{}, ContactConstraints<Real>{}, ExternalAcceleration{});
         },
         step);
 }
@@ -170,22 +170,22 @@ void World::remove(std::span<const BodyId> bodies)
     state.forget_pairs(going);
     for (const BodyId id : bodies) {
         const std::uint32_t body = id.index;
-        if (states.kind[body] == BodyKind::gone) continue;
+        if (states.kind[body] == BodyKind::removed) continue;
         state.wake(body);
-        state.touch(body);
-        states.kind[body] = BodyKind::gone;
+        state.mark_changed(body);
+        states.kind[body] = BodyKind::removed;
         states.awake[body] = 0;
         const std::uint32_t first = colliders.begin[body], count = colliders.count[body];
         for (std::uint32_t i = 0; i < count; ++i) {
-            colliders.body[first + i] = kNobody;
+            colliders.body[first + i] = kNoBody;
             state.get<PairFilter>().mask[first + i] = 0;
         }
         if (count > 0) state.free_colliders[count].push_back(first);
-        Drives& drives = state.get<Drives>();
-        const auto at = std::lower_bound(drives.body.begin(), drives.body.end(), body);
-        if (at != drives.body.end() && *at == body) {
-            drives.velocity.erase(drives.velocity.begin() + (at - drives.body.begin()));
-            drives.body.erase(at);
+        PrescribedVelocities& prescribed = state.get<PrescribedVelocities>();
+        const auto at = std::lower_bound(prescribed.body.begin(), prescribed.body.end(), body);
+        if (at != prescribed.body.end() && *at == body) {
+            prescribed.velocity.erase(prescribed.velocity.begin() + (at - prescribed.body.begin()));
+            prescribed.body.erase(at);
         }
         if (body < state.names.size()) state.names[body].clear();
         ++state.generation[body];
@@ -219,7 +219,7 @@ void World::set_pose(BodyId body, const Pose& pose)
     moved[at] = 1;
     state_->wake_neighbors(moved);
     state_->wake(at);
-    state_->touch(at);
+    state_->mark_changed(at);
 }
 
 void World::set_velocity(BodyId body, const Vec3& linear, const Vec3& angular)

@@ -36,8 +36,8 @@ struct WorldState {
     Effects effects;
     Requests requests;
     bool effects_stale = true;
-    bool movers_stale = true;  // somebody awoke between steps
-    bool idle = false;         // the last step found nobody awake and left all as it was
+    bool active_bodies_stale = true;  // somebody awoke between steps
+    bool idle = false;                // the last step found nobody awake and left all as it was
     bool in_order = false;
     StepWatch* watch = nullptr;  // sees the stages run; null for nobody
     StepReport report;
@@ -54,8 +54,8 @@ struct WorldState {
     SceneFields fields;
 
     std::vector<std::string> material_names;
-    std::vector<std::string> remarks, solids;  // see World
-    int most_cuts = 1;                         // that were remarked on
+    std::vector<std::string> warnings, solids;  // see World
+    int most_cuts = 1;                          // that were remarked on
 
     template <class Data>
     Data& get()
@@ -83,7 +83,7 @@ struct WorldState {
     void wake(std::uint32_t body);
     void wake_all();
     /// The broad phase has to look at a body's colliders again, and it may lie deep in others.
-    void touch(std::uint32_t body);
+    void mark_changed(std::uint32_t body);
     /// Wakes whoever is in a pair with one of some bodies (by body: 1 for those).
     void wake_neighbors(const std::vector<std::uint8_t>& of);
     /// Drops the pairs of some bodies with all they remember.
@@ -92,7 +92,7 @@ struct WorldState {
     /// can hold it is quarantined.
     void set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular);
     void quarantine(std::uint32_t body);
-    /// Effects, graph and the list of movers, brought up to date.
+    /// Effects, graph and the list of active bodies, brought up to date.
     void refresh();
     void refresh_effects();
     /// True where a step would change nothing: nobody is awake, and nothing was touched.
@@ -129,7 +129,7 @@ public:
     std::vector<BodyId> add(const Scene& scene);
 
 private:
-    void make_room(std::size_t bodies);
+    void grow_lists(std::size_t bodies);
     void make_room_for(ShapeKind kind, std::size_t count);
     void add_materials(const Scene& scene);
     PlacedShape add_shape(const Scene& scene, const ShapeDescription& description);

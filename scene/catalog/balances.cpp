@@ -44,8 +44,8 @@ Scene make_card_house(int size, std::uint64_t /*seed*/)
     // A leaning card reaches this far from its center, sideways and up.
     const double sideways = kHalfCard.x() * std::sin(kLean) + kHalfCard.z() * std::cos(kLean);
     const double upwards = kHalfCard.x() * std::cos(kLean) + kHalfCard.z() * std::sin(kLean);
-    const double gap = 0.0004;  // between the ends of flat cards, well within the ridge
-    const double pitch = 2 * kHalfCard.x() + gap;
+    const double separation = 0.0004;  // between the ends of flat cards, well within the ridge
+    const double pitch = 2 * kHalfCard.x() + separation;
     const Quat leaning_right = turn(Vec3::UnitY(), kLean - std::numbers::pi / 2);
     const Quat leaning_left = turn(Vec3::UnitY(), -kLean - std::numbers::pi / 2);
 
@@ -100,8 +100,8 @@ Scene make_arch(int size, std::uint64_t /*seed*/)
         if (stones > 0 && stones < size)
             return Joint{middle - half_thickness * outward, middle + half_thickness * outward};
         // The feet are cut level, with the ground.
-        const double reach = std::copysign(half_thickness * secant / steepest, slope);
-        return Joint{{middle.x() - reach, 0, 0}, {middle.x() + reach, 0, 0}};
+        const double offset = std::copysign(half_thickness * secant / steepest, slope);
+        return Joint{{middle.x() - offset, 0, 0}, {middle.x() + offset, 0, 0}};
     };
 
     Joint left = joint_after(0);

@@ -51,10 +51,10 @@ Scene make_cradle(int size, std::uint64_t /*seed*/)
     scene.materials[0].restitution = 1;
 
     // A radius of 1/2 m keeps all places exact, so that the balls touch to the last bit.
-    const double radius = 0.5, gap = 0.25;
+    const double radius = 0.5, separation = 0.25;
     const std::uint32_t ball = add_shape(scene, "ball", SphereShape{radius});
     Instances& balls = add_instances(scene, ball, static_cast<std::size_t>(size), false);
-    add_record(balls, {{-gap, 0, 0}, Quat::Identity()}, {1, 0, 0});
+    add_record(balls, {{-separation, 0, 0}, Quat::Identity()}, {1, 0, 0});
     for (int i = 1; i < size; ++i) add_record(balls, {{2 * radius * i, 0, 0}, Quat::Identity()});
     return scene;
 }

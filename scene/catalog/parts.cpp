@@ -27,7 +27,7 @@ MeshShape mesh_shape(TriangleSoup mesh)
     return shape;
 }
 
-TriangleSoup fitted(TriangleSoup mesh, double reach)
+TriangleSoup fitted(TriangleSoup mesh, double size)
 {
     Box3 bounds;
     for (const auto& triangle : mesh.triangles)
@@ -42,7 +42,7 @@ TriangleSoup fitted(TriangleSoup mesh, double reach)
         for (const std::uint32_t corner : triangle)
             greatest = std::max(greatest, mesh.vertices[corner].norm());
     THRONG_CHECK(greatest > 0, "a point has no size to be fitted");
-    for (Vec3& vertex : mesh.vertices) vertex *= reach / greatest;
+    for (Vec3& vertex : mesh.vertices) vertex *= size / greatest;
     return mesh;
 }
 

@@ -28,7 +28,7 @@ MeshShape mesh_shape(TriangleSoup mesh);
 
 /// The same mesh about the middle of its bounds, of such a size that it just reaches so far from
 /// there. Vertices of no triangle do not count. The triangles must not all lie in one point.
-TriangleSoup fitted(TriangleSoup mesh, double reach);
+TriangleSoup fitted(TriangleSoup mesh, double size);
 
 /// Adds a static box with a shape of its own; both get the name.
 BodyDescription&

@@ -55,12 +55,13 @@ std::vector<CurvePoint> torus_knot(const TorusKnot& knot, std::uint32_t around)
     for (std::uint32_t i = 0; i < around; ++i) {
         const double turn = 2 * kPi * i / around;
         const double p = knot.longways * turn, q = knot.crossways * turn;
-        const double reach = knot.ring + knot.swing * std::cos(q);
+        const double distance = knot.ring + knot.swing * std::cos(q);
         const Vec3 outward(std::cos(p), std::sin(p), 0), onward(-std::sin(p), std::cos(p), 0);
         const Vec3 crossing = -std::sin(q) * outward + std::cos(q) * Vec3::UnitZ();
-        curve.push_back({reach * outward + knot.swing * std::sin(q) * Vec3::UnitZ(),
-                         (knot.longways * reach * onward + knot.crossways * knot.swing * crossing)
-                             .normalized()});
+        curve.push_back(
+            {distance * outward + knot.swing * std::sin(q) * Vec3::UnitZ(),
+             (knot.longways * distance * onward + knot.crossways * knot.swing * crossing)
+                 .normalized()});
     }
     return curve;
 }

@@ -45,15 +45,15 @@ public:
     void need_keys(Node object, Keys known, Keys more = {}) const;
 
     /// Visits each element of a list.
-    template <class Visit>
-    void each(Node list, Visit visit) const
+    template <class Visitor>
+    void each(Node list, Visitor visit) const
     {
         need(list, JsonKind::array, "a list");
         for (Node at = json_.first(list); at != json_.next(list); at = json_.next(at)) visit(at);
     }
     /// Visits key and value of each member.
-    template <class Visit>
-    void each_member(Node object, Visit visit) const
+    template <class Visitor>
+    void each_member(Node object, Visitor visit) const
     {
         need(object, JsonKind::object, "an object");
         for (Node at = json_.first(object); at != json_.next(object); at = json_.next(at + 1))

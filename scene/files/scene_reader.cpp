@@ -158,7 +158,7 @@ private:
         constexpr std::string_view wanted = "a list of two names of materials";
         const Node names = required(node, "materials", wanted);
         if (kind(names) != JsonKind::array || json_.size(names) != 2) refuse_value(names, wanted);
-        MaterialPair pair;
+        MaterialPairDescription pair;
         pair.a = find_material(json_.first(names));
         pair.b = find_material(json_.next(json_.first(names)));
         if (const Node at = find(node, "friction")) pair.friction = number(at);

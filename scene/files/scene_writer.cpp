@@ -151,7 +151,7 @@ private:
     std::vector<std::string> pair_lines() const
     {
         std::vector<std::string> all;
-        for (const MaterialPair& pair : scene_.pairs) {
+        for (const MaterialPairDescription& pair : scene_.pairs) {
             JsonMembers members;
             members.add("materials",
                         '[' + json_string(material_names_[pair.a]) + ", "

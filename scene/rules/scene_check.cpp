@@ -52,7 +52,7 @@ void check_materials(const Scene& scene)
 
     std::set<std::pair<std::uint32_t, std::uint32_t>> met;
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-        const MaterialPair& pair = scene.pairs[i];
+        const MaterialPairDescription& pair = scene.pairs[i];
         const SceneChecker checker = pairs.at(i);
         checker.at("materials")
             .need(std::max(pair.a, pair.b) < scene.materials.size(),

@@ -117,12 +117,12 @@ struct ShapeChecker {
                 file.need(corner < mesh.vertices.size(), "wanted triangles between vertices");
         if (!moves) return {};
         const std::shared_ptr<const MovingMesh> moving = moving_mesh(mesh);
-        const MendedMesh& mended = moving->mended;
-        file.need(mended.trouble.empty(), "wanted a mesh that can move; it " + mended.trouble);
-        MassProperties mass = mass_as_if_closed(mended.mesh);
+        const RepairedMesh& repaired = moving->repaired;
+        file.need(repaired.trouble.empty(), "wanted a mesh that can move; it " + repaired.trouble);
+        MassProperties mass = mass_as_if_closed(repaired.mesh);
         if (mass.volume < 0) mass = turned_inside_out(mass);
         mass.center += moving->at;
-        const Box3 box = box_of(mended.mesh);
+        const Box3 box = box_of(repaired.mesh);
         file.need(mass.volume > kThinnest * (box.upper - box.lower).prod(),
                   "wanted a mesh that encloses a volume, for a body that moves");
         return mass;

@@ -30,8 +30,8 @@ bool states_its_own(const MeshShape& mesh, std::string_view dial)
 bool asks_for(const MeshShape& mesh, const Settings& settings, const MeshDial& dial)
 {
     if (settings_of(mesh, settings).nonconvex == dial.way) return true;
-    // What does not tell its inside is mended by voxels, whatever its way.
-    return dial.way == NonConvex::voxels && !moving_mesh(mesh)->mended.health.sound();
+    // What does not tell its inside is repaired by voxels, whatever its way.
+    return dial.way == NonConvex::voxels && !moving_mesh(mesh)->repaired.health.sound();
 }
 
 std::vector<const MeshShape*> moving_meshes(const Scene& scene)

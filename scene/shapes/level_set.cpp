@@ -1,6 +1,6 @@
 #include "scene/shapes/level_set.hpp"
 
-#include "cooking/cache/file_seal.hpp"
+#include "cooking/cache/file_checksum.hpp"
 #include "cooking/fields/field_values.hpp"
 #include "cooking/fields/voxel_field.hpp"
 #include "cooking/repair/build_mesh.hpp"
@@ -23,7 +23,7 @@ LevelSetResult with_surface(VoxelBricks field, double error)
     auto made = std::make_shared<LevelSet>();
     made->surface = std::move(surface.mesh);
     // Values on both sides of a surface are about a voxel apart; where it is cut off, far more.
-    made->whole = widest_gap(field) <= 3 * field.voxel && is_closed(made->surface);
+    made->whole = widest_separation(field) <= 3 * field.voxel && is_closed(made->surface);
     made->field = std::move(field);
     made->error = error;
     return {std::move(made), {}};
@@ -41,7 +41,7 @@ LevelSetFacts facts_of(const LevelSet& level_set)
 
 LevelSetResult read_level_set(std::string bytes)
 {
-    if (seal_of(bytes) == Seal::broken)
+    if (check_checksum(bytes) == ChecksumState::broken)
         return refused("is damaged, by its checksum; wanted it as it was written");
     VdbFile file = read_vdb_bytes(std::move(bytes), VdbWants::bricks);
     if (!file.trouble.empty()) return refused(std::move(file.trouble));
@@ -53,13 +53,13 @@ LevelSetResult make_level_set(const std::vector<Vec3>& vertices,
                               double voxel,
                               double band)
 {
-    MendedMesh mended = mend(vertices, triangles);
-    if (!mended.trouble.empty()) return refused(std::move(mended.trouble));
+    RepairedMesh repaired = repair(vertices, triangles);
+    if (!repaired.trouble.empty()) return refused(std::move(repaired.trouble));
     FieldSettings wanted;
-    wanted.voxel = voxel > 0 ? voxel : voxel_size_for(mended.mesh);
-    wanted.sign = mended.health.sound() ? FieldSign::normals : FieldSign::flood;
+    wanted.voxel = voxel > 0 ? voxel : voxel_size_for(repaired.mesh);
+    wanted.sign = repaired.health.sound() ? FieldSign::normals : FieldSign::flood;
     wanted.band = std::max(kBandVoxels, band / wanted.voxel);
-    FieldResult field = build_field(mended.mesh, wanted);
+    FieldResult field = build_field(repaired.mesh, wanted);
     if (!field.trouble.empty()) return refused(std::move(field.trouble));
     return with_surface(std::move(field.bricks), field.error);
 }
@@ -69,7 +69,7 @@ std::string write_level_set(const LevelSet& level_set, const std::string& path)
     FieldNotes notes;
     notes.error = level_set.error;
     std::string trouble = write_vdb(path, level_set.field, notes);
-    if (trouble.empty() && !seal_file(path)) trouble = path + ": cannot be written";
+    if (trouble.empty() && !append_checksum(path)) trouble = path + ": cannot be written";
     return trouble;
 }
 

@@ -1,7 +1,7 @@
 #include "scene/shapes/moving_mesh.hpp"
 
 #include "kernels/math/hash.hpp"
-#include "scene/shapes/kept_answers.hpp"
+#include "scene/shapes/answer_cache.hpp"
 
 #include <limits>
 
@@ -31,7 +31,7 @@ std::shared_ptr<const MovingMesh> make(const MeshShape& stated)
     made->at = far_center(stated.vertices);
     std::vector<Vec3> vertices = stated.vertices;
     for (Vec3& vertex : vertices) vertex -= made->at;
-    made->mended = mend(std::move(vertices), stated.triangles);
+    made->repaired = repair(std::move(vertices), stated.triangles);
     return made;
 }
 
@@ -46,9 +46,9 @@ std::uint64_t key_of(const MeshShape& stated)
     return hash.value();
 }
 
-KeptAnswers<MovingMesh>& kept_meshes()
+AnswerCache<MovingMesh>& kept_meshes()
 {
-    static KeptAnswers<MovingMesh> kept(kMostTriangles);
+    static AnswerCache<MovingMesh> kept(kMostTriangles);
     return kept;
 }
 

@@ -9,15 +9,15 @@
 
 namespace throng {
 
-/// A mesh that is to move, mended.
+/// A mesh that is to move, repaired.
 ///
 ///   at      m, of its axes in the stated mesh's: 0 but for a mesh far from its own origin, which
 ///   is
 ///           taken about its middle. What is made of it is in float, and loses nothing so
-///   mended  about `at`
+///   repaired  about `at`
 struct MovingMesh {
     Vec3 at = Vec3::Zero();
-    MendedMesh mended;
+    RepairedMesh repaired;
 };
 
 /// Makes a mesh fit to move. The answer is kept until it is forgotten, and given again for the same

@@ -20,7 +20,7 @@ namespace {
 Solid voxel_solid(const Mesh& surface, VoxelBricks field)
 {
     Solid solid;
-    solid.way = SolidWay::voxels;
+    solid.representation = SolidRepresentation::voxels;
     solid.points = build_surface_points(surface, field.voxel);
     solid.field = std::move(field);
     solid.error = 0.5 * solid.field.voxel;
@@ -102,20 +102,20 @@ private:
         const std::shared_ptr<const MovingMesh> moving = moving_mesh(stated);
         // Its way into the world ends here.
         forget_moving_mesh(stated);
-        const MendedMesh& mended = moving->mended;
-        if (!mended.trouble.empty()) return mended.trouble;
+        const RepairedMesh& repaired = moving->repaired;
+        if (!repaired.trouble.empty()) return repaired.trouble;
         made_.at = moving->at;
-        mesh_ = mended.mesh;
-        made_.remarks = mended.remarks;
-        sound_ = mended.health.sound();
+        mesh_ = repaired.mesh;
+        made_.warnings = repaired.warnings;
+        sound_ = repaired.health.sound();
         return {};
     }
 
     // With what was found before: it is mostly the cause.
     MadeSolid refused(std::string why)
     {
-        for (std::size_t i = 0; i < made_.remarks.size(); ++i)
-            why += (i == 0 ? ". Found: " : "; ") + made_.remarks[i];
+        for (std::size_t i = 0; i < made_.warnings.size(); ++i)
+            why += (i == 0 ? ". Found: " : "; ") + made_.warnings[i];
         made_.trouble = std::move(why);
         return std::move(made_);
     }
@@ -126,7 +126,7 @@ private:
         wanted.voxel = settings_.voxel_size;
         wanted.sign = sign;
         field_ = cached_field(mesh_, wanted, cache_folder_);
-        made_.remarks.insert(made_.remarks.end(), field_.remarks.begin(), field_.remarks.end());
+        made_.warnings.insert(made_.warnings.end(), field_.warnings.begin(), field_.warnings.end());
         made_.trouble = field_.trouble;
         return field_.trouble.empty();
     }
@@ -141,9 +141,9 @@ private:
         if (!surface.trouble.empty()) return false;
         const double stated = std::abs(mass_as_if_closed(mesh_).volume);
         mesh_ = std::move(surface.mesh);
-        made_.remarks.push_back("taken as the surface of its level set, with voxels of "
-                                + short_text(field_.bricks.voxel) + " m"
-                                + volume_text(mass_of(mesh_).volume / stated - 1));
+        made_.warnings.push_back("taken as the surface of its level set, with voxels of "
+                                 + short_text(field_.bricks.voxel) + " m"
+                                 + volume_text(mass_of(mesh_).volume / stated - 1));
         return true;
     }
 
@@ -159,10 +159,10 @@ private:
     bool take_sheet()
     {
         if (!make_field(FieldSign::sheet)) return false;
-        made_.remarks.push_back("nothing tells its inside from its outside: taken as a sheet "
-                                + short_text(2 * field_.bricks.voxel)
-                                + " m thick; for a solid give a closed mesh, or a voxel_size that "
-                                  "is wider than its holes");
+        made_.warnings.push_back("nothing tells its inside from its outside: taken as a sheet "
+                                 + short_text(2 * field_.bricks.voxel)
+                                 + " m thick; for a solid give a closed mesh, or a voxel_size that "
+                                   "is wider than its holes");
         return true;
     }
 
@@ -179,9 +179,9 @@ private:
         SphereTreeLimits limits;
         if (settings_.sphere_levels > 0) limits.levels = settings_.sphere_levels;
         Solid solid;
-        solid.way = SolidWay::spheres;
+        solid.representation = SolidRepresentation::spheres;
         CachedSpheres made = cached_spheres(mesh_, limits, cache_folder_);
-        if (!made.remark.empty()) made_.remarks.push_back(made.remark);
+        if (!made.warning.empty()) made_.warnings.push_back(made.warning);
         solid.spheres = std::move(made.tree);
         if (solid.spheres.levels.empty()) return refused("has no inside that spheres could fill");
         const SphereTree::Level& last = solid.spheres.levels.back();
@@ -194,7 +194,7 @@ private:
     MadeSolid as_depth_image()
     {
         Solid solid;
-        solid.way = SolidWay::depth_image;
+        solid.representation = SolidRepresentation::depth_image;
         solid.rays = settings_.image_resolution > 0 ? settings_.image_resolution : kAutoRays;
         solid.error = longest_side(mesh_) / solid.rays;
         made_.summary = "depth images, " + std::to_string(solid.rays)
@@ -207,7 +207,8 @@ private:
         made_.summary += error_text(solid);
         warn_of_loss(solid.error);
         solid.mesh = std::move(mesh_);
-        if (solid.way == SolidWay::depth_image) solid.layers = layers_of(solid);
+        if (solid.representation == SolidRepresentation::depth_image)
+            solid.layers = layers_of(solid);
         made_.shape = std::move(solid);
         return std::move(made_);
     }
@@ -216,9 +217,9 @@ private:
     {
         const double share = error / longest_side(mesh_);
         if (share > kNotable)
-            made_.remarks.push_back("off by " + short_text(error) + " m somewhere, "
-                                    + percent(share) + " of its longest side; "
-                                    + std::string(nearer_than(settings_.nonconvex)));
+            made_.warnings.push_back("off by " + short_text(error) + " m somewhere, "
+                                     + percent(share) + " of its longest side; "
+                                     + std::string(nearer_than(settings_.nonconvex)));
     }
 
     MadeSolid as_parts()
@@ -234,13 +235,13 @@ private:
         const bool one = parts.hulls.size() == 1;
         made_.summary = one ? "one hull" : std::to_string(parts.hulls.size()) + " convex parts";
         made_.summary += ", within " + short_text(parts.error) + " m of the mesh";
-        for (const std::string& remark : parts.remarks) made_.summary += "; " + remark;
+        for (const std::string& warning : parts.warnings) made_.summary += "; " + warning;
         if (settings_.nonconvex == NonConvex::parts)
             warn_of_loss(parts.error);
         else if (parts.volume_error > kNotable)
-            made_.remarks.push_back("taken as one hull: holes and hollows are filled, "
-                                    + percent(parts.volume_error) + " more than the mesh; "
-                                    + std::string(nearer_than(settings_.nonconvex)));
+            made_.warnings.push_back("taken as one hull: holes and hollows are filled, "
+                                     + percent(parts.volume_error) + " more than the mesh; "
+                                     + std::string(nearer_than(settings_.nonconvex)));
         made_.shape = std::move(parts.hulls);
         return std::move(made_);
     }

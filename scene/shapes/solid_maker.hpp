@@ -20,7 +20,7 @@ namespace throng {
 ///
 ///   summary  how it is taken, and how exactly
 ///
-///   remarks  what was found wrong with the mesh and what was done about it, as sentences
+///   warnings  what was found wrong with the mesh and what was done about it, as sentences
 ///
 ///   trouble  empty, or why it cannot be had, and what would do
 struct MadeSolid {
@@ -28,7 +28,7 @@ struct MadeSolid {
     Vec3 at = Vec3::Zero();
     MassProperties mass;
     std::string summary;
-    std::vector<std::string> remarks;
+    std::vector<std::string> warnings;
     std::string trouble;
 };
 

@@ -1,7 +1,7 @@
 #include "scene/shapes/stated_hull.hpp"
 
 #include "kernels/math/hash.hpp"
-#include "scene/shapes/kept_answers.hpp"
+#include "scene/shapes/answer_cache.hpp"
 
 namespace throng {
 namespace {
@@ -11,9 +11,9 @@ constexpr std::size_t kMostPoints = 100000;
 // Hulls of fewer are built within a millisecond, and there may be many of them.
 constexpr std::size_t kWorthKeeping = 256;
 
-KeptAnswers<HullResult>& kept_hulls()
+AnswerCache<HullResult>& kept_hulls()
 {
-    static KeptAnswers<HullResult> kept(kMostPoints);
+    static AnswerCache<HullResult> kept(kMostPoints);
     return kept;
 }
 

@@ -14,11 +14,11 @@ namespace {
 std::vector<Ray> random_rays(Dice& dice, const BoxKind& kind, std::span<const Box3> boxes)
 {
     std::vector<Ray> rays;
-    const double reach = kind.half_world + kind.largest;
+    const double extent = kind.half_world + kind.largest;
     for (int i = 0; i < 200; ++i) {
         Ray ray;
         const double away = i % 4 == 0 ? 1e3 : i % 4 == 1 ? 1e12 : 1;
-        ray.from = kind.center + dice.point(reach * away);
+        ray.from = kind.center + dice.point(extent * away);
         ray.along = dice.point(1);
         if (i % 3 == 0 && !boxes.empty()) {
             // Through the corner of a box.

@@ -23,23 +23,23 @@ std::vector<PairKey> pairs_by_definition(const BoxScene& scene, const PairFilter
     std::vector<PairKey> pairs;
     for (std::uint32_t a = 0; a < scene.boxes.size(); ++a)
         for (std::uint32_t b = a + 1; b < scene.boxes.size(); ++b) {
-            bool meet =
+            bool overlap =
                 scene.moving[a] + scene.moving[b] > 0 && asked.count(a) + asked.count(b) > 0;
             for (int axis = 0; axis < 3; ++axis) {
                 const double low = std::max(scene.boxes[a].lower[axis], scene.boxes[b].lower[axis]);
                 const double high =
                     std::min(scene.boxes[a].upper[axis], scene.boxes[b].upper[axis]);
-                meet = meet && low <= high && !std::isnan(scene.boxes[a].lower[axis])
+                overlap = overlap && low <= high && !std::isnan(scene.boxes[a].lower[axis])
                     && !std::isnan(scene.boxes[b].lower[axis])
                     && !std::isnan(scene.boxes[a].upper[axis])
                     && !std::isnan(scene.boxes[b].upper[axis])
                     && scene.boxes[a].lower[axis] <= scene.boxes[a].upper[axis]
                     && scene.boxes[b].lower[axis] <= scene.boxes[b].upper[axis];
             }
-            if (filter != nullptr && meet)
-                meet = filter->body[a] != filter->body[b] && (filter->group[a] & filter->mask[b])
+            if (filter != nullptr && overlap)
+                overlap = filter->body[a] != filter->body[b] && (filter->group[a] & filter->mask[b])
                     && (filter->group[b] & filter->mask[a]);
-            if (meet) pairs.push_back(std::uint64_t{a} << 32 | b);
+            if (overlap) pairs.push_back(std::uint64_t{a} << 32 | b);
         }
     return pairs;
 }

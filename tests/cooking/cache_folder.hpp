@@ -1,7 +1,7 @@
 // Cache folder: a folder of a test's own for files that are kept, and ways to damage these.
 #pragma once
 
-#include "cooking/cache/file_seal.hpp"
+#include "cooking/cache/file_checksum.hpp"
 
 #include <gtest/gtest.h>
 
@@ -55,14 +55,14 @@ inline void put_in_the_way(const std::filesystem::path& file, int which)
     }
 }
 
-/// A file of some length cut short, with more behind it, without its seal, and with a bit turned
-/// here and there.
+/// A file of some length cut short, with more behind it, without its checksum, and with a bit
+/// turned here and there.
 inline std::vector<std::string> damaged(const std::string& whole)
 {
     const std::size_t size = whole.size();
     std::vector<std::string> all{"x", whole + "x"};
     for (const std::size_t cut :
-         {std::size_t{0}, std::size_t{7}, size / 2, size - kSealBytes, size - 1})
+         {std::size_t{0}, std::size_t{7}, size / 2, size - kChecksumBytes, size - 1})
         all.push_back(whole.substr(0, cut));
     for (const std::size_t at : {std::size_t{3}, size / 3, size - 20, size - 3}) {
         all.push_back(whole);

@@ -166,9 +166,9 @@ inline Quat turn_of(FuzzBytes& bytes, const ConvexPair& pair)
 }
 
 /// Apart, below 0 deep, as far as their furthest points along a direction say.
-inline double room_along(const CorePair& cores, const Vec3& direction)
+inline double separation_beyond(const ConvexCorePair& cores, const Vec3& direction)
 {
-    return separation_along(cores, direction) - cores.a.radius - cores.b.radius;
+    return separation_along(cores, direction) - cores.a.convex_radius - cores.b.convex_radius;
 }
 
 /// Concentric, on a grid, far, or so that along some direction they are a known hair apart or deep.
@@ -176,7 +176,7 @@ inline Pose pose_of(FuzzBytes& bytes, ConvexPair& pair)
 {
     Pose pose{Vec3::Zero(), turn_of(bytes, pair)};
     pair.place(pose);
-    const CorePair& cores = pair.cores();
+    const ConvexCorePair& cores = pair.cores();
     const Vec3 onto = cores.a.middle - cores.b_turn * cores.b.middle;
     const std::uint32_t way = bytes.below(8);
     if (way == 0) return pose;
@@ -189,7 +189,7 @@ inline Pose pose_of(FuzzBytes& bytes, ConvexPair& pair)
         along = both->a.normals[bytes.byte() % both->a.normals.size()];
     const double hair = bytes.small(15), wanted = pair.size() * hair * (1.0 - bytes.below(3));
     pair.place(pose);
-    pose.position += along * (wanted - room_along(pair.cores(), along));
+    pose.position += along * (wanted - separation_beyond(pair.cores(), along));
     return pose;
 }
 

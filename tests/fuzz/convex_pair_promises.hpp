@@ -25,7 +25,7 @@ inline int most_rounds(const ConvexMethod& method, const ConvexPair& pair)
     if (method.name == "sphere") return 1;
     if (method.name == "sat") return 8;
     if (method.name == "chung_wang") return 96;
-    // Of GJK and EPA as ask_gjk.hpp says, and a few supports that prove.
+    // Of GJK and EPA as query_gjk.hpp says, and a few supports that prove.
     if (method.name == "gjk") return 129 + 512 + 8;
     if (method.name.starts_with("k_dop")) return 32;
     const PolytopeView &a = pair.polytopes()->a, &b = pair.polytopes()->b;
@@ -52,12 +52,12 @@ public:
     Placing(const ConvexPair& pair, const Pose& pose) : pair_(pair), pose_(pose)
     {
         size_ = pair.size() + pose.position.norm();
-        const CorePair& cores = pair.cores();
+        const ConvexCorePair& cores = pair.cores();
         cylinders_ = cores.a.kind == ShapeKind::cylinder || cores.b.kind == ShapeKind::cylinder;
         MethodMemory memory;
         now.method = "gjk";
         now.start = 2;
-        now.reach = kAnyReach;
+        now.speculative_margin = kAnyReach;
         now.memory = memory;
         best_ = find_convex_method("gjk")->ask(pair, kAnyReach, MethodStart::plain, memory);
         by_points_ = best_.separation;
@@ -77,27 +77,29 @@ public:
     double by_axes() const { return std::min(by_points_, by_faces_); }
 
     /// What holds of any answer, whatever the pair remembered.
-    void check(const ConvexMethod& method, double reach, const MethodAnswer& told) const
+    void
+    check(const ConvexMethod& method, double speculative_margin, const MethodAnswer& told) const
     {
         check_numbers(method, told);
         check_touch(method, told);
-        if (told.touch == Touch::apart) check_apart(method, reach, told);
-        if (told.touch == Touch::touching && (method.tells & tells_depth)) check_depth(told);
+        if (told.overlap == OverlapState::apart) check_apart(method, speculative_margin, told);
+        if (told.overlap == OverlapState::touching && (method.tells & tells_depth))
+            check_depth(told);
     }
 
     /// What a start from memory and a cold one have in common.
     void compare(const ConvexMethod& method,
-                 double reach,
+                 double speculative_margin,
                  const MethodAnswer& told,
                  const MethodAnswer& cold) const
     {
-        if (std::abs(by_points_) > slack_of(method) && told.touch != Touch::undecided
-            && cold.touch != Touch::undecided)
-            expect(told.touch == cold.touch, "memory does not change who touches");
-        if (told.touch != cold.touch || told.cut_short || cold.cut_short) return;
-        const bool apart = told.touch == Touch::apart;
+        if (std::abs(by_points_) > slack_of(method) && told.overlap != OverlapState::undecided
+            && cold.overlap != OverlapState::undecided)
+            expect(told.overlap == cold.overlap, "memory does not change who touches");
+        if (told.overlap != cold.overlap || told.cut_short || cold.cut_short) return;
+        const bool apart = told.overlap == OverlapState::apart;
         const bool measured = (method.tells & (apart ? tells_distance : tells_depth)) != 0;
-        if (measured && cold.separation <= reach) {
+        if (measured && cold.separation <= speculative_margin) {
             const double error = std::abs(told.separation - cold.separation);
             expect(error <= std::max(slack_of(method), length_slack()),
                    "memory does not change lengths", told.separation, cold.separation);
@@ -138,33 +140,38 @@ private:
 
     void check_touch(const ConvexMethod& method, const MethodAnswer& told) const
     {
-        const Touch touch = told.touch;
+        const OverlapState overlap = told.overlap;
         // What they all have in common is seen by faces and by points.
         const double slack = slack_of(method);
         if (by_faces_ > face_slack() && by_points_ > slack)
-            expect(touch != Touch::touching, "what is apart does not touch", by_faces_, by_points_);
+            expect(overlap != OverlapState::touching, "what is apart does not touch", by_faces_,
+                   by_points_);
         if (by_faces_ < -face_slack() && by_points_ < -slack)
-            expect(touch != Touch::apart, "what touches is not apart", by_faces_, by_points_);
+            expect(overlap != OverlapState::apart, "what touches is not apart", by_faces_,
+                   by_points_);
         if (pair_.polytopes() && (by_faces_ > face_slack() || by_faces_ < -face_slack()))
             expect((by_faces_ > 0) == (by_points_ > 0), "gjk agrees with the axes", by_points_,
                    by_faces_);
         if (goes_by_faces(method)) return;
         if (by_points_ > slack)
-            expect(touch != Touch::touching, "what gjk parts does not touch", by_points_);
+            expect(overlap != OverlapState::touching, "what gjk parts does not touch", by_points_);
         if (by_points_ < -slack)
-            expect(touch != Touch::apart, "what gjk sees touch is not apart", by_points_);
+            expect(overlap != OverlapState::apart, "what gjk sees touch is not apart", by_points_);
     }
 
-    void check_apart(const ConvexMethod& method, double reach, const MethodAnswer& told) const
+    void check_apart(const ConvexMethod& method,
+                     double speculative_margin,
+                     const MethodAnswer& told) const
     {
         // Those have a normal of faces alone, or none.
         if (method.name == "clip_volume" || method.name == "containment") return;
-        const double room = room_along(pair_.cores(), told.normal);
-        expect(room > -kParts * size_, "the normal of what is apart parts it", room, size_);
+        const double clearance = separation_beyond(pair_.cores(), told.normal);
+        expect(clearance > -kParts * size_, "the normal of what is apart parts it", clearance,
+               size_);
         if ((method.tells & tells_distance) == 0) return;
-        expect(room >= told.separation - length_slack(), "the normal shows the distance", room,
-               told.separation);
-        if (told.separation > reach) return;
+        expect(clearance >= told.separation - length_slack(), "the normal shows the distance",
+               clearance, told.separation);
+        if (told.separation > speculative_margin) return;
         const double between = (told.on_b - told.on_a).norm();
         expect(std::abs(between - told.separation) <= kHair * size_,
                "the nearest points are that far apart", between, told.separation);
@@ -172,9 +179,9 @@ private:
 
     void check_depth(const MethodAnswer& told) const
     {
-        const double room = room_along(pair_.cores(), told.normal);
-        expect(room >= told.separation - kHair * size_, "the depth is enough to part them", room,
-               told.separation);
+        const double clearance = separation_beyond(pair_.cores(), told.normal);
+        expect(clearance >= told.separation - kHair * size_, "the depth is enough to part them",
+               clearance, told.separation);
         if (told.cut_short || best_.cut_short || by_points_ > 0) return;
         const double wrong = std::abs(told.separation - by_points_);
         expect(wrong <= std::max(face_slack(), length_slack()), "depths agree", told.separation,

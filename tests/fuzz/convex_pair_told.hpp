@@ -16,7 +16,7 @@ struct Now {
     Pose pose;
     std::string_view method = "none";
     int start = 0;
-    double reach = 0;
+    double speculative_margin = 0;
     MethodMemory memory;
 };
 inline Now now;
@@ -59,8 +59,8 @@ inline void tell_shape(const ShapeDescription& shape)
     const Quat& q = now.pose.orientation;
     std::fprintf(stderr, " turned (%.17g, %.17g, %.17g, %.17g)\n", q.w(), q.x(), q.y(), q.z());
     std::fprintf(stderr, "%s, start %d, reach %.17g; remembered kind %u, count %u, axis ",
-                 std::string(now.method).c_str(), now.start, now.reach, now.memory.kind,
-                 now.memory.count);
+                 std::string(now.method).c_str(), now.start, now.speculative_margin,
+                 now.memory.kind, now.memory.count);
     tell(now.memory.axis);
     for (int i = 0; i < 4; ++i) std::fprintf(stderr, " %u/%u", now.memory.a[i], now.memory.b[i]);
     std::fprintf(stderr, "\n");

@@ -75,9 +75,9 @@ void check_contacts(const ConvexMethod& method,
                     MethodMemory& memory)
 {
     LocalManifold<double> out;
-    const double reach = std::min(now.reach, placing.size());
-    const bool told =
-        collide_by(method, start, shapes, refs[0], refs[1], now.pose, reach, memory, out);
+    const double speculative_margin = std::min(now.speculative_margin, placing.size());
+    const bool told = collide_by(method, start, shapes, refs[0], refs[1], now.pose,
+                                 speculative_margin, memory, out);
     expect(out.count >= 0 && out.count <= 4, "contacts are four at most", out.count);
     if (!told) return;
     expect(all_finite(out), "contacts are finite");
@@ -85,8 +85,8 @@ void check_contacts(const ConvexMethod& method,
         expect(std::abs(out.normal.norm() - 1) < kHair, "contact normals are of unit length",
                out.normal.norm());
     if (out.count > 0)
-        expect(placing.by_axes() <= reach + kOfStraying * placing.size(),
-               "contacts are within reach", placing.by_axes(), reach);
+        expect(placing.by_axes() <= speculative_margin + kOfStraying * placing.size(),
+               "contacts are within reach", placing.by_axes(), speculative_margin);
     if (out.count == 0)
         expect(placing.by_points() >= -kOfStraying * placing.size(), "what is deep has contacts",
                placing.by_points());
@@ -100,12 +100,12 @@ void check_step(const Shapes& shapes,
                 PairCache& cache)
 {
     now.method = sizeof(Real) == sizeof(float) ? "auto in float" : "auto";
-    const double reach = std::min(now.reach, placing.size());
+    const double speculative_margin = std::min(now.speculative_margin, placing.size());
     const double slack = kOfStraying * placing.size();
     LocalManifold<Real> out;
     collide<Real>(shapes, refs[0], refs[1],
                   {now.pose.position.cast<Real>(), now.pose.orientation.cast<Real>()},
-                  static_cast<Real>(reach), cache, out);
+                  static_cast<Real>(speculative_margin), cache, out);
     expect(out.count >= 0 && out.count <= 4 && all_finite(out), "a step's contacts are finite");
     if (out.count == 0) {
         expect(placing.by_points() >= -slack, "a step sees what is deep", placing.by_points());
@@ -113,8 +113,8 @@ void check_step(const Shapes& shapes,
     }
     const double length = static_cast<double>(out.normal.norm());
     expect(std::abs(length - 1) < 1e-5, "a step's normals are of unit length", length);
-    expect(placing.by_axes() <= reach + slack, "a step touches within reach", placing.by_axes(),
-           reach);
+    expect(placing.by_axes() <= speculative_margin + slack, "a step touches within reach",
+           placing.by_axes(), speculative_margin);
 }
 
 // The public door says what the method said, and refuses what makes no sense.
@@ -124,7 +124,7 @@ void check_query(ConvexQuery& query,
                  const Placing& placing)
 {
     now.method = method.name;
-    now.reach = kAnyReach;
+    now.speculative_margin = kAnyReach;
     const ConvexAnswer cold = query.ask(method.name, now.pose, MethodStart::cold);
     if (!method.serves(pair)) {
         expect(cold.verdict == QueryVerdict::refused && !cold.trouble.empty(),
@@ -135,9 +135,9 @@ void check_query(ConvexQuery& query,
     for (const ConvexAnswer& answer : {cold, kept}) {
         expect(answer.verdict != QueryVerdict::refused, "what makes sense is answered");
         placing.check(method, kAnyReach,
-                      {static_cast<Touch>(static_cast<int>(answer.verdict) - 1), answer.separation,
-                       answer.normal, answer.on_a, answer.on_b, answer.volume, answer.surface,
-                       answer.center, answer.rounds, answer.cut_short});
+                      {static_cast<OverlapState>(static_cast<int>(answer.verdict) - 1),
+                       answer.separation, answer.normal, answer.on_a, answer.on_b, answer.volume,
+                       answer.surface, answer.center, answer.rounds, answer.cut_short});
     }
     Pose wrong = now.pose;
     wrong.orientation.coeffs() *= 1.1;
@@ -175,8 +175,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         pair.place(now.pose);
         const Placing placing(pair, now.pose);
         const double part = kReach[bytes.below(4)];
-        const double reach = part == kAnyReach ? part : part * placing.size();
-        now.reach = reach;
+        const double speculative_margin = part == kAnyReach ? part : part * placing.size();
+        now.speculative_margin = speculative_margin;
         check_step<double>(shapes, refs, placing, cache);
         check_step<float>(shapes, refs, placing, wide_cache);
         if (!query) continue;
@@ -191,17 +191,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             }
             if (!method.serves(pair)) continue;
             now.method = method.name;
-            now.reach = reach;
+            now.speculative_margin = speculative_margin;
             now.memory = memories[i];
             now.start = 0;
-            const MethodAnswer told = method.ask(pair, reach, MethodStart::cached, memories[i]);
-            placing.check(method, reach, told);
+            const MethodAnswer told =
+                method.ask(pair, speculative_margin, MethodStart::cached, memories[i]);
+            placing.check(method, speculative_margin, told);
             MethodMemory fresh;
             now.memory = fresh;
             now.start = 1;
             const MethodAnswer cold = method.ask(pair, kAnyReach, MethodStart::cold, fresh);
             placing.check(method, kAnyReach, cold);
-            placing.compare(method, reach, told, cold);
+            placing.compare(method, speculative_margin, told, cold);
             if (i != chosen % methods.size()) continue;
             MethodMemory plain_memory;
             now.start = 2;

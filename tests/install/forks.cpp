@@ -1,6 +1,4 @@
 // Forks: a program that links throng has one thread, and so has a child of it, which ends.
-#include <throng/throng.hpp>
-
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -9,6 +7,7 @@
 #include <iterator>
 #include <sys/wait.h>
 #include <thread>
+#include <throng/throng.hpp>
 #include <unistd.h>
 
 namespace {

@@ -20,7 +20,7 @@ inline TriangleSoup noisy_ball(std::uint64_t seed, double radius, double noise)
 inline Solid in_spheres(const TriangleSoup& soup)
 {
     Solid solid;
-    solid.way = SolidWay::spheres;
+    solid.representation = SolidRepresentation::spheres;
     solid.mesh = closed(soup);
     solid.spheres = build_sphere_tree(solid.mesh, {3, 64, 0, 50000});
     return solid;

@@ -18,7 +18,7 @@ struct Outline {
     double rounding = 0;
 
     /// Furthest reach along a direction of unit length.
-    double reach(const Vec3& direction) const
+    double extent(const Vec3& direction) const
     {
         double most = -1e300;
         for (const Vec3& point : points) most = std::max(most, point.dot(direction));
@@ -62,22 +62,23 @@ inline Outline outline_of(const Shapes& shapes, ShapeRef shape)
 }
 
 /// How far apart two outlines lie along a direction from a to b; below 0 where they overlap.
-struct Gap {
+struct OutlinePair {
     Outline a, b;
     Pose b_in_a;
 
     double along(const Vec3& normal) const
     {
         const Vec3 local = b_in_a.orientation.conjugate() * -normal;
-        return normal.dot(b_in_a.position) - b.reach(local) - a.reach(normal);
+        return normal.dot(b_in_a.position) - b.extent(local) - a.extent(normal);
     }
 };
 
 /// The greatest gap over all directions: the distance of shapes that are apart, minus the depth of
 /// those that overlap. A spiral of directions over the sphere, the best of them improved in ever
 /// smaller steps, with `extra` as further places to start from.
-inline double
-greatest_gap(const Gap& gap, const std::vector<Vec3>& extra = {}, int directions = 3000)
+inline double greatest_separation(const OutlinePair& clearance,
+                                  const std::vector<Vec3>& extra = {},
+                                  int directions = 3000)
 {
     std::vector<std::pair<double, Vec3>> starts;
     for (int i = 0; i < directions; ++i) {
@@ -85,9 +86,9 @@ greatest_gap(const Gap& gap, const std::vector<Vec3>& extra = {}, int directions
         const double around = 2.399963229728653 * i;
         const double across = std::sqrt(1 - z * z);
         const Vec3 normal(across * std::cos(around), across * std::sin(around), z);
-        starts.emplace_back(gap.along(normal), normal);
+        starts.emplace_back(clearance.along(normal), normal);
     }
-    for (const Vec3& normal : extra) starts.emplace_back(gap.along(normal), normal);
+    for (const Vec3& normal : extra) starts.emplace_back(clearance.along(normal), normal);
     std::sort(starts.begin(), starts.end(),
               [](const auto& l, const auto& r) { return l.first > r.first; });
     if (starts.size() > 6) starts.resize(6);
@@ -102,7 +103,7 @@ greatest_gap(const Gap& gap, const std::vector<Vec3>& extra = {}, int directions
             for (int i = 0; i < 12; ++i) {
                 const Vec3 tried =
                     (normal + step * Vec3(bell(random), bell(random), bell(random))).normalized();
-                const double now = gap.along(tried);
+                const double now = clearance.along(tried);
                 if (!(now > value)) continue;
                 value = now;
                 normal = tried;

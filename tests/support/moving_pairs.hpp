@@ -4,7 +4,7 @@
 #include "cooking/hulls/hull.hpp"
 #include "kernels/geometry/gjk.hpp"
 #include "kernels/math/rotation.hpp"
-#include "narrowphase/ccd/impact_time.hpp"
+#include "narrowphase/ccd/time_of_impact.hpp"
 #include "tests/support/dice.hpp"
 
 namespace throng::test {
@@ -48,10 +48,10 @@ inline MovingPair random_pair(Dice& dice, double turn)
     MovingPair pair;
     pair.a.shape = random_shape(dice, kConvexKinds[dice.below(5)], pair.shapes);
     pair.b.shape = random_shape(dice, kConvexKinds[dice.below(5)], pair.shapes);
-    pair.a.sweep = {{dice.point(1), dice.turn()}, dice.point(3), dice.point(turn)};
-    pair.b.sweep = {{dice.point(1) + Vec3(2.5, 0, 0), dice.turn()},
-                    dice.point(3) - Vec3(2.5, 0, 0),
-                    dice.point(turn)};
+    pair.a.trajectory = {{dice.point(1), dice.turn()}, dice.point(3), dice.point(turn)};
+    pair.b.trajectory = {{dice.point(1) + Vec3(2.5, 0, 0), dice.turn()},
+                         dice.point(3) - Vec3(2.5, 0, 0),
+                         dice.point(turn)};
     if (dice.chance(0.3)) pair.a.local = {dice.point(0.5), dice.turn()};
     return pair;
 }
@@ -59,21 +59,23 @@ inline MovingPair random_pair(Dice& dice, double turn)
 /// The distance of two convex shapes at a time, m; 0 where they overlap.
 inline double distance_at(const MovingPair& pair, double time)
 {
-    const Pose a = pair.a.sweep.at(time) * pair.a.local;
-    const Pose b = pair.b.sweep.at(time) * pair.b.local;
-    const CorePair cores(pair.shapes, pair.a.shape, pair.b.shape,
-                         {a.to_local(b.position), a.orientation.conjugate() * b.orientation});
+    const Pose a = pair.a.trajectory.at(time) * pair.a.local;
+    const Pose b = pair.b.trajectory.at(time) * pair.b.local;
+    const ConvexCorePair cores(pair.shapes, pair.a.shape, pair.b.shape,
+                               {a.to_local(b.position), a.orientation.conjugate() * b.orientation});
     const Distance found = gjk(cores, 1e30);
-    return found.apart ? std::max(0.0, found.distance - cores.a.radius - cores.b.radius) : 0;
+    return found.apart
+        ? std::max(0.0, found.distance - cores.a.convex_radius - cores.b.convex_radius)
+        : 0;
 }
 
 /// m a unit of time, no point of either moves faster.
 inline double greatest_speed(const MovingPair& pair)
 {
     const auto of = [&](const MovingShape& moving) {
-        const double reach =
-            moving.local.position.norm() + core_of<double>(pair.shapes, moving.shape).size;
-        return moving.sweep.shift.norm() + moving.sweep.turn.norm() * reach;
+        const double extent =
+            moving.local.position.norm() + convex_core_of<double>(pair.shapes, moving.shape).size;
+        return moving.trajectory.shift.norm() + moving.trajectory.turn.norm() * extent;
     };
     return of(pair.a) + of(pair.b);
 }

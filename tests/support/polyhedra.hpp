@@ -91,11 +91,11 @@ LocalManifold<Real> run(PairFunction<Real> function,
                         ShapeRef a,
                         ShapeRef b,
                         const Pose& pose,
-                        double reach)
+                        double extent)
 {
     PairCache cache;
     LocalManifold<Real> out;
-    function(shapes, a, b, cast<Real>(pose), static_cast<Real>(reach), cache, out);
+    function(shapes, a, b, cast<Real>(pose), static_cast<Real>(extent), cache, out);
     return out;
 }
 
@@ -125,7 +125,7 @@ bool features_differ(const LocalManifold<Real>& manifold)
 }
 
 /// How far a cloud of points reaches, placed and turned.
-inline Reach reach_of(std::vector<Vec3> points, const Pose& pose)
+inline Extent extent_of(std::vector<Vec3> points, const Pose& pose)
 {
     for (Vec3& point : points) point = pose * point;
     return [points = std::move(points)](const Vec3& direction) {

@@ -46,7 +46,7 @@ inline Shapes uneven_prisms(std::uint64_t seed)
 struct PolytopeCase {
     ShapeRef a, b;
     Pose b_in_a;
-    double gap = 0;  // m, below 0 minus the depth
+    double clearance = 0;  // m, below 0 minus the depth
 };
 
 /// Two of the prisms, near one another: a face of each against the other.
@@ -66,12 +66,12 @@ inline PolytopeCase face_to_face(const Shapes& prisms, RandomShapes& random)
     const Vec3 face_b = any_normal(prisms.hulls[pair.b.index]);
     pair.b_in_a = {face_a * 0.3 + random.vector(-0.2, 0.2), Quat::FromTwoVectors(face_b, -face_a)};
     Vec3 normal;
-    pair.gap = polytope_separation(a, b, pair.b_in_a, &normal);
-    if (pair.gap < 0) {
+    pair.clearance = polytope_separation(a, b, pair.b_in_a, &normal);
+    if (pair.clearance < 0) {
         const double wanted =
             std::pow(10, random.number(-9, -3)) * (random.number(0, 3) < 1 ? 1 : -1);
-        pair.b_in_a.position += normal * (wanted - pair.gap);
-        pair.gap = wanted;
+        pair.b_in_a.position += normal * (wanted - pair.clearance);
+        pair.clearance = wanted;
     }
     return pair;
 }
@@ -98,15 +98,15 @@ public:
         }
         const PolytopeShape a(shapes_, pair.a), b(shapes_, pair.b);
         Vec3 normal;
-        pair.gap = polytope_separation(a.view(), b.view(), pair.b_in_a, &normal);
+        pair.clearance = polytope_separation(a.view(), b.view(), pair.b_in_a, &normal);
         // From an overlap there is no way to part that is shorter than along its normal, so the gap
         // after a move along it is known.
         const double moved = scale_ * std::pow(10, random_.number(-9, -1.5));
         const double wanted = random_.number(-1, 1) < 0 ? -moved : moved;
-        const bool wants = kind >= 3 && pair.gap < std::min(0.0, wanted);
+        const bool wants = kind >= 3 && pair.clearance < std::min(0.0, wanted);
         if (wants) {
-            pair.b_in_a.position += normal * (wanted - pair.gap);
-            pair.gap = wanted;
+            pair.b_in_a.position += normal * (wanted - pair.clearance);
+            pair.clearance = wanted;
         }
         return pair;
     }
@@ -134,11 +134,14 @@ private:
 /// Whether rounding has no say in whether they touch.
 inline bool is_clear(const PolytopeCase& pair, double scale)
 {
-    return std::abs(pair.gap) > 0.99e-9 * scale;
+    return std::abs(pair.clearance) > 0.99e-9 * scale;
 }
 
 /// What a method has to say of a gap that is known.
-inline Touch truth_of(double gap) { return gap > 0 ? Touch::apart : Touch::touching; }
+inline OverlapState truth_of(double clearance)
+{
+    return clearance > 0 ? OverlapState::apart : OverlapState::touching;
+}
 
 /// m, by the axes of their faces and edges.
 inline double separation_of(const ConvexPair& pair)
@@ -149,8 +152,8 @@ inline double separation_of(const ConvexPair& pair)
 
 /// Shows (shapes, pair) the hard boxes at each scale, but for those whose poses are given to fewer
 /// digits than it takes to tell.
-template <class Visit>
-void for_hard_boxes(Visit&& visit)
+template <class Visitor>
+void for_hard_boxes(Visitor&& visit)
 {
     for (const BrokenPair& hard : broken_pairs()) {
         SCOPED_TRACE(hard.name);

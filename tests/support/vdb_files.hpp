@@ -1,7 +1,7 @@
 // Vdb files: level sets of a formula, as the bytes of a file.
 #pragma once
 
-#include "cooking/cache/file_seal.hpp"
+#include "cooking/cache/file_checksum.hpp"
 #include "cooking/fields/voxel_field.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
 

@@ -40,11 +40,12 @@ inline constexpr Budget kBudget[] = {
 /// puts contacts into an order or into rows is of the rows, and what moves bodies of the first.
 struct StagePart { std::string_view stage; int part; };
 inline constexpr StagePart kStageParts[] = {
-    {"drive_bodies", 0}, {"update_bounds", 0}, {"integrate_poses", 0}, {"quarantine_bodies", 0},
-    {"rest_islands", 0}, {"wake_touched", 0},
+    {"prescribe_velocities", 0}, {"update_bounds", 0}, {"integrate_poses", 0},
+    {"quarantine_bodies", 0}, {"sleep_islands", 0}, {"wake_islands", 0},
     {"find_pairs", 1},
     {"collide_convex", 2}, {"collide_meshes", 2},
-    {"gather_contacts", 3}, {"split_islands", 3}, {"color_rows", 3}, {"prepare_rows", 3},
+    {"gather_contacts", 3}, {"split_islands", 3}, {"color_constraints", 3},
+    {"prepare_constraints", 3},
     {"solve_impulses", 4},
 };
 // clang-format on

@@ -65,8 +65,8 @@ void fill_rim(const VoxelBricks& bricks,
             }
 }
 
-template <class Visit>
-void visit_bricks(const VoxelBricks& bricks, Visit visit)
+template <class Visitor>
+void visit_bricks(const VoxelBricks& bricks, Visitor visit)
 {
     std::size_t row = 0;
     for (int z = 0; z < bricks.bricks[2]; ++z)
@@ -107,9 +107,9 @@ FloatGrid::Ptr grid_of(const VoxelBricks& bricks, const FieldNotes& notes)
     grid->insertMeta(
         "throng_bricks",
         openvdb::Vec3IMetadata(Vec3i(bricks.bricks[0], bricks.bricks[1], bricks.bricks[2])));
-    std::string remarks;
-    for (const std::string& remark : notes.remarks) remarks += remark + "\n";
-    grid->insertMeta("throng_remarks", openvdb::StringMetadata(remarks));
+    std::string warnings;
+    for (const std::string& warning : notes.warnings) warnings += warning + "\n";
+    grid->insertMeta("throng_remarks", openvdb::StringMetadata(warnings));
     return grid;
 }
 
@@ -121,7 +121,7 @@ FieldNotes notes_of(const FloatGrid& grid)
     const auto text = grid.metaValue<std::string>("throng_remarks");
     for (std::size_t begin = 0; begin < text.size();) {
         const std::size_t end = text.find('\n', begin);
-        notes.remarks.push_back(text.substr(begin, end - begin));
+        notes.warnings.push_back(text.substr(begin, end - begin));
         if (end == std::string::npos) break;
         begin = end + 1;
     }

@@ -1,6 +1,6 @@
 #include "kernels/solver/direct/contact_cones.hpp"
 
-#include "kernels/data/rows.hpp"
+#include "kernels/data/contact_constraints.hpp"
 
 #include <limits>
 
@@ -54,20 +54,21 @@ void choose_rows(const DirectPoint& point, ContactCone& cone)
         for (const Vec3& axis : {tangent, other, point.normal}) add(axis, point.rolling, true);
 }
 
-// Whether a push along the normal does anything but spin what cannot be moved: see kLeastLever.
+// Whether a push along the normal does anything but spin what cannot be moved: see kLeastLeverArm.
 bool gives_way(const DirectPoint& point, const ContactCone& cone)
 {
-    double moves = 0, turns = 0, by_levers = 0;
+    double moves = 0, turns = 0, by_lever_arms = 0;
     const auto add = [&](const ConeBlock& rows, const Vec3& arm) {
         const double turned = rows.row(0).tail<3>().squaredNorm();
-        const double lever = arm.cross(point.normal).squaredNorm();
+        const double lever_arm = arm.cross(point.normal).squaredNorm();
         moves += rows.row(0).head<3>().squaredNorm();
         turns += turned;
-        if (lever > kLeastLever * kLeastLever * arm.squaredNorm()) by_levers += turned;
+        if (lever_arm > kLeastLeverArm * kLeastLeverArm * arm.squaredNorm())
+            by_lever_arms += turned;
     };
     add(cone.of_a, point.arm_a);
     add(cone.of_b, point.arm_b);
-    return moves > 0 || (turns > 0 && 2 * by_levers >= turns);
+    return moves > 0 || (turns > 0 && 2 * by_lever_arms >= turns);
 }
 
 }  // namespace
@@ -190,9 +191,9 @@ ConeVector ContactCones::seen(const ContactCone& cone, std::span<const BodySix> 
     return speed;
 }
 
-void ContactCones::push(const ContactCone& cone,
-                        const ConeVector& impulse,
-                        std::span<BodySix> change) const
+void ContactCones::apply_impulse(const ContactCone& cone,
+                                 const ConeVector& impulse,
+                                 std::span<BodySix> change) const
 {
     for (std::size_t k = 0; k < cone.rows; ++k) {
         const auto row = static_cast<Eigen::Index>(k);
@@ -208,7 +209,7 @@ void ContactCones::push(const ContactCone& cone,
 void ContactCones::push_all(std::vector<BodySix>& change) const
 {
     change.assign(columns_, BodySix::Zero());
-    for (const ContactCone& cone : cones) push(cone, cone.impulse, change);
+    for (const ContactCone& cone : cones) apply_impulse(cone, cone.impulse, change);
 }
 
 double ContactCones::residual(std::vector<BodySix>& scratch) const

@@ -48,7 +48,9 @@ public:
     /// What the rows of a cone see of a change of velocities, [columns].
     ConeVector seen(const ContactCone& cone, std::span<const BodySix> change) const;
     /// Adds to a change of velocities what an impulse on the rows does.
-    void push(const ContactCone& cone, const ConeVector& impulse, std::span<BodySix> change) const;
+    void apply_impulse(const ContactCone& cone,
+                       const ConeVector& impulse,
+                       std::span<BodySix> change) const;
     /// The change that all impulses together make.
     void push_all(std::vector<BodySix>& change) const;
     /// By how much impulses and the velocities they make miss the law: see DirectAnswer. Infinite

@@ -1,9 +1,9 @@
 #include "kernels/solver/direct/direct.hpp"
 
-#include "kernels/solver/direct/cone_hold.hpp"
-#include "kernels/solver/direct/cone_multipliers.hpp"
-#include "kernels/solver/direct/cone_path.hpp"
-#include "kernels/solver/direct/cone_pivots.hpp"
+#include "kernels/solver/direct/cone_active_set.hpp"
+#include "kernels/solver/direct/cone_augmented_lagrangian.hpp"
+#include "kernels/solver/direct/cone_interior_point.hpp"
+#include "kernels/solver/direct/cone_lemke.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -81,7 +81,7 @@ bool DirectSolver::Work::hold()
 {
     int most = std::min(left, kHoldSteps);
     left -= most;
-    const double residual = ConeHold(island, matrix).run(most);
+    const double residual = ConeActiveSet(island, matrix).run(most);
     left += std::max(most, 0);
     return keep_if_better(residual);
 }
@@ -99,7 +99,7 @@ bool DirectSolver::Work::start_from_guess()
 // From the impulses in the cones.
 bool DirectSolver::Work::hold_from_here()
 {
-    ConeSweeps(island).run(0);
+    ConeGaussSeidel(island).run(0);
     return hold();
 }
 
@@ -110,7 +110,7 @@ void DirectSolver::Work::go_back_to_best()
 
 bool DirectSolver::Work::follow_path()
 {
-    ConePath path(island, matrix);
+    ConeInteriorPoint path(island, matrix);
     double try_below = kNear, nearest = kInfinite;
     for (int waited = 0; left > 0 && waited <= kPatience; ++waited) {
         --left;
@@ -131,11 +131,11 @@ bool DirectSolver::Work::follow_path()
 // From the impulses in the cones. Sweeps tell the kinds where the path has lost its way.
 bool DirectSolver::Work::sweep_and_hold()
 {
-    ConeSweeps sweeps(island);
+    ConeGaussSeidel iterations(island);
     std::vector<ConeVector> swept(best.size());
     for (const int many : kSweeps) {
         if (left <= 0) return false;
-        sweeps.run(many);
+        iterations.run(many);
         if (keep_if_better(island.residual(scratch))) return true;
         for (std::size_t i = 0; i < swept.size(); ++i) swept[i] = island.cones[i].impulse;
         const double before = answer.residual;
@@ -150,7 +150,7 @@ bool DirectSolver::Work::sweep_and_hold()
 // by the width of their sides, so these come closer from try to try.
 bool DirectSolver::Work::pivot_and_hold()
 {
-    ConePivots pivots(island);
+    ConeLemke pivots(island);
     std::vector<ConeVector> found(best.size());
     for (const int closer : kCloser) {
         if (left <= 0 || !pivots.run(closer)) return false;
@@ -168,7 +168,8 @@ bool DirectSolver::Work::take_springs(int most)
 {
     most = std::min(most, left);
     left -= most;
-    const double residual = ConeMultipliers(island, matrix).run(done(), effort.enough, most);
+    const double residual =
+        ConeAugmentedLagrangian(island, matrix).run(done(), effort.enough, most);
     left += most;
     return keep_if_better(residual) || answer.residual < effort.enough;
 }

@@ -79,9 +79,10 @@ struct DirectEffort {
 /// Method:  primal-dual interior point steps on the cone program of the velocities, each of which
 ///          factorises masses + rows' W rows over the bodies; the correction that makes its answer
 ///          a contact's follows along from step to step. Then who parts, sticks and slides is taken
-///          as known (cone_hold.hpp). Where that fails sweeps tell it (cone_sweeps.hpp), and where
-///          these do not either an augmented Lagrangian leads there (cone_multipliers.hpp); last of
-///          all the pivots of Lemke's method, with many-sided cones (cone_pivots.hpp).
+///          as known (cone_active_set.hpp). Where that fails sweeps tell it
+///          (cone_gauss_seidel.hpp), and where these do not either an augmented Lagrangian leads
+///          there (cone_augmented_lagrangian.hpp); last of all the pivots of Lemke's method, with
+///          many-sided cones (cone_lemke.hpp).
 /// Source:  De Saxce and Feng (1998); Acary, Cadoux, Lemarechal and Malick, A formulation of the
 ///          linear discrete Coulomb friction problem via convex optimization (2011); Acary, Armand,
 ///          Nguyen and Shpakovych, Second-order cone programming for frictional contact mechanics

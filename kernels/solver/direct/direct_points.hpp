@@ -8,29 +8,29 @@
 namespace throng {
 
 /// Velocity of b against a at a point, m/s, as friction sees it: less the walk.
-inline Vec3 velocity_between(const DirectPoint& point, std::span<const DirectBody> bodies)
+inline Vec3 relative_velocity(const DirectPoint& point, std::span<const DirectBody> bodies)
 {
-    const auto speed = [&](std::int32_t seat, const Vec3& arm) -> Vec3 {
-        if (seat < 0) return Vec3::Zero();
-        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+    const auto speed = [&](std::int32_t index, const Vec3& arm) -> Vec3 {
+        if (index < 0) return Vec3::Zero();
+        const DirectBody& body = bodies[static_cast<std::size_t>(index)];
         return body.velocity + body.spin.cross(arm);
     };
     return speed(point.b, point.arm_b) - speed(point.a, point.arm_a) - point.walk;
 }
 
 /// Of that, the part along the normal: below 0 while they close.
-inline double speed_apart(const DirectPoint& point, std::span<const DirectBody> bodies)
+inline double relative_normal_velocity(const DirectPoint& point, std::span<const DirectBody> bodies)
 {
-    return point.normal.dot(velocity_between(point, bodies));
+    return point.normal.dot(relative_velocity(point, bodies));
 }
 
 /// By how much an impulse along a direction changes the speed of b against a along it, 1/kg.
 inline double
-ease_along(const DirectPoint& point, const Vec3& along, std::span<const DirectBody> bodies)
+inverse_mass_along(const DirectPoint& point, const Vec3& along, std::span<const DirectBody> bodies)
 {
-    const auto of = [&](std::int32_t seat, const Vec3& arm) {
-        if (seat < 0) return 0.0;
-        const DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+    const auto of = [&](std::int32_t index, const Vec3& arm) {
+        if (index < 0) return 0.0;
+        const DirectBody& body = bodies[static_cast<std::size_t>(index)];
         const Vec3 turn = arm.cross(along);
         return body.inverse_mass + turn.dot(Vec3(body.inverse_inertia.matrix() * turn));
     };
@@ -38,43 +38,44 @@ ease_along(const DirectPoint& point, const Vec3& along, std::span<const DirectBo
 }
 
 /// At least what any direction across the normal comes to of that.
-inline double widest_ease(const DirectPoint& point, std::span<const DirectBody> bodies)
+inline double widest_inverse_mass(const DirectPoint& point, std::span<const DirectBody> bodies)
 {
     const Vec3 along = point.normal.unitOrthogonal(), other = point.normal.cross(along);
-    return ease_along(point, along, bodies) + ease_along(point, other, bodies);
+    return inverse_mass_along(point, along, bodies) + inverse_mass_along(point, other, bodies);
 }
 
 /// Gives an impulse, N s, to b, and its opposite to a.
 inline void
 apply_impulse(const DirectPoint& point, const Vec3& impulse, std::span<DirectBody> bodies)
 {
-    const auto push = [&](std::int32_t seat, const Vec3& arm, double sign) {
-        if (seat < 0) return;
-        DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+    const auto apply = [&](std::int32_t index, const Vec3& arm, double sign) {
+        if (index < 0) return;
+        DirectBody& body = bodies[static_cast<std::size_t>(index)];
         body.velocity += sign * body.inverse_mass * impulse;
         body.spin += sign * Vec3(body.inverse_inertia.matrix() * arm.cross(impulse));
     };
-    push(point.a, point.arm_a, -1);
-    push(point.b, point.arm_b, 1);
+    apply(point.a, point.arm_a, -1);
+    apply(point.b, point.arm_b, 1);
 }
 
 /// Angular velocity of b against a, rad/s.
-inline Vec3 spin_between(const DirectPoint& point, std::span<const DirectBody> bodies)
+inline Vec3 relative_spin(const DirectPoint& point, std::span<const DirectBody> bodies)
 {
-    const auto spin = [&](std::int32_t seat) -> Vec3 {
-        return seat < 0 ? Vec3(Vec3::Zero()) : bodies[static_cast<std::size_t>(seat)].spin;
+    const auto spin = [&](std::int32_t index) -> Vec3 {
+        return index < 0 ? Vec3(Vec3::Zero()) : bodies[static_cast<std::size_t>(index)].spin;
     };
     return spin(point.b) - spin(point.a);
 }
 
 /// By how much a torque about an axis, for a time, changes the spin of b against a about it,
 /// 1 / (kg m2).
-inline double
-ease_about(const DirectPoint& point, const Vec3& axis, std::span<const DirectBody> bodies)
+inline double inverse_inertia_about(const DirectPoint& point,
+                                    const Vec3& axis,
+                                    std::span<const DirectBody> bodies)
 {
-    const auto of = [&](std::int32_t seat) {
-        if (seat < 0) return 0.0;
-        const Mat3 inverse = bodies[static_cast<std::size_t>(seat)].inverse_inertia.matrix();
+    const auto of = [&](std::int32_t index) {
+        if (index < 0) return 0.0;
+        const Mat3 inverse = bodies[static_cast<std::size_t>(index)].inverse_inertia.matrix();
         return axis.dot(Vec3(inverse * axis));
     };
     return of(point.a) + of(point.b);
@@ -83,9 +84,9 @@ ease_about(const DirectPoint& point, const Vec3& axis, std::span<const DirectBod
 /// Gives a torque for a time, N m s, to b, and its opposite to a.
 inline void apply_torque(const DirectPoint& point, const Vec3& torque, std::span<DirectBody> bodies)
 {
-    const auto turn = [&](std::int32_t seat, double sign) {
-        if (seat < 0) return;
-        DirectBody& body = bodies[static_cast<std::size_t>(seat)];
+    const auto turn = [&](std::int32_t index, double sign) {
+        if (index < 0) return;
+        DirectBody& body = bodies[static_cast<std::size_t>(index)];
         body.spin += sign * Vec3(body.inverse_inertia.matrix() * torque);
     };
     turn(point.a, -1);
@@ -99,8 +100,8 @@ inline double work_of(std::span<const DirectPoint> points,
 {
     double work = 0;
     for (const DirectPoint& point : points) {
-        const Vec3 passed = velocity_between(point, before) + velocity_between(point, after);
-        const Vec3 turned = spin_between(point, before) + spin_between(point, after);
+        const Vec3 passed = relative_velocity(point, before) + relative_velocity(point, after);
+        const Vec3 turned = relative_spin(point, before) + relative_spin(point, after);
         work += 0.5 * (point.impulse.dot(passed) + point.torque.dot(turned));
     }
     return work;
@@ -108,23 +109,23 @@ inline double work_of(std::span<const DirectPoint> points,
 
 /// Friction of an impact at a point, and what resists rolling, up to what they bear of the impulse
 /// that threw it back, N s. Adds to the point's impulse and torque, and never to the energy.
-inline void rub(double load, DirectPoint& point, std::span<DirectBody> bodies)
+inline void apply_impact_friction(double load, DirectPoint& point, std::span<DirectBody> bodies)
 {
-    const Vec3 between = velocity_between(point, bodies);
+    const Vec3 between = relative_velocity(point, bodies);
     const Vec3 sliding = between - point.normal * point.normal.dot(between);
     const double fast = sliding.norm();
     if (fast > 0 && point.friction > 0) {
-        const double sticks = 1 / ease_along(point, sliding / fast, bodies);
+        const double sticks = 1 / inverse_mass_along(point, sliding / fast, bodies);
         const Vec3 impulse = sliding * -std::min(sticks, point.friction * load / fast);
         point.impulse += impulse;
         apply_impulse(point, impulse, bodies);
     }
-    const Vec3 turning = spin_between(point, bodies);
+    const Vec3 turning = relative_spin(point, bodies);
     const double turns = turning.norm();
     if (!(turns > 0 && point.rolling > 0)) return;
-    const double ease = ease_about(point, turning / turns, bodies);
-    if (!(ease > 0)) return;
-    const Vec3 torque = turning * -std::min(1 / ease, point.rolling * load / turns);
+    const double inverse_mass = inverse_inertia_about(point, turning / turns, bodies);
+    if (!(inverse_mass > 0)) return;
+    const Vec3 torque = turning * -std::min(1 / inverse_mass, point.rolling * load / turns);
     point.torque += torque;
     apply_torque(point, torque, bodies);
 }

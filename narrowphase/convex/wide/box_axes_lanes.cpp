@@ -73,11 +73,11 @@ struct Axes {
         const auto& turn = pair.turn;
         const Floats x = -turn[i2][j], y = turn[i1][j];
         const Floats along = abs(x * pair.center[i1] + y * pair.center[i2]);
-        const Floats reach_a =
+        const Floats extent_a =
             pair.half_a[i1] * abs_turn[i2][j] + pair.half_a[i2] * abs_turn[i1][j];
-        const Floats reach_b = pair.half_b[j1] * abs(x * turn[i1][j1] + y * turn[i2][j1])
+        const Floats extent_b = pair.half_b[j1] * abs(x * turn[i1][j1] + y * turn[i2][j1])
             + pair.half_b[j2] * abs(x * turn[i1][j2] + y * turn[i2][j2]);
-        best.try_axis(along - (reach_a + reach_b), x * x + y * y, 6 + 3 * i + j);
+        best.try_axis(along - (extent_a + extent_b), x * x + y * y, 6 + 3 * i + j);
     }
 };
 
@@ -132,7 +132,7 @@ void part_lanes(
         of_b.try_axis(axes.face_of_b(i), 3 + i);
     }
     const Floats top = max(of_a.separation, of_b.separation);
-    left &= ~bits(top > pair.reach);
+    left &= ~bits(top > pair.speculative_margin);
     if (left == 0) return;
 
     const Floats one = 1.f;
@@ -141,7 +141,7 @@ void part_lanes(
         for (int j = 0; j < 3; ++j) axes.try_edges(i, j, edge);
     const Mask has_edge = edge.index < Ints(kNoEdge);
     const Floats edge_separation = edge.separation / sqrt(edge.length2);
-    left &= ~bits(both(has_edge, edge_separation > pair.reach));
+    left &= ~bits(both(has_edge, edge_separation > pair.speculative_margin));
     if (left == 0) return;
 
     // b's face leads only where it is clearly better, for the same reason as any face does.

@@ -74,8 +74,8 @@ void cross_lanes(const BoxPair* pairs, const BoxList& edges, std::int32_t from, 
         feature = feature + pair.bit_a(low, 8, r);
         const Floats axis[3] = {turn[0][r], turn[1][r], turn[2][r]};
         const Mask below = dot(normal, axis) > zero;
-        const Floats reach = select(below, -pair.half_b[r], pair.half_b[r]);
-        for (int k = 0; k < 3; ++k) on_b[k] += reach * axis[k];
+        const Floats extent = select(below, -pair.half_b[r], pair.half_b[r]);
+        for (int k = 0; k < 3; ++k) on_b[k] += extent * axis[k];
         feature = feature + pair.bit_b(below, 12, r);
     }
     // Closest points of the two lines, held to the edges.
@@ -95,7 +95,7 @@ void cross_lanes(const BoxPair* pairs, const BoxList& edges, std::int32_t from, 
 
     // Boxes that are apart may have their closest points elsewhere: these two then pass each other
     // by and there is nothing to hold.
-    const Floats limit = boxes.reach + boxes.bias();
+    const Floats limit = boxes.speculative_margin + boxes.bias();
     const unsigned pass_by = bits(both(axes.edge_separation > zero, distance2 > limit * limit));
     PointLanes point[4];
     pair.put_back(middle, point[0].at);

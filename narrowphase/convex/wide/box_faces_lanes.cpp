@@ -138,7 +138,7 @@ void clip_lanes(
     Floats least = 3e38f;
     Ints there{}, count{};
     for (int k = 0; k < kPlaces; ++k) {
-        places.there[k] = but_not(places.there[k], places.separation[k] > boxes.reach);
+        places.there[k] = but_not(places.there[k], places.separation[k] > boxes.speculative_margin);
         least = select(places.there[k], min(places.separation[k], least), least);
         there = there + select(places.there[k], Ints(1 << k), Ints(0));
         count = count + select(places.there[k], Ints(1), Ints(0));

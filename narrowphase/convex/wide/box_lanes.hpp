@@ -97,7 +97,7 @@ inline unsigned first_lanes(int n) { return n >= kWidth ? (1u << kWidth) - 1 : (
 
 // What a and b look like from a: b's center and axes (the columns of turn) in a's frame.
 struct BoxLanes {
-    Floats half_a[3], half_b[3], center[3], turn[3][3], reach;
+    Floats half_a[3], half_b[3], center[3], turn[3][3], speculative_margin;
 
     BoxLanes(const BoxPair* pairs, const std::int32_t* index)
     {
@@ -106,7 +106,7 @@ struct BoxLanes {
         gather_8(pairs->place, kStride, index, p);
         gather_8(pairs->size, kStride, index, s);
         for (int i = 0; i < 3; ++i) center[i] = p[i], half_a[i] = s[i], half_b[i] = s[i + 4];
-        reach = p[3];
+        speculative_margin = p[3];
         const Floats one = 1.f, x = p[4], y = p[5], z = p[6], w = p[7];
         const Floats x2 = x + x, y2 = y + y, z2 = z + z;
         turn[0][0] = one - (y2 * y + z2 * z);

@@ -15,20 +15,21 @@ namespace throng {
 ///
 ///   b_in_a         pose of b in a's frame; to be computed in double
 ///   half_a, half_b half extents
-///   reach          m, points further apart than this are left out (at least 0)
+///   speculative_margin  m, points further apart than this are left out (at least 0)
 inline BoxPair box_pair(const PoseT<float>& b_in_a,
                         const Vec3T<float>& half_a,
                         const Vec3T<float>& half_b,
-                        float reach)
+                        float speculative_margin)
 {
     const Vec3T<float>& p = b_in_a.position;
     const QuatT<float>& q = b_in_a.orientation;
-    return {{p.x(), p.y(), p.z(), reach, q.x(), q.y(), q.z(), q.w()},
+    return {{p.x(), p.y(), p.z(), speculative_margin, q.x(), q.y(), q.z(), q.w()},
             {half_a.x(), half_a.y(), half_a.z(), 0, half_b.x(), half_b.y(), half_b.z(), 0}};
 }
 
-/// Finds where boxes touch or come within reach of one another: manifolds in a's frame, normal from
-/// a to b; count 0 where nothing is within reach, the rest of such a manifold left as it was.
+/// Finds where boxes touch or come within the margin of one another: manifolds in a's frame, normal
+/// from a to b; count 0 where nothing is within the margin, the rest of such a manifold left as it
+/// was.
 ///
 /// An answer hangs on its pair alone, not on the others of the call nor on the width of the
 /// machine. Best with some hundred pairs a call: what is left of each step is padded to full

@@ -41,13 +41,14 @@ public:
           size_(distance_ + pair.a.outer + pair.b.outer), noise_(kNoise * size_)
     { }
 
-    /// Whether the balls round them, or the axis that was guessed, show them to be out of reach.
+    /// Whether the balls round them, or the axis that was guessed, show them to be beyond the
+    /// margin.
     bool parted_at_once(const HullGuess& guess);
-    /// How far the axes that were looked at part them, out of reach or not.
+    /// How far the axes that were looked at part them, beyond the margin or not.
     float apart() const;
-    /// False where an axis shows them to be out of reach. Either way the best is remembered.
+    /// False where an axis shows them to be beyond the margin. Either way the best is remembered.
     bool find_axes(HullGuess& guess);
-    void touch(HullTouch& out);
+    void collide(HullOverlap& out);
 
 private:
     bool b_leads() const { return best_b_.separation > best_a_.separation + pair_.bias; }
@@ -62,10 +63,10 @@ private:
     bool edges_have_alike() const;
     void find_edges(float to_beat);
     HullGuess best() const;
-    void cross_edges(HullTouch& out) const;
+    void cross_edges(HullOverlap& out) const;
     F3 face_normal(bool by_b) const;
-    float clip_face(bool by_b, HullTouch& out) const;
-    void touch_vertex(bool by_b, HullTouch& out) const;
+    float clip_face(bool by_b, HullOverlap& out) const;
+    void collide_vertex(bool by_b, HullOverlap& out) const;
 
     const HullPair& pair_;
     Side by_a_, by_b_;
@@ -99,23 +100,23 @@ EdgeAxis Search::guess_edges(std::uint32_t edge_a, std::uint32_t edge_b) const
 
 bool Search::parted_at_once(const HullGuess& guess)
 {
-    if (distance_ > pair_.a.outer + pair_.b.outer + pair_.reach) return true;
+    if (distance_ > pair_.a.outer + pair_.b.outer + pair_.speculative_margin) return true;
     const auto count = [](int number) { return static_cast<std::uint32_t>(number); };
     if (guess.kind == HullGuess::face_a && guess.a < count(pair_.a.faces)) {
         best_a_ = guess_face(by_a_, guess.a);
         known_ = HullGuess::face_a;
-        return best_a_.separation > pair_.reach;
+        return best_a_.separation > pair_.speculative_margin;
     }
     if (guess.kind == HullGuess::face_b && guess.a < count(pair_.b.faces)) {
         best_b_ = guess_face(by_b_, guess.a);
         known_ = HullGuess::face_b;
-        return best_b_.separation > pair_.reach;
+        return best_b_.separation > pair_.speculative_margin;
     }
     if (guess.kind == HullGuess::edges && guess.a < count(pair_.a.edge_count)
         && guess.b < count(pair_.b.edge_count)) {
         edge_ = guess_edges(guess.a, guess.b);
         if (edge_.a >= 0) known_ = HullGuess::edges;
-        return edge_.separation > pair_.reach;
+        return edge_.separation > pair_.speculative_margin;
     }
     return false;
 }
@@ -157,8 +158,8 @@ void Search::find_bounds()
     }
 }
 
-// The best faces of both, or some that are out of reach. A face that could not lead whatever comes
-// after is left out, and b's are looked for only from a's best on.
+// The best faces of both, or some that are beyond the margin. A face that could not lead whatever
+// comes after is left out, and b's are looked for only from a's best on.
 bool Search::find_faces()
 {
     look_beyond(pair_.a, by_a_.center, bound_a_.center_beyond);
@@ -166,7 +167,7 @@ bool Search::find_faces()
     if (known_ == HullGuess::none) {
         const int face = furthest_face(pair_.a, bound_a_.center_beyond);
         best_a_ = guess_face(by_a_, static_cast<std::uint32_t>(face));
-        if (best_a_.separation > pair_.reach) return false;
+        if (best_a_.separation > pair_.speculative_margin) return false;
     }
     look_beyond(pair_.b, by_b_.center, bound_b_.center_beyond);
     find_bounds();
@@ -182,11 +183,11 @@ bool Search::find_faces()
 
 bool Search::improve_faces(float floor_a, float floor_b)
 {
-    improve_face(by_a_, bound_a_, floor_a, pair_.reach, noise_, best_a_);
-    if (best_a_.separation > pair_.reach) return false;
+    improve_face(by_a_, bound_a_, floor_a, pair_.speculative_margin, noise_, best_a_);
+    if (best_a_.separation > pair_.speculative_margin) return false;
     floor_b = most(floor_b, best_a_.separation);
-    improve_face(by_b_, bound_b_, floor_b, pair_.reach, noise_, best_b_);
-    return best_b_.separation <= pair_.reach;
+    improve_face(by_b_, bound_b_, floor_b, pair_.speculative_margin, noise_, best_b_);
+    return best_b_.separation <= pair_.speculative_margin;
 }
 
 // Only a face that is like the edges may lead though they are better.
@@ -226,7 +227,7 @@ HullGuess Search::best() const
     if (edge_.a >= 0)
         return {HullGuess::edges, static_cast<std::uint32_t>(edge_.a),
                 static_cast<std::uint32_t>(edge_.b)};
-    const bool by_b = best_b_.separation > pair_.reach || b_leads();
+    const bool by_b = best_b_.separation > pair_.speculative_margin || b_leads();
     return {by_b ? HullGuess::face_b : HullGuess::face_a,
             static_cast<std::uint32_t>(by_b ? best_b_.face : best_a_.face), 0};
 }
@@ -236,7 +237,8 @@ bool Search::find_axes(HullGuess& guess)
     const bool near = find_faces();
     if (near) {
         // A face that leads tells where they touch, but not whether: edges may still part them.
-        find_edges(least((b_leads() ? best_b_ : best_a_).separation + pair_.bias, pair_.reach));
+        find_edges(least((b_leads() ? best_b_ : best_a_).separation + pair_.bias,
+                         pair_.speculative_margin));
         const bool others =
             static_cast<int>(guess.a) != edge_.a || static_cast<int>(guess.b) != edge_.b;
         if (known_ == HullGuess::edges && others && edges_have_alike()) {
@@ -245,17 +247,17 @@ bool Search::find_axes(HullGuess& guess)
         }
     }
     guess = best();
-    return near && !(edge_.a >= 0 && edge_.separation > pair_.reach);
+    return near && !(edge_.a >= 0 && edge_.separation > pair_.speculative_margin);
 }
 
 // The point midway between the two edges; none where edges that are apart pass one another by
-// further than reach.
-void Search::cross_edges(HullTouch& out) const
+// further than the speculative margin.
+void Search::cross_edges(HullOverlap& out) const
 {
     F3 on_a, on_b;
     nearest_points(by_a_, pair_.a.edges[edge_.a], pair_.b.edges[edge_.b], on_a, on_b);
     const F3 apart = on_b - on_a, middle = (on_a + on_b) * 0.5F;
-    const float limit = pair_.reach + pair_.bias;
+    const float limit = pair_.speculative_margin + pair_.bias;
     out.count = 0;
     if (edge_.separation > 0 && dot(apart, apart) > limit * limit) return;
     edge_.normal.store(out.normal);
@@ -266,10 +268,10 @@ void Search::cross_edges(HullTouch& out) const
 }
 
 // b's points about a's center, in a's axes.
-void turn_round(const Side& by_a, HullTouch& out)
+void turn_round(const Side& by_a, HullOverlap& out)
 {
     for (int i = 0; i < out.count; ++i) {
-        HullTouch::Point& point = out.points[i];
+        HullOverlap::Point& point = out.points[i];
         const F3 turned = by_a.from_other({point.position[0], point.position[1], point.position[2]})
             + by_a.center;
         point = {{turned.x, turned.y, turned.z}, point.separation, point.feature | 1u << 31};
@@ -285,18 +287,19 @@ F3 Search::face_normal(bool by_b) const
 
 // The separation of the deepest point over the best face of one of the two; above any where there
 // is none.
-float Search::clip_face(bool by_b, HullTouch& out) const
+float Search::clip_face(bool by_b, HullOverlap& out) const
 {
     out.count = 0;
     face_normal(by_b).store(out.normal);
     const int face = (by_b ? best_b_ : best_a_).face;
-    const float deepest = clip_under(by_b ? by_b_ : by_a_, face, pair_.reach, pair_.bias, out);
+    const float deepest =
+        clip_under(by_b ? by_b_ : by_a_, face, pair_.speculative_margin, pair_.bias, out);
     if (by_b) turn_round(by_a_, out);
     return out.count > 0 ? deepest : -kNever;
 }
 
 // The corner that is deepest under the best face of one of the two, over it or not.
-void Search::touch_vertex(bool by_b, HullTouch& out) const
+void Search::collide_vertex(bool by_b, HullOverlap& out) const
 {
     const Side& side = by_b ? by_b_ : by_a_;
     const FaceAxis& face = by_b ? best_b_ : best_a_;
@@ -311,7 +314,7 @@ void Search::touch_vertex(bool by_b, HullTouch& out) const
     if (by_b) turn_round(by_a_, out);
 }
 
-void Search::touch(HullTouch& out)
+void Search::collide(HullOverlap& out)
 {
     out.count = 0;
     const bool by_b = b_leads();
@@ -344,7 +347,7 @@ void Search::touch(HullTouch& out)
     if (by_best != by_b) clip_face(by_best, out);
     if (shallow)
         for (int i = 0; i < out.count; ++i) out.points[i].separation += deep;
-    if (out.count == 0 && !shallow) touch_vertex(by_best, out);
+    if (out.count == 0 && !shallow) collide_vertex(by_best, out);
 }
 
 float Search::apart() const
@@ -355,12 +358,12 @@ float Search::apart() const
     return most(0, best - noise_);
 }
 
-void meet_hulls(const HullPair& pair, HullGuess& guess, HullTouch& out)
+void collide_hulls(const HullPair& pair, HullGuess& guess, HullOverlap& out)
 {
     out.count = 0;
     Search search(pair);
     if (!search.parted_at_once(guess) && search.find_axes(guess)) {
-        search.touch(out);
+        search.collide(out);
         if (out.count > 0) return;
     }
     out.apart = search.apart();
@@ -369,6 +372,6 @@ void meet_hulls(const HullPair& pair, HullGuess& guess, HullTouch& out)
 }  // namespace
 
 extern const HullKernel kMeetHulls;
-const HullKernel kMeetHulls = meet_hulls;
+const HullKernel kMeetHulls = collide_hulls;
 
 }  // namespace throng::THRONG_LANES

@@ -109,17 +109,17 @@ void cut_edges(const Wall* walls, int count, const Outline& line, float slack, C
     }
 }
 
-// Points over a face, out to reach.
+// Points over a face, out to the speculative margin.
 struct Gathered {
     const Face& face;
-    float reach;
+    float speculative_margin;
     std::uint32_t faces;  // both of them, as the upper bits of features
-    HullTouch& out;
+    HullOverlap& out;
     float deepest = 0;
 
     void add(F3 point, float separation, std::uint32_t feature)
     {
-        if (!(separation <= reach)) return;
+        if (!(separation <= speculative_margin)) return;
         deepest = out.count == 0 ? separation : least(deepest, separation);
         const F3 middle = point - face.normal * (separation / 2);
         out.points[out.count++] = {{middle.x, middle.y, middle.z}, separation, feature | faces};
@@ -191,7 +191,8 @@ void add_corners(const WidePolytope& self,
 
 }  // namespace
 
-float clip_under(const Side& side, int index, float reach, float slack, HullTouch& out)
+float clip_under(
+    const Side& side, int index, float speculative_margin, float slack, HullOverlap& out)
 {
     const Face face(side.self, index);
     const Face against(side.other, face_against(side.other, side.to_other(face.normal)));
@@ -209,7 +210,7 @@ float clip_under(const Side& side, int index, float reach, float slack, HullTouc
 
     const auto faces =
         static_cast<std::uint32_t>(face.index) << 8 | static_cast<std::uint32_t>(against.index);
-    Gathered found{face, reach, faces << 14, out};
+    Gathered found{face, speculative_margin, faces << 14, out};
     // An outline that lies over the face as a whole has none of its corners under it.
     if (add_edges(line, cuts, found)) return found.deepest;
     add_corners(side.self, face, line, side.from_other(against.normal), slack, found);

@@ -69,8 +69,12 @@ inline bool has_alike(const WidePolytope& self, F3 normal)
 
 // The best face of self, if it reaches `floor`; ties go to the first. Stops at any that is out of
 // reach.
-inline void improve_face(
-    const Side& side, const Bound& bound, float floor, float reach, float noise, FaceAxis& best)
+inline void improve_face(const Side& side,
+                         const Bound& bound,
+                         float floor,
+                         float speculative_margin,
+                         float noise,
+                         FaceAxis& best)
 {
     float limit = most(floor, best.separation) - noise;
     for (int i = 0; i < side.self.faces; i += L::kWidth) {
@@ -85,7 +89,7 @@ inline void improve_face(
             if (separation < best.separation || (separation == best.separation && face > best.face))
                 continue;
             best = {separation, face};
-            if (separation > reach) return;
+            if (separation > speculative_margin) return;
             limit = most(floor, separation) - noise;
         }
     }

@@ -17,7 +17,7 @@ struct HullPair {
     WidePolytope a, b;
     float turn[9];
     float offset[3];
-    float reach, bias;
+    float speculative_margin, bias;
 };
 
 /// The feature whose axis parted the two most when they were last looked at.
@@ -28,7 +28,7 @@ struct HullGuess {
 };
 
 /// Points of touch, about a's center and in a's axes.
-struct HullTouch {
+struct HullOverlap {
     static constexpr int kMost = 3 * kWideCorners;
     struct Point {
         float position[3];  // midway between the surfaces
@@ -43,7 +43,7 @@ struct HullTouch {
 
 /// Looks at all axes that could part the two best; the guess is where it begins, and what it
 /// leaves behind. The answer is the same to the last bit whatever the guess.
-using HullKernel = void (*)(const HullPair& pair, HullGuess& guess, HullTouch& out);
+using HullKernel = void (*)(const HullPair& pair, HullGuess& guess, HullOverlap& out);
 
 /// The kernel of "scalar", "avx2" or "avx512"; null where this machine has not got it.
 HullKernel hull_kernel_of(const char* width);

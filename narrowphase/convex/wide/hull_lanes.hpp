@@ -79,7 +79,7 @@ unsigned bits_of(Mask mask)
 }
 
 /// How far the vertices from i on reach along a direction.
-inline L reach_at(const WidePolytope& shape, F3 direction, int i)
+inline L extent_at(const WidePolytope& shape, F3 direction, int i)
 {
     return L(direction.x) * L::load(shape.x() + i) + L(direction.y) * L::load(shape.y() + i)
         + L(direction.z) * L::load(shape.z() + i);
@@ -88,9 +88,9 @@ inline L reach_at(const WidePolytope& shape, F3 direction, int i)
 /// The least direction . vertex.
 inline float lowest(const WidePolytope& shape, F3 direction)
 {
-    L low = reach_at(shape, direction, 0);
+    L low = extent_at(shape, direction, 0);
     for (int i = L::kWidth; i < shape.vertices; i += L::kWidth)
-        low = min(low, reach_at(shape, direction, i));
+        low = min(low, extent_at(shape, direction, i));
     return least_of(low);
 }
 
@@ -99,7 +99,7 @@ inline int lowest_vertex(const WidePolytope& shape, F3 direction)
 {
     const float low = lowest(shape, direction);
     for (int i = 0; i < shape.vertices; i += L::kWidth) {
-        const unsigned there = bits_of(!(reach_at(shape, direction, i) > L(low)));
+        const unsigned there = bits_of(!(extent_at(shape, direction, i) > L(low)));
         if (there != 0) return i + __builtin_ctz(there);
     }
     return 0;
@@ -146,8 +146,9 @@ inline Wall wall_of(const WidePolytope& shape, int face, int side)
 }
 
 /// The separation of the deepest point, or 0 where there is none: the other's face under one of
-/// self's, what is over it within `slack` of its sides, out to `reach`. In self's frame, and
-/// appended; the face is named in the features.
-float clip_under(const Side& side, int face, float reach, float slack, HullTouch& out);
+/// self's, what is over it within `slack` of its sides, out to `speculative_margin`. In self's
+/// frame, and appended; the face is named in the features.
+float clip_under(
+    const Side& side, int face, float speculative_margin, float slack, HullOverlap& out);
 
 }  // namespace throng::THRONG_LANES

@@ -47,8 +47,8 @@ TEST(Explain, SmoothBallsInSpaceHaveNoFrictionRotationOrGravity)
     for (const char* effect : {"gravity", "rotation", "friction", "gyroscopic", "restitution"})
         EXPECT_NE(effect_line(said.out, effect).find("  off"), std::string::npos) << effect;
     const std::string stages = part_of(said.out, "stages");
-    EXPECT_NE(stages.find("push_contacts"), std::string::npos);
-    for (const char* word : {"friction", "turn", "gravity", "bounce", "roll"})
+    EXPECT_NE(stages.find("solve_biased"), std::string::npos);
+    for (const char* word : {"friction", "turn", "gravity", "restitution", "roll"})
         EXPECT_EQ(stages.find(word), std::string::npos) << word << " is in " << stages;
 }
 
@@ -61,7 +61,7 @@ TEST(Explain, APileHasWhatAPileNeeds)
         EXPECT_TRUE(is_on(said.out, effect)) << effect;
     const std::string stages = part_of(said.out, "stages");
     for (const char* word : {"\n  find_pairs ", "waits for update_bounds", "\n      add_gravity ",
-                             "\n          hold_friction ", "turn_bodies"})
+                             "\n          solve_friction ", "turn_bodies"})
         EXPECT_NE(stages.find(word), std::string::npos) << word;
 }
 
@@ -73,10 +73,10 @@ TEST(Explain, TheSubstepIsThatOfTheResponseAndTheSolver)
         return part_of(said.out, "stages");
     };
     const std::vector<std::pair<std::string, std::string>> wanted = {
-        {"solver=soft_step", "relax_contacts"},
+        {"solver=soft_step", "relax "},
         {"solver=direct", "solve_exactly"},
-        {"response=penalty", "push_by_forces"},
-        {"response=kinematic", "push_apart"}};
+        {"response=penalty", "apply_penalty_forces"},
+        {"response=kinematic", "push_out"}};
     for (const auto& [dial, row] : wanted) {
         const std::string inner = inner_of(dial);
         for (const auto& [other, others] : wanted)

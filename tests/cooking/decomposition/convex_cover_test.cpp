@@ -19,10 +19,10 @@ PartSearch search_of(const Mesh& mesh, double error)
     return {mesh, longest_side(mesh), error, inward_edges(mesh)};
 }
 
-double out_of_all(const std::vector<LooseHull>& hulls, const Vec3& point)
+double out_of_all(const std::vector<HullMesh>& hulls, const Vec3& point)
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const LooseHull& hull : hulls) least = std::min(least, distance_outside(hull, point));
+    for (const HullMesh& hull : hulls) least = std::min(least, distance_outside(hull, point));
     return least;
 }
 
@@ -35,11 +35,11 @@ TEST(ConvexCover, ThreadIsItsCoreAndItsTurns)
     // Less than half of the play between it and its nut.
     const double error = 1e-4;
     const PartSearch search = search_of(bolt, error);
-    const std::vector<LooseHull> hulls = cover_by_hulls(search, 64);
+    const std::vector<HullMesh> hulls = cover_by_hulls(search, 64);
     ASSERT_FALSE(hulls.empty());
     // Wedges between the columns of its vertices would be 24 a turn.
     EXPECT_LT(hulls.size(), 72u);
-    for (const LooseHull& hull : hulls) {
+    for (const HullMesh& hull : hulls) {
         EXPECT_LE(hull.vertices.size(), kMostPartVertices);
         EXPECT_LE(find_overhang(bolt, hull, error / 4, error, 400).least, error);
     }
@@ -58,7 +58,7 @@ TEST(ConvexCover, GivesUpOnWhatTakesMore)
 TEST(ConvexCover, ConvexMeshIsOneHull)
 {
     const Mesh ball = closed(ball_mesh(1, 8, 8));
-    const std::vector<LooseHull> hulls = cover_by_hulls(search_of(ball, 1e-3), 4);
+    const std::vector<HullMesh> hulls = cover_by_hulls(search_of(ball, 1e-3), 4);
     ASSERT_EQ(hulls.size(), 1u);
     EXPECT_NEAR(hulls[0].volume, mass_of(ball).volume, 1e-2);
 }
@@ -69,7 +69,7 @@ TEST(ConvexCover, TurnedMeshIsCoveredAsWell)
     for (Vec3& vertex : soup.vertices)
         vertex = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())) * vertex;
     const Mesh bolt = closed(soup);
-    const std::vector<LooseHull> hulls = cover_by_hulls(search_of(bolt, 1e-4), 40);
+    const std::vector<HullMesh> hulls = cover_by_hulls(search_of(bolt, 1e-4), 40);
     ASSERT_FALSE(hulls.empty());
     EXPECT_LE(find_bare_surface(bolt, hulls, 1e-4).bound, 4e-4);
 }
@@ -86,23 +86,23 @@ TEST(BareSurface, IsAsFarOutAsWhatNoHullCovers)
     }
     const double quarter = (upper - lower) / 4;
     for (Vec3& corner : corners) corner.z() = std::min(corner.z(), upper - quarter);
-    const std::vector<LooseHull> most = {loose_hull(corners)};
+    const std::vector<HullMesh> most = {hull_mesh(corners)};
     const BareSurface bare = find_bare_surface(box, most, 0.01);
     EXPECT_NEAR(bare.bound, quarter, 1e-9);
     EXPECT_GT(bare.where.z(), upper - quarter);
-    EXPECT_LE(find_bare_surface(box, {loose_hull(box.vertices)}, 0.01).bound, 1e-12);
+    EXPECT_LE(find_bare_surface(box, {hull_mesh(box.vertices)}, 0.01).bound, 1e-12);
 }
 
 TEST(BareSurface, HullsTogetherCoverWhatNoneDoes)
 {
     const Mesh box = closed(box_mesh({1, 1, 1}));
-    std::vector<LooseHull> halves;
+    std::vector<HullMesh> halves;
     for (const double side : {-1.0, 1.0}) {
         std::vector<Vec3> corners = box.vertices;
         // A little over the middle, so that the two overlap.
         for (Vec3& corner : corners)
             if (side * corner.x() < 0) corner.x() = -0.1 * side;
-        halves.push_back(loose_hull(corners));
+        halves.push_back(hull_mesh(corners));
     }
     EXPECT_LE(find_bare_surface(box, halves, 0.02).bound, 0.02);
 }

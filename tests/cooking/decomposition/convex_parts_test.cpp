@@ -1,6 +1,6 @@
 #include "cooking/decomposition/convex_parts.hpp"
 
-#include "cooking/decomposition/loose_hull.hpp"
+#include "cooking/decomposition/hull_mesh.hpp"
 #include "kernels/geometry/mass.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/math/hash.hpp"
@@ -174,7 +174,7 @@ TEST(ConvexParts, ErrorIsThatOfManyPoints)
     // Points all over the faces of the hulls, by no way that the search goes.
     double furthest = 0;
     for (const Hull& hull : parts.hulls) {
-        const LooseHull faces = loose_hull(hull.vertices);
+        const HullMesh faces = hull_mesh(hull.vertices);
         for (const auto& [a, b, c] : faces.triangles)
             for (int i = 0; i <= 20; ++i)
                 for (int k = 0; i + k <= 20; ++k) {
@@ -232,8 +232,8 @@ TEST(ConvexParts, HullTellsHowMuchItFills)
     EXPECT_NEAR(hull.volume_error, 0.5 / 3, 1e-9);
     // The middle of the slope, half of a cube off either face of the corner.
     EXPECT_NEAR(hull.outside, 0.5, 0.01);
-    ASSERT_EQ(hull.remarks.size(), 1u);
-    EXPECT_EQ(hull.remarks[0], "holes and hollows are filled, 17 % more than the mesh");
+    ASSERT_EQ(hull.warnings.size(), 1u);
+    EXPECT_EQ(hull.warnings[0], "holes and hollows are filled, 17 % more than the mesh");
 }
 
 // Bounds are of the longest side and of the mesh's volume: what was measured, with a tenth of room.

@@ -30,7 +30,7 @@ protected:
 void expect_same(const ConvexParts& a, const ConvexParts& b)
 {
     EXPECT_EQ(a.points, b.points);
-    EXPECT_EQ(a.remarks, b.remarks);
+    EXPECT_EQ(a.warnings, b.warnings);
     EXPECT_EQ(a.error, b.error);
     EXPECT_EQ(a.outside, b.outside);
     EXPECT_EQ(a.uncovered, b.uncovered);
@@ -90,8 +90,8 @@ TEST_F(PartsCache, WhatIsNoFileIsPassedBy)
         ConvexParts parts = cached_parts(mesh, wanted, folder);
         // A folder cannot be replaced, which is told; all else is.
         if (which <= 1) {
-            EXPECT_EQ(parts.remarks.back().rfind("not kept for the next run: ", 0), 0u) << which;
-            parts.remarks.pop_back();
+            EXPECT_EQ(parts.warnings.back().rfind("not kept for the next run: ", 0), 0u) << which;
+            parts.warnings.pop_back();
         } else {
             EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(file()))) << which;
         }
@@ -106,8 +106,8 @@ TEST_F(PartsCache, FolderThatCannotBeWrittenIsRemarkedOn)
     std::ofstream(folder.string()) << "in the way";
     const ConvexParts parts = cached_parts(mesh, wanted, folder);
     EXPECT_TRUE(parts.trouble.empty());
-    ASSERT_FALSE(parts.remarks.empty());
-    EXPECT_EQ(parts.remarks.back().rfind("not kept for the next run: ", 0), 0u);
+    ASSERT_FALSE(parts.warnings.empty());
+    EXPECT_EQ(parts.warnings.back().rfind("not kept for the next run: ", 0), 0u);
 }
 
 TEST_F(PartsCache, KeyTellsMeshesAndWishesApart)

@@ -29,7 +29,7 @@ protected:
         EXPECT_EQ(result.bricks.brick_of, plain.bricks.brick_of);
         EXPECT_EQ(result.bricks.values, plain.bricks.values);
         EXPECT_EQ(result.error, plain.error);
-        EXPECT_EQ(result.remarks, plain.remarks);
+        EXPECT_EQ(result.warnings, plain.warnings);
     }
 
     // With a fin that is remarked on.
@@ -125,8 +125,8 @@ TEST_F(FieldCache, DoesWithoutAFolderThatCannotBeWritten)
     const FieldResult result = cached_field(mesh_, settings_, folder);
     EXPECT_EQ(result.trouble, "");
     EXPECT_EQ(result.bricks.values, build_field(mesh_, settings_).bricks.values);
-    ASSERT_FALSE(result.remarks.empty());
-    EXPECT_EQ(result.remarks.back().find("not kept for the next run: "), 0u);
+    ASSERT_FALSE(result.warnings.empty());
+    EXPECT_EQ(result.warnings.back().find("not kept for the next run: "), 0u);
     expect_same(cached_field(mesh_, settings_, {}));
 }
 

@@ -42,8 +42,8 @@ Vec3 point_at(const SurfacePoints& points, std::size_t i)
 }
 
 // Random places of the surface, some of every triangle of a coarse mesh.
-template <class Visit>
-void visit_surface(const Mesh& mesh, int count, std::uint64_t seed, const Visit& visit)
+template <class Visitor>
+void visit_surface(const Mesh& mesh, int count, std::uint64_t seed, const Visitor& visit)
 {
     std::mt19937_64 engine(seed);
     const auto part = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };

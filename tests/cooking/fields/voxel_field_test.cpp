@@ -269,7 +269,7 @@ TEST(VoxelField, FloodAsksNoWindingWhatIsThick)
     const FieldResult field =
         field_of(closed(turned_inward(box_mesh({0.5, 0.5, 0.5}))), 0.06, FieldSign::flood);
     EXPECT_EQ(field.trouble, "");
-    EXPECT_TRUE(field.remarks.empty());
+    EXPECT_TRUE(field.warnings.empty());
 }
 
 TEST(VoxelField, RefusesWhatNeedsMoreThanIsGranted)
@@ -311,9 +311,10 @@ TEST(VoxelField, SaysWhereAMeshIsThinnerThanAVoxel)
         closed(both(box_mesh({0.5, 0.5, 0.5}), moved(box_mesh({0.5, 0.5, 0.01}), {0, 0, 2})));
     const FieldResult field = field_of(fin, 0.06);
     ASSERT_EQ(field.trouble, "");
-    ASSERT_EQ(field.remarks.size(), 1u);
-    EXPECT_EQ(field.remarks[0].find("thinner than a voxel somewhere: 25"), 0u) << field.remarks[0];
-    EXPECT_TRUE(field_of(closed(box_mesh({0.5, 0.5, 0.5})), 0.06).remarks.empty());
+    ASSERT_EQ(field.warnings.size(), 1u);
+    EXPECT_EQ(field.warnings[0].find("thinner than a voxel somewhere: 25"), 0u)
+        << field.warnings[0];
+    EXPECT_TRUE(field_of(closed(box_mesh({0.5, 0.5, 0.5})), 0.06).warnings.empty());
     // A sheet between two layers of values is not there at all.
     EXPECT_NE(
         field_of(closed(box_mesh({0.5, 0.5, 0.01})), 0.0433).trouble.find("nothing is inside"),
@@ -330,7 +331,7 @@ TEST(VoxelField, IsReadBackAsItWasWritten)
     ASSERT_EQ(read.trouble, "");
     EXPECT_EQ(read.notes.key, "0123456789abcdef");
     EXPECT_EQ(read.notes.error, 0.25);
-    EXPECT_EQ(read.notes.remarks, (std::vector<std::string>{"one", "two"}));
+    EXPECT_EQ(read.notes.warnings, (std::vector<std::string>{"one", "two"}));
     EXPECT_EQ(read.bricks.origin, bricks.origin);
     EXPECT_EQ(read.bricks.voxel, bricks.voxel);
     EXPECT_EQ(read.bricks.band, bricks.band);

@@ -14,7 +14,7 @@
 namespace throng {
 namespace {
 
-MendedMesh mended(const TriangleSoup& soup) { return mend(soup.vertices, soup.triangles); }
+RepairedMesh repaired(const TriangleSoup& soup) { return repair(soup.vertices, soup.triangles); }
 
 TriangleSoup joined_soups(TriangleSoup a, const TriangleSoup& b, const Vec3& by)
 {
@@ -31,10 +31,10 @@ TriangleSoup inward(TriangleSoup soup)
     return soup;
 }
 
-bool says(const MendedMesh& result, const std::string& what)
+bool says(const RepairedMesh& result, const std::string& what)
 {
-    for (const std::string& remark : result.remarks)
-        if (remark.find(what) != std::string::npos) return true;
+    for (const std::string& warning : result.warnings)
+        if (warning.find(what) != std::string::npos) return true;
     return false;
 }
 
@@ -42,9 +42,9 @@ TEST(MeshHealth, HasNothingToSayOfWhatIsSound)
 {
     for (const TriangleSoup& soup :
          {box_mesh({1, 2, 3}), ball_mesh(1, 24, 12), torus_mesh(1, 0.3, 24, 12)}) {
-        const MendedMesh result = mended(soup);
+        const RepairedMesh result = repaired(soup);
         EXPECT_EQ(result.trouble, "");
-        EXPECT_TRUE(result.remarks.empty()) << result.remarks[0];
+        EXPECT_TRUE(result.warnings.empty()) << result.warnings[0];
         EXPECT_TRUE(result.health.sound());
         EXPECT_EQ(result.health.pieces, 1u);
         EXPECT_EQ(result.mesh.triangles, build_mesh(soup.vertices, soup.triangles).mesh.triangles);
@@ -54,11 +54,11 @@ TEST(MeshHealth, HasNothingToSayOfWhatIsSound)
 
 TEST(MeshHealth, RefusesWhatIsEmptyOrBroken)
 {
-    EXPECT_NE(mend({}, {}).trouble.find("has no triangles"), std::string::npos);
+    EXPECT_NE(repair({}, {}).trouble.find("has no triangles"), std::string::npos);
     EXPECT_NE(
-        mend({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}).trouble.find("no triangle with an"),
+        repair({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}).trouble.find("no triangle with an"),
         std::string::npos);
-    EXPECT_NE(mend({{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}).trouble.find("names vertex 2"),
+    EXPECT_NE(repair({{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}).trouble.find("names vertex 2"),
               std::string::npos);
 }
 
@@ -69,7 +69,7 @@ TEST(MeshHealth, DropsTrianglesGivenTwiceEitherWayRound)
     const auto [a, b, c] = soup.triangles[7];
     soup.triangles.push_back({b, c, a});
     soup.triangles.push_back({c, b, a});
-    const MendedMesh result = mended(soup);
+    const RepairedMesh result = repaired(soup);
     EXPECT_EQ(result.health.duplicates, 2u);
     EXPECT_EQ(result.mesh.triangles.size(), count);
     EXPECT_TRUE(says(result, "2 triangles are given more than once: dropped"));
@@ -80,10 +80,10 @@ TEST(MeshHealth, DropsTrianglesGivenTwiceEitherWayRound)
 TEST(MeshHealth, MakesWindingsAgree)
 {
     TriangleSoup soup = ball_mesh(1, 24, 12);
-    const double volume = mass_of(mended(soup).mesh).volume;
+    const double volume = mass_of(repaired(soup).mesh).volume;
     for (const std::size_t t : {0u, 5u, 6u, 100u})
         std::swap(soup.triangles[t][0], soup.triangles[t][1]);
-    const MendedMesh result = mended(soup);
+    const RepairedMesh result = repaired(soup);
     EXPECT_EQ(result.health.turned, 4u);
     EXPECT_TRUE(says(result, "4 triangles are wound against their neighbors: turned over"));
     EXPECT_TRUE(is_closed(result.mesh));
@@ -96,7 +96,7 @@ TEST(MeshHealth, TurnsOverWhatIsInsideOut)
     // Far from the origin, where a volume about it would be mostly rounding.
     TriangleSoup soup = inward(torus_mesh(1, 0.3, 24, 12));
     for (Vec3& vertex : soup.vertices) vertex += Vec3(1e7, 2e7, -1e7);
-    const MendedMesh result = mended(soup);
+    const RepairedMesh result = repaired(soup);
     EXPECT_EQ(result.health.inside_out, 1u);
     EXPECT_TRUE(says(result, "1 piece is inside out: turned over"));
     EXPECT_TRUE(result.health.sound());
@@ -109,7 +109,7 @@ TEST(MeshHealth, KeepsHollowsAndTurnsOutwardWhatStandsInThem)
     TriangleSoup soup =
         joined_soups(box_mesh({2, 2, 2}), inward(box_mesh({1.5, 1.5, 1.5})), {0, 0, 0});
     soup = joined_soups(soup, inward(ball_mesh(1, 12, 8)), {0, 0, 0});
-    const MendedMesh result = mended(soup);
+    const RepairedMesh result = repaired(soup);
     EXPECT_EQ(result.health.pieces, 3u);
     EXPECT_EQ(result.health.hollows, 1u);
     EXPECT_EQ(result.health.inside_out, 1u);
@@ -123,8 +123,8 @@ TEST(MeshHealth, KeepsHollowsAndTurnsOutwardWhatStandsInThem)
 
 TEST(MeshHealth, DoesNotTrustWhatIsBuriedOutward)
 {
-    const MendedMesh result =
-        mended(joined_soups(box_mesh({2, 2, 2}), ball_mesh(1, 12, 8), {0.1, 0, 0}));
+    const RepairedMesh result =
+        repaired(joined_soups(box_mesh({2, 2, 2}), ball_mesh(1, 12, 8), {0.1, 0, 0}));
     EXPECT_EQ(result.health.buried, 1u);
     EXPECT_FALSE(result.health.sound());
     EXPECT_TRUE(says(result, "1 piece lies within another"));
@@ -134,7 +134,7 @@ TEST(MeshHealth, CountsOpenAndCrowdedEdges)
 {
     TriangleSoup soup = box_mesh({1, 1, 1});
     soup.triangles.pop_back();
-    MendedMesh result = mended(soup);
+    RepairedMesh result = repaired(soup);
     EXPECT_EQ(result.health.open_edges, 3u);
     EXPECT_FALSE(result.health.sound());
     EXPECT_TRUE(says(result, "3 edges are open"));
@@ -143,7 +143,7 @@ TEST(MeshHealth, CountsOpenAndCrowdedEdges)
     soup = box_mesh({1, 1, 1});
     soup.vertices.emplace_back(3, 3, 0);
     soup.triangles.push_back({3, 7, 8});
-    result = mended(soup);
+    result = repaired(soup);
     EXPECT_EQ(result.health.crowded_edges, 1u);
     EXPECT_EQ(result.health.open_edges, 2u);
     EXPECT_TRUE(says(result, "more than two triangles"));
@@ -168,7 +168,7 @@ TEST(MeshHealth, LeavesAloneWhatHasOneSideOnly)
         soup.triangles.push_back({a, b, c});
         soup.triangles.push_back({b, d, c});
     }
-    const MendedMesh result = mended(soup);
+    const RepairedMesh result = repaired(soup);
     EXPECT_EQ(result.health.one_sided, 1u);
     EXPECT_FALSE(result.health.sound());
     EXPECT_TRUE(says(result, "one side only"));
@@ -177,14 +177,14 @@ TEST(MeshHealth, LeavesAloneWhatHasOneSideOnly)
 TEST(MeshHealth, CountsTrianglesThatCross)
 {
     // A plate through a box: its upper and lower face each cross four walls.
-    const MendedMesh result =
-        mended(joined_soups(box_mesh({1, 1, 1}), box_mesh({1.5, 1.4, 0.1}), {0.03, 0.05, 0.07}));
+    const RepairedMesh result =
+        repaired(joined_soups(box_mesh({1, 1, 1}), box_mesh({1.5, 1.4, 0.1}), {0.03, 0.05, 0.07}));
     EXPECT_GE(result.health.cuts, 8u);
     EXPECT_FALSE(result.health.sound());
     EXPECT_TRUE(says(result, "pairs of triangles cross"));
     // Side by side they do not.
     EXPECT_EQ(
-        mended(joined_soups(box_mesh({1, 1, 1}), box_mesh({1, 1, 1}), {2.5, 0, 0})).health.cuts,
+        repaired(joined_soups(box_mesh({1, 1, 1}), box_mesh({1, 1, 1}), {2.5, 0, 0})).health.cuts,
         0u);
     // Work has a bound, and the answer says where it was met.
     bool cut_short = false;

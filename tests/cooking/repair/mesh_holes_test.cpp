@@ -29,10 +29,11 @@ TriangleSoup without(TriangleSoup soup, std::vector<std::uint32_t> corners)
     return soup;
 }
 
-bool says(const MendedMesh& result, const std::string& what)
+bool says(const RepairedMesh& result, const std::string& what)
 {
-    return std::any_of(result.remarks.begin(), result.remarks.end(),
-                       [&](const auto& remark) { return remark.find(what) != std::string::npos; });
+    return std::any_of(result.warnings.begin(), result.warnings.end(), [&](const auto& warning) {
+        return warning.find(what) != std::string::npos;
+    });
 }
 
 TEST(MeshHoles, ClosesTheCapOfABallOutward)
@@ -130,7 +131,7 @@ TEST(MeshHoles, AreClosedInMending)
     soup.triangles.erase(soup.triangles.begin() + 100);
     // The winding of what is there may be at odds before.
     std::swap(soup.triangles[3][0], soup.triangles[3][1]);
-    const MendedMesh result = mend(soup.vertices, soup.triangles);
+    const RepairedMesh result = repair(soup.vertices, soup.triangles);
     EXPECT_EQ(result.health.holes, 2u);
     EXPECT_EQ(result.health.open_edges, 0u);
     EXPECT_TRUE(says(result, "closed 2 holes, the longest round 12 edges"));
@@ -146,7 +147,7 @@ TEST(MeshHoles, OfARealScanAreClosed)
     std::stringstream text;
     text << std::ifstream(path).rdbuf();
     const MeshFile file = read_mesh_text(text.str(), "bunny.obj");
-    const MendedMesh result = mend(file.vertices, file.triangles);
+    const RepairedMesh result = repair(file.vertices, file.triangles);
     EXPECT_TRUE(says(result, "closed 4 holes, the longest round 12 edges"));
     EXPECT_TRUE(result.health.sound());
     EXPECT_TRUE(is_closed(result.mesh));

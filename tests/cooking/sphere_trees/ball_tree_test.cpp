@@ -42,51 +42,52 @@ void ask_at_places(std::uint64_t seed, const Ask& ask)
     }
 }
 
-TEST(BallTree, FindsTheGapThatALookAtEveryBallFinds)
+TEST(BallTree, FindsTheDistanceThatALookAtEveryBallFinds)
 {
     ask_at_places(
         1,
         [](RandomShapes&, const auto& balls, const BallTree& tree, const Vec3& place, std::size_t) {
             double least = std::numeric_limits<double>::infinity();
-            for (const Ball& ball : balls) least = std::min(least, gap_to(ball, place));
-            EXPECT_EQ(tree.least_gap(place), least);
-            EXPECT_EQ(tree.least_gap(place, 0.1) < 0.1, least < 0.1);
+            for (const Ball& ball : balls) least = std::min(least, distance_to(ball, place));
+            EXPECT_EQ(tree.least_separation(place), least);
+            EXPECT_EQ(tree.least_separation(place, 0.1) < 0.1, least < 0.1);
         });
 }
 
 TEST(BallTree, FindsTheTwoThatALookAtEveryBallFinds)
 {
-    ask_at_places(2,
-                  [](RandomShapes& random, const auto& balls, const BallTree& tree,
-                     const Vec3& place, std::size_t) {
-                      std::vector<std::uint8_t> gone(balls.size());
-                      for (std::uint8_t& one : gone) one = random.number(0, 1) < 0.3;
-                      NearestBalls wanted, wanted_left;
-                      for (std::uint32_t k = 0; k < balls.size(); ++k) {
-                          wanted.offer(k, gap_to(balls[k], place));
-                          if (gone[k] == 0) wanted_left.offer(k, gap_to(balls[k], place));
-                      }
-                      const NearestBalls all = tree.nearest(place),
-                                         left = tree.nearest(place, gone);
-                      EXPECT_EQ(std::tuple(all.by, all.gap, all.next),
-                                std::tuple(wanted.by, wanted.gap, wanted.next));
-                      EXPECT_EQ(std::tuple(left.by, left.gap, left.next),
-                                std::tuple(wanted_left.by, wanted_left.gap, wanted_left.next));
-                  });
+    ask_at_places(
+        2,
+        [](RandomShapes& random, const auto& balls, const BallTree& tree, const Vec3& place,
+           std::size_t) {
+            std::vector<std::uint8_t> gone(balls.size());
+            for (std::uint8_t& one : gone) one = random.number(0, 1) < 0.3;
+            NearestBalls wanted, wanted_left;
+            for (std::uint32_t k = 0; k < balls.size(); ++k) {
+                wanted.offer(k, distance_to(balls[k], place));
+                if (gone[k] == 0) wanted_left.offer(k, distance_to(balls[k], place));
+            }
+            const NearestBalls all = tree.nearest(place), left = tree.nearest(place, gone);
+            EXPECT_EQ(std::tuple(all.by, all.separation, all.next),
+                      std::tuple(wanted.by, wanted.separation, wanted.next));
+            EXPECT_EQ(std::tuple(left.by, left.separation, left.next),
+                      std::tuple(wanted_left.by, wanted_left.separation, wanted_left.next));
+        });
 }
 
-TEST(BallTree, FindsThoseWithinReachInOrder)
+TEST(BallTree, FindsThoseWithinADistanceInOrder)
 {
     ask_at_places(3,
                   [](RandomShapes& random, const auto& balls, const BallTree& tree,
                      const Vec3& place, std::size_t i) {
                       // As far as one of them, exactly.
-                      const double reach = balls.empty() ? random.number(0, 1)
-                                                         : gap_to(balls[i % balls.size()], place);
+                      const double extent = balls.empty()
+                          ? random.number(0, 1)
+                          : distance_to(balls[i % balls.size()], place);
                       std::vector<std::uint32_t> wanted, found;
                       for (std::uint32_t k = 0; k < balls.size(); ++k)
-                          if (gap_to(balls[k], place) <= reach) wanted.push_back(k);
-                      tree.find_within(place, reach, found);
+                          if (distance_to(balls[k], place) <= extent) wanted.push_back(k);
+                      tree.find_within(place, extent, found);
                       EXPECT_EQ(found, wanted);
                   });
 }

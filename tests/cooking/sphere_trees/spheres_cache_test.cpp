@@ -29,7 +29,7 @@ protected:
 
 void expect_same(const CachedSpheres& made, const SphereTree& wanted)
 {
-    EXPECT_EQ(made.remark, "");
+    EXPECT_EQ(made.warning, "");
     ASSERT_EQ(made.tree.levels.size(), wanted.levels.size());
     for (std::size_t i = 0; i < wanted.levels.size(); ++i) {
         const SphereTree::Level &a = made.tree.levels[i], &b = wanted.levels[i];
@@ -74,19 +74,19 @@ TEST_F(SpheresCache, KeptSpheresAreRead)
     EXPECT_EQ(files(), 2);
 }
 
-// What a seal cannot tell: written whole, by another hand.
+// What a checksum cannot tell: written whole, by another hand.
 TEST_F(SpheresCache, ChildrenThatAreNotThereAreNotBelieved)
 {
     const SphereTree plain = cached_spheres(mesh, wanted, folder).tree;
     const std::string whole = bytes_of_file(file());
-    std::string turned = whole.substr(0, whole.size() - kSealBytes);
+    std::string turned = whole.substr(0, whole.size() - kChecksumBytes);
     // The root's children: behind the key and its size, the count of levels, the error and count of
     // the first, and the root's five numbers.
     const std::size_t children = 8 + 16 + 8 + 16 + 40;
     ASSERT_EQ(turned[children], static_cast<char>(plain.levels[0].nodes[0].count));
     turned[children] = 100;
     test::overwrite(file(), turned);
-    ASSERT_TRUE(seal_file(file()));
+    ASSERT_TRUE(append_checksum(file()));
     expect_same(cached_spheres(mesh, wanted, folder), plain);
     EXPECT_EQ(bytes_of_file(file()), whole);
 }
@@ -108,8 +108,8 @@ TEST_F(SpheresCache, WhatIsNoFileIsPassedBy)
     for (int which = 0; which < test::kObstacles; ++which) {
         test::put_in_the_way(file(), which);
         CachedSpheres made = cached_spheres(mesh, wanted, folder);
-        EXPECT_EQ(made.remark.empty(), which > 1) << made.remark;
-        made.remark.clear();
+        EXPECT_EQ(made.warning.empty(), which > 1) << made.warning;
+        made.warning.clear();
         expect_same(made, plain);
     }
 }
@@ -120,7 +120,7 @@ TEST_F(SpheresCache, FolderThatCannotBeWrittenIsRemarkedOn)
     std::ofstream(folder.string()) << "in the way";
     const CachedSpheres made = cached_spheres(mesh, wanted, folder);
     EXPECT_EQ(made.tree.levels.size(), 2U);
-    EXPECT_EQ(made.remark.rfind("not kept for the next run: ", 0), 0u);
+    EXPECT_EQ(made.warning.rfind("not kept for the next run: ", 0), 0u);
 }
 
 TEST_F(SpheresCache, KeyTellsMeshesAndWishesApart)

@@ -99,9 +99,9 @@ TEST(CertifiedPairs, AreWhatTheyAreCertifiedToBe)
                                  .separation;
         const double noise = 1e-14 * certified_size(a, b);
         if (pair.touching) {
-            EXPECT_LE(found, noise - pair.gap) << "seed 72, pair " << i;
+            EXPECT_LE(found, noise - pair.separation) << "seed 72, pair " << i;
         } else {
-            EXPECT_GE(found, pair.gap - noise) << "seed 72, pair " << i;
+            EXPECT_GE(found, pair.separation - noise) << "seed 72, pair " << i;
         }
         ++(pair.touching ? touching : apart);
     }

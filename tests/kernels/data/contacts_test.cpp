@@ -26,7 +26,7 @@ TEST(Contact, TakesOverWhatIsThereAndNoMore)
     Contact<float> from, to;
     from.count = 2;
     from.normal = Vec3T<float>(1, 0, 0);
-    from.twist = 3;
+    from.torsional_impulse = 3;
     for (std::size_t k = 0; k < 4; ++k) {
         from.points[k].impulse = 1 + static_cast<float>(k);
         to.points[k].impulse = -1;
@@ -34,7 +34,7 @@ TEST(Contact, TakesOverWhatIsThereAndNoMore)
     to.take(from);
     EXPECT_EQ(to.count, 2);
     EXPECT_EQ(to.normal, from.normal);
-    EXPECT_EQ(to.twist, 3);
+    EXPECT_EQ(to.torsional_impulse, 3);
     EXPECT_EQ(to.points[1].impulse, 2);
     EXPECT_EQ(to.points[2].impulse, -1);
 }

@@ -187,20 +187,21 @@ TEST(Flight, IsTheSameBitsAtEveryWidthWhoeverFliesAlongside)
         Flyers alone = before;
         for (std::uint32_t i = 0; i < alone.size(); i += i % 7 == 3 ? 2 : 1)
             ASSERT_TRUE(fly("scalar", rule, {i}, alone).empty());
-        std::vector<std::uint32_t> gaps;
-        for (std::uint32_t i = 0; i < before.size(); i += i % 7 == 3 ? 2 : 1) gaps.push_back(i);
+        std::vector<std::uint32_t> separations;
+        for (std::uint32_t i = 0; i < before.size(); i += i % 7 == 3 ? 2 : 1)
+            separations.push_back(i);
         for (const char* width : {"scalar", "avx2", "avx512"}) {
             if (fly_kernel_of(width) == nullptr) continue;
             for (std::size_t count = 0; count < 20; ++count) {
                 Flyers some = before, one_by_one = before;
                 const std::vector<std::uint32_t> ids(
-                    gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(count));
+                    separations.begin(), separations.begin() + static_cast<std::ptrdiff_t>(count));
                 fly(width, rule, ids, some);
                 for (const std::uint32_t id : ids) fly("scalar", rule, {id}, one_by_one);
                 ASSERT_EQ(some, one_by_one) << width << ", " << count;
             }
             Flyers together = before;
-            fly(width, rule, gaps, together);
+            fly(width, rule, separations, together);
             EXPECT_EQ(together, alone) << width;
         }
     }

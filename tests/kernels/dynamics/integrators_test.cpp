@@ -31,8 +31,8 @@ public:
         speed_rates(time, state, rates);
         for (int k = 0; k < 2; ++k) state[2 + k] += span * rates[k];
     }
-    void swerve(double, double*) override { }
-    void coast(double span, double* state) override
+    void gyrate(double, double*) override { }
+    void drift(double span, double* state) override
     {
         for (int k = 0; k < 2; ++k) state[k] += span * state[2 + k];
     }
@@ -43,10 +43,10 @@ public:
 double error_after_quarter(const IntegratorRow& integrator, int steps)
 {
     Orbit law;
-    IntegratorRoom room;
+    IntegratorScratch scratch;
     double state[4] = {1, 0, 0, 1};
     const double span = 0.5 * std::numbers::pi / steps;
-    for (int i = 0; i < steps; ++i) integrator.advance(law, i * span, span, room, state);
+    for (int i = 0; i < steps; ++i) integrator.advance(law, i * span, span, scratch, state);
     return std::hypot(state[0], state[1] - 1);
 }
 

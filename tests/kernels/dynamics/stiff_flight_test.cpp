@@ -25,13 +25,13 @@ struct Hung {
         masses.inverse_mass = {1 / 0.3};
         masses.inertia = {{moments.x(), moments.y(), moments.z(), 0, 0, 0}};
         masses.inverse_inertia = {{1 / moments.x(), 1 / moments.y(), 1 / moments.z(), 0, 0, 0}};
-        masses.spins_unevenly = {1};
+        masses.gyroscopic_kind = {1};
         poses.position = {Vec3(0.8, 0.1, 0)};
         poses.orientation = {Quat(0.9, 0.3, 0.3, 0.1).normalized()};
         velocities.linear = {velocity};
         velocities.angular = {Vec3(0, 3, 1)};
         flights.memory.resize(1);
-        forces.springs = {{0, kNobody, Vec3(0, 0.01, 0.5), Vec3::Zero(), stiffness, 0, kLength}};
+        forces.springs = {{0, kNoBody, Vec3(0, 0.01, 0.5), Vec3::Zero(), stiffness, 0, kLength}};
         forces.first_spring = {0, 1};
         forces.spring_of = {0};
     }

@@ -54,7 +54,7 @@ struct Sprung {
                 * (masses.mass[i] * velocities.linear[i].squaredNorm()
                    + masses.inertia[i].xx * velocities.angular[i].squaredNorm());
         const auto end = [&](std::uint32_t body, const Vec3& at) {
-            return body == kNobody ? at : Vec3(poses.at(body) * at);
+            return body == kNoBody ? at : Vec3(poses.at(body) * at);
         };
         for (const SpringForce& spring : forces.springs) {
             const double drawn =
@@ -103,7 +103,7 @@ struct Sprung {
 };
 
 // A chain that hangs on the world or on nothing, by springs off its bodies' centers.
-Sprung chain(int count, double stiffness, double arm, double heavy, bool hangs)
+Sprung chain(int count, double stiffness, double arm, double heavy, bool has_pivot)
 {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> side(-1, 1);
@@ -116,10 +116,10 @@ Sprung chain(int count, double stiffness, double arm, double heavy, bool hangs)
         const Vec3 off = 0.1 * any(), velocity = any();
         all.add(i % 2 == 0 ? 1 : heavy, Vec3(0.3 * i, off.y(), off.z()), velocity, any());
         const auto id = static_cast<std::uint32_t>(i);
-        SpringForce spring{id, i > 0 ? id - 1 : kNobody, arm * any(), arm * any(), stiffness, 0,
+        SpringForce spring{id, i > 0 ? id - 1 : kNoBody, arm * any(), arm * any(), stiffness, 0,
                            0.3};
         if (i == 0) spring.at_b = Vec3(-0.3, 0, 0);
-        if (i > 0 || hangs) all.forces.springs.push_back(spring);
+        if (i > 0 || has_pivot) all.forces.springs.push_back(spring);
     }
     all.tie();
     return all;
@@ -130,7 +130,7 @@ TEST(StiffSprings, AlongALineKeepEnergyAtAnyStiffness)
     for (const double stiffness : {1e2, 1e4, 1e6, 1e8, 1e10}) {
         Sprung one;
         one.add(1, Vec3(0.1, 0, 0), Vec3::Zero(), Vec3::Zero());
-        one.forces.springs.push_back({0, kNobody, Vec3::Zero(), Vec3(-1, 0, 0), stiffness, 0, 1});
+        one.forces.springs.push_back({0, kNoBody, Vec3::Zero(), Vec3(-1, 0, 0), stiffness, 0, 1});
         one.tie();
         const double first = one.energy();
         double widest = 0;
@@ -179,7 +179,7 @@ TEST(StiffSprings, DampedOnesNeverGain)
         for (const double ratio : {0.05, 1.0, 20.0}) {
             Sprung one;
             one.add(1, Vec3(0.1, 0, 0), Vec3::Zero(), Vec3::Zero());
-            one.forces.springs.push_back({0, kNobody, Vec3(0, 0.03, 0), Vec3(-1, 0, 0), stiffness,
+            one.forces.springs.push_back({0, kNoBody, Vec3(0, 0.03, 0), Vec3(-1, 0, 0), stiffness,
                                           2 * ratio * std::sqrt(stiffness), 1});
             one.tie();
             const double first = one.energy();
@@ -201,7 +201,7 @@ TEST(StiffSprings, DampedOnesOnWhatIsThrownNeverGain)
             for (const double speed : {30.0, 100.0, 200.0}) {
                 Sprung one;
                 one.add(1, Vec3(0.7, 0, 0), speed * Vec3(0.8, 0.5, 0.2), Vec3(0, 3, 1));
-                one.forces.springs.push_back({0, kNobody, Vec3(0, 0.03, 0), Vec3::Zero(), stiffness,
+                one.forces.springs.push_back({0, kNoBody, Vec3(0, 0.03, 0), Vec3::Zero(), stiffness,
                                               2 * ratio * std::sqrt(stiffness), 0.5});
                 one.tie();
                 const double first = one.energy();
@@ -219,7 +219,7 @@ TEST(StiffSprings, DampersSlowAndTurnNothingRound)
     for (const double damping : {1.0, 1e3, 1e6, 1e9}) {
         Sprung one;
         one.add(1, Vec3(0.1, 0, 0), Vec3(2, 0, 0), Vec3::Zero());
-        one.forces.springs.push_back({0, kNobody, Vec3::Zero(), Vec3(-1, 0, 0), 0, damping, 1});
+        one.forces.springs.push_back({0, kNoBody, Vec3::Zero(), Vec3(-1, 0, 0), 0, damping, 1});
         one.tie();
         for (int i = 0; i < 100; ++i) {
             const double before = one.velocities.linear[0].x();

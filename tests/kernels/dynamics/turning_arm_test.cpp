@@ -26,7 +26,7 @@ private:
 // However far: a tenth of a radian, some turns, many.
 constexpr double kFast[] = {0.1, 3, 20, 300};
 
-TEST(TurningArm, LeverDoesTheWorkOfTheWay)
+TEST(TurningArm, LeverArmDoesTheWorkOfTheWay)
 {
     AnyTurn any;
     for (const double carries : {0.0, 0.3, 1.0, 1.9})
@@ -36,7 +36,7 @@ TEST(TurningArm, LeverDoesTheWorkOfTheWay)
                 const double span = 0.7;
                 const BodyTurn turn(spin, any.vector().normalized(), carries, span);
                 const double work = impulse.dot(turn.after(arm) - arm);
-                EXPECT_NEAR(span * spin.dot(Vec3(turn.lever(arm) * impulse)), work, 1e-11)
+                EXPECT_NEAR(span * spin.dot(Vec3(turn.lever_arm(arm) * impulse)), work, 1e-11)
                     << carries << ' ' << fast;
             }
 }
@@ -59,8 +59,8 @@ TEST(TurningArm, OfABodyAtRestIsItsCrossProduct)
     AnyTurn any;
     const Vec3 arm = any.vector(), impulse = any.vector();
     const BodyTurn still(Vec3::Zero(), Vec3::UnitX(), 1, 1);
-    EXPECT_EQ(Vec3(still.lever(arm) * impulse), Vec3(still_lever(arm) * impulse));
-    EXPECT_LT((still_lever(arm) * impulse - arm.cross(impulse)).norm(), 1e-16);
+    EXPECT_EQ(Vec3(still.lever_arm(arm) * impulse), Vec3(still_lever_arm(arm) * impulse));
+    EXPECT_LT((still_lever_arm(arm) * impulse - arm.cross(impulse)).norm(), 1e-16);
     EXPECT_EQ(still.angle_of(arm), 0);
 }
 
@@ -72,7 +72,7 @@ TEST(TurningArm, AlongAnAxisGetsNothingAboutIt)
         const Vec3 axis = any.vector().normalized(), impulse = any.vector();
         const Vec3 spin = fast * any.vector();
         const BodyTurn turn(spin, axis, 0, 1);
-        EXPECT_NEAR(axis.dot(Vec3(turn.lever(0.5 * axis) * impulse)), 0, 1e-14);
+        EXPECT_NEAR(axis.dot(Vec3(turn.lever_arm(0.5 * axis) * impulse)), 0, 1e-14);
     }
 }
 

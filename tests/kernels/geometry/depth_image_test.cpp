@@ -219,7 +219,7 @@ TEST(DepthImage, RoundShapesAndPlanesHaveTheirEndsOnTheSurface)
     const RayGrid grid = grid_of(0.07, 16, 0.21);
     for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::cylinder}) {
         const Pose pose = random.pose(0.2);
-        const Core<double> core = core_of<double>(shapes, {kind, 0});
+        const ConvexCore<double> core = convex_core_of<double>(shapes, {kind, 0});
         DepthImage image;
         image.draw(shapes, {kind, 0}, pose, grid, Layers::all);
         int met = 0;
@@ -232,7 +232,7 @@ TEST(DepthImage, RoundShapesAndPlanesHaveTheirEndsOnTheSurface)
                     const auto beneath = [&](double z, std::uint32_t face) {
                         const Vec3 normal = pose.orientation.conjugate() * image.normal(face);
                         const Vec3 at = pose.to_local({grid.at(0, x), grid.at(1, y), z});
-                        return normal.dot(support(core, normal).position) + core.radius
+                        return normal.dot(support(core, normal).position) + core.convex_radius
                             - normal.dot(at);
                     };
                     EXPECT_NEAR(beneath(part.enter, part.enter_face), 0, 1e-12);

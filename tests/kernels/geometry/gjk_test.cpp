@@ -14,9 +14,9 @@
 namespace throng {
 namespace {
 
-using given::Gap;
-using given::greatest_gap;
+using given::greatest_separation;
 using given::outline_of;
+using given::OutlinePair;
 using given::random_direction;
 using given::random_turn;
 
@@ -29,7 +29,7 @@ struct BoxPair {
     {
         return std::max(shapes.boxes[0].half_extents.norm(), shapes.boxes[1].half_extents.norm());
     }
-    CorePair cores() const { return {shapes, a, b, b_in_a}; }
+    ConvexCorePair cores() const { return {shapes, a, b, b_in_a}; }
 };
 
 BoxPair boxes(const Vec3& half_a, const Vec3& half_b, const Pose& b_in_a)
@@ -63,8 +63,8 @@ double manifold_separation(const BoxPair& pair)
     LocalManifold<Real> out;
     const PoseT<Real> pose = {pair.b_in_a.position.cast<Real>(),
                               pair.b_in_a.orientation.cast<Real>()};
-    const auto reach = static_cast<Real>(10 * pair.size());
-    convex_convex<Real>(pair.shapes, pair.a, pair.b, pose, reach, cache, out);
+    const auto extent = static_cast<Real>(10 * pair.size());
+    convex_convex<Real>(pair.shapes, pair.a, pair.b, pose, extent, cache, out);
     EXPECT_GT(out.count, 0);
     double least = 1e300;
     for (int i = 0; i < out.count; ++i) {
@@ -78,11 +78,12 @@ double manifold_separation(const BoxPair& pair)
 // Every face normal and every edge by every edge: what depth of two boxes can depend on.
 double exhaustive_separation(const BoxPair& pair)
 {
-    const Gap gap = {outline_of(pair.shapes, pair.a), outline_of(pair.shapes, pair.b), pair.b_in_a};
+    const OutlinePair clearance = {outline_of(pair.shapes, pair.a), outline_of(pair.shapes, pair.b),
+                                   pair.b_in_a};
     const Mat3 turn = pair.b_in_a.orientation.toRotationMatrix();
     double best = -1e300;
     const auto consider = [&](const Vec3& axis) {
-        best = std::max({best, gap.along(axis), gap.along(-axis)});
+        best = std::max({best, clearance.along(axis), clearance.along(-axis)});
     };
     for (int i = 0; i < 3; ++i) {
         consider(Vec3::Unit(i));

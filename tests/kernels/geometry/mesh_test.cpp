@@ -84,7 +84,7 @@ void expect_neighbors_agree(const Mesh& mesh)
 {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (std::size_t e = 0; e < 3; ++e) {
-            const std::int32_t beyond = mesh.beyond[t][e];
+            const std::int32_t beyond = mesh.adjacent[t][e];
             if (beyond < 0) {
                 EXPECT_TRUE(mesh.convex_edges[t] >> e & 1);
                 continue;
@@ -95,7 +95,7 @@ void expect_neighbors_agree(const Mesh& mesh)
             for (std::size_t k = 0; k < 3; ++k)
                 found = found
                     || (mesh.triangles[other][k] == to && mesh.triangles[other][(k + 1) % 3] == from
-                        && mesh.beyond[other][k] == static_cast<std::int32_t>(t));
+                        && mesh.adjacent[other][k] == static_cast<std::int32_t>(t));
             EXPECT_TRUE(found) << "triangle " << t << " edge " << e;
         }
 }
@@ -124,7 +124,7 @@ TEST(BuildMesh, CubeOfSeparateQuadsIsWeldedAndClosed)
     for (std::size_t t = 0; t < 12; ++t) {
         int convex = 0;
         for (std::size_t e = 0; e < 3; ++e) {
-            const auto beyond = static_cast<std::size_t>(mesh.beyond[t][e]);
+            const auto beyond = static_cast<std::size_t>(mesh.adjacent[t][e]);
             const bool folded = mesh.normals[t].dot(mesh.normals[beyond]) < 0.5;
             EXPECT_EQ(mesh.convex_edges[t] >> e & 1, folded);
             convex += folded;
@@ -142,7 +142,7 @@ TEST(BuildMesh, StairHasOneConcaveEdgeAndRims)
     int rims = 0, concave = 0, convex = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (std::size_t e = 0; e < 3; ++e) {
-            const std::int32_t beyond = mesh.beyond[t][e];
+            const std::int32_t beyond = mesh.adjacent[t][e];
             if (beyond < 0) {
                 ++rims;
                 continue;
@@ -175,7 +175,7 @@ TEST(BuildMesh, FlatGroundHasNoConvexEdgeInside)
     expect_neighbors_agree(mesh);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (std::size_t e = 0; e < 3; ++e)
-            EXPECT_EQ(mesh.convex_edges[t] >> e & 1, mesh.beyond[t][e] < 0);
+            EXPECT_EQ(mesh.convex_edges[t] >> e & 1, mesh.adjacent[t][e] < 0);
 }
 
 TEST(BuildMesh, TrianglesOfNoAreaAndUnusedVerticesAreLeftOut)
@@ -199,11 +199,11 @@ TEST(BuildMesh, EdgesOfThreeTrianglesOrOfClashingDirectionsAreRims)
     Soup fan;
     fan.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
     fan.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
-    for (const auto& beyond : built(fan).beyond) EXPECT_EQ(beyond, (std::array{-1, -1, -1}));
+    for (const auto& beyond : built(fan).adjacent) EXPECT_EQ(beyond, (std::array{-1, -1, -1}));
     fan.triangles = {{0, 1, 2}, {0, 1, 3}};
-    for (const auto& beyond : built(fan).beyond) EXPECT_EQ(beyond, (std::array{-1, -1, -1}));
+    for (const auto& beyond : built(fan).adjacent) EXPECT_EQ(beyond, (std::array{-1, -1, -1}));
     fan.triangles = {{0, 1, 2}, {1, 0, 3}};
-    EXPECT_EQ(built(fan).beyond[0], (std::array{1, -1, -1}));
+    EXPECT_EQ(built(fan).adjacent[0], (std::array{1, -1, -1}));
 }
 
 TEST(BuildMesh, RefusesWhatIsNoMesh)

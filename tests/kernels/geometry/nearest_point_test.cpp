@@ -17,7 +17,7 @@ namespace {
 struct Solid {
     const char* name;
     ShapeRef shape;
-    std::function<double(const Vec3&)> reach;
+    std::function<double(const Vec3&)> extent;
     std::function<bool(const Vec3&, double)> holds;
 };
 
@@ -78,7 +78,7 @@ TEST(NearestPoint, LiesInTheSolidAndAPlaneThroughItPartsTheTwo)
                 ASSERT_TRUE(!solid.holds(point, -close) || nearest.distance == 0);
                 if (nearest.distance < 1e-6 * size) continue;
                 // No point of the solid is further along `out`, so none is nearer.
-                ASSERT_NEAR(solid.reach(out / out.norm()), nearest.point.dot(out) / out.norm(),
+                ASSERT_NEAR(solid.extent(out / out.norm()), nearest.point.dot(out) / out.norm(),
                             1e-8 * size);
             }
         }

@@ -89,7 +89,7 @@ March march(const Distance& distance, const LocalRay& ray, double size)
 
 void expect_as_marched(const Solids& solids, const Solid& solid, const LocalRay& ray, double size)
 {
-    const RayMeeting met = cast_ray(solids.shapes, solid.shape, ray);
+    const LocalRayHit met = cast_ray(solids.shapes, solid.shape, ray);
     const March marched = march(solid.distance, ray, size);
     if (met.found() != (marched.distance < kInfinity)) {
         // The two may part over a ray that grazes, or ends at the surface.
@@ -142,7 +142,7 @@ TEST(RayCast, BeginningInsideMeetsAtNoDistanceAgainstTheRay)
     const Solids solids;
     const Vec3 along = Vec3(1, -2, 3).normalized();
     for (const Solid& solid : solids.all) {
-        const RayMeeting met = cast_ray(solids.shapes, solid.shape, {Vec3(0.1, 0.1, -0.1), along});
+        const LocalRayHit met = cast_ray(solids.shapes, solid.shape, {Vec3(0.1, 0.1, -0.1), along});
         EXPECT_EQ(met.distance, 0) << solid.name;
         EXPECT_EQ(met.normal, -along) << solid.name;
     }
@@ -177,7 +177,7 @@ TEST(RayCast, RaysInAFaceMeetItsRimAndRaysBesideItNothing)
 {
     const Solids solids;
     const ShapeRef box{ShapeKind::box, 0}, can{ShapeKind::cylinder, 0}, plane{ShapeKind::plane, 0};
-    const RayMeeting in = cast_ray(solids.shapes, box, {Vec3(-2, 0.3, 0.8), Vec3::UnitX()});
+    const LocalRayHit in = cast_ray(solids.shapes, box, {Vec3(-2, 0.3, 0.8), Vec3::UnitX()});
     EXPECT_EQ(in.distance, 1.5);
     EXPECT_EQ(in.normal, -Vec3::UnitX());
     const double out = std::nextafter(0.8, 1.0);
@@ -200,7 +200,7 @@ TEST(RayCast, RaysThroughEdgesAndCornersMeet)
         EXPECT_NEAR(cast_ray(solids.shapes, box, ray).distance, 2 * std::sqrt(3.0), 1e-14);
     }
     for (const Vec3& at : octahedron(1)) {
-        const RayMeeting met = cast_ray(solids.shapes, hull, {3 * at, -at});
+        const LocalRayHit met = cast_ray(solids.shapes, hull, {3 * at, -at});
         EXPECT_NEAR(met.distance, 2, 1e-14);
         EXPECT_LT(met.normal.dot(-at), -0.5);
     }
@@ -215,8 +215,8 @@ TEST(RayCast, FromFarAwayKeepsItsDigits)
             // Towards the middle, from the plane's open side, and not along it.
             const Vec3 away = dice.direction();
             if (0.6 * away.x() + 0.8 * away.z() < 0.1) continue;
-            const RayMeeting near = cast_ray(solids.shapes, solid.shape, {10 * away, -away});
-            const RayMeeting far = cast_ray(solids.shapes, solid.shape, {1e7 * away, -away});
+            const LocalRayHit near = cast_ray(solids.shapes, solid.shape, {10 * away, -away});
+            const LocalRayHit far = cast_ray(solids.shapes, solid.shape, {1e7 * away, -away});
             ASSERT_TRUE(near.found() && far.found()) << solid.name << ", ray " << i;
             EXPECT_NEAR(far.distance - 1e7, near.distance - 10, 1e-7) << solid.name;
             EXPECT_LT((far.normal - near.normal).norm(), 1e-6) << solid.name;
@@ -268,7 +268,7 @@ TEST(RayCast, MeshAgreesWithEveryTriangleAskedInTurn)
             double wanted = kInfinity;
             for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
                 wanted = std::min(wanted, solved(mesh, t, ray));
-            const RayMeeting met = cast_ray(shapes, {ShapeKind::mesh, 0}, ray);
+            const LocalRayHit met = cast_ray(shapes, {ShapeKind::mesh, 0}, ray);
             ASSERT_EQ(met.found(), wanted < kInfinity) << "size " << size << ", ray " << i;
             if (!met.found()) continue;
             ++hits;
@@ -296,7 +296,7 @@ TEST(RayCast, NoRaySlipsThroughTheSeamsOfAMesh)
                         if (!inner) continue;
                         for (const double side : {1.0, -1.0}) {
                             const LocalRay ray{at + Vec3(0, 0, side * away), {0, 0, -side}};
-                            const RayMeeting met = cast_ray(shapes, {ShapeKind::mesh, 0}, ray);
+                            const LocalRayHit met = cast_ray(shapes, {ShapeKind::mesh, 0}, ray);
                             ASSERT_NEAR(met.distance, away, away * 1e-14);
                             ASSERT_GT(met.normal.z() * side, 0);
                         }
@@ -321,7 +321,7 @@ TEST(RayCast, AbsurdNumbersGiveNoNonsense)
     for (const Solid& solid : solids.all)
         for (const double far : {1e150, 1e300})
             for (const Vec3& along : {Vec3(Vec3::UnitX()), Vec3(-1, 0, 1e-320)}) {
-                const RayMeeting met =
+                const LocalRayHit met =
                     cast_ray(solids.shapes, solid.shape, {Vec3(far, -far, far), along});
                 EXPECT_FALSE(std::isnan(met.distance)) << solid.name;
                 EXPECT_TRUE(met.normal.allFinite()) << solid.name;

@@ -12,12 +12,12 @@ double every_axis(const PolytopeView& a, const PolytopeView& b, const Pose& pose
 {
     const std::vector<Vec3> points_a(a.vertices.begin(), a.vertices.end());
     const std::vector<Vec3> points_b(b.vertices.begin(), b.vertices.end());
-    const Reach reach_a = reach_of(points_a, Pose{}), reach_b = reach_of(points_b, pose);
+    const Extent extent_a = extent_of(points_a, Pose{}), extent_b = extent_of(points_b, pose);
     double best = -1e300;
     const auto offer = [&](const Vec3& n) {
         if (!(n.norm() > 1e-9)) return;
         for (const Vec3& unit : {Vec3(n.normalized()), Vec3(-n.normalized())}) {
-            best = std::max(best, -reach_b(-unit) - reach_a(unit));
+            best = std::max(best, -extent_b(-unit) - extent_a(unit));
         }
     };
     for (const Vec3& normal : a.normals) offer(normal);
@@ -59,8 +59,8 @@ TEST(SeparatingAxes, AgreesWithDirectionSweep)
         const BoxPolytope b(random.vector(0.2, 0.6));
         const Pose pose = random.pose(0.5);
         const double swept =
-            sweep_directions(reach_of(a.vertices, Pose{}),
-                             reach_of({b.vertices.begin(), b.vertices.end()}, pose), 16, nullptr);
+            sweep_directions(extent_of(a.vertices, Pose{}),
+                             extent_of({b.vertices.begin(), b.vertices.end()}, pose), 16, nullptr);
         const double found = polytope_separation(view_of(a), b.view(), pose, nullptr);
         ASSERT_LE(found, swept + 1e-12);
         if (swept > 0) continue;
@@ -78,8 +78,8 @@ TEST(SeparatingAxes, ATriangleIsAThinPolytope)
         const BoxPolytope box(random.vector(0.2, 0.6));
         const Pose pose = random.pose(0.5);
         const double swept = sweep_directions(
-            reach_of({v0, v1, v2}, Pose{}),
-            reach_of({box.vertices.begin(), box.vertices.end()}, pose), 16, nullptr);
+            extent_of({v0, v1, v2}, Pose{}),
+            extent_of({box.vertices.begin(), box.vertices.end()}, pose), 16, nullptr);
         const double found = polytope_separation(triangle.view(), box.view(), pose, nullptr);
         if (swept > 0) continue;
         ASSERT_NEAR(found, swept, 1e-9);

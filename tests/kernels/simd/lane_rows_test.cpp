@@ -12,12 +12,12 @@ using scalar::RowIds;
 using scalar::Wide;
 
 template <int W>
-struct Rows {
+struct RowData {
     using L = Wide<double, W>;
     std::vector<double> numbers;  // each says where it is
     RowIds follow_on, scattered;
 
-    Rows()
+    RowData()
     {
         for (int i = 0; i < 40 * 6; ++i) numbers.push_back(i);
         for (std::uint32_t i = 0; i < W; ++i) {
@@ -62,7 +62,7 @@ struct Rows {
 template <int W>
 void check_rows()
 {
-    Rows<W> rows;
+    RowData<W> rows;
     using L = Wide<double, W>;
     rows.template expect_loads<3>(
         3, [](const double* from, const RowIds& ids, L(&out)[3]) { load_3(from, ids, out); });

@@ -60,7 +60,7 @@ TEST(CarriedPoints, NeverTellMoreThanTheSpeedOfTheRim)
 TEST(CarriedPoints, AreThoseOfWhatTurnsByItselfOrIsHeavy)
 {
     const Vec3 spin(0, 0, 2), sway(0, 0, 1e-3), none = Vec3::Zero();
-    const Ease driven{0, 0}, one{1, 6}, heavy{0.1, 0.6}, half{0.5, 3};
+    const InverseMass driven{0, 0}, one{1, 6}, heavy{0.1, 0.6}, half{0.5, 3};
     EXPECT_TRUE(carries(spin, driven, one, 0.01));
     EXPECT_TRUE(carries(sway, driven, driven, 0.01));
     EXPECT_FALSE(carries(none, driven, one, 0.01));
@@ -102,9 +102,9 @@ struct PlainSide {
     {
         body.velocity = vector_of(from.motion);
         body.spin = vector_of(from.motion + 4);
-        const Quat turn(double{from.drift[7]}, double{from.drift[4]}, double{from.drift[5]},
-                        double{from.drift[6]});
-        goes = carried_side(vector_of(from.drift), turn, body, core, half);
+        const Quat turn(double{from.delta_pose[7]}, double{from.delta_pose[4]},
+                        double{from.delta_pose[5]}, double{from.delta_pose[6]});
+        goes = carried_side(vector_of(from.delta_pose), turn, body, core, half);
     }
 };
 
@@ -112,7 +112,7 @@ struct PlainSide {
 template <class Real>
 Vec3 plain_slip(BlockCase<Real>& made, std::size_t lane, double half)
 {
-    const ContactBlock<Real>& block = made.block();
+    const ContactConstraintWide<Real>& block = made.block();
     const Vec3 normal = vector_of(block.normal, lane);
     const Vec3 arm_a = vector_of(block.center_a, lane), arm_b = vector_of(block.center_b, lane);
     const PlainSide a(made.body_a(lane), arm_a - normal * double{block.round_a.at[lane]}, half);
@@ -122,9 +122,10 @@ Vec3 plain_slip(BlockCase<Real>& made, std::size_t lane, double half)
     point.arm_a = arm_a;
     point.arm_b = arm_b;
     const DirectBody bodies[2] = {a.body, b.body};
-    const Vec3 before = velocity_between(point, bodies);
-    carry_arms(a.goes, b.goes, double{made.rows.carries[given::kPlace].by_b.at[lane]}, point);
-    return velocity_between(point, bodies) - before;
+    const Vec3 before = relative_velocity(point, bodies);
+    carry_arms(a.goes, b.goes,
+               double{made.constraints.surface_velocities[given::kPlace].by_b.at[lane]}, point);
+    return relative_velocity(point, bodies) - before;
 }
 
 template <class Real>
@@ -134,8 +135,8 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
     for (unsigned seed = 0; seed < 50; ++seed) {
         std::mt19937 random(seed);
         BlockCase<Real> made = given::random_block<Real>(random, BlockWish{});
-        made.rows.carries.assign(made.rows.blocks.size(), {});
-        CarryRows<Real>& carried = made.rows.carries[given::kPlace];
+        made.constraints.surface_velocities.assign(made.constraints.blocks.size(), {});
+        SurfaceVelocityWide<Real>& carried = made.constraints.surface_velocities[given::kPlace];
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const double share = given::random_number(random, 0, 1);
             if (lane % 3 == 0) continue;
@@ -143,10 +144,13 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
             carried.by_b.at[lane] = static_cast<Real>(share);
         }
         BlockCase<Real> narrow = made;
-        kernels.carry(made.view(), given::kPlace, given::kPlace + 1, static_cast<Real>(half));
-        solve_kernels_of<Real>("scalar")->carry(narrow.view(), given::kPlace, given::kPlace + 1,
-                                                static_cast<Real>(half));
-        ASSERT_EQ(std::memcmp(&narrow.rows.carries[given::kPlace], &carried, sizeof carried), 0);
+        kernels.update_surface_velocity(made.view(), given::kPlace, given::kPlace + 1,
+                                        static_cast<Real>(half));
+        solve_kernels_of<Real>("scalar")->update_surface_velocity(
+            narrow.view(), given::kPlace, given::kPlace + 1, static_cast<Real>(half));
+        ASSERT_EQ(std::memcmp(&narrow.constraints.surface_velocities[given::kPlace], &carried,
+                              sizeof carried),
+                  0);
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const Vec3 slip = lane % 3 == 0 ? Vec3(Vec3::Zero()) : plain_slip(made, lane, half);
             const Vec3 normal = vector_of(made.block().normal, lane);
@@ -169,23 +173,23 @@ TEST(CarriedPoints, OfBlocksFollowTheSameLawOnEveryWidth)
 // What slides by the carried speed and no other is brought to rest against it.
 TEST(CarriedPoints, FrictionAimsAtThem)
 {
-    for (const bool at_points : {false, true}) {
+    for (const bool friction_at_points : {false, true}) {
         std::mt19937 random(7);
         BlockWish wish;
         wish.points = 1;
-        wish.bounces = wish.rolls = false;
-        wish.at_points = at_points;
+        wish.restitutions = wish.rolls = false;
+        wish.friction_at_points = friction_at_points;
         BlockCase<double> made = given::random_block<double>(random, wish);
         BlockCase<double> other = made;
-        made.rows.carries.assign(made.rows.blocks.size(), {});
-        for (Lane16<double>& speed : made.rows.carries[given::kPlace].speed)
+        made.constraints.surface_velocities.assign(made.constraints.blocks.size(), {});
+        for (Lane16<double>& speed : made.constraints.surface_velocities[given::kPlace].speed)
             for (double& lane : speed.at) lane = 1e-3;
-        Visit<double> visit;
-        visit.inverse_substep = 240;
-        visit.push_limit = 3;
+        SolverIteration<double> iteration;
+        iteration.inverse_substep = 240;
+        iteration.push_limit = 3;
         const SolveKernels<double>& kernels = *solve_kernels_of<double>("scalar");
-        made.sweep(kernels, visit);
-        other.sweep(kernels, visit);
+        made.solve(kernels, iteration);
+        other.solve(kernels, iteration);
         int changed = 0;
         for (std::size_t lane = 0; lane < kBlock; ++lane)
             changed += made.block().friction_impulse[0].at[lane]

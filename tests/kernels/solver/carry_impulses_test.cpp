@@ -1,5 +1,5 @@
 // Carry impulses: what a contact takes over from the one that its pair had before.
-#include "kernels/solver/contact_rows.hpp"
+#include "kernels/solver/contact_packing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ Contact<double> numbered(std::initializer_list<std::uint32_t> features)
         point.impulse = feature;
     }
     contact.friction = Vec3(0.5, 0, 0);
-    contact.twist = 0.25;
+    contact.torsional_impulse = 0.25;
     contact.rolling = Vec3(0, 0.125, 0);
     return contact;
 }
@@ -29,7 +29,7 @@ Contact<double> fresh(std::initializer_list<std::uint32_t> features)
     for (auto& point : contact.points) point.impulse = 0;
     contact.friction.setZero();
     contact.rolling.setZero();
-    contact.twist = 0;
+    contact.torsional_impulse = 0;
     return contact;
 }
 
@@ -41,7 +41,7 @@ TEST(CarryImpulses, GoesByFeatureWhateverTheOrder)
     EXPECT_EQ(contact.points[1].impulse, 0);
     EXPECT_EQ(contact.points[2].impulse, 1);
     EXPECT_EQ(contact.friction, Vec3(0.5, 0, 0));
-    EXPECT_EQ(contact.twist, 0.25);
+    EXPECT_EQ(contact.torsional_impulse, 0.25);
     EXPECT_EQ(contact.rolling, Vec3(0, 0.125, 0));
 }
 
@@ -60,7 +60,7 @@ TEST(CarryImpulses, ScalesWithTheSubstep)
     EXPECT_EQ(contact.points[0].impulse, 1);
     EXPECT_EQ(contact.points[1].impulse, 2);
     EXPECT_EQ(contact.friction, Vec3(0.25, 0, 0));
-    EXPECT_EQ(contact.twist, 0.125);
+    EXPECT_EQ(contact.torsional_impulse, 0.125);
 }
 
 TEST(CarryImpulses, TurnsFrictionIntoTheNewPlane)
@@ -78,17 +78,17 @@ TEST(CarryImpulses, WithoutNormalImpulsesThereIsNoFriction)
     Contact<double> contact = fresh({7, 8});
     carry_impulses<double>(numbered({1, 2}), 1.0, contact);
     EXPECT_EQ(contact.friction, Vec3(Vec3::Zero()));
-    EXPECT_EQ(contact.twist, 0);
+    EXPECT_EQ(contact.torsional_impulse, 0);
     EXPECT_EQ(contact.rolling, Vec3(Vec3::Zero()));
 }
 
-TEST(CarryImpulses, ASinglePointTakesNoTwist)
+TEST(CarryImpulses, ASinglePointTakesNoTorsion)
 {
     // Nothing would ever let go of it again: blocks of single points hold no twist.
     Contact<double> contact = fresh({1});
     carry_impulses<double>(numbered({1, 2, 3}), 1.0, contact);
     EXPECT_EQ(contact.points[0].impulse, 1);
-    EXPECT_EQ(contact.twist, 0);
+    EXPECT_EQ(contact.torsional_impulse, 0);
 }
 
 }  // namespace

@@ -17,19 +17,19 @@ using given::add_body;
 using given::Graph;
 using given::random_graph;
 
-void lay_out_again(const Graph& graph, Painter& painter, Layout& layout)
+void lay_out_again(const Graph& graph, ConstraintGraph& constraint_graph, Layout& layout)
 {
     Islands islands;
     IslandFinder().find(graph.contacts, graph.states, {}, islands);
-    painter.lay_out(islands, graph.contacts, graph.states, graph.positions, layout);
+    constraint_graph.lay_out(islands, graph.contacts, graph.states, graph.positions, layout);
 }
 
-Layout laid_out(const Graph& graph, const CutRule& cut = {})
+Layout laid_out(const Graph& graph, const SplitRule& cut = {})
 {
-    Painter painter;
-    painter.cut = cut;
+    ConstraintGraph constraint_graph;
+    constraint_graph.split_rule = cut;
     Layout layout;
-    lay_out_again(graph, painter, layout);
+    lay_out_again(graph, constraint_graph, layout);
     return layout;
 }
 
@@ -44,21 +44,22 @@ void add_contact(Graph& graph, std::uint32_t a, std::uint32_t b, int points)
 
 // What a layout promises of the solver bodies of a slice: the movable ones, and copies of those
 // that it touches and that move by themselves, then of conveyors.
-void check_seats(const Graph& graph, const Layout& layout, const Slice& slice)
+void check_solver_bodies(const Graph& graph, const Layout& layout, const Slice& slice)
 {
     for (std::uint32_t i = 0; i < slice.dynamic; ++i) {
-        const std::uint32_t body = layout.body_of_slot[slice.first_body + i];
+        const std::uint32_t body = layout.body_of_solver_index[slice.first_body + i];
         ASSERT_TRUE(graph.movable(body));
-        ASSERT_EQ(layout.slot[body], slice.first_body + i) << "body " << body << " has two seats";
+        ASSERT_EQ(layout.solver_index[body], slice.first_body + i)
+            << "body " << body << " has two seats";
     }
     const std::uint32_t after = &slice == &layout.slices.back()
-        ? static_cast<std::uint32_t>(layout.body_of_slot.size())
-        : (&slice + 1)->first_visitor;
-    std::set<std::uint32_t> visitors;
-    for (std::uint32_t i = slice.first_visitor; i < after; ++i) {
-        const std::uint32_t body = layout.body_of_slot[i];
-        ASSERT_TRUE(visitors.insert(body).second) << "body " << body << " has two seats";
-        if (i < slice.first_visitor + slice.kinematic) {
+        ? static_cast<std::uint32_t>(layout.body_of_solver_index.size())
+        : (&slice + 1)->first_kinematic_copy;
+    std::set<std::uint32_t> kinematic_copies;
+    for (std::uint32_t i = slice.first_kinematic_copy; i < after; ++i) {
+        const std::uint32_t body = layout.body_of_solver_index[i];
+        ASSERT_TRUE(kinematic_copies.insert(body).second) << "body " << body << " has two seats";
+        if (i < slice.first_kinematic_copy + slice.kinematic) {
             ASSERT_EQ(graph.states.kind[body], BodyKind::kinematic);
         } else {
             ASSERT_TRUE(graph.states.carries(body));
@@ -72,22 +73,22 @@ void check_side(const Graph& graph,
                 const Slice& slice,
                 const Slice* next,
                 std::uint32_t body,
-                std::int32_t slot)
+                std::int32_t solver_index)
 {
-    const auto at = static_cast<std::uint32_t>(slot);
+    const auto at = static_cast<std::uint32_t>(solver_index);
     const auto within = [&](std::uint32_t first, std::uint32_t count) {
         return at >= first && at < first + count;
     };
     if (graph.movable(body)) {
-        ASSERT_EQ(layout.body_of_slot[at], body);
+        ASSERT_EQ(layout.body_of_solver_index[at], body);
         ASSERT_TRUE(within(slice.first_body, slice.dynamic)
                     || (next != nullptr && within(next->first_body, next->dynamic)));
     } else if (graph.states.kind[body] == BodyKind::kinematic) {
-        ASSERT_EQ(layout.body_of_slot[at], body);
-        ASSERT_TRUE(within(slice.first_visitor, slice.kinematic));
+        ASSERT_EQ(layout.body_of_solver_index[at], body);
+        ASSERT_TRUE(within(slice.first_kinematic_copy, slice.kinematic));
     } else if (graph.states.carries(body)) {
-        ASSERT_EQ(layout.body_of_slot[at], body);
-        ASSERT_GE(at, slice.first_visitor + slice.kinematic);
+        ASSERT_EQ(layout.body_of_solver_index[at], body);
+        ASSERT_GE(at, slice.first_kinematic_copy + slice.kinematic);
     } else {
         ASSERT_EQ(at, 0u);
     }
@@ -115,8 +116,8 @@ void check_colors(const Graph& graph,
             for (std::size_t lane = std::size_t{b} * kBlock; lane < (b + 1u) * kBlock; ++lane) {
                 const std::uint32_t entry = layout.lanes[lane].entry;
                 if (entry == LaneSource{}.entry) {
-                    ASSERT_EQ(layout.slot_a[lane], 0);
-                    ASSERT_EQ(layout.slot_b[lane], 0);
+                    ASSERT_EQ(layout.solver_index_a[lane], 0);
+                    ASSERT_EQ(layout.solver_index_b[lane], 0);
                     continue;
                 }
                 ++times[entry];
@@ -125,9 +126,11 @@ void check_colors(const Graph& graph,
                 most = std::max<int>(most, contact.points);
                 ASSERT_LE(contact.points, last);
                 last = contact.points;
-                for (const auto& [body, slot] : {std::pair(contact.body_a, layout.slot_a[lane]),
-                                                 std::pair(contact.body_b, layout.slot_b[lane])}) {
-                    ASSERT_NO_FATAL_FAILURE(check_side(graph, layout, slice, next, body, slot));
+                for (const auto& [body, solver_index] :
+                     {std::pair(contact.body_a, layout.solver_index_a[lane]),
+                      std::pair(contact.body_b, layout.solver_index_b[lane])}) {
+                    ASSERT_NO_FATAL_FAILURE(
+                        check_side(graph, layout, slice, next, body, solver_index));
                     if (!graph.movable(body)) continue;
                     ASSERT_TRUE(of_block.insert(body).second)
                         << "body " << body << " is twice in a block";
@@ -149,16 +152,16 @@ void check_colors(const Graph& graph,
 // Everything that a layout promises.
 void check_layout(const Graph& graph, const Layout& layout)
 {
-    ASSERT_EQ(layout.slot_a.size(), layout.lanes.size());
-    ASSERT_EQ(layout.slot_b.size(), layout.lanes.size());
+    ASSERT_EQ(layout.solver_index_a.size(), layout.lanes.size());
+    ASSERT_EQ(layout.solver_index_b.size(), layout.lanes.size());
     ASSERT_EQ(layout.lanes.size() % kBlock, 0u);
     ASSERT_EQ(layout.points.size(), layout.lanes.size() / kBlock);
-    ASSERT_EQ(layout.body_of_slot[0], kNobody);
+    ASSERT_EQ(layout.body_of_solver_index[0], kNoBody);
     ASSERT_EQ(layout.lane.size(), layout.contacts.size());
     for (std::size_t i = 0; i < layout.contacts.size(); ++i)
         ASSERT_EQ(layout.lanes[layout.lane[i]].entry, layout.contacts[i]);
     std::vector<int> times(graph.contacts.entries.size(), 0);
-    std::size_t block = 0, slot = 1, color = 0, contact = 0, slices = 0;
+    std::size_t block = 0, solver_index = 1, color = 0, contact = 0, slices = 0;
     for (const Batch& batch : layout.batches) {
         ASSERT_EQ(batch.first_slice, slices);
         ASSERT_GT(batch.slices, 0u);
@@ -166,15 +169,15 @@ void check_layout(const Graph& graph, const Layout& layout)
         std::size_t contacts = 0;
         for (std::uint32_t i = 0; i < batch.slices; ++i) {
             const Slice& slice = layout.slices[batch.first_slice + i];
-            ASSERT_EQ(slice.first_body, slot);
+            ASSERT_EQ(slice.first_body, solver_index);
             ASSERT_EQ(slice.first_color, color);
             ASSERT_EQ(slice.first_contact, contact);
-            slot += slice.dynamic;
+            solver_index += slice.dynamic;
             color += slice.colors;
             contact += slice.contacts;
             contacts += slice.contacts;
             const Slice* const next = i + 1 < batch.slices ? &slice + 1 : nullptr;
-            ASSERT_NO_FATAL_FAILURE(check_seats(graph, layout, slice));
+            ASSERT_NO_FATAL_FAILURE(check_solver_bodies(graph, layout, slice));
             ASSERT_NO_FATAL_FAILURE(check_colors(graph, layout, slice, next, block, times));
         }
         ASSERT_EQ(batch.contacts, contacts);
@@ -183,16 +186,16 @@ void check_layout(const Graph& graph, const Layout& layout)
     }
     ASSERT_EQ(slices, layout.slices.size());
     ASSERT_EQ(block * kBlock, layout.lanes.size());
-    ASSERT_EQ(slot, layout.dynamic + 1u);
+    ASSERT_EQ(solver_index, layout.dynamic + 1u);
     ASSERT_EQ(color, layout.colors.size());
     std::size_t on_faces = 0, wanted = 0;
     for (const Batch& batch : layout.batches) on_faces += batch.on_faces;
     for (const auto& entry : graph.contacts.entries) wanted += entry.points >= 3 ? 1 : 0;
     ASSERT_EQ(on_faces, wanted);
     for (const int count : times) ASSERT_EQ(count, 1);
-    for (std::uint32_t body = 0; body < layout.slot.size(); ++body)
-        if (layout.slot[body] != Layout::kNoSlot) {
-            ASSERT_EQ(layout.body_of_slot[layout.slot[body]], body);
+    for (std::uint32_t body = 0; body < layout.solver_index.size(); ++body)
+        if (layout.solver_index[body] != Layout::kNoSolverIndex) {
+            ASSERT_EQ(layout.body_of_solver_index[layout.solver_index[body]], body);
         }
 }
 
@@ -217,7 +220,7 @@ Graph random_row(std::uint32_t bodies, std::mt19937& random)
             graph.states.kind[body] = BodyKind::dynamic;
             graph.states.awake[body] = 1;
         }
-    const auto gone = [&](std::uint32_t x) { return graph.states.kind[x] == BodyKind::gone; };
+    const auto gone = [&](std::uint32_t x) { return graph.states.kind[x] == BodyKind::removed; };
     for (std::uint32_t body = 0; body < bodies; ++body) {
         graph.positions[body] = Vec3(0.1 * static_cast<double>(random() % 100), body, 0);
         const auto end = std::min(bodies, body + 1 + static_cast<std::uint32_t>(random() % 8));
@@ -272,14 +275,15 @@ bool same_layout(const Layout& x, const Layout& y)
         return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                           [&](const auto& i, const auto& k) { return numbers(i) == numbers(k); });
     };
-    return x.points == y.points && x.slot_a == y.slot_a && x.slot_b == y.slot_b
-        && x.contacts == y.contacts && x.lane == y.lane && x.body_of_slot == y.body_of_slot
+    return x.points == y.points && x.solver_index_a == y.solver_index_a
+        && x.solver_index_b == y.solver_index_b && x.contacts == y.contacts && x.lane == y.lane
+        && x.body_of_solver_index == y.body_of_solver_index
         && equal(x.lanes, y.lanes, [](const LaneSource& lane) { return lane.entry; })
         && equal(x.colors, y.colors,
                  [](const Color& c) { return std::tuple(c.first, c.count, c.serial); })
         && equal(x.slices, y.slices,
                  [](const Slice& s) {
-                     return std::tuple(s.first_body, s.dynamic, s.first_visitor, s.kinematic,
+                     return std::tuple(s.first_body, s.dynamic, s.first_kinematic_copy, s.kinematic,
                                        s.first_color, s.colors, s.first_contact, s.contacts);
                  })
         && equal(x.batches, y.batches, [](const Batch& b) {
@@ -292,29 +296,31 @@ TEST(LayOut, RemembersNothing)
 {
     for (unsigned seed = 0; seed < 20; ++seed) {
         std::mt19937 random(seed);
-        Painter painter;
-        painter.cut = {.from = 600, .slice = 40};
+        ConstraintGraph constraint_graph;
+        constraint_graph.split_rule = {.from = 600, .slice = 40};
         Layout layout;
         for (int step = 0; step < 10; ++step) {
             const auto bodies = static_cast<std::uint32_t>(2 + random() % 600);
             Graph graph = step % 2 == 0 ? random_graph(bodies, random() % (4 * bodies), random)
                                         : random_row(bodies, random);
-            lay_out_again(graph, painter, layout);
-            ASSERT_TRUE(same_layout(layout, laid_out(graph, painter.cut))) << "seed " << seed;
+            lay_out_again(graph, constraint_graph, layout);
+            ASSERT_TRUE(same_layout(layout, laid_out(graph, constraint_graph.split_rule)))
+                << "seed " << seed;
             // The same again, some asleep by now, with what they touched.
             for (std::uint32_t body = 0; body < bodies; body += 3)
                 if (graph.states.dynamic(body)) graph.states.awake[body] = 0;
             std::erase_if(graph.contacts.entries, [&](const auto& contact) {
                 return !graph.movable(contact.body_a) && !graph.movable(contact.body_b);
             });
-            lay_out_again(graph, painter, layout);
+            lay_out_again(graph, constraint_graph, layout);
             ASSERT_NO_FATAL_FAILURE(check_layout(graph, layout)) << "seed " << seed;
-            ASSERT_TRUE(same_layout(layout, laid_out(graph, painter.cut))) << "seed " << seed;
+            ASSERT_TRUE(same_layout(layout, laid_out(graph, constraint_graph.split_rule)))
+                << "seed " << seed;
         }
     }
 }
 
-TEST(LayOut, WhoSleepsHasNoSeat)
+TEST(LayOut, WhoSleepsHasNoSolverBody)
 {
     // Two islands in two batches, the second of which touches a sleeper of the first step.
     Graph graph;
@@ -322,26 +328,26 @@ TEST(LayOut, WhoSleepsHasNoSeat)
     for (std::uint32_t i = 0; i + 1 < 600; ++i) add_contact(graph, i, i + 1, 2);
     for (std::uint32_t i = 600; i + 1 < 1200; ++i) add_contact(graph, i, i + 1, 2);
     add_contact(graph, 3, 900, 1);
-    Painter painter;
+    ConstraintGraph constraint_graph;
     Layout layout;
-    lay_out_again(graph, painter, layout);
+    lay_out_again(graph, constraint_graph, layout);
     ASSERT_EQ(layout.batches.size(), 1u);
     for (std::uint32_t i = 0; i < 600; ++i) graph.states.awake[i] = 0;
     std::erase_if(graph.contacts.entries, [](const auto& at) { return at.body_b < 600; });
-    lay_out_again(graph, painter, layout);
+    lay_out_again(graph, constraint_graph, layout);
     check_layout(graph, layout);
     ASSERT_EQ(layout.batches.size(), 1u);
     EXPECT_EQ(layout.slices[0].dynamic, 600u);
-    EXPECT_EQ(layout.body_of_slot.size(), 601u);
+    EXPECT_EQ(layout.body_of_solver_index.size(), 601u);
 }
 
-TEST(LayOut, SeatsConveyorsLast)
+TEST(LayOut, PutsConveyorsLast)
 {
     Graph graph;
-    add_body(graph, BodyKind::still, false);
-    add_body(graph, BodyKind::still, false);
+    add_body(graph, BodyKind::static_, false);
+    add_body(graph, BodyKind::static_, false);
     add_body(graph, BodyKind::kinematic, true);
-    graph.states.conveys = {1};
+    graph.states.is_conveyor = {1};
     for (std::uint32_t i = 0; i < 700; ++i) {
         add_body(graph, BodyKind::dynamic, true);
         for (const std::uint32_t other : {0, 1, 2}) add_contact(graph, other, 3 + i, 4);
@@ -351,8 +357,8 @@ TEST(LayOut, SeatsConveyorsLast)
     ASSERT_GT(layout.batches.size(), 2u);
     for (const Slice& slice : layout.slices) {
         EXPECT_EQ(slice.kinematic, 1u);
-        EXPECT_EQ(layout.body_of_slot[slice.first_visitor], 2u);
-        EXPECT_EQ(layout.body_of_slot[slice.first_visitor + 1u], 0u);
+        EXPECT_EQ(layout.body_of_solver_index[slice.first_kinematic_copy], 2u);
+        EXPECT_EQ(layout.body_of_solver_index[slice.first_kinematic_copy + 1u], 0u);
     }
 }
 
@@ -361,7 +367,7 @@ TEST(LayOut, PutsWhatExceedsTheColorsOneAfterAnother)
     // A plate under a hundred things, each of which touches a kinematic one and the ground too.
     Graph graph;
     add_body(graph, BodyKind::dynamic, true);
-    add_body(graph, BodyKind::still, false);
+    add_body(graph, BodyKind::static_, false);
     add_body(graph, BodyKind::kinematic, true);
     for (std::uint32_t i = 0; i < 100; ++i) {
         add_body(graph, BodyKind::dynamic, true);

@@ -17,7 +17,7 @@ using given::BlockWish;
 
 constexpr double kFree = std::numeric_limits<double>::quiet_NaN();
 
-Vec3 walk_of_b(const DriveVelocity& wanted, const Vec3& ground, const Vec3& normal)
+Vec3 walk_of_b(const PrescribedVelocity& wanted, const Vec3& ground, const Vec3& normal)
 {
     return walk_of(
         nullptr, &wanted, normal, Vec3::UnitZ(), [](bool) { return false; },
@@ -26,7 +26,7 @@ Vec3 walk_of_b(const DriveVelocity& wanted, const Vec3& ground, const Vec3& norm
 
 TEST(DrivenContacts, AWalkHasTheSpeedOfTheDrive)
 {
-    const DriveVelocity wanted = {1.4, 0, kFree};
+    const PrescribedVelocity wanted = {1.4, 0, kFree};
     EXPECT_EQ(walk_of_b(wanted, Vec3::Zero(), Vec3::UnitZ()), Vec3(1.4, 0, 0));
     EXPECT_EQ(walk_of_b(wanted, Vec3(-2, 1, 0), Vec3::UnitZ()), Vec3(3.4, -1, 0));
     const Vec3 slope(-0.6, 0, 0.8);
@@ -35,7 +35,7 @@ TEST(DrivenContacts, AWalkHasTheSpeedOfTheDrive)
 
 TEST(DrivenContacts, NobodyWalksOnWallsCeilingsOrWithoutADrive)
 {
-    const DriveVelocity wanted = {1.4, 0, kFree}, none = {kFree, kFree, kFree};
+    const PrescribedVelocity wanted = {1.4, 0, kFree}, none = {kFree, kFree, kFree};
     EXPECT_TRUE(walk_of_b(wanted, Vec3::Zero(), Vec3(-0.8, 0, 0.6)).isZero(0));
     EXPECT_TRUE(walk_of_b(wanted, Vec3::Zero(), -Vec3::UnitZ()).isZero(0));
     EXPECT_TRUE(walk_of_b(none, Vec3(1, 2, 0), Vec3::UnitZ()).isZero(0));
@@ -43,7 +43,7 @@ TEST(DrivenContacts, NobodyWalksOnWallsCeilingsOrWithoutADrive)
 
 TEST(DrivenContacts, EitherSideWalksAlike)
 {
-    const DriveVelocity wanted = {1.4, kFree, 0};
+    const PrescribedVelocity wanted = {1.4, kFree, 0};
     const Vec3 normal = Vec3(0.1, 0.2, 0.95).normalized(), ground(0.3, -0.2, 0.1);
     const Vec3 other = walk_of(
         &wanted, nullptr, -normal, Vec3::UnitZ(), [](bool) { return false; },
@@ -62,21 +62,22 @@ Vec3 vector_of(const Lane16<Real> (&from)[3], std::size_t lane)
 template <class Real>
 Vec3 plain_walk(BlockCase<Real>& made, std::size_t lane, const Vec3& up)
 {
-    const ContactBlock<Real>& block = made.block();
-    DriveVelocity drives[2];
-    const DriveVelocity* driven[2] = {nullptr, nullptr};
+    const ContactConstraintWide<Real>& block = made.block();
+    PrescribedVelocity prescribed[2];
+    const PrescribedVelocity* driven[2] = {nullptr, nullptr};
     const std::int32_t places[2] = {block.a[lane], block.b[lane]};
     for (int side = 0; side < 2; ++side) {
-        const Real* const number = made.rows.drives[static_cast<std::size_t>(places[side])].number;
+        const Real* const number =
+            made.constraints.prescribed[static_cast<std::size_t>(places[side])].number;
         for (int k = 0; k < 3; ++k)
-            drives[side][static_cast<std::size_t>(k)] =
+            prescribed[side][static_cast<std::size_t>(k)] =
                 number[4 + k] > 0 ? double{number[k]} : kFree;
-        if (number[4] + number[5] + number[6] > 0) driven[side] = &drives[side];
+        if (number[4] + number[5] + number[6] > 0) driven[side] = &prescribed[side];
     }
     const auto rolls = [&](bool is_b) {
         const auto place = static_cast<std::size_t>(places[is_b ? 1 : 0]);
         return (is_b ? block.round_b : block.round_a).at[lane] > 0
-            && made.rows.drives[place].number[3] > 0;
+            && made.constraints.prescribed[place].number[3] > 0;
     };
     const auto velocity = [&](bool is_b) -> Vec3 {
         const Real* const v = (is_b ? made.body_b(lane) : made.body_a(lane)).motion;
@@ -88,17 +89,17 @@ Vec3 plain_walk(BlockCase<Real>& made, std::size_t lane, const Vec3& up)
 }
 
 template <class Real>
-void drive_some(std::mt19937& random, std::vector<SolverDrive<Real>>& drives)
+void drive_some(std::mt19937& random, std::vector<SolverPrescribedVelocity<Real>>& prescribed)
 {
-    for (std::size_t place = 1; place < drives.size() - 1; ++place) {
+    for (std::size_t place = 1; place < prescribed.size() - 1; ++place) {
         if (random() % 4 == 0) continue;
         for (int k = 0; k < 3; ++k) {
             const bool acts = random() % 3 != 0;
-            drives[place].number[4 + k] = Real(acts);
-            drives[place].number[k] =
+            prescribed[place].number[4 + k] = Real(acts);
+            prescribed[place].number[k] =
                 acts ? static_cast<Real>(given::random_number(random, -2, 2)) : Real(0);
         }
-        drives[place].number[3] = Real(random() % 2);
+        prescribed[place].number[3] = Real(random() % 2);
     }
 }
 
@@ -108,20 +109,23 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
     for (unsigned seed = 0; seed < 200; ++seed) {
         std::mt19937 random(seed);
         BlockCase<Real> made = given::random_block<Real>(random, BlockWish{});
-        made.rows.carries.assign(made.rows.blocks.size(), {});
-        made.rows.drives.assign(made.rows.bodies.size(), {});
-        drive_some(random, made.rows.drives);
+        made.constraints.surface_velocities.assign(made.constraints.blocks.size(), {});
+        made.constraints.prescribed.assign(made.constraints.bodies.size(), {});
+        drive_some(random, made.constraints.prescribed);
         const Vec3 up = vector_of(made.block().normal, 0);
         const Real up_real[3] = {Real(up.x()), Real(up.y()), Real(up.z())};
-        CarryRows<Real>& carried = made.rows.carries[given::kPlace];
+        SurfaceVelocityWide<Real>& carried = made.constraints.surface_velocities[given::kPlace];
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             carried.by_b.at[lane] = 1;
             carried.speed[0].at[lane] = 7;
         }
         BlockCase<Real> narrow = made;
-        kernels.walk(made.view(), given::kPlace, up_real);
-        solve_kernels_of<Real>("scalar")->walk(narrow.view(), given::kPlace, up_real);
-        ASSERT_EQ(std::memcmp(&narrow.rows.carries[given::kPlace], &carried, sizeof carried), 0);
+        kernels.walk_surface_velocity(made.view(), given::kPlace, up_real);
+        solve_kernels_of<Real>("scalar")->walk_surface_velocity(narrow.view(), given::kPlace,
+                                                                up_real);
+        ASSERT_EQ(std::memcmp(&narrow.constraints.surface_velocities[given::kPlace], &carried,
+                              sizeof carried),
+                  0);
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const Vec3 walk = plain_walk(made, lane, up);
             const bool walks = !walk.isZero(0);

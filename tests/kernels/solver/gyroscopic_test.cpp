@@ -1,7 +1,7 @@
 // Gyroscopic: the torque as the solver's bodies feel it, against the same in body axes in double.
 #include "kernels/math/rotation.hpp"
+#include "kernels/solver/solve_kernels.hpp"
 #include "kernels/solver/solver_bodies.hpp"
-#include "kernels/solver/sweep.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Vec3 random_vector(std::mt19937& random, double size)
 template <class Real>
 struct Top {
     SolverBody<Real> body = {};
-    SpinInertia<Real> inertia = {};
+    GyroscopicInertia<Real> inertia = {};
     Sym3 local;
     Quat orientation;  // by now
     Vec3 spin;
@@ -30,7 +30,7 @@ struct Top {
     Top(const Sym3& moments, const Quat& start, const Quat& turn, const Vec3& w) : local(moments)
     {
         body.inertia[0] = 1;
-        for (int k = 0; k < 4; ++k) body.drift[4 + k] = static_cast<Real>(turn.coeffs()[k]);
+        for (int k = 0; k < 4; ++k) body.delta_pose[4 + k] = static_cast<Real>(turn.coeffs()[k]);
         const Vec3 along = turn.conjugate() * w;
         for (int k = 0; k < 3; ++k) body.motion[4 + k] = static_cast<Real>(along[k]);
         const Sym3 six = in_world_axes(local, start);

@@ -1,5 +1,5 @@
 // Next substep: what contacts gave in the last one, given back without asking them.
-#include "tests/kernels/solver/random_visit.hpp"
+#include "tests/kernels/solver/random_iteration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,37 +13,37 @@ using given::BlockWish;
 // Bodies that share many contacts, block after block.
 template <class Real>
 struct Heap {
-    Rows<Real> rows;
-    std::vector<SpinInertia<Real>> inertias;
-    Visit<Real> visit;
+    ContactConstraints<Real> constraints;
+    std::vector<GyroscopicInertia<Real>> inertias;
+    SolverIteration<Real> iteration;
 
     Heap(std::mt19937& random, const BlockWish& wish)
     {
         const std::size_t count = 3 * kBlock;
         std::vector<Vec3> positions;
         for (std::size_t i = 0; i < count; ++i) {
-            rows.bodies.push_back(given::random_body<Real>(random));
+            constraints.bodies.push_back(given::random_body<Real>(random));
             positions.push_back(given::random_vector(random, 0.5));
             inertias.push_back({{Real(0.3), Real(0.2), Real(0.5), 0, 0, 0, 1, 0}, {}});
             if (i % 2 == 0) inertias.back().axis[2] = inertias.back().axis[3] = 1;
         }
         // A still one and one that moves by itself.
-        for (Real& number : rows.bodies[0].motion) number = 0;
+        for (Real& number : constraints.bodies[0].motion) number = 0;
         for (const std::size_t i : {0, 1})
-            for (Real& number : rows.bodies[i].inertia) number = 0;
+            for (Real& number : constraints.bodies[i].inertia) number = 0;
         for (const std::size_t i : {0, 1}) inertias[i] = {};
-        visit = given::random_visit<Real>(random, wish);
-        visit.push = true;
-        visit.grips = visit.grips || wish.rolls;
+        iteration = given::random_iteration<Real>(random, wish);
+        iteration.use_bias = true;
+        iteration.has_friction = iteration.has_friction || wish.rolls;
 
         std::vector<int> counts;
         for (int block = 0; block < 12; ++block) counts.push_back(1 + block % 4);
         std::uint32_t points = 0;
         for (const int most : counts) points += static_cast<std::uint32_t>(most);
-        rows.blocks.resize(counts.size());
-        rows.points.resize(points);
-        rows.rollings.resize(wish.rolls ? counts.size() : 0);
-        rows.bounces.resize(wish.bounces ? counts.size() : 0);
+        constraints.blocks.resize(counts.size());
+        constraints.points.resize(points);
+        constraints.rolling_frictions.resize(wish.rolls ? counts.size() : 0);
+        constraints.restitutions.resize(wish.restitutions ? counts.size() : 0);
         points = 0;
         for (std::size_t place = 0; place < counts.size(); ++place) {
             fill(random, place, counts[place], points, positions, wish);
@@ -58,15 +58,15 @@ struct Heap {
               const std::vector<Vec3>& positions,
               BlockWish wish)
     {
-        ContactBlock<Real>& block = rows.blocks[place];
+        ContactConstraintWide<Real>& block = constraints.blocks[place];
         block.points = wish.points = points;
         block.first_point = first_point;
         block.writes_a = block.writes_b = 0;
         // No body twice, but all of them again in the next block.
-        std::vector<std::int32_t> order(rows.bodies.size());
+        std::vector<std::int32_t> order(constraints.bodies.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
         std::shuffle(order.begin(), order.end(), random);
-        LooseBlock<Real> loose;
+        PackedContacts<Real> packed;
         std::array<Contact<Real>, kBlock> contacts;
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const std::int32_t a = block.a[lane] = order[2 * lane];
@@ -77,34 +77,37 @@ struct Heap {
             contacts[lane] =
                 given::random_contact<Real>(random, positions[static_cast<std::size_t>(a)],
                                             positions[static_cast<std::size_t>(b)], wish);
-            loosen(contacts[lane], given::random_terms<Real>(random), static_cast<int>(lane),
-                   loose);
+            pack_contact(contacts[lane], given::random_terms<Real>(random), static_cast<int>(lane),
+                         packed);
         }
-        solve_kernels<Real>().prepare(loose, place, RowsView<Real>::of(rows), wish.turns);
+        solve_kernels<Real>().prepare(packed, place, ContactConstraintsView<Real>::of(constraints),
+                                      wish.turns);
     }
 
     void begin(Substep<Real> substep, bool first)
     {
         substep.first = first;
         const bool off = substep.gyroscopic == Substep<Real>::Gyroscopic::off;
-        solve_kernels<Real>().begin_substep(rows.bodies.data(), off ? nullptr : inertias.data(),
-                                            rows.bodies.size(), substep);
+        solve_kernels<Real>().begin_substep(constraints.bodies.data(),
+                                            off ? nullptr : inertias.data(),
+                                            constraints.bodies.size(), substep);
     }
     void warm_start()
     {
-        const auto view = RowsView<Real>::of(rows);
-        solve_kernels<Real>().warm_start(view, 0, rows.blocks.size(), visit);
+        const auto view = ContactConstraintsView<Real>::of(constraints);
+        solve_kernels<Real>().warm_start(view, 0, constraints.blocks.size(), iteration);
     }
-    void sweep(bool push)
+    void solve(bool push)
     {
-        Visit<Real> how = visit;
-        how.push = push;
-        solve_kernels<Real>().sweep(RowsView<Real>::of(rows), 0, rows.blocks.size(), how);
+        SolverIteration<Real> how = iteration;
+        how.use_bias = push;
+        solve_kernels<Real>().solve(ContactConstraintsView<Real>::of(constraints), 0,
+                                    constraints.blocks.size(), how);
     }
     void advance(Real time)
     {
-        solve_kernels<Real>().advance(rows.bodies.data(), inertias.data(), rows.bodies.size(), time,
-                                      visit.turns);
+        solve_kernels<Real>().advance(constraints.bodies.data(), inertias.data(),
+                                      constraints.bodies.size(), time, iteration.turns);
     }
 };
 
@@ -116,7 +119,7 @@ void check_given_back(double tolerance)
         std::mt19937 random(seed);
         const BlockWish wish{.impulses = random() % 2 == 0,
                              .turns = random() % 4 != 0,
-                             .bounces = random() % 2 == 0,
+                             .restitutions = random() % 2 == 0,
                              .rolls = random() % 2 == 0};
         Heap<Real> heap(random, wish);
         Substep<Real> substep{{0, 0, Real(-0.04)}, Real(1) / 240, true, How::off};
@@ -125,16 +128,17 @@ void check_given_back(double tolerance)
         heap.begin(substep, true);
         heap.warm_start();
         for (int step = 0; step < 4; ++step) {
-            heap.sweep(true);
+            heap.solve(true);
             heap.advance(substep.time);
-            heap.sweep(false);
-            heap.sweep(false);
+            heap.solve(false);
+            heap.solve(false);
             Heap<Real> asked = heap;
             asked.begin(substep, true);
             asked.warm_start();
             heap.begin(substep, false);
-            for (std::size_t i = 0; i < heap.rows.bodies.size(); ++i) {
-                const SolverBody<Real>&got = heap.rows.bodies[i], &wanted = asked.rows.bodies[i];
+            for (std::size_t i = 0; i < heap.constraints.bodies.size(); ++i) {
+                const SolverBody<Real>&got = heap.constraints.bodies[i],
+                      &wanted = asked.constraints.bodies[i];
                 double given = 1;
                 for (int k = 0; k < 8; ++k)
                     given = std::max(given, std::abs(double{wanted.motion[k] - wanted.free[k]}));
@@ -158,12 +162,12 @@ TEST(NextSubstep, WhatMovesByItselfIsGivenNothing)
 {
     std::mt19937 random(1);
     Heap<float> heap(random, {});
-    const SolverBody<float> before = heap.rows.bodies[1];
+    const SolverBody<float> before = heap.constraints.bodies[1];
     heap.begin({{0, 0, -1}, 0.004f, true}, true);
     heap.warm_start();
-    heap.sweep(true);
+    heap.solve(true);
     heap.begin({{0, 0, -1}, 0.004f, true}, false);
-    for (int k = 0; k < 8; ++k) EXPECT_EQ(heap.rows.bodies[1].motion[k], before.motion[k]);
+    for (int k = 0; k < 8; ++k) EXPECT_EQ(heap.constraints.bodies[1].motion[k], before.motion[k]);
 }
 
 }  // namespace

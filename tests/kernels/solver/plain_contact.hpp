@@ -2,9 +2,9 @@
 // everything computed afresh from the bodies after every impulse.
 #pragma once
 
+#include "kernels/data/contact_constraints.hpp"
 #include "kernels/data/contacts.hpp"
-#include "kernels/data/rows.hpp"
-#include "kernels/solver/contact_rows.hpp"
+#include "kernels/solver/contact_packing.hpp"
 
 #include <Eigen/LU>
 
@@ -30,9 +30,9 @@ struct PlainBody {
         };
         velocity = vec(body.motion);
         spin = vec(body.motion + 4);
-        moved = vec(body.drift);
-        turn = Quat(double{body.drift[7]}, double{body.drift[4]}, double{body.drift[5]},
-                    double{body.drift[6]})
+        moved = vec(body.delta_pose);
+        turn = Quat(double{body.delta_pose[7]}, double{body.delta_pose[4]},
+                    double{body.delta_pose[5]}, double{body.delta_pose[6]})
                    .toRotationMatrix();
         inverse_mass = double{body.inertia[0]};
         inverse_inertia =
@@ -52,42 +52,42 @@ struct PlainBody {
         velocity += inverse_mass * impulse;
         spin += inverse_inertia * arm.cross(impulse);
     }
-    void twist(const Vec3& impulse) { spin += inverse_inertia * impulse; }
+    void apply_angular_impulse(const Vec3& impulse) { spin += inverse_inertia * impulse; }
 };
 
-struct PlainVisit {
+struct PlainIteration {
     double substep = 0, push_limit = 0;
-    bool push = false, grips = true, rolls = false;
-    bool at_points = false, pyramid = false;  // friction of another kind
-    bool together = true;                     // the points are first pushed all at once
-    int normal_sweeps = 1;
-    bool bounces = false;  // what comes in faster than `slow` is left to its impact
-    double slow = 0;
-    Vec3 fall = Vec3::Zero();
+    bool use_bias = false, has_friction = true, has_rolling_friction = false;
+    bool friction_at_points = false, friction_pyramid = false;  // friction of another kind
+    bool together = true;  // the points are first pushed all at once
+    int normal_iterations = 1;
+    bool restitutions = false;  // what comes in faster than `slow` is left to its impact
+    double restitution_threshold = 0;
+    Vec3 gravity_step = Vec3::Zero();
 };
 
 class PlainContact {
 public:
     template <class Real>
     PlainContact(const Contact<Real>& contact,
-                 const ContactTerms<Real>& terms,
+                 const ContactParameters<Real>& terms,
                  const PlainBody& body_a,
                  const PlainBody& body_b)
         : a(body_a), b(body_b), normal(contact.normal.template cast<double>()),
           friction_impulse(contact.friction.template cast<double>()),
-          rolling_impulse(contact.rolling.template cast<double>()), twist_impulse(contact.twist),
-          round_a(contact.round_a), round_b(contact.round_b), friction(terms.friction),
-          restitution(terms.restitution), rolling(terms.rolling_friction),
-          bias_rate(terms.softness.bias_rate), impulse_scale(terms.softness.impulse_scale),
-          deep(terms.deep)
+          rolling_impulse(contact.rolling.template cast<double>()),
+          torsional_impulse(contact.torsional_impulse), round_a(contact.round_a),
+          round_b(contact.round_b), friction(terms.friction), restitution(terms.restitution),
+          rolling(terms.rolling_friction), bias_rate(terms.softness.bias_rate),
+          impulse_scale(terms.softness.impulse_scale), deep(terms.deep)
     {
-        const Vec3 between = contact.between.template cast<double>();
+        const Vec3 between = contact.center_offset.template cast<double>();
         double total = 0;
         for (int k = 0; k < contact.count; ++k) {
             const auto& from = contact.points[static_cast<std::size_t>(k)];
             Point point;
             point.separation = from.separation;
-            point.arm_a = from.from_a.template cast<double>();
+            point.arm_a = from.anchor_a.template cast<double>();
             point.arm_b = point.arm_a + normal * point.separation + between;
             point.impulse = from.impulse;
             center_a += point.arm_a / contact.count;
@@ -106,60 +106,62 @@ public:
         }
     }
 
-    void warm_start(const PlainVisit& visit)
+    void warm_start(const PlainIteration& iteration)
     {
         for (const Point& point : points) apply(point.impulse * normal, point.arm_a, point.arm_b);
-        if (!visit.grips) return;
-        if (visit.pyramid) friction_impulse = held_uncut;
-        if (visit.at_points) {
-            share_friction(visit);
-        } else if (visit.pyramid) {
+        if (!iteration.has_friction) return;
+        if (iteration.friction_pyramid) friction_impulse = held_uncut;
+        if (iteration.friction_at_points) {
+            share_friction(iteration);
+        } else if (iteration.friction_pyramid) {
             double total = 0;
             for (const Point& point : points) total += point.impulse;
             friction_impulse = within_pyramid(friction_impulse, friction * total);
         }
         apply(friction_impulse, center_a, center_b);
-        twist(twist_impulse * normal);
-        if (visit.rolls) twist(rolling_impulse);
+        apply_angular_impulse(torsional_impulse * normal);
+        if (iteration.has_rolling_friction) apply_angular_impulse(rolling_impulse);
     }
 
-    void sweep(const PlainVisit& visit)
+    void solve(const PlainIteration& iteration)
     {
-        // Aims are those of the visit's beginning; friction comes before the last round of pushes.
+        // Aims are those of the iteration's beginning; friction comes before the last round of
+        // pushes.
         int overlapping = 0;
         for (const Point& point : points)
             overlapping += separation_of(point) < 0 && mass_of(point) > 0 ? 1 : 0;
-        for (Point& point : points) aim(point, visit, overlapping);
-        if (visit.together) push_together();
-        for (int i = 1; i < visit.normal_sweeps; ++i)
+        for (Point& point : points) aim(point, iteration, overlapping);
+        if (iteration.together) solve_normals_as_block();
+        for (int i = 1; i < iteration.normal_iterations; ++i)
             for (Point& point : points) push(point);
-        if (visit.grips) hold(visit);
+        if (iteration.has_friction) hold(iteration);
         for (Point& point : points) push(point);
     }
 
     // An impact is a contact of its own that holds nothing yet: of the points that strike, seen in
     // the middle of what gravity does.
-    void bounce(const PlainVisit& visit)
+    void apply_restitution(const PlainIteration& iteration)
     {
         PlainContact struck = *this;
         const double falls = (b.inverse_mass > 0 ? 1 : 0) - (a.inverse_mass > 0 ? 1 : 0);
-        const Vec3 half = visit.fall * falls / 2;
+        const Vec3 half = iteration.gravity_step * falls / 2;
         struck.b.velocity += half;
         struck.friction_impulse = struck.rolling_impulse = Vec3::Zero();
-        struck.twist_impulse = 0;
-        std::vector<std::size_t> strikes;
+        struck.torsional_impulse = 0;
+        std::vector<std::size_t> hits;
         for (std::size_t k = 0; k < points.size(); ++k) {
             Point& point = struck.points[k];
             point.impulse = 0;
             point.friction = Vec3::Zero();
             const double speed = struck.speed_of(point);
-            const double then = separation_of(point) / visit.substep + speed + normal.dot(half);
-            if (restitution > 0 && speed < -visit.slow && then < 0 && mass_of(point) > 0)
-                strikes.push_back(k);
+            const double then = separation_of(point) / iteration.substep + speed + normal.dot(half);
+            if (restitution > 0 && speed < -iteration.restitution_threshold && then < 0
+                && mass_of(point) > 0)
+                hits.push_back(k);
         }
-        if (strikes.empty()) return;
-        struck.throw_back(strikes);
-        if (visit.grips) struck.hold(visit);
+        if (hits.empty()) return;
+        struck.throw_back(hits);
+        if (iteration.has_friction) struck.hold(iteration);
         a = struck.a;
         b = struck.b;
         b.velocity -= half;
@@ -178,8 +180,8 @@ public:
     std::vector<Point> points;
     Vec3 center_a = Vec3::Zero(), center_b = Vec3::Zero();
     Vec3 friction_impulse, held_uncut, rolling_impulse, impact_impulse = Vec3::Zero();
-    double twist_impulse;
-    double held_by = 0, held_at = 0;  // load and its lever, by which friction went last
+    double torsional_impulse;
+    double held_by = 0, held_at = 0;  // load and its lever arm, by which friction went last
 
     /// How far apart the surfaces are by now. Within a round side there is a core that turns with
     /// the body; the skin round it does not.
@@ -196,17 +198,17 @@ private:
         a.push(-impulse, arm_a);
         b.push(impulse, arm_b);
     }
-    void twist(const Vec3& impulse)
+    void apply_angular_impulse(const Vec3& impulse)
     {
-        a.twist(-impulse);
-        b.twist(impulse);
+        a.apply_angular_impulse(-impulse);
+        b.apply_angular_impulse(impulse);
     }
     double speed_of(const Point& point) const
     {
         return normal.dot(b.velocity_at(point.arm_b) - a.velocity_at(point.arm_a));
     }
     // What answers an impulse p at the arms with velocity: the matrix of the textbook.
-    Mat3 response(const Vec3& arm_a, const Vec3& arm_b) const
+    Mat3 inverse_mass_matrix(const Vec3& arm_a, const Vec3& arm_b) const
     {
         const auto cross = [](const Vec3& v) {
             Mat3 m;
@@ -217,33 +219,33 @@ private:
             - cross(arm_a) * a.inverse_inertia * cross(arm_a)
             - cross(arm_b) * b.inverse_inertia * cross(arm_b);
     }
-    // None where neither body can be moved and the point has no lever to turn one by: at least half
-    // of what it gives way has to come by arms that lie a hundredth aside of the normal.
+    // None where neither body can be moved and the point has no lever arm to turn one by: at least
+    // half of what it gives way has to come by arms that lie a hundredth aside of the normal.
     double mass_of(const Point& point) const
     {
-        const double answer = normal.dot(response(point.arm_a, point.arm_b) * normal);
+        const double answer = normal.dot(inverse_mass_matrix(point.arm_a, point.arm_b) * normal);
         if (a.inverse_mass + b.inverse_mass > 0) return 1 / answer;
-        double by_levers = 0;
+        double by_lever_arms = 0;
         for (const auto& [body, arm] : {std::pair(&a, point.arm_a), std::pair(&b, point.arm_b)}) {
             const Vec3 torque = arm.cross(normal);
             if (torque.norm() > 1e-2 * arm.norm())
-                by_levers += torque.dot(body->inverse_inertia * torque);
+                by_lever_arms += torque.dot(body->inverse_inertia * torque);
         }
-        return 2 * by_levers < answer || answer <= 0 ? 0 : 1 / answer;
+        return 2 * by_lever_arms < answer || answer <= 0 ? 0 : 1 / answer;
     }
-    void aim(Point& point, const PlainVisit& visit, int overlapping) const
+    void aim(Point& point, const PlainIteration& iteration, int overlapping) const
     {
         const double separation = separation_of(point);
         point.leak = 0;
-        point.bias = separation > 0 ? separation / visit.substep : 0;
-        point.left =
-            visit.bounces && !visit.push && restitution > 0 && speed_of(point) < -visit.slow;
-        if (separation > 0 || !visit.push) return;
+        point.bias = separation > 0 ? separation / iteration.substep : 0;
+        point.left = iteration.restitutions && !iteration.use_bias && restitution > 0
+            && speed_of(point) < -iteration.restitution_threshold;
+        if (separation > 0 || !iteration.use_bias) return;
         // Three points share a load: they may go three times as deep before they turn rigid.
         const double turns_rigid = deep * (overlapping >= 3 ? 3 : 1);
         const double depth = deep > 0 ? -separation / turns_rigid : 0;
         point.leak = impulse_scale * std::clamp(2 - depth, 0.0, 1.0);
-        point.bias = std::max(bias_rate * separation, -visit.push_limit);
+        point.bias = std::max(bias_rate * separation, -iteration.push_limit);
     }
     void push(Point& point)
     {
@@ -256,7 +258,7 @@ private:
     }
     // The impulses with which each point gives way by its share and no other comes in between, by
     // a full system of equations; only where nobody pulls. A rigid point gives way by a little.
-    void push_together()
+    void solve_normals_as_block()
     {
         const auto count = static_cast<Eigen::Index>(points.size());
         Eigen::MatrixXd system(count, count);
@@ -282,18 +284,18 @@ private:
     }
     // Stops the points by sweeps; then as much of those impulses as leaves 1 - e2 of the energy
     // that it took behind.
-    void throw_back(const std::vector<std::size_t>& strikes)
+    void throw_back(const std::vector<std::size_t>& hits)
     {
         PlainContact stopped = *this;
-        for (int visit = 0; visit < kBounceVisits; ++visit)
-            for (const std::size_t k : strikes) stopped.push(stopped.points[k]);
+        for (int iteration = 0; iteration < kRestitutionIterations; ++iteration)
+            for (const std::size_t k : hits) stopped.push(stopped.points[k]);
         double in = 0, change = 0;
-        for (const std::size_t k : strikes) {
+        for (const std::size_t k : hits) {
             const double came = speed_of(points[k]);
             in -= stopped.points[k].impulse * came;
             change += stopped.points[k].impulse * (stopped.speed_of(stopped.points[k]) - came);
         }
-        for (const std::size_t k : strikes) {
+        for (const std::size_t k : hits) {
             points[k].impulse = stopped.points[k].impulse * (1 + restitution) * in / change;
             apply(points[k].impulse * normal, points[k].arm_a, points[k].arm_b);
         }
@@ -307,50 +309,51 @@ private:
         after.apply(normal, pushed.arm_a, pushed.arm_b);
         return after.speed_of(at);
     }
-    void hold(const PlainVisit& visit)
+    void hold(const PlainIteration& iteration)
     {
-        double total = 0, lever = 0;
+        double total = 0, lever_arm = 0;
         for (const Point& point : points) {
             total += point.impulse;
-            lever += point.impulse * point.off.norm();
+            lever_arm += point.impulse * point.off.norm();
         }
         held_by = total;
-        held_at = lever;
+        held_at = lever_arm;
         const Mat3 turning = a.inverse_inertia + b.inverse_inertia;
-        if (visit.rolls && turning.trace() > 0) {
+        if (iteration.has_rolling_friction && turning.trace() > 0) {
             const Vec3 before = rolling_impulse;
             rolling_impulse -= (b.spin - a.spin) / turning.trace();
             const double most = rolling * total;
             if (rolling_impulse.norm() > most) rolling_impulse *= most / rolling_impulse.norm();
-            twist(rolling_impulse - before);
+            apply_angular_impulse(rolling_impulse - before);
         }
-        if (visit.at_points) return grip_each(visit);
+        if (iteration.friction_at_points) return grip_each(iteration);
         if (points.size() > 1 && turning.trace() > 0) {
-            const double before = twist_impulse;
+            const double before = torsional_impulse;
             const double mass = 1 / normal.dot(turning * normal);
-            twist_impulse -= mass * normal.dot(b.spin - a.spin);
-            twist_impulse = std::clamp(twist_impulse, -friction * lever, friction * lever);
-            twist((twist_impulse - before) * normal);
+            torsional_impulse -= mass * normal.dot(b.spin - a.spin);
+            torsional_impulse =
+                std::clamp(torsional_impulse, -friction * lever_arm, friction * lever_arm);
+            apply_angular_impulse((torsional_impulse - before) * normal);
         }
-        grip(visit, Vec3::Zero(), friction * total, friction_impulse);
+        apply_friction(iteration, Vec3::Zero(), friction * total, friction_impulse);
     }
-    void grip_each(const PlainVisit& visit)
+    void grip_each(const PlainIteration& iteration)
     {
         for (Point& point : points)
-            grip(visit, point.off, friction * point.impulse, point.friction);
+            apply_friction(iteration, point.off, friction * point.impulse, point.friction);
         add_up_friction();
     }
     void add_up_friction()
     {
         friction_impulse.setZero();
-        twist_impulse = 0;
+        torsional_impulse = 0;
         for (const Point& point : points) {
             friction_impulse += point.friction;
-            twist_impulse += normal.dot(point.off.cross(point.friction));
+            torsional_impulse += normal.dot(point.off.cross(point.friction));
         }
     }
     // The friction of least weighted squares that has the force and torque that are held.
-    void share_friction(const PlainVisit& visit)
+    void share_friction(const PlainIteration& iteration)
     {
         double load = 0, spread = 0, extent = 0;
         Vec3 middle = Vec3::Zero();
@@ -361,7 +364,7 @@ private:
         }
         for (const Point& point : points)
             spread += point.impulse * (point.off - middle).squaredNorm();
-        const double rest = twist_impulse - normal.dot(middle.cross(friction_impulse));
+        const double rest = torsional_impulse - normal.dot(middle.cross(friction_impulse));
         const double turn = spread > 1e-3 * load * extent ? rest / spread : 0;
         for (Point& point : points) {
             const double most = friction * point.impulse;
@@ -369,7 +372,7 @@ private:
             if (load > 0)
                 share = point.impulse
                     * (friction_impulse / load + turn * normal.cross(point.off - middle));
-            if (visit.pyramid)
+            if (iteration.friction_pyramid)
                 share = within_pyramid(share, most);
             else if (share.norm() > most)
                 share *= most / share.norm();
@@ -389,22 +392,22 @@ private:
         return u * std::clamp(u.dot(held), -most, most) + v * std::clamp(v.dot(held), -most, most);
     }
     // Sticking with the full matrix of the tangent plane, else sliding within the cone or pyramid.
-    void grip(const PlainVisit& visit, const Vec3& off, double most, Vec3& held)
+    void apply_friction(const PlainIteration& iteration, const Vec3& off, double most, Vec3& held)
     {
         const Vec3 arm_a = center_a + off, arm_b = center_b + off;
         const Vec3 u = side(), v = normal.cross(u);
         Eigen::Matrix<double, 3, 2> plane;
         plane << u, v;
-        const Eigen::Matrix2d k = plane.transpose() * response(arm_a, arm_b) * plane;
+        const Eigen::Matrix2d k = plane.transpose() * inverse_mass_matrix(arm_a, arm_b) * plane;
         const Eigen::Vector2d slip =
             plane.transpose() * (b.velocity_at(arm_b) - a.velocity_at(arm_a));
         const Eigen::Vector2d before = plane.transpose() * held;
         Eigen::Vector2d after = before - k.inverse() * slip;
-        if (visit.pyramid && after.cwiseAbs().maxCoeff() > most) {
+        if (iteration.friction_pyramid && after.cwiseAbs().maxCoeff() > most) {
             after[0] = std::clamp(before[0] - slip[0] / k(0, 0), -most, most);
             const double then = slip[1] + k(0, 1) * (after[0] - before[0]);
             after[1] = std::clamp(before[1] - then / k(1, 1), -most, most);
-        } else if (!visit.pyramid && after.norm() > most) {
+        } else if (!iteration.friction_pyramid && after.norm() > most) {
             // The greater eigenvalue.
             const double stiffest = k.trace() / 2 + std::hypot((k(0, 0) - k(1, 1)) / 2, k(0, 1));
             after = before - slip / stiffest;

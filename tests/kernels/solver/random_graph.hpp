@@ -30,9 +30,9 @@ inline Graph random_graph(std::uint32_t bodies, std::size_t contacts, std::mt199
     Graph graph;
     for (std::uint32_t i = 0; i < bodies; ++i) switch (random() % 10) {
         case 0:
-            add_body(graph, BodyKind::still, false);
-            graph.states.conveys.resize(i + std::size_t{1});
-            graph.states.conveys[i] = random() % 2 == 0;
+            add_body(graph, BodyKind::static_, false);
+            graph.states.is_conveyor.resize(i + std::size_t{1});
+            graph.states.is_conveyor[i] = random() % 2 == 0;
             break;
         case 1:
             add_body(graph, BodyKind::kinematic, true);
@@ -41,7 +41,7 @@ inline Graph random_graph(std::uint32_t bodies, std::size_t contacts, std::mt199
             add_body(graph, BodyKind::dynamic, false);
             break;
         case 3:
-            add_body(graph, BodyKind::gone, false);
+            add_body(graph, BodyKind::removed, false);
             break;
         default:
             add_body(graph, BodyKind::dynamic, true);
@@ -49,12 +49,14 @@ inline Graph random_graph(std::uint32_t bodies, std::size_t contacts, std::mt199
     for (std::size_t i = 0; i < contacts; ++i) {
         const auto a = static_cast<std::uint32_t>(random() % bodies);
         const auto b = static_cast<std::uint32_t>(random() % bodies);
-        const auto gone = [&](std::uint32_t x) { return graph.states.kind[x] == BodyKind::gone; };
+        const auto gone = [&](std::uint32_t x) {
+            return graph.states.kind[x] == BodyKind::removed;
+        };
         if (a == b || gone(a) || gone(b) || (!graph.movable(a) && !graph.movable(b))) continue;
         ActiveContacts::Entry entry;
         entry.body_a = a;
         entry.body_b = b;
-        entry.slot = static_cast<std::uint32_t>(i);
+        entry.list_index = static_cast<std::uint32_t>(i);
         entry.points = static_cast<std::uint8_t>(1 + random() % 4);
         graph.contacts.entries.push_back(entry);
     }

@@ -2,7 +2,7 @@
 #include "kernels/solver/solver_bodies.hpp"
 
 #include "kernels/math/rotation.hpp"
-#include "kernels/solver/sweep.hpp"
+#include "kernels/solver/solve_kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ template <class Real>
 SolverBody<Real> body_with(const Vec3& velocity, const Vec3& spin, double inverse_mass)
 {
     SolverBody<Real> body = {};
-    body.drift[7] = 1;
+    body.delta_pose[7] = 1;
     for (int k = 0; k < 3; ++k) {
         body.motion[k] = static_cast<Real>(velocity[k]);
         body.motion[4 + k] = static_cast<Real>(spin[k]);
@@ -115,8 +115,8 @@ void check_runaways()
                 advance(bodies, Real(1));
                 ASSERT_TRUE(ran_away(away));
                 for (const Real x : away.motion) ASSERT_EQ(x, 0);
-                for (int k = 0; k < 3; ++k) ASSERT_EQ(away.drift[k], 0);
-                ASSERT_EQ(away.drift[7], 1);
+                for (int k = 0; k < 3; ++k) ASSERT_EQ(away.delta_pose[k], 0);
+                ASSERT_EQ(away.delta_pose[7], 1);
             }
 }
 
@@ -139,10 +139,10 @@ TEST(SolverBodies, MoveByTheirVelocity)
 {
     std::vector<SolverBody<double>> bodies = {body_with<double>(Vec3(1, -2, 4), Vec3(9, 9, 9), 1)};
     for (int i = 0; i < 4; ++i) EXPECT_EQ(advance(bodies, 0.25, false), 0u);
-    EXPECT_EQ(bodies[0].drift[0], 1);
-    EXPECT_EQ(bodies[0].drift[1], -2);
-    EXPECT_EQ(bodies[0].drift[2], 4);
-    EXPECT_EQ(bodies[0].drift[3], 0);
+    EXPECT_EQ(bodies[0].delta_pose[0], 1);
+    EXPECT_EQ(bodies[0].delta_pose[1], -2);
+    EXPECT_EQ(bodies[0].delta_pose[2], 4);
+    EXPECT_EQ(bodies[0].delta_pose[3], 0);
     EXPECT_EQ(turn_of(bodies[0]).coeffs(), Quat::Identity().coeffs());
 }
 
@@ -170,8 +170,8 @@ void check_turns(double tolerance)
         ASSERT_LE((got.coeffs() - wanted.coeffs()).norm(), tolerance * (1 + angle))
             << spins[i].transpose();
         ASSERT_NEAR(got.norm(), 1, tolerance);
-        ASSERT_EQ(bodies[i].drift[0], Real(1) / 64);
-        ASSERT_EQ(bodies[i].drift[2], Real(4) / 64);
+        ASSERT_EQ(bodies[i].delta_pose[0], Real(1) / 64);
+        ASSERT_EQ(bodies[i].delta_pose[2], Real(4) / 64);
         wanted_fast += angle / 4 >= kFastTurn ? 4 : 0;
     }
     EXPECT_EQ(fast, wanted_fast);
@@ -195,7 +195,7 @@ void check_border()
         bodies.push_back(body_with<Real>(Vec3::Zero(), Vec3(0, 0, double{spin}), 1));
     EXPECT_EQ(advance(bodies, Real(1)), 2u);
     for (const auto& body : bodies)
-        EXPECT_NEAR(double{body.drift[6]}, std::sin(kFastTurn / 2),
+        EXPECT_NEAR(double{body.delta_pose[6]}, std::sin(kFastTurn / 2),
                     2 * double{std::numeric_limits<Real>::epsilon()});
 }
 
@@ -216,7 +216,7 @@ void check_order_of_turns(double tolerance)
             std::vector<SolverBody<Real>> bodies = {
                 body_with<Real>(Vec3::Zero(), random_vector(random, size), 1)};
             for (int k = 0; k < 4; ++k)
-                bodies[0].drift[4 + k] = static_cast<Real>(before.coeffs()[k]);
+                bodies[0].delta_pose[4 + k] = static_cast<Real>(before.coeffs()[k]);
             const Real* const w = bodies[0].motion + 4;
             const Vec3 spin(double{w[0]}, double{w[1]}, double{w[2]});
             advance(bodies, Real(1) / 64);
@@ -234,11 +234,11 @@ TEST(SolverBodies, TurnAboutTheAxesOfTheWorld)
 TEST(SolverBodies, WhatDoesNotSpinKeepsItsTurnToTheLastBit)
 {
     std::vector<SolverBody<float>> bodies = {body_with<float>(Vec3(1, 1, 1), Vec3::Zero(), 1)};
-    bodies[0].drift[4] = 0.6f;
-    bodies[0].drift[7] = 0.8f;
+    bodies[0].delta_pose[4] = 0.6f;
+    bodies[0].delta_pose[7] = 0.8f;
     advance(bodies, 1.0f);
-    EXPECT_EQ(bodies[0].drift[4], 0.6f);
-    EXPECT_EQ(bodies[0].drift[7], 0.8f);
+    EXPECT_EQ(bodies[0].delta_pose[4], 0.6f);
+    EXPECT_EQ(bodies[0].delta_pose[7], 0.8f);
 }
 
 TEST(SolverBodies, WhatIsNotFiniteStaysSo)

@@ -1,8 +1,8 @@
 // Spin frame: bodies that contacts push while they turn, with the inertia of the step's beginning.
 #include "kernels/math/principal_inertia.hpp"
 #include "kernels/math/rotation.hpp"
+#include "kernels/solver/solve_kernels.hpp"
 #include "kernels/solver/solver_bodies.hpp"
-#include "kernels/solver/sweep.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ struct Top {
     Quat orientation = Quat::Identity();
     Vec3 spin = Vec3::Zero();  // world axes
     SolverBody<Real> body = {};
-    SpinInertia<Real> inertia = {};
+    GyroscopicInertia<Real> inertia = {};
 
     Mat3 in_world(const Vec3& diagonal) const
     {
@@ -49,7 +49,7 @@ struct Top {
     {
         body = {};
         inertia = {};
-        body.drift[7] = 1;
+        body.delta_pose[7] = 1;
         body.inertia[0] = 1;
         for (int k = 0; k < 3; ++k) body.motion[4 + k] = static_cast<Real>(spin[k]);
         const Sym3 six =
@@ -79,11 +79,11 @@ struct Top {
     // began with; or as much less as is asked.
     void stop(const Vec3& arm, const Vec3& along, double share)
     {
-        const Vec3 lever = arm.cross(along);
-        const Vec3 turned = in_world(moments.cwiseInverse()) * lever;
-        const double ease = lever.dot(turned) + 1;  // and some mass
+        const Vec3 lever_arm = arm.cross(along);
+        const Vec3 turned = in_world(moments.cwiseInverse()) * lever_arm;
+        const double inverse_mass = lever_arm.dot(turned) + 1;  // and some mass
         const Vec3 w(double{body.motion[4]}, double{body.motion[5]}, double{body.motion[6]});
-        const double impulse = -share * lever.dot(w) / ease;
+        const double impulse = -share * lever_arm.dot(w) / inverse_mass;
         for (int k = 0; k < 3; ++k)
             body.motion[4 + k] = static_cast<Real>(w[k] + impulse * turned[k]);
     }
@@ -190,10 +190,10 @@ TEST(SpinFrame, ATopGoesRoundItsMomentumHoweverFastItSpins)
 TEST(SpinFrame, IsThatOfTheWorldWhereNothingIsToldOfTheInertia)
 {
     SolverBody<float> body = {};
-    body.drift[4] = 0.6f;
-    body.drift[7] = 0.8f;
+    body.delta_pose[4] = 0.6f;
+    body.delta_pose[7] = 0.8f;
     EXPECT_EQ(spin_frame<float>(body, nullptr).coeffs(), Quat::Identity().coeffs());
-    const SpinInertia<float> none = {};
+    const GyroscopicInertia<float> none = {};
     EXPECT_EQ(spin_frame<float>(body, &none).coeffs(), Quat::Identity().coeffs());
 }
 

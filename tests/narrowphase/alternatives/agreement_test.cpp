@@ -36,20 +36,20 @@ public:
             if ((method.tells & tells_touch) == 0 || !method.serves(pair)) continue;
             const MethodStart start = kStarts[turn % 3];
             const MethodAnswer answer = method.ask(pair, 1e30, start, memories[i]);
-            answers_.push_back({&method, answer.touch, answer.separation});
+            answers_.push_back({&method, answer.overlap, answer.separation});
         }
     }
 
     // All that decide say so; who does not is counted.
     void expect(bool touching, bool far, const std::string& where)
     {
-        const Touch wrong = touching ? Touch::apart : Touch::touching;
+        const OverlapState wrong = touching ? OverlapState::apart : OverlapState::touching;
         for (const Answer& one : answers_) {
-            EXPECT_NE(one.touch, wrong) << one.method->name << ", " << where;
+            EXPECT_NE(one.overlap, wrong) << one.method->name << ", " << where;
             Count& count = counts_[one.method->name];
-            const bool undecided = one.touch == Touch::undecided;
+            const bool undecided = one.overlap == OverlapState::undecided;
             ++count.asked;
-            count.said_touching += one.touch == Touch::touching ? 1 : 0;
+            count.said_touching += one.overlap == OverlapState::touching ? 1 : 0;
             count.undecided += undecided ? 1 : 0;
             count.undecided_far += undecided && far ? 1 : 0;
         }
@@ -61,13 +61,13 @@ public:
     {
         bool any_apart = false, any_touching = false;
         for (const Answer& one : answers_) {
-            const bool told = one.touch == Touch::touching
+            const bool told = one.overlap == OverlapState::touching
                 ? (one.method->tells & tells_depth) != 0
                 : (one.method->tells & tells_distance) != 0;
-            if (told && one.touch != Touch::undecided && std::abs(one.separation) < hair)
+            if (told && one.overlap != OverlapState::undecided && std::abs(one.separation) < hair)
                 return false;
-            any_apart = any_apart || one.touch == Touch::apart;
-            any_touching = any_touching || one.touch == Touch::touching;
+            any_apart = any_apart || one.overlap == OverlapState::apart;
+            any_touching = any_touching || one.overlap == OverlapState::touching;
         }
         EXPECT_FALSE(any_apart && any_touching) << where << ":" << told();
         expect(any_touching, false, where);
@@ -78,7 +78,7 @@ public:
     bool touching() const
     {
         return std::any_of(answers_.begin(), answers_.end(),
-                           [](const Answer& one) { return one.touch == Touch::touching; });
+                           [](const Answer& one) { return one.overlap == OverlapState::touching; });
     }
 
     void expect_few_undecided() const
@@ -100,7 +100,7 @@ public:
 private:
     struct Answer {
         const ConvexMethod* method;
-        Touch touch;
+        OverlapState overlap;
         double separation;
     };
     std::string told() const
@@ -108,9 +108,9 @@ private:
         std::string text;
         for (const Answer& one : answers_)
             text += " " + std::string(one.method->name) + " "
-                + (one.touch == Touch::apart          ? "apart"
-                       : one.touch == Touch::touching ? "touching"
-                                                      : "undecided");
+                + (one.overlap == OverlapState::apart          ? "apart"
+                       : one.overlap == OverlapState::touching ? "touching"
+                                                               : "undecided");
         return text;
     }
 
@@ -155,7 +155,7 @@ TEST_P(AgreementOnRandomPairs, AllMethodsSayWhatIsCertified)
             pair.place(certified.b_in_a);
             panel.ask(pair, memories, k);
             const bool far = !certified.touching
-                && certified.gap >= kFarGap * certified_size(hulls[0], hulls[1]);
+                && certified.separation >= kFarSeparation * certified_size(hulls[0], hulls[1]);
             panel.expect(certified.touching, far,
                          "seed " + std::to_string(seed) + ", shapes " + std::to_string(i)
                              + ", placing " + std::to_string(k));
@@ -211,9 +211,11 @@ TEST_P(AgreementOnHullsFromGames, AllMethodsSayTheSame)
         const Quat turn = random_turn(random);
         const Vec3 way = random_turn(random) * Vec3::UnitX();
         // As far as both reach along the way between them, they are surely apart.
-        const double reach = reach_of(a.vertices, {-a.center, Quat::Identity()})(way)
-            + reach_of(b.vertices, {-(turn * b.center), turn})(-way);
-        const Pose pose{a.center + random.uniform(0.5, 1.02) * reach * way - turn * b.center, turn};
+        const double speculative_margin = extent_of(a.vertices, {-a.center, Quat::Identity()})(way)
+            + extent_of(b.vertices, {-(turn * b.center), turn})(-way);
+        const Pose pose{a.center + random.uniform(0.5, 1.02) * speculative_margin * way
+                            - turn * b.center,
+                        turn};
         ConvexPair pair(shapes, {ShapeKind::hull, first}, {ShapeKind::hull, second}, pose);
         std::vector<MethodMemory> memories;
         panel.ask(pair, memories, i);
@@ -224,7 +226,7 @@ TEST_P(AgreementOnHullsFromGames, AllMethodsSayTheSame)
         touching += panel.touching() ? 1 : 0;
 
         const CertifiedPair certified = certified_pair(a, b, random);
-        if (certified.gap < kFacesStray * certified_size(a, b)) continue;
+        if (certified.separation < kFacesStray * certified_size(a, b)) continue;
         pair.place(certified.b_in_a);
         panel.ask(pair, memories, i + 1);
         panel.expect(certified.touching, false, where + ", certified");
@@ -248,7 +250,7 @@ Hull random_plate(Random& random, double thickness)
 }
 
 // Where the box's corner is so far from the plate's rim; below 0, within it.
-Pose beside_the_rim(const Hull& plate, Random& random, const Vec3& half, double gap)
+Pose beside_the_rim(const Hull& plate, Random& random, const Vec3& half, double clearance)
 {
     const Vec3 &from = plate.vertices[random.below(2)], &to = plate.vertices[2 + random.below(2)];
     const Vec3 on_rim = from + (to - from) * random.uniform(0.1, 0.9);
@@ -257,7 +259,7 @@ Pose beside_the_rim(const Hull& plate, Random& random, const Vec3& half, double 
     const Quat turn = random_turn(random);
     Vec3 nearest = half;
     for (int k = 0; k < 3; ++k) nearest[k] = (turn.inverse() * out)[k] > 0 ? -half[k] : half[k];
-    return {on_rim + gap * out - turn * nearest, turn};
+    return {on_rim + clearance * out - turn * nearest, turn};
 }
 
 // The planes of a plate's two sides, put out by rounding, meet far beyond the rim between them.
@@ -273,8 +275,8 @@ TEST(Agreement, BesideTheSharpRimOfAPlateAllSayApart)
         if (shapes.hulls[0].vertices.size() != 4) continue;
         const Vec3 half(0.3, 0.4, 0.5);
         shapes.boxes = {{half}};
-        const double gap = std::pow(10, random.uniform(-8, -5)) * (i % 4 == 0 ? -1 : 1);
-        const Pose pose = beside_the_rim(shapes.hulls[0], random, half, gap);
+        const double clearance = std::pow(10, random.uniform(-8, -5)) * (i % 4 == 0 ? -1 : 1);
+        const Pose pose = beside_the_rim(shapes.hulls[0], random, half, clearance);
         const ConvexPair pair(shapes, {ShapeKind::hull, 0}, {ShapeKind::box, 0}, pose);
         std::vector<MethodMemory> memories;
         panel.ask(pair, memories, i);

@@ -15,9 +15,10 @@ void expect_parted(const ConvexPair& pair, const MethodAnswer& answer)
 {
     ASSERT_TRUE(answer.normal.allFinite());
     ASSERT_NEAR(answer.normal.norm(), 1, 1e-12);
-    if (answer.touch != Touch::apart) return;
-    const CorePair& cores = pair.cores();
-    ASSERT_GT(separation_along(cores, answer.normal), cores.a.radius + cores.b.radius);
+    if (answer.overlap != OverlapState::apart) return;
+    const ConvexCorePair& cores = pair.cores();
+    ASSERT_GT(separation_along(cores, answer.normal),
+              cores.a.convex_radius + cores.b.convex_radius);
 }
 
 struct Tally {
@@ -25,17 +26,17 @@ struct Tally {
 };
 
 // All starts in turn, the cached one from what the cold one left behind.
-void expect_truth(const ConvexPair& pair, Touch truth, Tally& tally)
+void expect_truth(const ConvexPair& pair, OverlapState truth, Tally& tally)
 {
     MethodMemory memory;
     for (const MethodStart start : kStarts) {
-        const MethodAnswer answer = ask_chung_wang(pair, 1e30, start, memory);
+        const MethodAnswer answer = query_chung_wang(pair, 1e30, start, memory);
         ++tally.asked;
-        tally.apart += answer.touch == Touch::apart;
-        tally.undecided += answer.touch == Touch::undecided;
-        ASSERT_EQ(answer.touch == Touch::undecided, answer.cut_short);
-        if (answer.touch == Touch::undecided) continue;
-        ASSERT_EQ(answer.touch, truth);
+        tally.apart += answer.overlap == OverlapState::apart;
+        tally.undecided += answer.overlap == OverlapState::undecided;
+        ASSERT_EQ(answer.overlap == OverlapState::undecided, answer.cut_short);
+        if (answer.overlap == OverlapState::undecided) continue;
+        ASSERT_EQ(answer.overlap, truth);
         ASSERT_NO_FATAL_FAILURE(expect_parted(pair, answer));
     }
 }
@@ -43,9 +44,9 @@ void expect_truth(const ConvexPair& pair, Touch truth, Tally& tally)
 void expect_truth_both_ways(const Shapes& shapes, const PolytopeCase& pair, Tally& tally)
 {
     const ConvexPair straight(shapes, pair.a, pair.b, pair.b_in_a);
-    ASSERT_NO_FATAL_FAILURE(expect_truth(straight, truth_of(pair.gap), tally));
+    ASSERT_NO_FATAL_FAILURE(expect_truth(straight, truth_of(pair.clearance), tally));
     const ConvexPair swapped(shapes, pair.b, pair.a, inverse(pair.b_in_a));
-    ASSERT_NO_FATAL_FAILURE(expect_truth(swapped, truth_of(pair.gap), tally));
+    ASSERT_NO_FATAL_FAILURE(expect_truth(swapped, truth_of(pair.clearance), tally));
 }
 
 }  // namespace
@@ -109,7 +110,7 @@ TEST(ChungWang, ClimbingIsNotFooledByFacesThatAreNotQuiteFlat)
         const ConvexPair shown(shapes, pair.a, pair.b, pair.b_in_a);
         const Distance cores = gjk(shown.cores(), 1);
         if (cores.apart ? cores.distance < 1e-10 : epa(shown.cores()).depth < 1e-10) continue;
-        const Touch truth = cores.apart ? Touch::apart : Touch::touching;
+        const OverlapState truth = cores.apart ? OverlapState::apart : OverlapState::touching;
         ASSERT_NO_FATAL_FAILURE(expect_truth(shown, truth, tally));
     }
     EXPECT_GT(tally.asked, 5000);
@@ -135,19 +136,19 @@ TEST(ChungWang, RoundShapesAgreeWithGjk)
         SCOPED_TRACE("seed 75, pair " + std::to_string(i));
         const ShapeRef a = any(i % 5), b = any(i / 5 % 5);
         Pose pose = random.pose(1);
-        const Distance cores = gjk(CorePair(shapes, a, b, pose), 1e30);
-        double gap = -1;
+        const Distance cores = gjk(ConvexCorePair(shapes, a, b, pose), 1e30);
+        double clearance = -1;
         ConvexPair pair(shapes, a, b, pose);
-        const double radii = pair.cores().a.radius + pair.cores().b.radius;
+        const double radii = pair.cores().a.convex_radius + pair.cores().b.convex_radius;
         if (cores.apart) {
             // Moved along the line of their nearest points, cores keep that line.
-            gap = std::pow(10, random.number(-9, -1)) * (i % 2 == 0 ? 1 : -1);
-            gap = std::max(gap, -0.9 * radii);
-            if (gap == 0) continue;
-            pose.position += cores.normal * (gap + radii - cores.distance);
+            clearance = std::pow(10, random.number(-9, -1)) * (i % 2 == 0 ? 1 : -1);
+            clearance = std::max(clearance, -0.9 * radii);
+            if (clearance == 0) continue;
+            pose.position += cores.normal * (clearance + radii - cores.distance);
             pair.place(pose);
         }
-        ASSERT_NO_FATAL_FAILURE(expect_truth(pair, truth_of(gap), tally));
+        ASSERT_NO_FATAL_FAILURE(expect_truth(pair, truth_of(clearance), tally));
     }
     EXPECT_GT(tally.asked, 50000);
     EXPECT_LE(tally.undecided, tally.asked / 10000);
@@ -162,16 +163,16 @@ TEST(ChungWang, RoundsDropWithWhatIsRemembered)
     const ShapeRef a{ShapeKind::hull, 0}, b{ShapeKind::hull, 1};
     MethodMemory memory;
     int cached = 0, cold = 0, steps = 0, changes = 0;
-    Touch last = Touch::undecided;
+    OverlapState last = OverlapState::undecided;
     for (double x = -1.2; x < 1.2; x += 0.002) {
         const Pose pose{{x, 0.3, 0.5}, Quat(Eigen::AngleAxisd(3 * x, Vec3(1, 2, 3).normalized()))};
         const ConvexPair pair(shapes, a, b, pose);
         MethodMemory fresh;
-        const MethodAnswer warm = ask_chung_wang(pair, 1, MethodStart::cached, memory);
-        const MethodAnswer first = ask_chung_wang(pair, 1, MethodStart::cold, fresh);
-        ASSERT_EQ(warm.touch, first.touch) << x;
-        changes += warm.touch != last;
-        last = warm.touch;
+        const MethodAnswer warm = query_chung_wang(pair, 1, MethodStart::cached, memory);
+        const MethodAnswer first = query_chung_wang(pair, 1, MethodStart::cold, fresh);
+        ASSERT_EQ(warm.overlap, first.overlap) << x;
+        changes += warm.overlap != last;
+        last = warm.overlap;
         cached += warm.rounds;
         cold += first.rounds;
         ++steps;
@@ -192,8 +193,8 @@ TEST(ChungWang, MemoryOfAnotherPairDoesNoHarm)
         const PolytopeCase pair = pairs.next();
         if (!is_clear(pair, 1)) continue;
         const ConvexPair shown(shapes, pair.a, pair.b, pair.b_in_a);
-        const MethodAnswer answer = ask_chung_wang(shown, 1, MethodStart::cached, memory);
-        ASSERT_EQ(answer.touch, truth_of(pair.gap));
+        const MethodAnswer answer = query_chung_wang(shown, 1, MethodStart::cached, memory);
+        ASSERT_EQ(answer.overlap, truth_of(pair.clearance));
         ASSERT_NO_FATAL_FAILURE(expect_parted(shown, answer));
     }
 }
@@ -208,13 +209,13 @@ TEST(ChungWang, EndsForShapesOfNoThicknessAndPosesThatAreNotNumbers)
                 const ConvexPair pair(shapes, kBoxA, kBoxB, at(x, x, x));
                 MethodMemory memory;
                 for (const MethodStart start : kStarts) {
-                    const MethodAnswer answer = ask_chung_wang(pair, 1, start, memory);
+                    const MethodAnswer answer = query_chung_wang(pair, 1, start, memory);
                     EXPECT_TRUE(answer.normal.allFinite());
                     EXPECT_LE(answer.rounds, 96);
                 }
                 if (x == 0) {
-                    EXPECT_EQ(ask_chung_wang(pair, 1, MethodStart::cold, memory).touch,
-                              Touch::touching);
+                    EXPECT_EQ(query_chung_wang(pair, 1, MethodStart::cold, memory).overlap,
+                              OverlapState::touching);
                 }
             }
         }

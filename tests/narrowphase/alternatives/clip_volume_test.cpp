@@ -16,7 +16,7 @@ constexpr ShapeRef kHullA{ShapeKind::hull, 0}, kHullB{ShapeKind::hull, 1};
 MethodAnswer ask(const ConvexPair& pair, MethodStart start)
 {
     MethodMemory memory;
-    return ask_clip_volume(pair, 0, start, memory);
+    return query_clip_volume(pair, 0, start, memory);
 }
 
 Pose scaled(const Pose& pose, double scale) { return {pose.position * scale, pose.orientation}; }
@@ -160,7 +160,7 @@ TEST(ClipVolume, KnownVolumesOfUnitCubesAtEveryScale)
             for (const MethodStart start : kStarts) {
                 const MethodAnswer answer = ask(ab, start), swapped = ask(ba, start);
                 const double cube = scale * scale * scale;
-                EXPECT_EQ(answer.touch, Touch::touching);
+                EXPECT_EQ(answer.overlap, OverlapState::touching);
                 EXPECT_NEAR(answer.volume / cube, pair.volume, 1e-14);
                 EXPECT_NEAR(swapped.volume / cube, pair.volume, 1e-14);
                 EXPECT_LT((answer.center / scale - pair.center).norm(), 1e-12);
@@ -197,7 +197,7 @@ TEST(ClipVolume, WhatMerelyTouchesSharesNoVolume)
             const ConvexPair pair(shapes, kBoxA, kBoxB, {shift * scale, Quat::Identity()});
             for (const MethodStart start : kStarts) {
                 const MethodAnswer answer = ask(pair, start);
-                EXPECT_EQ(answer.touch, Touch::touching);
+                EXPECT_EQ(answer.overlap, OverlapState::touching);
                 EXPECT_EQ(answer.volume, 0);
                 EXPECT_NEAR(answer.normal.dot(shift), 1, 1e-14);
                 EXPECT_LT((answer.center / scale).cwiseAbs().maxCoeff(), 0.5 + 1e-14);
@@ -266,8 +266,8 @@ TEST(ClipVolume, NeitherTheOrderOfThePlanesNorOfTheShapesMatters)
         const MethodAnswer cold = ask(ab, MethodStart::cold), plain = ask(ab, MethodStart::plain);
         const MethodAnswer swapped = ask(ba, MethodStart::plain);
         const MethodAnswer far = ask(grown, MethodStart::cold);
-        ASSERT_EQ(plain.touch, cold.touch);
-        ASSERT_EQ(swapped.touch, cold.touch);
+        ASSERT_EQ(plain.overlap, cold.overlap);
+        ASSERT_EQ(swapped.overlap, cold.overlap);
         ASSERT_NEAR(plain.volume, cold.volume, 1e-14);
         ASSERT_NEAR(swapped.volume, cold.volume, 1e-14);
         ASSERT_NEAR(far.volume / (scale * scale * scale), cold.volume, 1e-14);
@@ -298,10 +298,11 @@ TEST(ClipVolume, YesAndNoAreThoseOfTheSeparatingAxes)
             const double separation = separation_of(pair);
             MethodMemory memory;
             for (const MethodStart start : kStarts) {
-                const MethodAnswer answer = ask_clip_volume(pair, 0, start, memory);
+                const MethodAnswer answer = query_clip_volume(pair, 0, start, memory);
                 ASSERT_FALSE(answer.cut_short);
                 if (std::abs(separation) < 1e-9) continue;
-                ASSERT_EQ(answer.touch, separation > 0 ? Touch::apart : Touch::touching);
+                ASSERT_EQ(answer.overlap,
+                          separation > 0 ? OverlapState::apart : OverlapState::touching);
                 if (separation > 0) continue;
                 ASSERT_GT(answer.volume, 0);
                 ASSERT_TRUE(answer.center.allFinite());
@@ -323,12 +324,13 @@ TEST(ClipVolume, YesAndNoHoldAHairFromTouching)
         Vec3 normal;
         const PolytopeView a = view_of(shapes.hulls[0]), b = view_of(shapes.hulls[1]);
         const double separation = polytope_separation(a, b, pose, &normal);
-        const double gap = (i % 2 == 0 ? 1 : -1) * 3e-9;
-        pose.position += normal * (gap - separation);
+        const double clearance = (i % 2 == 0 ? 1 : -1) * 3e-9;
+        pose.position += normal * (clearance - separation);
         if (std::abs(polytope_separation(a, b, pose, nullptr)) < 1e-9) continue;
         const ConvexPair pair(shapes, kHullA, kHullB, pose);
-        const Touch truth = separation_of(pair) > 0 ? Touch::apart : Touch::touching;
-        for (const MethodStart start : kStarts) ASSERT_EQ(ask(pair, start).touch, truth);
+        const OverlapState truth =
+            separation_of(pair) > 0 ? OverlapState::apart : OverlapState::touching;
+        for (const MethodStart start : kStarts) ASSERT_EQ(ask(pair, start).overlap, truth);
     }
 }
 
@@ -341,12 +343,12 @@ TEST(ClipVolume, DepthAlongTheNormalPartsThem)
         Pose pose = random.pose(0.5);
         const ConvexPair pair(shapes, kHullA, kHullB, pose);
         const MethodAnswer answer = ask(pair, MethodStart::cold);
-        if (answer.touch != Touch::touching) continue;
+        if (answer.overlap != OverlapState::touching) continue;
         const double depth = depth_along(pair, answer.normal);
         ASSERT_GE(depth, -separation_of(pair) - 1e-12);
         pose.position += answer.normal * (depth + 1e-9);
-        ASSERT_EQ(ask(ConvexPair(shapes, kHullA, kHullB, pose), MethodStart::cold).touch,
-                  Touch::apart);
+        ASSERT_EQ(ask(ConvexPair(shapes, kHullA, kHullB, pose), MethodStart::cold).overlap,
+                  OverlapState::apart);
     }
     // A box that stands on a box is pushed straight up.
     const Shapes boxes = two_boxes({1, 1, 1}, {0.2, 0.3, 0.4});
@@ -430,11 +432,13 @@ TEST(ClipVolume, FacesThatAreNotQuiteFlatAreTheHullOfTheirCorners)
         for (const double height : {0.99, 1.01}) {
             const ConvexPair above(shapes, kHullA, kHullB, at(0, 0, 0.5 + raised * height));
             for (const MethodStart start : kStarts)
-                EXPECT_EQ(ask(above, start).touch, height < 1 ? Touch::touching : Touch::apart);
+                EXPECT_EQ(ask(above, start).overlap,
+                          height < 1 ? OverlapState::touching : OverlapState::apart);
         }
         // Beside the ridge the face is lower.
         const ConvexPair beside(shapes, kHullA, kHullB, at(0.49, 0.49 - 0.98, 0.5 + raised * 0.5));
-        for (const MethodStart start : kStarts) EXPECT_EQ(ask(beside, start).touch, Touch::apart);
+        for (const MethodStart start : kStarts)
+            EXPECT_EQ(ask(beside, start).overlap, OverlapState::apart);
     }
 }
 
@@ -470,10 +474,10 @@ TEST(ClipVolume, BoxesOfNoThicknessGiveFiniteAnswers)
                     EXPECT_EQ(answer.volume, 0);
                     EXPECT_NEAR(answer.normal.norm(), 1, 1e-14);
                     if (shift.isZero()) {
-                        EXPECT_EQ(answer.touch, Touch::touching);
+                        EXPECT_EQ(answer.overlap, OverlapState::touching);
                     }
                     if (shift.z() == 3) {
-                        EXPECT_EQ(answer.touch, Touch::apart);
+                        EXPECT_EQ(answer.overlap, OverlapState::apart);
                     }
                 }
             }
@@ -494,12 +498,12 @@ TEST(ClipVolume, WhatIsRememberedChangesTheTimeAlone)
             SCOPED_TRACE("seed 78, run " + std::to_string(i) + ", step " + std::to_string(k));
             const Pose pose{start * (1.5 - 0.03 * k), about(spin, 2 * k)};
             const ConvexPair pair(shapes, kHullA, kHullB, pose);
-            const MethodAnswer cached = ask_clip_volume(pair, 0, MethodStart::cached, memory);
+            const MethodAnswer cached = query_clip_volume(pair, 0, MethodStart::cached, memory);
             const MethodAnswer cold = ask(pair, MethodStart::cold);
-            ASSERT_EQ(cached.touch, cold.touch);
+            ASSERT_EQ(cached.overlap, cold.overlap);
             ASSERT_EQ(cached.volume, cold.volume);
             ASSERT_EQ(cached.surface, cold.surface);
-            if (cached.touch == Touch::apart) quick += cached.rounds == 1;
+            if (cached.overlap == OverlapState::apart) quick += cached.rounds == 1;
         }
     }
     EXPECT_GT(quick, 500);

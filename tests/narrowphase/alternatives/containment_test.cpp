@@ -9,11 +9,11 @@ namespace {
 
 constexpr double kQuarter = 1.5707963267948966;
 
-Touch ask(const ConvexPair& pair, MethodStart start, MethodMemory& memory)
+OverlapState ask(const ConvexPair& pair, MethodStart start, MethodMemory& memory)
 {
-    const MethodAnswer answer = ask_containment(pair, 1e30, start, memory);
+    const MethodAnswer answer = query_containment(pair, 1e30, start, memory);
     EXPECT_FALSE(answer.cut_short);
-    return answer.touch;
+    return answer.overlap;
 }
 
 // Whether nearly flat faces, of which planes are all that counts, have no say either.
@@ -21,11 +21,12 @@ bool is_clear_of_planes(const Shapes& shapes, const PolytopeCase& pair, double s
 {
     const PolytopeShape a(shapes, pair.a), b(shapes, pair.b);
     const double stray = stray_of(a.view()) + stray_of(b.view());
-    return is_clear(pair, scale) && (stray < 1e-12 * scale || std::abs(pair.gap) > 1e-4 * scale);
+    return is_clear(pair, scale)
+        && (stray < 1e-12 * scale || std::abs(pair.clearance) > 1e-4 * scale);
 }
 
 // Cold, and again from what that left behind.
-void expect_walked(const ConvexPair& pair, Touch truth)
+void expect_walked(const ConvexPair& pair, OverlapState truth)
 {
     MethodMemory memory;
     ASSERT_EQ(ask(pair, MethodStart::cold, memory), truth);
@@ -33,7 +34,8 @@ void expect_walked(const ConvexPair& pair, Touch truth)
 }
 
 // All starts, both ways round.
-void expect_touch(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& pose, Touch truth)
+void expect_touch(
+    const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& pose, OverlapState truth)
 {
     const ConvexPair pair(shapes, a, b, pose), swapped(shapes, b, a, inverse(pose));
     MethodMemory memory;
@@ -84,9 +86,9 @@ TEST(Containment, AgreesWithSeparatingAxes)
         const PolytopeCase pair = pairs.next();
         if (!is_clear_of_planes(shapes, pair, 1)) continue;
         ++asked;
-        touching += pair.gap <= 0;
+        touching += pair.clearance <= 0;
         ASSERT_NO_FATAL_FAILURE(
-            expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.gap)));
+            expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.clearance)));
     }
     EXPECT_GT(asked, 19000);
     EXPECT_GT(touching, asked / 5);
@@ -104,7 +106,7 @@ TEST(Containment, AnswersAlikeAtEveryScale)
             const PolytopeCase pair = pairs.next();
             if (!is_clear_of_planes(shapes, pair, scale)) continue;
             ASSERT_NO_FATAL_FAILURE(
-                expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.gap)));
+                expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.clearance)));
         }
     }
 }
@@ -116,10 +118,11 @@ TEST(Containment, FindsEdgesThatCrossWithNoVertexNear)
     const Quat on_edge(Eigen::AngleAxisd(kQuarter / 2, Vec3::UnitX()));
     const Quat across(Eigen::AngleAxisd(kQuarter, Vec3::UnitZ()));
     const double height = 0.2 * std::sqrt(2.0);
-    for (const double gap : {1e-9, 1e-4, 0.1, -1e-9, -1e-4, -0.1, -0.2}) {
-        const Pose up{Vec3(0.013, 0.017, height + gap), across * on_edge};
+    for (const double clearance : {1e-9, 1e-4, 0.1, -1e-9, -1e-4, -0.1, -0.2}) {
+        const Pose up{Vec3(0.013, 0.017, height + clearance), across * on_edge};
         const Pose pose{on_edge.conjugate() * up.position, on_edge.conjugate() * up.orientation};
-        ASSERT_NO_FATAL_FAILURE(expect_touch(shapes, kBoxA, kBoxB, pose, truth_of(gap))) << gap;
+        ASSERT_NO_FATAL_FAILURE(expect_touch(shapes, kBoxA, kBoxB, pose, truth_of(clearance)))
+            << clearance;
     }
 }
 
@@ -130,9 +133,10 @@ TEST(Containment, FindsEdgesThatPierceFaces)
     const Shapes shapes = two_boxes({1, 1, 0.01}, {0.05, 0.05, 2});
     for (const double x : {0.0, 0.3, 0.9, 1.0499}) {
         ASSERT_NO_FATAL_FAILURE(
-            expect_touch(shapes, kBoxA, kBoxB, at(x, 0.1, 0.2), Touch::touching));
+            expect_touch(shapes, kBoxA, kBoxB, at(x, 0.1, 0.2), OverlapState::touching));
     }
-    ASSERT_NO_FATAL_FAILURE(expect_touch(shapes, kBoxA, kBoxB, at(1.0501, 0.1, 0.2), Touch::apart));
+    ASSERT_NO_FATAL_FAILURE(
+        expect_touch(shapes, kBoxA, kBoxB, at(1.0501, 0.1, 0.2), OverlapState::apart));
 }
 
 TEST(Containment, HardBoxesAtEveryScaleAndBothWaysRound)
@@ -140,7 +144,7 @@ TEST(Containment, HardBoxesAtEveryScaleAndBothWaysRound)
     int asked = 0;
     for_hard_boxes([&](const Shapes& shapes, const PolytopeCase& pair) {
         ASSERT_NO_FATAL_FAILURE(
-            expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.gap)));
+            expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.clearance)));
         ++asked;
     });
     EXPECT_GE(asked, 30);
@@ -156,11 +160,11 @@ TEST(Containment, FacesThatAreNotQuiteFlatMatterNoFurtherThanTheyStray)
         const PolytopeCase pair = face_to_face(shapes, random);
         const PolytopeShape a(shapes, pair.a), b(shapes, pair.b);
         const double stray = stray_of(a.view()) + stray_of(b.view());
-        if (std::abs(pair.gap) < 2 * stray) continue;
+        if (std::abs(pair.clearance) < 2 * stray) continue;
         ++asked;
-        touching += pair.gap <= 0;
+        touching += pair.clearance <= 0;
         ASSERT_NO_FATAL_FAILURE(
-            expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.gap)));
+            expect_touch(shapes, pair.a, pair.b, pair.b_in_a, truth_of(pair.clearance)));
     }
     EXPECT_GT(asked, 400);
     EXPECT_GT(touching, 250);
@@ -180,7 +184,7 @@ TEST(Containment, FindsOneWhollyInsideTheOther)
         Pose pose = random.pose(i % 2 == 0 ? 0.94 : 0.4);
         if (i % 5 == 0) pose.position.setZero();
         ASSERT_NO_FATAL_FAILURE(
-            expect_touch(shapes, {outer, 0}, {inner, 1}, pose, Touch::touching));
+            expect_touch(shapes, {outer, 0}, {inner, 1}, pose, OverlapState::touching));
     }
 }
 
@@ -190,12 +194,13 @@ TEST(Containment, FindsFacesThatLieFlat)
     const Shapes shapes = two_boxes({0.5, 0.3, 0.7}, {0.5, 0.3, 0.7});
     for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
         const double full = 2 * along.dot(Vec3(0.5, 0.3, 0.7));
-        for (const double gap : {1e-9, 1e-3, -1e-9, -1e-3, -0.1, -full}) {
+        for (const double clearance : {1e-9, 1e-3, -1e-9, -1e-3, -0.1, -full}) {
             for (const double tilt : {0.0, 1e-17, 3e-16}) {
-                const Vec3 place = along * (full + gap);
+                const Vec3 place = along * (full + clearance);
                 const Pose pose{place, Quat(1, tilt, -tilt, tilt)};
-                ASSERT_NO_FATAL_FAILURE(expect_touch(shapes, kBoxA, kBoxB, pose, truth_of(gap)))
-                    << gap;
+                ASSERT_NO_FATAL_FAILURE(
+                    expect_touch(shapes, kBoxA, kBoxB, pose, truth_of(clearance)))
+                    << clearance;
             }
         }
     }
@@ -210,18 +215,18 @@ TEST(Containment, LooksDropWithWhatIsKnown)
     const ShapeRef a{ShapeKind::hull, 0}, b{ShapeKind::hull, 1};
     MethodMemory memory;
     int plain = 0, cold = 0, cached = 0, changes = 0;
-    Touch last = Touch::undecided;
+    OverlapState last = OverlapState::undecided;
     for (double x = -1.0; x < 1.0; x += 0.004) {
         const Pose pose{{x, 0.3, 0.6}, Quat(Eigen::AngleAxisd(3 * x, Vec3(1, 2, 3).normalized()))};
         const ConvexPair pair(shapes, a, b, pose);
         MethodMemory fresh;
-        const MethodAnswer warm = ask_containment(pair, 1, MethodStart::cached, memory);
-        const MethodAnswer first = ask_containment(pair, 1, MethodStart::cold, fresh);
-        const MethodAnswer every = ask_containment(pair, 1, MethodStart::plain, fresh);
-        ASSERT_EQ(warm.touch, every.touch) << x;
-        ASSERT_EQ(first.touch, every.touch) << x;
-        changes += every.touch != last;
-        last = every.touch;
+        const MethodAnswer warm = query_containment(pair, 1, MethodStart::cached, memory);
+        const MethodAnswer first = query_containment(pair, 1, MethodStart::cold, fresh);
+        const MethodAnswer every = query_containment(pair, 1, MethodStart::plain, fresh);
+        ASSERT_EQ(warm.overlap, every.overlap) << x;
+        ASSERT_EQ(first.overlap, every.overlap) << x;
+        changes += every.overlap != last;
+        last = every.overlap;
         plain += every.rounds;
         cold += first.rounds;
         cached += warm.rounds;
@@ -241,7 +246,7 @@ TEST(Containment, MemoryOfAnotherPairDoesNoHarm)
         const PolytopeCase pair = pairs.next();
         if (!is_clear_of_planes(shapes, pair, 1)) continue;
         const ConvexPair shown(shapes, pair.a, pair.b, pair.b_in_a);
-        ASSERT_EQ(ask(shown, MethodStart::cached, memory), truth_of(pair.gap));
+        ASSERT_EQ(ask(shown, MethodStart::cached, memory), truth_of(pair.clearance));
     }
 }
 
@@ -259,10 +264,11 @@ TEST(Containment, PointsAreTheCornersOfWhatIsShared)
         const PolytopePair pair(a.view(), b.view(), drawn.b_in_a);
         ContainmentPoints found;
         containment_points(pair, found);
-        ASSERT_EQ(found.count > 0, drawn.gap <= 0);
+        ASSERT_EQ(found.count > 0, drawn.clearance <= 0);
         ASSERT_EQ(found.count + found.dropped,
-                  drawn.gap > 0 ? 0
-                                : corners_of_one_side(pair) + corners_of_one_side(pair.mirrored()));
+                  drawn.clearance > 0
+                      ? 0
+                      : corners_of_one_side(pair) + corners_of_one_side(pair.mirrored()));
         most = std::max(most, found.count);
         const PolytopePair mirrored = pair.mirrored();
         for (std::size_t k = 0; k < found.count; ++k) {
@@ -313,7 +319,7 @@ TEST(Containment, PointsBeyondTheRoomAreCounted)
     const PolytopePair pair(view_of(hull), view_of(hull), {Vec3::Zero(), random.turn()});
     ContainmentPoints found;
     containment_points(pair, found);
-    EXPECT_EQ(found.count, ContainmentPoints::kRoom);
+    EXPECT_EQ(found.count, ContainmentPoints::kCapacity);
     EXPECT_EQ(found.count + found.dropped,
               corners_of_one_side(pair) + corners_of_one_side(pair.mirrored()));
 }
@@ -323,12 +329,14 @@ TEST(Containment, EndsForShapesOfNoThicknessAndPosesThatAreNotNumbers)
     const double none = std::numeric_limits<double>::quiet_NaN();
     for (const Vec3& half : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0)}) {
         const Shapes shapes = two_boxes(half, {1, 1, 0});
-        ASSERT_NO_FATAL_FAILURE(expect_touch(shapes, kBoxA, kBoxB, at(0, 0, 0), Touch::touching));
-        ASSERT_NO_FATAL_FAILURE(expect_touch(shapes, kBoxA, kBoxB, at(0, 0, 1e-9), Touch::apart));
+        ASSERT_NO_FATAL_FAILURE(
+            expect_touch(shapes, kBoxA, kBoxB, at(0, 0, 0), OverlapState::touching));
+        ASSERT_NO_FATAL_FAILURE(
+            expect_touch(shapes, kBoxA, kBoxB, at(0, 0, 1e-9), OverlapState::apart));
         const ConvexPair pair(shapes, kBoxA, kBoxB, at(none, none, none));
         MethodMemory memory;
         for (const MethodStart start : {MethodStart::plain, MethodStart::cold, MethodStart::cached})
-            EXPECT_EQ(ask(pair, start, memory), Touch::undecided);
+            EXPECT_EQ(ask(pair, start, memory), OverlapState::undecided);
     }
 }
 

@@ -94,12 +94,12 @@ TEST(DirectionCone, TakesNoMoreThanItHasRoomFor)
 {
     RandomShapes random(83);
     DirectionCone cone;
-    for (int i = 0; i < 3 * DirectionCone::kRoom; ++i) {
+    for (int i = 0; i < 3 * DirectionCone::kCapacity; ++i) {
         Vec3 r = random.vector(-1, 1);
         r.z() = std::abs(r.z()) + 1;
         ASSERT_TRUE(cone.add(r.normalized()));
     }
-    EXPECT_EQ(cone.count(), DirectionCone::kRoom);
+    EXPECT_EQ(cone.count(), DirectionCone::kCapacity);
     EXPECT_TRUE(cone.holds(cone.middle()));
 }
 

@@ -68,9 +68,9 @@ TEST_P(ForeignMemory, ChangesNoAnswer)
                     for (MethodMemory memory : memories) {
                         const MethodAnswer told =
                             method.ask(pair, kAnyReach, MethodStart::cached, memory);
-                        ASSERT_EQ(told.touch, cold.touch);
+                        ASSERT_EQ(told.overlap, cold.overlap);
                         ASSERT_NEAR(told.normal.norm(), 1, 1e-12);
-                        const bool apart = told.touch == Touch::apart;
+                        const bool apart = told.overlap == OverlapState::apart;
                         if (method.tells & (apart ? tells_distance : tells_depth)) {
                             ASSERT_NEAR(told.separation, cold.separation, 1e-6);
                         }

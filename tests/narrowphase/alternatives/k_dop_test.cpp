@@ -1,7 +1,7 @@
 #include "narrowphase/alternatives/k_dop.hpp"
 
 #include "kernels/geometry/separating_axes.hpp"
-#include "narrowphase/alternatives/bounding_ball.hpp"
+#include "narrowphase/alternatives/bounding_sphere.hpp"
 #include "narrowphase/alternatives/k_dop_tree.hpp"
 #include "tests/support/polytope_pairs.hpp"
 
@@ -48,11 +48,11 @@ Pose any_pose(RandomShapes& random, double scale, int i)
 }
 
 // The pair moved along a parting direction until the gap is as wanted.
-Pose brought_near(const PolytopeView& a, const PolytopeView& b, Pose pose, double gap)
+Pose brought_near(const PolytopeView& a, const PolytopeView& b, Pose pose, double clearance)
 {
     Vec3 normal;
     const double separation = polytope_separation(a, b, pose, &normal);
-    pose.position += normal * (gap - separation);
+    pose.position += normal * (clearance - separation);
     return pose;
 }
 
@@ -72,8 +72,8 @@ TEST(KDop, NeverPartsWhatTouches)
             apart += separation > 0;
             for (int k = 0; k < 5; ++k) {
                 const MethodAnswer answer = ask(kFilters[k], pair, MethodStart::cold);
-                if (answer.touch == Touch::undecided) continue;
-                ASSERT_EQ(answer.touch, Touch::apart);
+                if (answer.overlap == OverlapState::undecided) continue;
+                ASSERT_EQ(answer.overlap, OverlapState::apart);
                 ASSERT_GT(separation, 0) << kFilters[k];
                 // Its normal does part them.
                 ASSERT_NEAR(answer.normal.norm(), 1, 1e-14);
@@ -101,16 +101,17 @@ TEST(KDop, NeverPartsWhatTouchesByAHair)
         for (int axis = 0; axis < 3; ++axis) {
             const double sum =
                 shapes.boxes[0].half_extents[axis] + shapes.boxes[1].half_extents[axis];
-            for (const double gap : {-1e-15, 0.0, 1e-15, 1e-12}) {
-                const Pose pose{Vec3::Unit(axis) * (sum + gap * scale), Quat::Identity()};
+            for (const double clearance : {-1e-15, 0.0, 1e-15, 1e-12}) {
+                const Pose pose{Vec3::Unit(axis) * (sum + clearance * scale), Quat::Identity()};
                 for (const int side : {0, 1}) {
                     const ConvexPair pair(shapes, side == 0 ? kBoxA : kBoxB,
                                           side == 0 ? kBoxB : kBoxA,
                                           side == 0 ? pose : inverse(pose));
                     for (int k = 1; k < 5; ++k)
                         for (const MethodStart start : kStarts)
-                            EXPECT_EQ(ask(kFilters[k], pair, start).touch,
-                                      gap > 1e-14 ? Touch::apart : Touch::undecided);
+                            EXPECT_EQ(ask(kFilters[k], pair, start).overlap,
+                                      clearance > 1e-14 ? OverlapState::apart
+                                                        : OverlapState::undecided);
                 }
             }
         }
@@ -129,10 +130,10 @@ TEST(KDop, StartAndOrderOfTheTwoChangeNothing)
         pose.orientation = Quat::Identity();
         const ConvexPair ab(shapes, a, b, pose), ba(shapes, b, a, inverse(pose));
         for (const char* filter : kFilters) {
-            const Touch plain = ask(filter, ab, MethodStart::plain).touch;
-            ASSERT_EQ(ask(filter, ab, MethodStart::cold).touch, plain) << filter;
-            ASSERT_EQ(ask(filter, ab, MethodStart::cached).touch, plain) << filter;
-            ASSERT_EQ(ask(filter, ba, MethodStart::cold).touch, plain) << filter;
+            const OverlapState plain = ask(filter, ab, MethodStart::plain).overlap;
+            ASSERT_EQ(ask(filter, ab, MethodStart::cold).overlap, plain) << filter;
+            ASSERT_EQ(ask(filter, ab, MethodStart::cached).overlap, plain) << filter;
+            ASSERT_EQ(ask(filter, ba, MethodStart::cold).overlap, plain) << filter;
         }
     }
 }
@@ -145,9 +146,10 @@ TEST(KDop, RemembersTheSlab)
     for (int i = 0; i < 300; ++i) {
         MethodMemory memory;
         const ConvexPair pair(shapes, any(random), any(random), any_pose(random, 1, 3));
-        if (ask_k_dop<26>(pair, 0, MethodStart::cached, memory).touch != Touch::apart) continue;
-        const MethodAnswer again = ask_k_dop<26>(pair, 0, MethodStart::cached, memory);
-        EXPECT_EQ(again.touch, Touch::apart);
+        if (query_k_dop<26>(pair, 0, MethodStart::cached, memory).overlap != OverlapState::apart)
+            continue;
+        const MethodAnswer again = query_k_dop<26>(pair, 0, MethodStart::cached, memory);
+        EXPECT_EQ(again.overlap, OverlapState::apart);
         EXPECT_EQ(again.rounds, 1);
         ++quick;
     }
@@ -169,7 +171,7 @@ TEST(KDop, HoldsItsShapeAndTouchesItOnEachSide)
         const Mat3 turn = pose.orientation.toRotationMatrix();
         for (const ShapeKind kind : {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::cylinder,
                                      ShapeKind::box, ShapeKind::hull}) {
-            const Core<double> core = core_of<double>(shapes, {kind, 0});
+            const ConvexCore<double> core = convex_core_of<double>(shapes, {kind, 0});
             const Ball ball = ball_round(core);
             double furthest = 0;
             for (const int k : kSides) {
@@ -180,9 +182,11 @@ TEST(KDop, HoldsItsShapeAndTouchesItOnEachSide)
                     for (const double sign : {-1.0, 1.0}) {
                         const Vec3 out = sign * slab_direction(slab);
                         const Vec3 point = support(core, Vec3(turn.transpose() * out)).position;
-                        const double reach = out.dot(pose * point) + core.radius * out.norm();
-                        ASSERT_NEAR(sign < 0 ? -dop.lower[slab] : dop.upper[slab], reach, 1e-14);
-                        furthest = std::max(furthest, (point - ball.center).norm() + core.radius);
+                        const double extent =
+                            out.dot(pose * point) + core.convex_radius * out.norm();
+                        ASSERT_NEAR(sign < 0 ? -dop.lower[slab] : dop.upper[slab], extent, 1e-14);
+                        furthest =
+                            std::max(furthest, (point - ball.center).norm() + core.convex_radius);
                     }
                 }
             }
@@ -204,11 +208,11 @@ TEST(KDop, RoundShapesArePartedByTheirDistance)
         const ShapeKind kinds[] = {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::cylinder};
         const ConvexPair pair(shapes, {kinds[i % 3], 0}, {kinds[i / 3 % 3], 0}, random.pose(0.8));
         const Distance distance = gjk(pair.cores(), 1e30);
-        const double radii = pair.cores().a.radius + pair.cores().b.radius;
+        const double radii = pair.cores().a.convex_radius + pair.cores().b.convex_radius;
         const bool is_apart = distance.apart && distance.distance > radii;
         apart += is_apart;
         for (const char* filter : kFilters) {
-            if (ask(filter, pair, MethodStart::cold).touch == Touch::undecided) continue;
+            if (ask(filter, pair, MethodStart::cold).overlap == OverlapState::undecided) continue;
             ASSERT_TRUE(is_apart) << filter;
             ++filtered;
         }
@@ -247,11 +251,11 @@ TEST(KDopTree, NeverPartsWhatTouches)
             if (i % 3 == 2) pose = brought_near(view_a, view_b, pose, -1e-12);
             const bool is_apart = polytope_separation(view_a, view_b, pose, nullptr) > 0;
             const PolytopePair pair(view_a, view_b, pose);
-            const MethodAnswer answer = ask_k_dop_trees(pair, trees[a], trees[b]);
-            const MethodAnswer swapped = ask_k_dop_trees(pair.mirrored(), trees[b], trees[a]);
-            ASSERT_EQ(swapped.touch, answer.touch);
+            const MethodAnswer answer = query_k_dop_trees(pair, trees[a], trees[b]);
+            const MethodAnswer swapped = query_k_dop_trees(pair.mirrored(), trees[b], trees[a]);
+            ASSERT_EQ(swapped.overlap, answer.overlap);
             all += is_apart;
-            if (answer.touch == Touch::undecided) continue;
+            if (answer.overlap == OverlapState::undecided) continue;
             ASSERT_TRUE(is_apart);
             ++apart[side];
         }
@@ -273,8 +277,9 @@ TEST(KDopTree, OneInsideTheOtherIsNotApart)
     const KDopTree tree_a(large.view(), 14), tree_b(view_of(small), 14);
     for (int i = 0; i < 50; ++i) {
         const PolytopePair pair(large.view(), view_of(small), random.pose(1));
-        EXPECT_EQ(ask_k_dop_trees(pair, tree_a, tree_b).touch, Touch::undecided);
-        EXPECT_EQ(ask_k_dop_trees(pair.mirrored(), tree_b, tree_a).touch, Touch::undecided);
+        EXPECT_EQ(query_k_dop_trees(pair, tree_a, tree_b).overlap, OverlapState::undecided);
+        EXPECT_EQ(query_k_dop_trees(pair.mirrored(), tree_b, tree_a).overlap,
+                  OverlapState::undecided);
     }
 }
 
@@ -296,12 +301,13 @@ TEST(KDopTree, SlabsSeenFromAnotherFrameStillHoldTheShape)
             }
             pose = brought_near(wall.view(), view_of(hull), pose, -1e-9);
             const PolytopePair pair(wall.view(), view_of(hull), pose);
-            ASSERT_EQ(ask_k_dop_trees(pair, flat, tree).touch, Touch::undecided);
-            ASSERT_EQ(ask_k_dop_trees(pair.mirrored(), tree, flat).touch, Touch::undecided);
+            ASSERT_EQ(query_k_dop_trees(pair, flat, tree).overlap, OverlapState::undecided);
+            ASSERT_EQ(query_k_dop_trees(pair.mirrored(), tree, flat).overlap,
+                      OverlapState::undecided);
             // A k-DOP is at most a cube's diagonal larger than what it holds.
             pose = brought_near(wall.view(), view_of(hull), pose, 0.5);
             const PolytopePair far(wall.view(), view_of(hull), pose);
-            ASSERT_EQ(ask_k_dop_trees(far, flat, tree).touch, Touch::apart);
+            ASSERT_EQ(query_k_dop_trees(far, flat, tree).overlap, OverlapState::apart);
         }
     }
 }

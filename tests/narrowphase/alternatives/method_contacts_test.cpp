@@ -31,11 +31,11 @@ Pose at(const Vec3& position, const Quat& turn = Quat::Identity()) { return {pos
 
 class MethodContacts : public ::testing::TestWithParam<const char*> {
 protected:
-    bool collide(ShapeRef a, ShapeRef b, const Pose& b_in_a, double reach = 0.01)
+    bool collide(ShapeRef a, ShapeRef b, const Pose& b_in_a, double speculative_margin = 0.01)
     {
         MethodMemory memory;
         return collide_by(*find_convex_method(GetParam()), MethodStart::cached, all_, a, b, b_in_a,
-                          reach, memory, out_);
+                          speculative_margin, memory, out_);
     }
 
     Shapes all_ = shapes();
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Methods,
                          ::testing::Values("gjk", "sat", "clip_volume"),
                          [](const auto& one) { return std::string(one.param); });
 
-TEST(CollideBy, GjkAndSatTellOfWhatIsWithinReach)
+TEST(CollideBy, GjkAndSatTellOfWhatIsWithinTheMargin)
 {
     const Shapes all = shapes();
     for (const char* name : {"gjk", "sat"})
@@ -139,7 +139,7 @@ TEST(CollideBy, WhoTellsOfTouchAloneLeavesTheRestToOthers)
     }
 }
 
-TEST(CollideBy, WhoTellsOfTouchAloneLeavesWhatIsWithinReachToOthers)
+TEST(CollideBy, WhoTellsOfTouchAloneLeavesWhatIsWithinTheMarginToOthers)
 {
     const Shapes all = shapes();
     for (const char* name : {"chung_wang", "containment"})
@@ -147,8 +147,8 @@ TEST(CollideBy, WhoTellsOfTouchAloneLeavesWhatIsWithinReachToOthers)
             for (const bool swapped : {false, true}) {
                 const Vec3 way = Vec3::Unit(axis);
                 // A small box, turned about the way to it, out from a face of another.
-                const auto told = [&](double gap, LocalManifold<double>& out) {
-                    const Pose b_in_a{way * (0.75 + gap), Quat(Eigen::AngleAxisd(0.3, way))};
+                const auto told = [&](double clearance, LocalManifold<double>& out) {
+                    const Pose b_in_a{way * (0.75 + clearance), Quat(Eigen::AngleAxisd(0.3, way))};
                     const Pose a_in_b{b_in_a.orientation.conjugate() * -b_in_a.position,
                                       b_in_a.orientation.conjugate()};
                     MethodMemory memory;

@@ -138,8 +138,8 @@ TEST(SharedVolume, AgreesWithClippedHulls)
         const VolumePair pair = two.pair(ShapeKind::hull);
         const ConvexPair convex(two.shapes, pair.a, pair.b, two.b_in_a);
         MethodMemory memory;
-        const MethodAnswer truth = ask_clip_volume(convex, 0, MethodStart::cold, memory);
-        if (truth.touch != Touch::touching || truth.volume < 1e-3) continue;
+        const MethodAnswer truth = query_clip_volume(convex, 0, MethodStart::cold, memory);
+        if (truth.overlap != OverlapState::touching || truth.volume < 1e-3) continue;
         ++met;
         const SharedVolume exact = shared_exactly(pair), seen = shared_by_images(pair, 96);
         EXPECT_NEAR(exact.volume, truth.volume, 1e-12);

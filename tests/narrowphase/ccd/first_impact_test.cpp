@@ -10,7 +10,7 @@ namespace {
 MovingShape ball_at(double x, double way)
 {
     MovingShape ball;
-    ball.sweep = {{{x, 0, 0}, Quat::Identity()}, {way, 0, 0}, Vec3::Zero()};
+    ball.trajectory = {{{x, 0, 0}, Quat::Identity()}, {way, 0, 0}, Vec3::Zero()};
     return ball;
 }
 
@@ -44,8 +44,8 @@ TEST(FirstImpact, LeavesOutWhatTouchesFromTheStart)
     const FirstImpact first = first_impact(shapes, group, pairs, 0, 1, ToiMethod::newton, 1e-4);
     EXPECT_EQ(first.pair, 1u);
     EXPECT_EQ(first_impact(shapes, group, std::span(pairs).first(1), 0, 1, ToiMethod::newton, 1e-4)
-                  .impact.meeting,
-              Meeting::none);
+                  .impact.state,
+              ToiState::separated);
 }
 
 TEST(FirstImpact, IsTheLeastOfAllPairs)
@@ -57,15 +57,15 @@ TEST(FirstImpact, IsTheLeastOfAllPairs)
         std::vector<ImpactPair> pairs;
         for (std::uint32_t k = 0; k < 5; ++k) {
             group.push_back({test::random_shape(dice, test::kConvexKinds[k], shapes), {}, {}});
-            group.back().sweep = {{dice.point(3), dice.turn()}, dice.point(4), dice.point(2)};
+            group.back().trajectory = {{dice.point(3), dice.turn()}, dice.point(4), dice.point(2)};
             for (std::uint32_t other = 0; other < k; ++other) pairs.push_back({other, k});
         }
         double least = 1;
         for (const ImpactPair& pair : pairs) {
             const double size = impact_size(shapes, group[pair.a].shape, group[pair.b].shape);
-            const Impact one = impact_time(shapes, group[pair.a], group[pair.b], 0, 1,
-                                           impact_rule(ToiMethod::newton, 1e-4 * size));
-            if (one.meeting == Meeting::meet) least = std::min(least, one.time);
+            const Impact one = time_of_impact(shapes, group[pair.a], group[pair.b], 0, 1,
+                                              impact_rule(ToiMethod::newton, 1e-4 * size));
+            if (one.state == ToiState::hit) least = std::min(least, one.time);
         }
         const FirstImpact first = first_impact(shapes, group, pairs, 0, 1, ToiMethod::newton, 1e-4);
         // Where a search ends within its tolerance may depend on how far it was to look.

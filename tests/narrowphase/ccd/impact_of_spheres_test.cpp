@@ -1,6 +1,6 @@
 #include "narrowphase/ccd/impact_of_spheres.hpp"
 
-#include "narrowphase/solid/sphere_gaps.hpp"
+#include "narrowphase/solid/sphere_separations.hpp"
 #include "tests/support/closed_meshes.hpp"
 #include "tests/support/moving_pairs.hpp"
 
@@ -33,15 +33,18 @@ constexpr ShapeRef kOthers[] = {{ShapeKind::solid, 1},
                                 {ShapeKind::plane, 0},
                                 {ShapeKind::mesh, 0}};
 
-// m, of the two at a time, no more than `reach`.
-double gap_at(const MovingShape& ring, const MovingShape& other, double time, double reach)
+// m, of the two at a time, no more than `speculative_margin`.
+double separation_at(const MovingShape& ring,
+                     const MovingShape& other,
+                     double time,
+                     double speculative_margin)
 {
-    const Pose a = ring.sweep.at(time), b = other.sweep.at(time);
+    const Pose a = ring.trajectory.at(time), b = other.trajectory.at(time);
     std::vector<LocalManifold<double>> found;
-    find_sphere_gaps(shapes(), ring.shape, other.shape,
-                     {a.to_local(b.position), a.orientation.conjugate() * b.orientation}, reach,
-                     found);
-    double least = reach;
+    find_sphere_separations(shapes(), ring.shape, other.shape,
+                            {a.to_local(b.position), a.orientation.conjugate() * b.orientation},
+                            speculative_margin, found);
+    double least = speculative_margin;
     for (const auto& manifold : found) least = std::min(least, manifold.points[0].separation);
     return least;
 }
@@ -51,8 +54,8 @@ MovingShape on_its_way(test::Dice& dice, ShapeRef shape, const Vec3& at, const V
     MovingShape moving;
     moving.shape = shape;
     moving.pieces = shape.kind == ShapeKind::solid;
-    moving.sweep = {{at, dice.turn()}, way, dice.point(2)};
-    if (shape.kind == ShapeKind::plane) moving.sweep = {};
+    moving.trajectory = {{at, dice.turn()}, way, dice.point(2)};
+    if (shape.kind == ShapeKind::plane) moving.trajectory = {};
     return moving;
 }
 
@@ -68,17 +71,18 @@ TEST(ImpactOfSpheres, IsNeverLateAndNeverEarlierThanTheTolerance)
                     on_its_way(dice, kRing, dice.point(0.5), Vec3(2, 0, 0) + dice.point(0.7));
                 const MovingShape other = on_its_way(dice, shape, Vec3(1.9, 0, 0), dice.point(0.5));
                 const Impact impact =
-                    impact_time(shapes(), ring, other, 0, 1, impact_rule(method, tolerance));
-                const bool meets = impact.meeting == Meeting::meet;
+                    time_of_impact(shapes(), ring, other, 0, 1, impact_rule(method, tolerance));
+                const bool meets = impact.state == ToiState::hit;
                 (meets ? met : missed) += 1;
                 for (int k = 0; k <= 50; ++k)
-                    ASSERT_GT(gap_at(ring, other, impact.time * k / 50, 1), tolerance * 0.49);
+                    ASSERT_GT(separation_at(ring, other, impact.time * k / 50, 1),
+                              tolerance * 0.49);
                 if (meets && !impact.cut_short) {
-                    EXPECT_LE(gap_at(ring, other, impact.time, 1), tolerance * 1.01);
+                    EXPECT_LE(separation_at(ring, other, impact.time, 1), tolerance * 1.01);
                 }
                 const Impact turned =
-                    impact_time(shapes(), other, ring, 0, 1, impact_rule(method, tolerance));
-                EXPECT_EQ(turned.meeting, impact.meeting);
+                    time_of_impact(shapes(), other, ring, 0, 1, impact_rule(method, tolerance));
+                EXPECT_EQ(turned.state, impact.state);
                 EXPECT_NEAR(turned.time, impact.time, tolerance);
             }
     EXPECT_GT(met, 40);
@@ -92,17 +96,17 @@ TEST(ImpactOfSpheres, LeavesOutOnlyTheSpheresThatTouchAsItBegins)
     MovingShape ring, plane;
     ring.shape = kRing;
     ring.pieces = true;
-    ring.sweep.begin.orientation = Quat(std::cos(0.2), std::sin(0.2), 0, 0);
+    ring.trajectory.begin.orientation = Quat(std::cos(0.2), std::sin(0.2), 0, 0);
     plane.shape = {ShapeKind::plane, 0};
-    plane.sweep.begin.orientation = Quat(std::sqrt(0.5), 0, std::sqrt(0.5), 0);
-    ring.sweep.begin.position.z() -= gap_at(ring, plane, 0, 10) - tolerance / 2;
-    ASSERT_NEAR(gap_at(ring, plane, 0, 1), tolerance / 2, 1e-9);
+    plane.trajectory.begin.orientation = Quat(std::sqrt(0.5), 0, std::sqrt(0.5), 0);
+    ring.trajectory.begin.position.z() -= separation_at(ring, plane, 0, 10) - tolerance / 2;
+    ASSERT_NEAR(separation_at(ring, plane, 0, 1), tolerance / 2, 1e-9);
     const ImpactRule rule = impact_rule(ToiMethod::newton, tolerance);
-    EXPECT_EQ(impact_time(shapes(), ring, plane, 0, 1, rule).meeting, Meeting::none);
-    ring.sweep.turn = Vec3(-0.8, 0, 0);
-    ring.sweep.shift = Vec3(0, 0, -0.05);
-    const Impact impact = impact_time(shapes(), ring, plane, 0, 1, rule);
-    EXPECT_EQ(impact.meeting, Meeting::meet);
+    EXPECT_EQ(time_of_impact(shapes(), ring, plane, 0, 1, rule).state, ToiState::separated);
+    ring.trajectory.turn = Vec3(-0.8, 0, 0);
+    ring.trajectory.shift = Vec3(0, 0, -0.05);
+    const Impact impact = time_of_impact(shapes(), ring, plane, 0, 1, rule);
+    EXPECT_EQ(impact.state, ToiState::hit);
     EXPECT_GT(impact.time, 0.01);
     EXPECT_LT(impact.time, 1);
 }

@@ -63,7 +63,7 @@ double distance_at(const LinearPaths& paths, double time)
     LinearPaths then = paths;
     for (std::size_t i = 0; i < 4; ++i)
         then.from[i] = then.to[i] = paths.from[i] + time * (paths.to[i] - paths.from[i]);
-    return impact_time(then, ToiMethod::newton, 0).distance;
+    return time_of_impact(then, ToiMethod::newton, 0).distance;
 }
 
 TEST(LinearPaths, MissNothingThatMeetsExactly)
@@ -74,8 +74,8 @@ TEST(LinearPaths, MissNothingThatMeetsExactly)
             const Crossing crossing = random_crossing(dice, kind);
             const LinearPaths paths = crossing_paths(dice, kind, crossing, true);
             for (const ToiMethod method : kToiMethods) {
-                const Impact impact = impact_time(paths, method, 0);
-                ASSERT_NE(impact.meeting, Meeting::none) << i;
+                const Impact impact = time_of_impact(paths, method, 0);
+                ASSERT_NE(impact.state, ToiState::separated) << i;
                 EXPECT_LE(impact.time, crossing.time) << i;
             }
         }
@@ -89,9 +89,9 @@ TEST(LinearPaths, AreNotTooEarly)
             const LinearPaths paths =
                 crossing_paths(dice, kind, random_crossing(dice, kind), false);
             for (const ToiMethod method : kToiMethods) {
-                const Impact impact = impact_time(paths, method, 1e-9);
-                ASSERT_NE(impact.meeting, Meeting::none);
-                if (impact.cut_short || impact.meeting == Meeting::at_start) continue;
+                const Impact impact = time_of_impact(paths, method, 1e-9);
+                ASSERT_NE(impact.state, ToiState::separated);
+                if (impact.cut_short || impact.state == ToiState::touching_at_start) continue;
                 EXPECT_LE(distance_at(paths, impact.time), 1e-9);
             }
         }
@@ -116,7 +116,7 @@ TEST(LinearPaths, MissWhatStaysApart)
             if (near()) continue;
             ++apart;
             for (const ToiMethod method : kToiMethods)
-                EXPECT_EQ(impact_time(paths, method, 1e-6).meeting, Meeting::none);
+                EXPECT_EQ(time_of_impact(paths, method, 1e-6).state, ToiState::separated);
         }
     EXPECT_GT(apart, 100);
 }
@@ -129,13 +129,13 @@ TEST(LinearPaths, TakeTrianglesAndEdgesOfNoSize)
         for (const ToiMethod method : kToiMethods) {
             paths.kind = kind;
             paths.from[0] = paths.from[1] = paths.to[0] = paths.to[1] = Vec3(1, 2, 3);
-            EXPECT_EQ(impact_time(paths, method, 0).meeting, Meeting::at_start);
+            EXPECT_EQ(time_of_impact(paths, method, 0).state, ToiState::touching_at_start);
             if (kind == PathKind::vertex_face) paths.from[1] = paths.to[1] = Vec3(1, 2, 3);
             paths.from[0] = paths.to[0] = Vec3(1, 2, 4);
             if (kind == PathKind::edge_edge) paths.from[1] = paths.to[1] = Vec3(2, 2, 4);
-            EXPECT_EQ(impact_time(paths, method, 0).meeting, Meeting::none);
+            EXPECT_EQ(time_of_impact(paths, method, 0).state, ToiState::separated);
             paths.to[0] = Vec3(1, 2, 2);
-            EXPECT_NE(impact_time(paths, method, 0).meeting, Meeting::none);
+            EXPECT_NE(time_of_impact(paths, method, 0).state, ToiState::separated);
         }
 }
 
@@ -164,7 +164,8 @@ TEST(LinearPaths, MissNothingOfThePublicSets)
             ++queries;
             for (const ToiMethod method : kToiMethods)
                 for (const double tolerance : {0.0, 1e-6})
-                    if (impact_time(paths, method, tolerance).meeting == Meeting::none) ++missed;
+                    if (time_of_impact(paths, method, tolerance).state == ToiState::separated)
+                        ++missed;
         }
     }
     EXPECT_GT(queries, 0u);

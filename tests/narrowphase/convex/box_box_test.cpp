@@ -9,9 +9,10 @@ namespace {
 
 template <class Real>
 LocalManifold<Real>
-boxes(const Vec3& half_a, const Vec3& half_b, const Pose& pose, double reach = 0)
+boxes(const Vec3& half_a, const Vec3& half_b, const Pose& pose, double speculative_margin = 0)
 {
-    return run<Real>(box_box<Real>, two_boxes(half_a, half_b), kBoxA, kBoxB, pose, reach);
+    return run<Real>(box_box<Real>, two_boxes(half_a, half_b), kBoxA, kBoxB, pose,
+                     speculative_margin);
 }
 
 double truth(const Vec3& half_a, const Vec3& half_b, const Pose& pose, Vec3* normal = nullptr)
@@ -50,8 +51,8 @@ TEST(BoxBox, AgreesWithDirectionSweep)
         const Vec3 half_a = random.vector(0.2, 1), half_b = random.vector(0.2, 1);
         const Pose pose = random.pose(0.8);
         Vec3 normal;
-        const double swept = sweep_directions(reach_of(corners_of(half_a), Pose{}),
-                                              reach_of(corners_of(half_b), pose), 12, &normal);
+        const double swept = sweep_directions(extent_of(corners_of(half_a), Pose{}),
+                                              extent_of(corners_of(half_b), pose), 12, &normal);
         const auto found = boxes<double>(half_a, half_b, pose);
         if (swept > 0) {
             EXPECT_EQ(found.count, 0);
@@ -61,7 +62,8 @@ TEST(BoxBox, AgreesWithDirectionSweep)
         expect_depth(deepest(found), swept, 1e-9, bias);
         // The axis that leads parts them nearly as well as the best one, or is nearly the best one.
         if ((found.normal - normal).norm() < 0.025) continue;
-        const auto a = reach_of(corners_of(half_a), Pose{}), b = reach_of(corners_of(half_b), pose);
+        const auto a = extent_of(corners_of(half_a), Pose{}),
+                   b = extent_of(corners_of(half_b), pose);
         EXPECT_NEAR(-b(-found.normal) - a(found.normal), swept, 2 * bias);
     }
 }
@@ -182,7 +184,7 @@ TEST(BoxBox, NormalTurnsNoFasterThanTheBox)
     }
 }
 
-TEST(BoxBox, SeparationFollowsTheGapThroughTouch)
+TEST(BoxBox, SeparationIsContinuousThroughTouch)
 {
     RandomShapes random(14);
     for (const double size : {0.01, 0.25, 0.5, 10.0, 1000.0}) {
@@ -294,7 +296,7 @@ TEST(BoxBox, RememberingNeverChangesTheAnswer)
     }
 }
 
-TEST(BoxBox, ReportsPointsWithinReachBeforeTheyTouch)
+TEST(BoxBox, ReportsPointsWithinTheMarginBeforeTheyTouch)
 {
     const Vec3 half(0.5, 0.5, 0.5);
     const auto near = boxes<double>(half, half, at(0, 0, 1.005), 0.01);
@@ -303,14 +305,14 @@ TEST(BoxBox, ReportsPointsWithinReachBeforeTheyTouch)
     EXPECT_EQ(boxes<double>(half, half, at(0, 0, 1.02), 0.01).count, 0);
 
     // Edge across edge, a hair apart: one point, on the line between the centers.
-    const double gap = 0.004, diagonal = std::sqrt(0.5);
+    const double clearance = 0.004, diagonal = std::sqrt(0.5);
     const Quat about_x(std::sqrt((1 + diagonal) / 2), std::sqrt((1 - diagonal) / 2), 0, 0);
     const Quat about_y(std::sqrt((1 + diagonal) / 2), 0, std::sqrt((1 - diagonal) / 2), 0);
-    const Pose a{Vec3::Zero(), about_x}, b{{0, 0, 2 * diagonal + gap}, about_y};
+    const Pose a{Vec3::Zero(), about_x}, b{{0, 0, 2 * diagonal + clearance}, about_y};
     const auto edges = boxes<double>(half, half, inverse(a) * b, 0.01);
     ASSERT_EQ(edges.count, 1);
-    EXPECT_NEAR(edges.points[0].separation, gap, 1e-12);
-    EXPECT_LT((a * edges.points[0].position - Vec3(0, 0, diagonal + gap / 2)).norm(), 1e-9);
+    EXPECT_NEAR(edges.points[0].separation, clearance, 1e-12);
+    EXPECT_LT((a * edges.points[0].position - Vec3(0, 0, diagonal + clearance / 2)).norm(), 1e-9);
 }
 
 }  // namespace throng

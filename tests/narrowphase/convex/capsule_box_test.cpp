@@ -3,8 +3,8 @@
 namespace throng {
 namespace {
 
+using given::collide;
 using given::deepest_of;
-using given::meet;
 using given::Placement;
 using given::random_direction;
 using given::random_turn;
@@ -115,20 +115,20 @@ TEST(CapsuleBox, NormalsAreTrueOverFacesEdgesAndCorners)
         Vec3 along = random_direction(random);
         if (along.dot(out) < 0) along = -along;
         const Capsule capsule = {0.1 * scale, 0.7 * scale};
-        const double gap = uniform(random, 0.01, 0.3) * scale;
-        const Vec3 middle = point + gap * out + capsule.half_length * along;
+        const double clearance = uniform(random, 0.01, 0.3) * scale;
+        const Vec3 middle = point + clearance * out + capsule.half_length * along;
         const Placement pair = placed(capsule, box, middle, along);
         const Vec3 normal = pair.b_in_a.orientation * -out;
-        const auto found = meet<double>(capsule_box<double>, pair, 10 * scale);
-        const auto rounded = meet<float>(capsule_box<float>, pair, 10 * scale);
+        const auto found = collide<double>(capsule_box<double>, pair, 10 * scale);
+        const auto rounded = collide<float>(capsule_box<float>, pair, 10 * scale);
         ASSERT_GT(found.count, 0);
         ASSERT_GT(rounded.count, 0);
         EXPECT_LT((found.normal - normal).norm(), 1e-11);
         EXPECT_LT((rounded.normal.cast<double>() - normal).norm(), 1e-4);
-        EXPECT_NEAR(deepest_of(found) / scale, gap / scale - 0.1, 1e-13);
-        EXPECT_NEAR(deepest_of(rounded) / scale, gap / scale - 0.1, 2e-6);
+        EXPECT_NEAR(deepest_of(found) / scale, clearance / scale - 0.1, 1e-13);
+        EXPECT_NEAR(deepest_of(rounded) / scale, clearance / scale - 0.1, 2e-6);
         if (found.count > 1) continue;
-        const Vec3 between = point + out * (gap / 2 - 0.05 * scale);
+        const Vec3 between = point + out * (clearance / 2 - 0.05 * scale);
         const Vec3 where = pair.b_in_a * between;
         EXPECT_LT((found.points[0].position - where).norm(), 1e-12 * scale);
         EXPECT_LT((rounded.points[0].position.cast<double>() - where).norm(), 2e-5 * scale);
@@ -139,7 +139,7 @@ TEST(CapsuleBox, LyingTouchesWithBothEnds)
 {
     for (const double depth : {-0.01, 0.0, 0.01, 0.1, 0.15}) {
         const Placement pair = placed({0.1, 0.4}, {1, 1, 0.5}, {0.1, 0.2, 0.6 - depth}, {0, 1, 0});
-        const auto found = meet<double>(capsule_box<double>, pair, 0.02);
+        const auto found = collide<double>(capsule_box<double>, pair, 0.02);
         ASSERT_EQ(found.count, 2) << depth;
         for (std::size_t i = 0; i < 2; ++i) {
             EXPECT_EQ(found.points[i].feature, i);
@@ -154,7 +154,7 @@ TEST(CapsuleBox, LyingTouchesWithBothEnds)
 TEST(CapsuleBox, OverhangingEndTouchesAtTheEdge)
 {
     const Placement pair = placed({0.1, 0.4}, {1, 0.3, 0.5}, {0.1, 0.2, 0.6}, {0, 1, 0});
-    const auto found = meet<double>(capsule_box<double>, pair, 0.02);
+    const auto found = collide<double>(capsule_box<double>, pair, 0.02);
     ASSERT_EQ(found.count, 2);
     EXPECT_NEAR(found.points[0].position.z(), -0.4, 1e-12);
     EXPECT_NEAR(found.points[1].position.z(), 0.1, 1e-12);
@@ -172,8 +172,8 @@ TEST(CapsuleBox, LyingAlongAnEdgeTouchesTwiceFromWhicheverSide)
         for (const double noise : {0.0, 1e-4, -1e-4}) {
             const Vec3 along = Vec3(noise, 1, -noise / 2).normalized();
             const Placement pair = placed({0.1, 0.4}, {1, 1, 0.5}, middle, along);
-            EXPECT_EQ(meet<double>(capsule_box<double>, pair, 0.02).count, 2) << i;
-            EXPECT_EQ(meet<float>(capsule_box<float>, pair, 0.02).count, 2) << i;
+            EXPECT_EQ(collide<double>(capsule_box<double>, pair, 0.02).count, 2) << i;
+            EXPECT_EQ(collide<float>(capsule_box<float>, pair, 0.02).count, 2) << i;
         }
     }
 }
@@ -183,7 +183,7 @@ TEST(CapsuleBox, CrossingAnEdgeTouchesOnce)
     const Vec3 out = Vec3(1, 0, 1).normalized();
     const Vec3 along = Vec3(1, 1, -1).normalized();
     const Placement pair = placed({0.1, 0.4}, {1, 1, 0.5}, Vec3(1, 0, 0.5) + 0.099 * out, along);
-    const auto found = meet<double>(capsule_box<double>, pair, 0.02);
+    const auto found = collide<double>(capsule_box<double>, pair, 0.02);
     ASSERT_EQ(found.count, 1);
     EXPECT_EQ(found.points[0].feature, 2U);
     EXPECT_NEAR(found.points[0].separation, -0.001, 1e-12);
@@ -207,8 +207,8 @@ TEST(CapsuleBox, NothingJumpsAsItTips)
             const double lift = capsule.half_length * std::abs(std::sin(tip)) + 0.095;
             const Vec3 middle(0.9, 0.7, 0.5 + lift);
             const Placement pair = placed(capsule, box, middle, along);
-            const auto found = meet<double>(capsule_box<double>, pair, 1);
-            const auto rounded = meet<float>(capsule_box<float>, pair, 1);
+            const auto found = collide<double>(capsule_box<double>, pair, 1);
+            const auto rounded = collide<float>(capsule_box<float>, pair, 1);
             ASSERT_GT(found.count, 0);
             const Vec3 normal = pair.b_in_a.orientation.conjugate() * found.normal;
             EXPECT_LT((rounded.normal.cast<double>() - found.normal).norm(), 1e-4);
@@ -246,8 +246,8 @@ TEST(CapsuleBox, MirroredPlacementsGiveMirroredAnswers)
         const Placement one = placed({0.1, 0.4}, box, middle, along);
         const Placement two =
             placed({0.1, 0.4}, box, middle.cwiseProduct(flip), along.cwiseProduct(flip));
-        const auto here = meet<double>(capsule_box<double>, one, 10);
-        const auto there = meet<double>(capsule_box<double>, two, 10);
+        const auto here = collide<double>(capsule_box<double>, one, 10);
+        const auto there = collide<double>(capsule_box<double>, two, 10);
         ASSERT_EQ(here.count, there.count) << "seed 47, case " << i;
         EXPECT_NEAR(deepest_of(here), deepest_of(there), 1e-12);
     }
@@ -263,9 +263,11 @@ TEST(CapsuleBox, WildNumbersStayFinite)
         pair.shapes.boxes = {{Vec3(wild(), wild(), wild())}};
         pair.b_in_a.position = random_direction(random) * (i % 11 ? wild() : 0);
         if (i % 3 == 0) pair.b_in_a.orientation = Quat::Identity();
-        const double reach = i % 2 ? wild() : 0;
-        EXPECT_TRUE(all_finite(meet<double>(capsule_box<double>, pair, reach))) << "case " << i;
-        EXPECT_TRUE(all_finite(meet<float>(capsule_box<float>, pair, reach))) << "case " << i;
+        const double speculative_margin = i % 2 ? wild() : 0;
+        EXPECT_TRUE(all_finite(collide<double>(capsule_box<double>, pair, speculative_margin)))
+            << "case " << i;
+        EXPECT_TRUE(all_finite(collide<float>(capsule_box<float>, pair, speculative_margin)))
+            << "case " << i;
     }
 }
 

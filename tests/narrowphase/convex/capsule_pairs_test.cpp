@@ -3,8 +3,8 @@
 namespace throng {
 namespace {
 
+using given::collide;
 using given::deepest_of;
-using given::meet;
 using given::Placement;
 using given::random_direction;
 using given::random_turn;
@@ -96,8 +96,8 @@ TEST(CapsuleCapsule, NearlyParallelAxesAreAsFarApartAsTheyAre)
                                           random_direction(random).cross(Vec3::UnitZ())));
         const Placement pair = placed(a, b, random_direction(random), turn.normalized());
         const double truth = least_distance(a, b, pair.b_in_a) - 0.3;
-        EXPECT_NEAR(deepest_of(meet<double>(capsule_capsule<double>, pair, 10)), truth, 1e-9);
-        EXPECT_NEAR(deepest_of(meet<float>(capsule_capsule<float>, pair, 10)), truth, 2e-6);
+        EXPECT_NEAR(deepest_of(collide<double>(capsule_capsule<double>, pair, 10)), truth, 1e-9);
+        EXPECT_NEAR(deepest_of(collide<float>(capsule_capsule<float>, pair, 10)), truth, 2e-6);
         if (HasFailure()) return;
     }
 }
@@ -109,8 +109,8 @@ TEST(CapsuleCapsule, SideBySideTouchTwiceUnderNoise)
         const Quat turn(Eigen::AngleAxisd(1e-4, random_direction(random)));
         const Vec3 place = Vec3(0.199, 0, 0.1) + 1e-4 * random_direction(random);
         const Placement pair = placed({0.1, 0.4}, {0.1, 0.4}, place, turn);
-        const auto found = meet<double>(capsule_capsule<double>, pair, 0.02);
-        const auto rounded = meet<float>(capsule_capsule<float>, pair, 0.02);
+        const auto found = collide<double>(capsule_capsule<double>, pair, 0.02);
+        const auto rounded = collide<float>(capsule_capsule<float>, pair, 0.02);
         ASSERT_EQ(found.count, 2) << "seed 54, case " << i;
         ASSERT_EQ(rounded.count, 2) << "seed 54, case " << i;
         for (std::size_t k = 0; k < 2; ++k) {
@@ -130,8 +130,8 @@ TEST(CapsuleCapsule, NothingJumpsAsTheyTurn)
         Vec3 before = Vec3::Zero();
         for (int i = 0; i < 3000; ++i) {
             const Quat turn(Eigen::AngleAxisd((i - 1500) * 1e-4, axis));
-            const auto found = meet<double>(capsule_capsule<double>,
-                                            placed({0.1, 0.4}, {0.1, 0.4}, place, turn), 1);
+            const auto found = collide<double>(capsule_capsule<double>,
+                                               placed({0.1, 0.4}, {0.1, 0.4}, place, turn), 1);
             ASSERT_GT(found.count, 0);
             if (i > 0 && deepest_of(found) > -0.18) {
                 EXPECT_LT((found.normal - before).norm(), 20e-4) << "run " << run << ", " << i;
@@ -149,9 +149,11 @@ TEST(CapsuleCapsule, WildNumbersStayFinite)
         const Capsule a = {i % 5 ? wild() : 0, i % 7 ? wild() : 0}, b = {wild(), wild()};
         const Placement pair = placed(a, b, random_direction(random) * (i % 11 ? wild() : 0),
                                       i % 3 ? random_turn(random) : Quat(1, 0, 0, 0));
-        const double reach = i % 2 ? wild() : 0;
-        EXPECT_TRUE(all_finite(meet<double>(capsule_capsule<double>, pair, reach))) << i;
-        EXPECT_TRUE(all_finite(meet<float>(capsule_capsule<float>, pair, reach))) << i;
+        const double speculative_margin = i % 2 ? wild() : 0;
+        EXPECT_TRUE(all_finite(collide<double>(capsule_capsule<double>, pair, speculative_margin)))
+            << i;
+        EXPECT_TRUE(all_finite(collide<float>(capsule_capsule<float>, pair, speculative_margin)))
+            << i;
     }
 }
 

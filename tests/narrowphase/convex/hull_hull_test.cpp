@@ -26,8 +26,8 @@ TEST(HullHull, AgreesWithDirectionSweep)
         shapes.hulls = {random.hull(24, 0.5), random.hull(8 + i, 0.6)};
         const Pose pose = random.pose(0.5);
         const double swept =
-            sweep_directions(reach_of(shapes.hulls[0].vertices, Pose{}),
-                             reach_of(shapes.hulls[1].vertices, pose), 16, nullptr);
+            sweep_directions(extent_of(shapes.hulls[0].vertices, Pose{}),
+                             extent_of(shapes.hulls[1].vertices, pose), 16, nullptr);
         const auto found = run<double>(hull_hull<double>, shapes, kHullA, kHullB, pose, 0);
         ASSERT_EQ(found.count > 0, swept <= 0);
         if (swept > 0) continue;
@@ -101,9 +101,9 @@ TEST(HullHull, LargeHullsTouchWhereAllAxesSayWhateverTheyRemember)
     for (int i = 0; i < 60; ++i) {
         Pose pose = random.pose(0.8);
         Vec3 normal;
-        const double gap =
+        const double clearance =
             polytope_separation(view_of(shapes.hulls[0]), view_of(shapes.hulls[1]), pose, &normal);
-        pose.position -= normal * gap;
+        pose.position -= normal * clearance;
         PairCache searched, looked;
         for (int step = 0; step < 10; ++step, ++steps) {
             pose.position += random.vector(-0.003, 0.003);
@@ -282,7 +282,7 @@ TEST(HullHull, WhatIsDeepHasContactsThoughTheLeadingFaceHasNothingOverIt)
     shapes.hulls = {build_hull(a).hull, build_hull(b).hull};
     const ShapeRef hull_a{ShapeKind::hull, 0}, hull_b{ShapeKind::hull, 1};
     const Vec3 offset(1.4273090760989557, -0.53942442021032644, -0.9033355310769744);
-    const double depth = overlap_depth(shapes, hull_a, hull_b, {offset, Quat::Identity()});
+    const double depth = penetration_depth(shapes, hull_a, hull_b, {offset, Quat::Identity()});
     ASSERT_NEAR(depth, 0.572, 1e-3);
     PairCache cache, wide_cache;
     LocalManifold<double> exact;
@@ -324,7 +324,7 @@ TEST(HullHull, WhatIsShallowHasContactsThoughTheLeadingFaceHasNothingOverIt)
     const Pose box_in_hull{
         Vec3(-0.77387397471998487, -0.31954754913078809, 0.013452337956385563),
         Quat(-0.85737060985470459, -0.14616900883047421, 0.47257611031603886, -0.1422043535671523)};
-    const double depth = overlap_depth(shapes, hull, box, box_in_hull);
+    const double depth = penetration_depth(shapes, hull, box, box_in_hull);
     ASSERT_NEAR(depth, 3.28e-4, 1e-6);
     PairCache cache, wide_cache;
     LocalManifold<double> exact;
@@ -361,7 +361,7 @@ TEST(HullHull, WhatIsDeepHasContactsHoweverUnevenTheFaces)
         if (shapes.hulls[0].vertices.empty() || shapes.hulls[1].vertices.empty()) continue;
         const ShapeRef a{ShapeKind::hull, 0}, b{ShapeKind::hull, 1};
         const Pose pose{{offset(random), offset(random), offset(random)}, Quat::Identity()};
-        if (overlap_depth(shapes, a, b, pose) < 1e-2) continue;
+        if (penetration_depth(shapes, a, b, pose) < 1e-2) continue;
         ++deep;
         PairCache cache, wide_cache;
         LocalManifold<double> exact;

@@ -10,9 +10,9 @@
 namespace throng {
 namespace {
 
-using given::Gap;
-using given::greatest_gap;
+using given::greatest_separation;
 using given::outline_of;
+using given::OutlinePair;
 using given::random_direction;
 using given::random_turn;
 
@@ -64,15 +64,15 @@ struct Case {
     ShapeRef a, b;
     Pose b_in_a;
 
-    Gap gap() const { return {outline_of(shapes, a), outline_of(shapes, b), b_in_a}; }
+    OutlinePair clearance() const { return {outline_of(shapes, a), outline_of(shapes, b), b_in_a}; }
 
     template <class Real>
-    LocalManifold<Real> collide_in(Real reach) const
+    LocalManifold<Real> collide_in(Real speculative_margin) const
     {
         PairCache cache;
         LocalManifold<Real> manifold;
         const PoseT<Real> pose = {b_in_a.position.cast<Real>(), b_in_a.orientation.cast<Real>()};
-        throng::collide<Real>(shapes, a, b, pose, reach, cache, manifold);
+        throng::collide<Real>(shapes, a, b, pose, speculative_margin, cache, manifold);
         return manifold;
     }
 };
@@ -112,7 +112,7 @@ TEST_P(PairLaws, DeepestPointAgreesWithDirectionSearch)
         const Case one = random_case(GetParam(), random);
         const LocalManifold<double> manifold = one.collide_in<double>(kReach);
         ASSERT_GT(manifold.count, 0) << "seed " << kSeed << ", case " << i;
-        const double truth = greatest_gap(one.gap(), {manifold.normal}, 800);
+        const double truth = greatest_separation(one.clearance(), {manifold.normal}, 800);
         EXPECT_NEAR(deepest_of(manifold), truth, 1e-6) << "seed " << kSeed << ", case " << i;
     }
 }
@@ -123,9 +123,9 @@ TEST_P(PairLaws, OverlapDepthAgreesWithDirectionSearch)
     for (int i = 0; i < 40; ++i) {
         Case one = random_case(GetParam(), random);
         one.b_in_a.position *= 0.4;
-        const double depth = overlap_depth(one.shapes, one.a, one.b, one.b_in_a);
+        const double depth = penetration_depth(one.shapes, one.a, one.b, one.b_in_a);
         const Vec3 normal = one.collide_in<double>(10).normal;
-        const double truth = greatest_gap(one.gap(), {normal}, 1500);
+        const double truth = greatest_separation(one.clearance(), {normal}, 1500);
         EXPECT_NEAR(depth, std::max(0.0, -truth), 1e-6) << "seed " << kSeed << ", case " << i;
     }
 }
@@ -141,8 +141,8 @@ TEST_P(PairLaws, NormalSeparatesByWhatTheDeepestPointSays)
         const LocalManifold<double> manifold = one.collide_in<double>(kReach);
         ASSERT_GT(manifold.count, 0);
         EXPECT_NEAR(manifold.normal.norm(), 1, 1e-12);
-        const Gap gap = one.gap();
-        const double along = gap.along(manifold.normal);
+        const OutlinePair clearance = one.clearance();
+        const double along = clearance.along(manifold.normal);
         EXPECT_NEAR(deepest_of(manifold), along, tolerance) << "seed " << kSeed << ", case " << i;
         std::set<std::uint32_t> features;
         for (int k = 0; k < manifold.count; ++k) {
@@ -151,7 +151,7 @@ TEST_P(PairLaws, NormalSeparatesByWhatTheDeepestPointSays)
             if (point.separation > along + tolerance) continue;
             // Midway between the two surfaces.
             const double height = manifold.normal.dot(point.position);
-            EXPECT_NEAR(height, gap.a.reach(manifold.normal) + along / 2, tolerance);
+            EXPECT_NEAR(height, clearance.a.extent(manifold.normal) + along / 2, tolerance);
         }
         EXPECT_EQ(static_cast<int>(features.size()), manifold.count) << "case " << i;
     }
@@ -242,8 +242,8 @@ TEST_P(PairLaws, CoincidentAndConcentricShapesGiveAUnitNormal)
         EXPECT_LT(deepest_of(manifold), 0);
         const LocalManifold<double> again = one.collide_in<double>(0);
         EXPECT_EQ(manifold.normal, again.normal);
-        const double truth = greatest_gap(one.gap(), {manifold.normal}, 1500);
-        const double depth = overlap_depth(one.shapes, one.a, one.b, one.b_in_a);
+        const double truth = greatest_separation(one.clearance(), {manifold.normal}, 1500);
+        const double depth = penetration_depth(one.shapes, one.a, one.b, one.b_in_a);
         EXPECT_NEAR(depth, -truth, 1e-6) << "case " << i;
         const LocalManifold<float> coarse = one.collide_in<float>(0);
         EXPECT_TRUE(coarse.normal.allFinite());
@@ -262,9 +262,10 @@ TEST_P(PairLaws, FarAndHugelyDifferentShapesStayFinite)
         if (one.b.kind == ShapeKind::cylinder) one.shapes.cylinders.back().half_length *= ratio;
         if (one.b.kind == ShapeKind::capsule) one.shapes.capsules.back().half_length *= ratio;
         if (i % 3 == 0) one.b_in_a.position *= 1e9;
-        for (const double reach : {0.0, 1e12}) {
-            const LocalManifold<double> exact = one.collide_in<double>(reach);
-            const LocalManifold<float> coarse = one.collide_in<float>(static_cast<float>(reach));
+        for (const double speculative_margin : {0.0, 1e12}) {
+            const LocalManifold<double> exact = one.collide_in<double>(speculative_margin);
+            const LocalManifold<float> coarse =
+                one.collide_in<float>(static_cast<float>(speculative_margin));
             EXPECT_TRUE(exact.normal.allFinite() && coarse.normal.allFinite());
             for (int k = 0; k < exact.count; ++k) {
                 const auto& point = exact.points[static_cast<std::size_t>(k)];
@@ -301,7 +302,7 @@ INSTANTIATE_TEST_SUITE_P(AllKinds,
                                  + name_of(kinds.param.b);
                          });
 
-TEST(OverlapDepth, OfPolytopesAgreesWithDirectionSearch)
+TEST(PenetrationDepth, OfPolytopesAgreesWithDirectionSearch)
 {
     std::mt19937 random(3);
     for (int i = 0; i < 60; ++i) {
@@ -310,9 +311,9 @@ TEST(OverlapDepth, OfPolytopesAgreesWithDirectionSearch)
             {kinds[static_cast<std::size_t>(i % 2)], kinds[static_cast<std::size_t>(i / 2 % 2)]},
             random);
         one.b_in_a.position *= 0.4;
-        const double depth = overlap_depth(one.shapes, one.a, one.b, one.b_in_a);
+        const double depth = penetration_depth(one.shapes, one.a, one.b, one.b_in_a);
         const Vec3 normal = one.collide_in<double>(10).normal;
-        const double truth = greatest_gap(one.gap(), {normal}, 1500);
+        const double truth = greatest_separation(one.clearance(), {normal}, 1500);
         EXPECT_NEAR(depth, std::max(0.0, -truth), 1e-6) << "case " << i;
     }
 }

@@ -37,11 +37,12 @@ Shapes some_shapes()
     return shapes;
 }
 
-LocalManifold<double> meet(ShapeRef a, ShapeRef b, const Pose& b_in_a, double reach = 0.02)
+LocalManifold<double>
+collide(ShapeRef a, ShapeRef b, const Pose& b_in_a, double speculative_margin = 0.02)
 {
     PairCache cache;
     LocalManifold<double> manifold;
-    collide<double>(some_shapes(), a, b, b_in_a, reach, cache, manifold);
+    collide<double>(some_shapes(), a, b, b_in_a, speculative_margin, cache, manifold);
     return manifold;
 }
 
@@ -86,13 +87,13 @@ double area_of(const LocalManifold<double>& manifold)
 
 TEST(ConvexPlane, EachKindRestsOnItsPoints)
 {
-    struct Rest {
+    struct Resting {
         ShapeRef shape;
         double height;
         Quat turn;
         int points;
     };
-    const std::vector<Rest> rests = {
+    const std::vector<Resting> rests = {
         {kSphere, 0.5, Quat::Identity(), 1},
         {kCapsule, 0.25, lying(), 2},
         {kCapsule, 0.85, Quat::Identity(), 1},
@@ -102,9 +103,9 @@ TEST(ConvexPlane, EachKindRestsOnItsPoints)
         {kBox, 0.4, lying(), 4},
         {kHull, 0.3, Quat::Identity(), 4},
     };
-    for (const Rest& rest : rests) {
+    for (const Resting& rest : rests) {
         const Pose body = {Vec3(7, -3, rest.height + 0.25 - 0.001), rest.turn};
-        const LocalManifold<double> manifold = meet(rest.shape, kPlane, inverse_of(body));
+        const LocalManifold<double> manifold = collide(rest.shape, kPlane, inverse_of(body));
         EXPECT_EQ(manifold.count, rest.points);
         EXPECT_LT((body.orientation * manifold.normal - Vec3(0, 0, -1)).norm(), 1e-12);
         for (int i = 0; i < manifold.count; ++i) {
@@ -123,16 +124,16 @@ TEST(ConvexPlane, DeepestPointIsTheTrueLowestWhateverTheTurn)
     for (int i = 0; i < 400; ++i) {
         for (const ShapeRef shape : {kSphere, kCapsule, kCylinder, kBox, kHull}) {
             const Pose body = {Vec3(1, 2, 0.6), random_turn(random)};
-            const LocalManifold<double> manifold = meet(shape, kPlane, inverse_of(body), 10);
+            const LocalManifold<double> manifold = collide(shape, kPlane, inverse_of(body), 10);
             const auto outline = given::outline_of(shapes, shape);
             const double lowest =
-                0.6 - 0.25 - outline.reach(body.orientation.conjugate() * Vec3(0, 0, -1));
+                0.6 - 0.25 - outline.extent(body.orientation.conjugate() * Vec3(0, 0, -1));
             double least = 1e300;
             for (int k = 0; k < manifold.count; ++k) {
                 least = std::min(least, manifold.points[static_cast<std::size_t>(k)].separation);
             }
             EXPECT_NEAR(least, lowest, 1e-12) << "seed 5, case " << i;
-            EXPECT_NEAR(overlap_depth(shapes, shape, kPlane, inverse_of(body)),
+            EXPECT_NEAR(penetration_depth(shapes, shape, kPlane, inverse_of(body)),
                         std::max(0.0, -lowest), 1e-12);
         }
     }
@@ -194,15 +195,15 @@ TEST(ConvexPlane, FinelyRoundedDrumStandsOnItsFlatEnd)
     for (const double radius : {2.5e-3, 0.5, 25.0}) {
         Shapes shapes = some_shapes();
         shapes.hulls[0] = rounded_drum(radius, 0.1 * radius, 32);
-        for (const double reach : {0.02, 0.5, 3.0})
+        for (const double speculative_margin : {0.02, 0.5, 3.0})
             for (const double sunk : {-0.01, 1e-5, 0.01}) {
                 const Pose drum = {Vec3(1, 2, 0.25 + (1 - sunk) * radius),
                                    turn_about(Vec3(0.6, 0.8, 0), 1e-6)};
                 PairCache cache;
                 LocalManifold<double> manifold;
-                collide<double>(shapes, kHull, kPlane, inverse_of(drum), reach * radius, cache,
-                                manifold);
-                ASSERT_EQ(manifold.count, 4) << radius << ' ' << reach << ' ' << sunk;
+                collide<double>(shapes, kHull, kPlane, inverse_of(drum),
+                                speculative_margin * radius, cache, manifold);
+                ASSERT_EQ(manifold.count, 4) << radius << ' ' << speculative_margin << ' ' << sunk;
                 for (std::size_t i = 0; i < 4; ++i)
                     EXPECT_NEAR(manifold.points[i].separation, -sunk * radius, 1e-5 * radius);
                 EXPECT_GT(area_of(manifold), 1.8 * std::pow(0.9 * radius, 2));
@@ -233,21 +234,23 @@ TEST(ConvexPlane, DrumThatTipsIsHeldOnEitherSideOfItsMiddle)
 
 TEST(SpherePairs, CenterInsideLeavesByTheNearestWay)
 {
-    const LocalManifold<double> box = meet(kSphere, kBox, {Vec3(0.1, 0, -0.2), Quat::Identity()});
+    const LocalManifold<double> box =
+        collide(kSphere, kBox, {Vec3(0.1, 0, -0.2), Quat::Identity()});
     EXPECT_EQ(box.normal, Vec3(0, 0, -1));
     EXPECT_NEAR(box.points[0].separation, -0.1 - 0.5, 1e-12);
-    const LocalManifold<double> hull = meet(kSphere, kHull, {Vec3(0.1, 0, -0.2), Quat::Identity()});
+    const LocalManifold<double> hull =
+        collide(kSphere, kHull, {Vec3(0.1, 0, -0.2), Quat::Identity()});
     EXPECT_LT((hull.normal - Vec3(0, 0, -1)).norm(), 1e-9);
     EXPECT_NEAR(hull.points[0].separation, -0.1 - 0.5, 1e-9);
     const LocalManifold<double> can =
-        meet(kSphere, kCylinder, {Vec3(-0.2, 0, 0.1), Quat::Identity()});
+        collide(kSphere, kCylinder, {Vec3(-0.2, 0, 0.1), Quat::Identity()});
     EXPECT_LT((can.normal - Vec3(-1, 0, 0)).norm(), 1e-12);
     EXPECT_NEAR(can.points[0].separation, -0.1 - 0.5, 1e-12);
 }
 
 TEST(SpherePairs, CoincidentCentersPartUpwards)
 {
-    const LocalManifold<double> manifold = meet(kSphere, kSphere, {});
+    const LocalManifold<double> manifold = collide(kSphere, kSphere, {});
     EXPECT_EQ(manifold.normal, Vec3(0, 0, 1));
     EXPECT_NEAR(manifold.points[0].separation, -1, 1e-15);
 }
@@ -255,7 +258,7 @@ TEST(SpherePairs, CoincidentCentersPartUpwards)
 TEST(CapsulePairs, SideBySideTouchAtBothEndsOfTheSharedStretch)
 {
     const LocalManifold<double> manifold =
-        meet(kCapsule, kCapsule, {Vec3(0.499, 0, 0.4), Quat::Identity()});
+        collide(kCapsule, kCapsule, {Vec3(0.499, 0, 0.4), Quat::Identity()});
     ASSERT_EQ(manifold.count, 2);
     EXPECT_LT((manifold.normal - Vec3(1, 0, 0)).norm(), 1e-12);
     EXPECT_NEAR(manifold.points[0].position.z(), -0.2, 1e-12);
@@ -266,11 +269,11 @@ TEST(CapsulePairs, SideBySideTouchAtBothEndsOfTheSharedStretch)
 TEST(CapsulePairs, CrossingAxesPartSideways)
 {
     for (const Quat& turn : {Quat(1, 0, 0, 0), lying(), turn_about(Vec3(1, 1, 0), 0.3)}) {
-        const LocalManifold<double> manifold = meet(kCapsule, kCapsule, {Vec3::Zero(), turn});
+        const LocalManifold<double> manifold = collide(kCapsule, kCapsule, {Vec3::Zero(), turn});
         ASSERT_GT(manifold.count, 0);
         EXPECT_NEAR(manifold.normal.z(), 0, 1e-12);
         EXPECT_NEAR(manifold.points[0].separation, -0.5, 1e-12);
-        EXPECT_NEAR(overlap_depth(some_shapes(), kCapsule, kCapsule, {Vec3::Zero(), turn}), 0.5,
+        EXPECT_NEAR(penetration_depth(some_shapes(), kCapsule, kCapsule, {Vec3::Zero(), turn}), 0.5,
                     1e-9);
     }
 }
@@ -283,7 +286,7 @@ TEST(CapsulePairs, LyingOnABoxTouchesAtBothEnds)
         // The capsule's own axis is z, so the box is turned instead.
         const Quat turn = lying();
         const LocalManifold<double> manifold =
-            meet(kCapsule, floor, {turn * box.position, turn * box.orientation});
+            collide(kCapsule, floor, {turn * box.position, turn * box.orientation});
         ASSERT_EQ(manifold.count, 2);
         for (std::size_t i = 0; i < 2; ++i) {
             EXPECT_NEAR(manifold.points[i].separation, -0.001, 1e-9);
@@ -293,13 +296,13 @@ TEST(CapsulePairs, LyingOnABoxTouchesAtBothEnds)
 
 TEST(CylinderPairs, LogsSideBySideTouchAlongALine)
 {
-    for (const double gap : {-0.01, -1e-6, 0.0, 1e-6, 0.01}) {
+    for (const double clearance : {-0.01, -1e-6, 0.0, 1e-6, 0.01}) {
         for (const double angle : {0.0, 0.4, 2.0}) {
             const Vec3 towards(std::cos(angle), std::sin(angle), 0);
-            const Pose pose = {towards * (0.6 + gap) + Vec3(0, 0, 0.3),
+            const Pose pose = {towards * (0.6 + clearance) + Vec3(0, 0, 0.3),
                                turn_about(Vec3(0, 0, 1), 1)};
-            const LocalManifold<double> manifold = meet(kCylinder, kCylinder, pose);
-            ASSERT_EQ(manifold.count, 2) << gap;
+            const LocalManifold<double> manifold = collide(kCylinder, kCylinder, pose);
+            ASSERT_EQ(manifold.count, 2) << clearance;
             EXPECT_LT((manifold.normal - towards).norm(), 1e-9);
             const double low =
                 std::min(manifold.points[0].position.z(), manifold.points[1].position.z());
@@ -308,7 +311,7 @@ TEST(CylinderPairs, LogsSideBySideTouchAlongALine)
             EXPECT_NEAR(low, -0.2, 1e-9);
             EXPECT_NEAR(high, 0.5, 1e-9);
             for (std::size_t i = 0; i < 2; ++i) {
-                EXPECT_NEAR(manifold.points[i].separation, gap, 1e-12);
+                EXPECT_NEAR(manifold.points[i].separation, clearance, 1e-12);
             }
         }
     }
@@ -318,16 +321,16 @@ TEST(CylinderPairs, LogsKeepTheirFeaturesUnderNoise)
 {
     std::mt19937 random(9);
     const std::set<std::uint32_t> names =
-        features_of(meet(kCylinder, kCylinder, {Vec3(0.599, 0, 0.3), Quat::Identity()}));
+        features_of(collide(kCylinder, kCylinder, {Vec3(0.599, 0, 0.3), Quat::Identity()}));
     for (int i = 0; i < 40; ++i) {
         const Pose pose = {Vec3(0.599, 0, 0.3) + 1e-5 * random_direction(random),
                            turn_about(random_direction(random), 1e-5)};
-        const LocalManifold<double> manifold = meet(kCylinder, kCylinder, pose);
+        const LocalManifold<double> manifold = collide(kCylinder, kCylinder, pose);
         EXPECT_EQ(features_of(manifold), names);
-        const given::Gap gap = {given::outline_of(some_shapes(), kCylinder),
-                                given::outline_of(some_shapes(), kCylinder), pose};
-        const double truth = given::greatest_gap(gap, {manifold.normal}, 10);
-        EXPECT_NEAR(gap.along(manifold.normal), truth, 1e-10) << "seed 9, case " << i;
+        const given::OutlinePair clearance = {given::outline_of(some_shapes(), kCylinder),
+                                              given::outline_of(some_shapes(), kCylinder), pose};
+        const double truth = given::greatest_separation(clearance, {manifold.normal}, 10);
+        EXPECT_NEAR(clearance.along(manifold.normal), truth, 1e-10) << "seed 9, case " << i;
     }
 }
 
@@ -338,7 +341,7 @@ TEST(CylinderPairs, StandingOnABoxSpreadsFourPoints)
     for (int i = 0; i < 100; ++i) {
         const Quat turn = turn_about(random_direction(random), 1e-6);
         const Pose pose = {Vec3(0.3, 0.2, -(0.5 + 0.2 - 0.001)), turn};
-        const LocalManifold<double> manifold = meet(kCylinder, kSlab, pose);
+        const LocalManifold<double> manifold = collide(kCylinder, kSlab, pose);
         ASSERT_EQ(manifold.count, 4);
         EXPECT_GT(area_of(manifold), 0.9 * 2 * 0.3 * 0.3);
         if (i == 0) names = features_of(manifold);
@@ -351,7 +354,7 @@ TEST(CylinderPairs, CansStackOnFourPoints)
     std::mt19937 random(11);
     for (int i = 0; i < 100; ++i) {
         const Pose pose = {Vec3(0.003, -0.002, 0.999), turn_about(random_direction(random), 1e-4)};
-        const LocalManifold<double> manifold = meet(kCylinder, kCylinder, pose);
+        const LocalManifold<double> manifold = collide(kCylinder, kCylinder, pose);
         ASSERT_EQ(manifold.count, 4);
         EXPECT_GT(area_of(manifold), 0.8 * 2 * 0.3 * 0.3);
         EXPECT_LT((manifold.normal - Vec3(0, 0, 1)).norm(), 1e-3);
@@ -380,7 +383,7 @@ TEST(CylinderPairs, TippedCylinderTouchesWithItsRim)
     const Quat turn = turn_about(Vec3(1, 0.3, 0), 0.3);
     const double drop = 0.5 * std::cos(0.3) + 0.3 * std::sin(0.3) + 0.2 - 0.001;
     const Pose pose = {turn * Vec3(0, 0, -drop), turn};
-    const LocalManifold<double> manifold = meet(kCylinder, kSlab, pose, 0.0);
+    const LocalManifold<double> manifold = collide(kCylinder, kSlab, pose, 0.0);
     ASSERT_EQ(manifold.count, 1);
     EXPECT_NEAR(manifold.points[0].separation, -0.001, 1e-9);
     EXPECT_LT((manifold.normal - turn * Vec3(0, 0, -1)).norm(), 1e-9);

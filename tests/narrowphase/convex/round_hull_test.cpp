@@ -58,7 +58,7 @@ void expect_cache_never_tells(PairFunction<Real> function, Placement pair, std::
                                   QuatT<Real>(pair.b_in_a.orientation.cast<Real>())};
         LocalManifold<Real> warm;
         function(pair.shapes, pair.a, pair.b, pose, Real(0.5), cache, warm);
-        EXPECT_TRUE(same(warm, given::meet<Real>(function, pair, 0.5))) << "step " << i;
+        EXPECT_TRUE(same(warm, given::collide<Real>(function, pair, 0.5))) << "step " << i;
     }
 }
 
@@ -119,9 +119,9 @@ TEST(RoundHull, CapsuleLyingOnAHullTouchesAsOnTheBoxThatItIs)
         pair.shapes.capsules = {{0.1, 0.3}};
         pair.shapes.boxes = {{half}};
         pair.shapes.hulls = {build_hull(corners).hull};
-        const auto on_hull = given::meet<double>(capsule_hull<double>, pair, 0.02);
+        const auto on_hull = given::collide<double>(capsule_hull<double>, pair, 0.02);
         pair.b = {ShapeKind::box, 0};
-        const auto on_box = given::meet<double>(capsule_box<double>, pair, 0.02);
+        const auto on_box = given::collide<double>(capsule_box<double>, pair, 0.02);
         ASSERT_GT(on_hull.count, 0);
         EXPECT_NEAR(deepest_of(on_hull), deepest_of(on_box), 1e-9) << "seed 63, case " << i;
         EXPECT_LT((on_hull.normal - on_box.normal).norm(), 1e-7);

@@ -22,26 +22,28 @@ struct Placement {
     /// What rounding is relative to.
     double size() const
     {
-        const Gap gap = {outline_of(shapes, a), outline_of(shapes, b), b_in_a};
-        double most = b_in_a.position.norm() + gap.a.rounding + gap.b.rounding;
-        for (const Vec3& point : gap.a.points) most = std::max(most, point.norm());
-        for (const Vec3& point : gap.b.points) most = std::max(most, point.norm());
+        const OutlinePair clearance = {outline_of(shapes, a), outline_of(shapes, b), b_in_a};
+        double most = b_in_a.position.norm() + clearance.a.rounding + clearance.b.rounding;
+        for (const Vec3& point : clearance.a.points) most = std::max(most, point.norm());
+        for (const Vec3& point : clearance.b.points) most = std::max(most, point.norm());
         return most;
     }
     double along(const Vec3& normal) const
     {
-        return Gap{outline_of(shapes, a), outline_of(shapes, b), b_in_a}.along(normal);
+        return OutlinePair{outline_of(shapes, a), outline_of(shapes, b), b_in_a}.along(normal);
     }
 };
 
 template <class Real>
-LocalManifold<Real> meet(PairFunction<Real> function, const Placement& pair, double reach)
+LocalManifold<Real>
+collide(PairFunction<Real> function, const Placement& pair, double speculative_margin)
 {
     PairCache cache;
     LocalManifold<Real> manifold;
     const PoseT<Real> pose = {pair.b_in_a.position.cast<Real>(),
                               QuatT<Real>(pair.b_in_a.orientation.cast<Real>())};
-    function(pair.shapes, pair.a, pair.b, pose, static_cast<Real>(reach), cache, manifold);
+    function(pair.shapes, pair.a, pair.b, pose, static_cast<Real>(speculative_margin), cache,
+             manifold);
     return manifold;
 }
 
@@ -64,13 +66,13 @@ inline void expect_as_searched(PairFunction<double> in_double,
                                double exact,
                                double coarse)
 {
-    const double size = pair.size(), reach = 10 * size;
-    const CorePair cores(pair.shapes, pair.a, pair.b, pair.b_in_a);
+    const double size = pair.size(), speculative_margin = 10 * size;
+    const ConvexCorePair cores(pair.shapes, pair.a, pair.b, pair.b_in_a);
     ContactAxis searched;
-    ASSERT_TRUE(search_axis(cores, 2 * reach, searched));
-    const double separation = searched.separation - cores.a.radius - cores.b.radius;
-    const auto found = meet<double>(in_double, pair, reach);
-    const auto rounded = meet<float>(in_float, pair, reach);
+    ASSERT_TRUE(search_axis(cores, 2 * speculative_margin, searched));
+    const double separation = searched.separation - cores.a.convex_radius - cores.b.convex_radius;
+    const auto found = collide<double>(in_double, pair, speculative_margin);
+    const auto rounded = collide<float>(in_float, pair, speculative_margin);
     ASSERT_GT(found.count, 0);
     ASSERT_GT(rounded.count, 0);
     EXPECT_NEAR(deepest_of(found) / size, separation / size, exact);

@@ -15,48 +15,49 @@ namespace {
 constexpr double kReach = 0.02;
 
 // Touches along a ring about z; their normals lean out of its axis by `lean` (0: along it).
-std::vector<SurfaceTouch> ring(std::uint32_t count, double lean)
+std::vector<ContactCandidate> ring(std::uint32_t count, double lean)
 {
-    std::vector<SurfaceTouch> touches;
+    std::vector<ContactCandidate> candidates;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double angle = 2 * std::numbers::pi * i / count;
         const Vec3 out(std::cos(angle), std::sin(angle), 0);
         const Vec3 normal = std::cos(lean) * Vec3::UnitZ() + std::sin(lean) * out;
-        touches.push_back({out, normal, -1e-3, i});
+        candidates.push_back({out, normal, -1e-3, i});
     }
-    return touches;
+    return candidates;
 }
 
-std::vector<SurfaceTouch> grid(int side, const Vec3& normal, std::uint32_t feature)
+std::vector<ContactCandidate> grid(int side, const Vec3& normal, std::uint32_t feature)
 {
-    std::vector<SurfaceTouch> touches;
+    std::vector<ContactCandidate> candidates;
     const Vec3 across = normal.unitOrthogonal(), up = normal.cross(across);
     for (int i = 0; i < side; ++i)
         for (int k = 0; k < side; ++k)
-            touches.push_back(
+            candidates.push_back(
                 {normal + (2.0 * i / (side - 1) - 1) * across + (2.0 * k / (side - 1) - 1) * up,
                  normal, -1e-3, feature++});
-    return touches;
+    return candidates;
 }
 
 // Groups that lean apart by more than the angle that one takes in, of normals that agree.
-std::vector<SurfaceTouch> clusters(Dice& dice)
+std::vector<ContactCandidate> clusters(Dice& dice)
 {
-    std::vector<SurfaceTouch> touches;
+    std::vector<ContactCandidate> candidates;
     for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(-0.8, 0, -0.6)})
         for (int i = 0; i < 12; ++i) {
             const Vec3 normal = (axis + dice.point(0.06)).normalized();
-            const auto feature = static_cast<std::uint32_t>(touches.size());
-            touches.push_back(
+            const auto feature = static_cast<std::uint32_t>(candidates.size());
+            candidates.push_back(
                 {axis + dice.point(0.3), normal, dice.between(-0.01, 0.019), feature});
         }
-    return touches;
+    return candidates;
 }
 
-std::vector<PatchManifold> patches(std::vector<SurfaceTouch> touches, double reach = kReach)
+std::vector<PatchManifold> patches(std::vector<ContactCandidate> candidates,
+                                   double speculative_margin = kReach)
 {
     std::vector<PatchManifold> out;
-    EXPECT_EQ(make_patches(touches, reach, 1.0, out), 0U);
+    EXPECT_EQ(make_patches(candidates, speculative_margin, 1.0, out), 0U);
     return out;
 }
 
@@ -132,9 +133,10 @@ TEST(ContactPatches, AFaceOnAFaceIsOneManifoldOfFourCorners)
 
 TEST(ContactPatches, OppositeSidesAreNotJoined)
 {
-    std::vector<SurfaceTouch> touches = grid(4, Vec3::UnitX(), 0);
-    for (const SurfaceTouch& touch : grid(4, -Vec3::UnitX(), 100)) touches.push_back(touch);
-    const auto found = patches(touches);
+    std::vector<ContactCandidate> candidates = grid(4, Vec3::UnitX(), 0);
+    for (const ContactCandidate& candidate : grid(4, -Vec3::UnitX(), 100))
+        candidates.push_back(candidate);
+    const auto found = patches(candidates);
     ASSERT_EQ(found.size(), 2U);
     EXPECT_NEAR(found[0].manifold.normal.dot(found[1].manifold.normal), -1, 1e-14);
 }
@@ -144,21 +146,21 @@ TEST(ContactPatches, NormalsOfAPatchAreWithin8DegreesOfItsOwn)
     Dice dice(61);
     std::size_t alone = 0;
     for (int i = 0; i < 200; ++i) {
-        std::vector<SurfaceTouch> touches;
+        std::vector<ContactCandidate> candidates;
         for (std::uint32_t k = 0; k < 60; ++k) {
             // Within 57 degrees of one direction: few enough groups for all to be kept.
             const Vec3 normal = (dice.point(1).normalized() + 1.2 * Vec3::UnitZ()).normalized();
-            touches.push_back({dice.point(1), normal, dice.between(-0.01, kReach), k});
+            candidates.push_back({dice.point(1), normal, dice.between(-0.01, kReach), k});
         }
-        for (const PatchManifold& patch : patches(touches))
+        for (const PatchManifold& patch : patches(candidates))
             for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k) {
                 const auto& point = patch.manifold.points[k];
-                const SurfaceTouch& touch = touches[point.feature];
-                const double along = patch.manifold.normal.dot(touch.normal);
-                alone += patch.manifold.normal == touch.normal ? 1 : 0;
+                const ContactCandidate& candidate = candidates[point.feature];
+                const double along = patch.manifold.normal.dot(candidate.normal);
+                alone += patch.manifold.normal == candidate.normal ? 1 : 0;
                 ASSERT_GT(along, std::cos(8.1 * std::numbers::pi / 180)) << "seed 61, set " << i;
-                ASSERT_EQ(point.separation, touch.separation * along);
-                ASSERT_EQ(point.position, touch.position);
+                ASSERT_EQ(point.separation, candidate.separation * along);
+                ASSERT_EQ(point.position, candidate.position);
             }
     }
     EXPECT_GT(alone, 200U);
@@ -171,10 +173,10 @@ TEST(ContactPatches, AnEndThatLeansMoreAndMoreTakesItsOwnNormalSmoothly)
     for (int i = 0; i <= 250; ++i) {
         const double lean = 0.001 * i;
         // Enough that look up for the group to look up whatever the one does.
-        std::vector<SurfaceTouch> touches = grid(30, Vec3::UnitZ(), 1);
+        std::vector<ContactCandidate> candidates = grid(30, Vec3::UnitZ(), 1);
         const Vec3 normal(std::sin(lean), 0, std::cos(lean));
-        touches.push_back({Vec3(5, 0, 1), normal, -1e-3, 0});
-        for (const PatchManifold& patch : patches(touches)) {
+        candidates.push_back({Vec3(5, 0, 1), normal, -1e-3, 0});
+        for (const PatchManifold& patch : patches(candidates)) {
             const std::vector<std::uint32_t> held = features(patch.manifold);
             if (std::find(held.begin(), held.end(), 0U) == held.end()) continue;
             // A step leans by 0.001; in four degrees the normal makes up for twelve.
@@ -192,15 +194,15 @@ TEST(ContactPatches, AnEndThatLeansMoreAndMoreTakesItsOwnNormalSmoothly)
 TEST(ContactPatches, AFlankAllRoundDoesNotStopAScrew)
 {
     constexpr double kLead = 0.08;  // rise over the way round
-    std::vector<SurfaceTouch> touches;
+    std::vector<ContactCandidate> candidates;
     for (std::uint32_t i = 0; i < 400; ++i) {
         const double angle = 8 * std::numbers::pi * i / 400;
         const Vec3 out(std::cos(angle), std::sin(angle), 0), round(-out.y(), out.x(), 0);
         const Vec3 normal = Vec3(Vec3::UnitZ() - kLead * round + out / std::sqrt(3)).normalized();
-        touches.push_back({out + kLead * angle * Vec3::UnitZ(), normal, 0, i});
+        candidates.push_back({out + kLead * angle * Vec3::UnitZ(), normal, 0, i});
     }
     std::size_t points = 0, exact = 0;
-    for (const PatchManifold& patch : patches(touches))
+    for (const PatchManifold& patch : patches(candidates))
         for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k) {
             const Vec3 moves =
                 Vec3::UnitZ().cross(patch.manifold.points[k].position) + kLead * Vec3::UnitZ();
@@ -217,15 +219,16 @@ TEST(ContactPatches, TheDeepestOfEachGroupIsKept)
 {
     Dice dice(62);
     for (int i = 0; i < 200; ++i) {
-        const std::vector<SurfaceTouch> touches = clusters(dice);
-        const auto found = patches(touches);
+        const std::vector<ContactCandidate> candidates = clusters(dice);
+        const auto found = patches(candidates);
         ASSERT_EQ(found.size(), 4U);
         for (const PatchManifold& patch : found) {
             const Vec3& normal = patch.manifold.normal;
             double deepest = kReach, kept = kReach;
-            for (const SurfaceTouch& touch : touches)
-                if (touch.normal.dot(normal) > 0.9)
-                    deepest = std::min(deepest, touch.separation * touch.normal.dot(normal));
+            for (const ContactCandidate& candidate : candidates)
+                if (candidate.normal.dot(normal) > 0.9)
+                    deepest =
+                        std::min(deepest, candidate.separation * candidate.normal.dot(normal));
             for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k)
                 kept = std::min(kept, patch.manifold.points[k].separation);
             // A step of depth and what reduce_to_four() lets pass.
@@ -237,8 +240,9 @@ TEST(ContactPatches, TheDeepestOfEachGroupIsKept)
 // A plate that comes down aslant: its high end is the first to touch once it turns fast enough.
 TEST(ContactPatches, AGreatReachKeepsWhatIsFarApartYet)
 {
-    std::vector<SurfaceTouch> touches = grid(9, Vec3::UnitZ(), 0);
-    for (SurfaceTouch& touch : touches) touch.separation = 0.1 * (touch.position.x() + 1);
+    std::vector<ContactCandidate> candidates = grid(9, Vec3::UnitZ(), 0);
+    for (ContactCandidate& candidate : candidates)
+        candidate.separation = 0.1 * (candidate.position.x() + 1);
     const auto furthest = [](const std::vector<PatchManifold>& found) {
         double most = 0;
         for (const PatchManifold& patch : found)
@@ -246,22 +250,22 @@ TEST(ContactPatches, AGreatReachKeepsWhatIsFarApartYet)
                 most = std::max(most, patch.manifold.points[k].separation);
         return most;
     };
-    EXPECT_EQ(furthest(patches(touches, 0.5)), 0.2);
-    EXPECT_EQ(furthest(patches(touches, 0.05)), 0);
+    EXPECT_EQ(furthest(patches(candidates, 0.5)), 0.2);
+    EXPECT_EQ(furthest(patches(candidates, 0.05)), 0);
 }
 
 TEST(ContactPatches, TheOrderOfTouchesDoesNotMatter)
 {
     Dice dice(63);
     for (int i = 0; i < 100; ++i) {
-        std::vector<SurfaceTouch> touches = clusters(dice);
+        std::vector<ContactCandidate> candidates = clusters(dice);
         for (int k = 0; k < 40; ++k)
-            touches.push_back({dice.point(1), dice.point(1).normalized(),
-                               dice.between(-0.01, kReach), dice.below(60)});
+            candidates.push_back({dice.point(1), dice.point(1).normalized(),
+                                  dice.between(-0.01, kReach), dice.below(60)});
         std::vector<PatchManifold> first, second;
-        std::vector<SurfaceTouch> shuffled = touches;
+        std::vector<ContactCandidate> shuffled = candidates;
         dice.shuffle(shuffled);
-        const std::size_t left_out = make_patches(touches, kReach, 1, first);
+        const std::size_t left_out = make_patches(candidates, kReach, 1, first);
         ASSERT_EQ(make_patches(shuffled, kReach, 1, second), left_out);
         ASSERT_TRUE(same(first, second)) << "seed 63, set " << i;
         ASSERT_LE(first.size(), kMostManifolds);
@@ -276,13 +280,13 @@ TEST(ContactPatches, AFrameTurnedByRightAnglesTurnsTheGroups)
     Mat3 turn;
     turn << 0, -1, 0, 0, 0, -1, 1, 0, 0;
     for (int i = 0; i < 100; ++i) {
-        const std::vector<SurfaceTouch> touches = clusters(dice);
-        std::vector<SurfaceTouch> turned = touches;
-        for (SurfaceTouch& touch : turned) {
-            touch.position = turn * touch.position + Vec3(3, 4, 5);
-            touch.normal = turn * touch.normal;
+        const std::vector<ContactCandidate> candidates = clusters(dice);
+        std::vector<ContactCandidate> turned = candidates;
+        for (ContactCandidate& candidate : turned) {
+            candidate.position = turn * candidate.position + Vec3(3, 4, 5);
+            candidate.normal = turn * candidate.normal;
         }
-        const auto before = patches(touches), after = patches(turned);
+        const auto before = patches(candidates), after = patches(turned);
         ASSERT_EQ(before.size(), after.size());
         for (const PatchManifold& patch : before)
             ASSERT_TRUE(std::any_of(
@@ -297,7 +301,7 @@ TEST(ContactPatches, AFrameTurnedByRightAnglesTurnsTheGroups)
 // What has many equals to choose from: rings of even and odd counts, grids, and both at once.
 TEST(ContactPatches, TremblingKeepsPointsAndNames)
 {
-    std::vector<std::vector<SurfaceTouch>> sets;
+    std::vector<std::vector<ContactCandidate>> sets;
     for (const std::uint32_t count : {7U, 24U, 25U, 48U}) {
         sets.push_back(ring(count, 0));
         sets.push_back(ring(count, 0.2));
@@ -305,17 +309,18 @@ TEST(ContactPatches, TremblingKeepsPointsAndNames)
     }
     for (const int side : {3, 4, 9}) sets.push_back(grid(side, Vec3::UnitZ(), 0));
     sets.push_back(grid(8, Vec3(0, 1, 1).normalized(), 0));
-    for (const SurfaceTouch& touch : grid(5, -Vec3::UnitY(), 200)) sets.back().push_back(touch);
+    for (const ContactCandidate& candidate : grid(5, -Vec3::UnitY(), 200))
+        sets.back().push_back(candidate);
 
     Dice dice(65);
     for (std::size_t s = 0; s < sets.size(); ++s) {
         const auto still = patches(sets[s]);
         for (int i = 0; i < 50; ++i) {
-            std::vector<SurfaceTouch> trembling = sets[s];
-            for (SurfaceTouch& touch : trembling) {
-                touch.position += dice.point(1e-6);
-                touch.normal = (touch.normal + dice.point(1e-6)).normalized();
-                touch.separation += dice.between(-1e-6, 1e-6);
+            std::vector<ContactCandidate> trembling = sets[s];
+            for (ContactCandidate& candidate : trembling) {
+                candidate.position += dice.point(1e-6);
+                candidate.normal = (candidate.normal + dice.point(1e-6)).normalized();
+                candidate.separation += dice.between(-1e-6, 1e-6);
             }
             ASSERT_TRUE(same_points(still, patches(trembling))) << "seed 65, set " << s;
         }
@@ -324,11 +329,12 @@ TEST(ContactPatches, TremblingKeepsPointsAndNames)
 
 TEST(ContactPatches, ANewPatchLeavesTheOthersTheirNames)
 {
-    std::vector<SurfaceTouch> touches = grid(4, Vec3::UnitZ(), 0);
-    const auto before = patches(touches);
+    std::vector<ContactCandidate> candidates = grid(4, Vec3::UnitZ(), 0);
+    const auto before = patches(candidates);
     for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0)})
-        for (const SurfaceTouch& touch : grid(4, normal, 100)) touches.push_back(touch);
-    const auto after = patches(touches);
+        for (const ContactCandidate& candidate : grid(4, normal, 100))
+            candidates.push_back(candidate);
+    const auto after = patches(candidates);
     ASSERT_EQ(after.size(), 5U);
     EXPECT_TRUE(std::any_of(after.begin(), after.end(), [&](const PatchManifold& patch) {
         return patch.patch == before[0].patch
@@ -340,7 +346,7 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
 {
     // Twenty-six directions 35 degrees apart or more: the axes and halfway between two of them,
     // deep, and halfway between three of them, shallow.
-    std::vector<SurfaceTouch> touches;
+    std::vector<ContactCandidate> candidates;
     std::size_t overlapping = 0;
     for (int x = -1; x <= 1; ++x)
         for (int y = -1; y <= 1; ++y)
@@ -348,16 +354,16 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
                 const int odd = std::abs(x) + std::abs(y) + std::abs(z);
                 if (odd == 0) continue;
                 const Vec3 normal = Vec3(x, y, z).normalized();
-                const auto feature = static_cast<std::uint32_t>(touches.size());
+                const auto feature = static_cast<std::uint32_t>(candidates.size());
                 const double separation = odd < 3 ? -0.01 : 0.001 * x;
                 overlapping += separation < 0 ? 1 : 0;
-                touches.push_back({normal, normal, separation, feature});
+                candidates.push_back({normal, normal, separation, feature});
             }
     std::vector<PatchManifold> out;
-    const std::size_t left_out = make_patches(touches, kReach, 1, out);
+    const std::size_t left_out = make_patches(candidates, kReach, 1, out);
     // One that joins others may keep its normal to itself.
     ASSERT_GE(out.size(), kMostPatches);
-    ASSERT_LE(out.size(), touches.size());
+    ASSERT_LE(out.size(), candidates.size());
     std::set<std::uint32_t> held;
     for (const PatchManifold& patch : out)
         for (const std::uint32_t feature : features(patch.manifold)) held.insert(feature);
@@ -365,22 +371,22 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
     // them.
     EXPECT_LE(left_out, overlapping);
     EXPECT_GE(held.size() + left_out, kMostPatches);
-    for (const SurfaceTouch& touch : touches) {
-        EXPECT_TRUE(touch.separation > -0.01 || held.count(touch.feature) == 1);
+    for (const ContactCandidate& candidate : candidates) {
+        EXPECT_TRUE(candidate.separation > -0.01 || held.count(candidate.feature) == 1);
     }
 }
 
 // How far the touch furthest from any point that is kept is from the nearest of them.
-double least_covered(const std::vector<SurfaceTouch>& touches,
+double least_covered(const std::vector<ContactCandidate>& candidates,
                      const std::vector<PatchManifold>& found)
 {
     double furthest = 0;
-    for (const SurfaceTouch& touch : touches) {
+    for (const ContactCandidate& candidate : candidates) {
         double nearest = 10;
         for (const PatchManifold& patch : found)
             for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k)
-                nearest =
-                    std::min(nearest, (patch.manifold.points[k].position - touch.position).norm());
+                nearest = std::min(nearest,
+                                   (patch.manifold.points[k].position - candidate.position).norm());
         furthest = std::max(furthest, nearest);
     }
     return furthest;
@@ -389,7 +395,7 @@ double least_covered(const std::vector<SurfaceTouch>& touches,
 // A shaft in its hole touches all round.
 TEST(ContactPatches, OfAFastBodyHeldAllRoundPlacesBetweenTheEndsAreKeptToo)
 {
-    const std::vector<SurfaceTouch> shaft = ring(400, std::numbers::pi / 2);
+    const std::vector<ContactCandidate> shaft = ring(400, std::numbers::pi / 2);
     // Three hundredths of size, and what places are told apart by.
     EXPECT_LE(least_covered(shaft, patches(shaft, 0.2)), 0.035);
     const std::vector<PatchManifold> fast = patches(shaft, 0.2);
@@ -402,11 +408,12 @@ TEST(ContactPatches, OfAFastBodyHeldAllRoundPlacesBetweenTheEndsAreKeptToo)
 TEST(ContactPatches, OfAFastBodyThatIsNotHeldFromOppositeSidesFourOfAGroupAreKept)
 {
     // Their normals are 107 degrees apart at most.
-    const std::vector<SurfaceTouch> bowl = ring(400, 0.93);
+    const std::vector<ContactCandidate> bowl = ring(400, 0.93);
     EXPECT_GT(least_covered(bowl, patches(bowl, 0.2)), 0.05);
     // Two faces that look at one another do not bend.
-    std::vector<SurfaceTouch> faces = grid(20, Vec3::UnitZ(), 0);
-    for (const SurfaceTouch& touch : grid(20, -Vec3::UnitZ(), 400)) faces.push_back(touch);
+    std::vector<ContactCandidate> faces = grid(20, Vec3::UnitZ(), 0);
+    for (const ContactCandidate& candidate : grid(20, -Vec3::UnitZ(), 400))
+        faces.push_back(candidate);
     EXPECT_EQ(patches(faces, 0.2).size(), 2U);
 }
 

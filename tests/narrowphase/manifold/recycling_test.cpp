@@ -36,20 +36,20 @@ Touching touching(RandomShapes& random)
 }
 
 template <class Real>
-FoundManifold<Real> find(const Touching& pair)
+CachedManifold<Real> find(const Touching& pair)
 {
     return {run<Real>(hull_hull<Real>, pair.shapes, kA, kB, pair.pose, kReach),
             cast<Real>(pair.pose), static_cast<Real>(kReach)};
 }
 
 template <class Real>
-bool again(const FoundManifold<Real>& found,
+bool again(const CachedManifold<Real>& found,
            const Touching& pair,
            const Pose& pose,
-           double reach,
+           double speculative_margin,
            LocalManifold<Real>& out)
 {
-    return recycle<Real>(found, cast<Real>(pose), static_cast<Real>(reach),
+    return recycle<Real>(found, cast<Real>(pose), static_cast<Real>(speculative_margin),
                          static_cast<Real>(pair.radius_b), static_cast<Real>(kBound), out);
 }
 

@@ -62,10 +62,11 @@ std::vector<Slider> sliders(Shapes& shapes)
 
 template <class Real>
 std::vector<TriangleManifold<Real>>
-touch_mesh(const Shapes& shapes, ShapeRef shape, const Pose& pose, double reach)
+touch_mesh(const Shapes& shapes, ShapeRef shape, const Pose& pose, double speculative_margin)
 {
     std::vector<TriangleManifold<Real>> found;
-    collide_mesh<Real>(shapes, kMesh, shape, cast<Real>(pose), static_cast<Real>(reach), found);
+    collide_mesh<Real>(shapes, kMesh, shape, cast<Real>(pose),
+                       static_cast<Real>(speculative_margin), found);
     return found;
 }
 
@@ -86,13 +87,13 @@ double separation_from(const Mesh& mesh, const Vec3& half, const Pose& pose)
             }
         double best = -std::numeric_limits<double>::max();
         for (const Vec3& axis : axes) {
-            const double reach = (turn.transpose() * axis).cwiseAbs().dot(half);
+            const double speculative_margin = (turn.transpose() * axis).cwiseAbs().dot(half);
             double low = std::numeric_limits<double>::max(), high = -low;
             for (const Vec3& corner : corners) {
                 low = std::min(low, axis.dot(corner - pose.position));
                 high = std::max(high, axis.dot(corner - pose.position));
             }
-            best = std::max({best, low - reach, -high - reach});
+            best = std::max({best, low - speculative_margin, -high - speculative_margin});
         }
         least = std::min(least, best);
     }
@@ -187,7 +188,7 @@ TEST(MeshPairs, DeepestPointOnAFloorIsTheLowestPoint)
         pose.position.z() = 0;
         const std::vector<Vec3> corners =
             is_box ? corners_of(shapes.boxes[0].half_extents) : shapes.hulls[0].vertices;
-        const double lowest = -reach_of(corners, pose)(-Vec3::UnitZ());
+        const double lowest = -extent_of(corners, pose)(-Vec3::UnitZ());
         pose.position.z() = -lowest - 0.02;
         const auto found =
             touch_mesh<double>(shapes, {is_box ? ShapeKind::box : ShapeKind::hull, 0}, pose, 0.01);
@@ -308,8 +309,8 @@ TEST(MeshPairs, AHullIsAsDeepAsItLiesHoweverUnevenItsFaces)
     EXPECT_GT(slivers, 300);
 }
 
-// Of a fast body all triangles of a small mesh are within reach, those too that look at it over the
-// hollow of the mesh or from behind the next one.
+// Of a fast body all triangles of a small mesh are within the margin, those too that look at it
+// over the hollow of the mesh or from behind the next one.
 TEST(MeshPairs, WhatIsApartDoesNotOverlapHoweverFarTheReach)
 {
     const double ring = 0.4, tube = 0.1;

@@ -73,10 +73,10 @@ struct Stage {
     }
 
     using Found = std::vector<TriangleManifold<double>>;
-    Found meet(const Guest& guest,
-               const Vec3& at,
-               const Found& before = {},
-               const Quat& turn = Quat::Identity()) const
+    Found collide(const Guest& guest,
+                  const Vec3& at,
+                  const Found& before = {},
+                  const Quat& turn = Quat::Identity()) const
     {
         std::vector<std::uint32_t> held;
         for (const auto& one : before) held.push_back(one.triangle);
@@ -109,7 +109,7 @@ TEST(MeshSides, AnOpenMeshPushesFromBothSides)
     for (const Guest& guest : stage.guests)
         for (const double side : {1.0, -1.0}) {
             SCOPED_TRACE(std::string(guest.name) + (side > 0 ? " in front" : " behind"));
-            const auto found = stage.meet(guest, Vec3(0.3, 0.2, side * (guest.height - 0.05)));
+            const auto found = stage.collide(guest, Vec3(0.3, 0.2, side * (guest.height - 0.05)));
             expect_push(found, side * Vec3::UnitZ(), 0.05);
             for (const auto& one : found) EXPECT_EQ((one.triangle & kBehind) != 0, side < 0);
         }
@@ -121,9 +121,9 @@ TEST(MeshSides, WhatTouchedOnOneSideIsPushedBackThereFromThrough)
     for (const Guest& guest : stage.guests)
         for (const double side : {1.0, -1.0}) {
             SCOPED_TRACE(std::string(guest.name) + (side > 0 ? " in front" : " behind"));
-            auto found = stage.meet(guest, Vec3(0.3, 0.2, side * guest.height));
+            auto found = stage.collide(guest, Vec3(0.3, 0.2, side * guest.height));
             for (const double height : {0.1, -0.02, -0.1}) {
-                found = stage.meet(guest, Vec3(0.32, 0.2, side * height), found);
+                found = stage.collide(guest, Vec3(0.32, 0.2, side * height), found);
                 expect_push(found, side * Vec3::UnitZ(), guest.height - height);
             }
         }
@@ -135,10 +135,10 @@ TEST(MeshSides, WhatWasPressedAllTheWayThroughIsPushedBackToo)
     for (const Guest& guest : stage.guests)
         for (const double side : {1.0, -1.0}) {
             SCOPED_TRACE(std::string(guest.name) + (side > 0 ? " in front" : " behind"));
-            auto found = stage.meet(guest, Vec3(0.3, 0.2, side * 0.5 * guest.height));
+            auto found = stage.collide(guest, Vec3(0.3, 0.2, side * 0.5 * guest.height));
             for (const double share : {-0.8, -1.2, -1.6}) {
                 const double height = share * guest.height;
-                found = stage.meet(guest, Vec3(0.32, 0.2, side * height), found);
+                found = stage.collide(guest, Vec3(0.32, 0.2, side * height), found);
                 expect_push(found, side * Vec3::UnitZ(), guest.height - height);
             }
         }
@@ -153,10 +153,10 @@ TEST(MeshSides, WhatLeansIsPushedBackByTheTriangleThatItsMiddleIsOver)
     for (const double lean : {0.1, 0.5}) {
         SCOPED_TRACE(lean);
         const Quat turn(Eigen::AngleAxisd(lean, Vec3::UnitY()));
-        auto found = stage.meet(plate, Vec3(-0.1, 0.45, 0.001), {}, turn);
+        auto found = stage.collide(plate, Vec3(-0.1, 0.45, 0.001), {}, turn);
         ASSERT_FALSE(found.empty());
         for (const double height : {-0.01, -0.03, -0.1}) {
-            found = stage.meet(plate, Vec3(-0.1, 0.45, height), found, turn);
+            found = stage.collide(plate, Vec3(-0.1, 0.45, height), found, turn);
             ASSERT_FALSE(found.empty()) << height;
             for (const auto& one : found) EXPECT_GT(one.manifold.normal.z(), 0) << height;
         }
@@ -167,9 +167,9 @@ TEST(MeshSides, WhatGoesRoundARimIsLetGo)
 {
     const Stage stage(floor_soup());
     const Guest& ball = stage.guests[0];
-    const auto above = stage.meet(ball, Vec3(2.1, 0.3, 0.1));
+    const auto above = stage.collide(ball, Vec3(2.1, 0.3, 0.1));
     ASSERT_FALSE(above.empty());
-    const auto below = stage.meet(ball, Vec3(2.1, 0.3, -0.1), above);
+    const auto below = stage.collide(ball, Vec3(2.1, 0.3, -0.1), above);
     ASSERT_FALSE(below.empty());
     for (const auto& one : below) EXPECT_LT(one.manifold.normal.z(), 0);
 }
@@ -180,28 +180,29 @@ TEST(MeshSides, AClosedMeshHasAnInside)
     for (const Guest& guest : stage.guests) {
         SCOPED_TRACE(guest.name);
         // By the nearest face, whose inside its center is in.
-        expect_push(stage.meet(guest, Vec3(0.1, 0.2, 0.9)), Vec3::UnitZ(), guest.height + 0.1);
-        expect_push(stage.meet(guest, Vec3(0.1, 0.2, 0.95 + guest.height)), Vec3::UnitZ(), 0.05);
+        expect_push(stage.collide(guest, Vec3(0.1, 0.2, 0.9)), Vec3::UnitZ(), guest.height + 0.1);
+        expect_push(stage.collide(guest, Vec3(0.1, 0.2, 0.95 + guest.height)), Vec3::UnitZ(), 0.05);
     }
 }
 
 TEST(MeshSides, AStillMeshWoundInwardIsTurnedOverAndToldOf)
 {
     const auto [vertices, triangles] = cube_soup(true);
-    const MendedMesh mended = mend_still(vertices, triangles);
-    EXPECT_EQ(mended.health.inside_out, 1u);
-    ASSERT_EQ(mended.remarks.size(), 1u);
-    EXPECT_NE(mended.remarks[0].find("inside out"), std::string::npos);
-    for (std::size_t t = 0; t < mended.mesh.triangles.size(); ++t)
-        EXPECT_GT(mended.mesh.normals[t].dot(mended.mesh.vertices[mended.mesh.triangles[t][0]]), 0);
+    const RepairedMesh repaired = mend_still(vertices, triangles);
+    EXPECT_EQ(repaired.health.inside_out, 1u);
+    ASSERT_EQ(repaired.warnings.size(), 1u);
+    EXPECT_NE(repaired.warnings[0].find("inside out"), std::string::npos);
+    for (std::size_t t = 0; t < repaired.mesh.triangles.size(); ++t)
+        EXPECT_GT(
+            repaired.mesh.normals[t].dot(repaired.mesh.vertices[repaired.mesh.triangles[t][0]]), 0);
 }
 
 TEST(MeshSides, AStillMeshWithNothingWrongStaysAsItIs)
 {
     for (const Soup& soup : {floor_soup(), cube_soup(false)}) {
-        const MendedMesh mended = mend_still(soup.first, soup.second);
-        EXPECT_TRUE(mended.remarks.empty());
-        EXPECT_EQ(mended.mesh.triangles, build_mesh(soup.first, soup.second).mesh.triangles);
+        const RepairedMesh repaired = mend_still(soup.first, soup.second);
+        EXPECT_TRUE(repaired.warnings.empty());
+        EXPECT_EQ(repaired.mesh.triangles, build_mesh(soup.first, soup.second).mesh.triangles);
     }
 }
 
@@ -209,9 +210,9 @@ TEST(MeshSides, OneTriangleWoundAgainstTheOthersIsTurned)
 {
     auto [vertices, triangles] = floor_soup();
     std::swap(triangles[7][0], triangles[7][1]);
-    const MendedMesh mended = mend_still(vertices, triangles);
-    EXPECT_EQ(mended.health.turned, 1u);
-    for (const Vec3& normal : mended.mesh.normals) EXPECT_GT(normal.z(), 0.9);
+    const RepairedMesh repaired = mend_still(vertices, triangles);
+    EXPECT_EQ(repaired.health.turned, 1u);
+    for (const Vec3& normal : repaired.mesh.normals) EXPECT_GT(normal.z(), 0.9);
 }
 
 }  // namespace

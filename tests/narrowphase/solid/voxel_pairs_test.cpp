@@ -18,28 +18,31 @@ namespace {
 
 constexpr ShapeRef kFirst{ShapeKind::solid, 0}, kSecond{ShapeKind::solid, 1};
 
-std::vector<SurfaceTouch>
-touches_of(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a, double reach)
+std::vector<ContactCandidate> touches_of(
+    const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a, double speculative_margin)
 {
-    std::vector<SurfaceTouch> touches;
-    touch_by_voxels(shapes, shapes.solids[a.index], b, b_in_a, reach, touches);
-    return touches;
+    std::vector<ContactCandidate> candidates;
+    find_voxel_candidates(shapes, shapes.solids[a.index], b, b_in_a, speculative_margin,
+                          candidates);
+    return candidates;
 }
 
-SurfaceTouch deepest(const Shapes& shapes, ShapeRef other, const Pose& pose, double reach)
+ContactCandidate
+deepest(const Shapes& shapes, ShapeRef other, const Pose& pose, double speculative_margin)
 {
-    SurfaceTouch most;
+    ContactCandidate most;
     most.separation = 1e300;
-    for (const SurfaceTouch& touch : touches_of(shapes, kFirst, other, pose, reach))
-        if (touch.separation < most.separation) most = touch;
+    for (const ContactCandidate& candidate :
+         touches_of(shapes, kFirst, other, pose, speculative_margin))
+        if (candidate.separation < most.separation) most = candidate;
     return most;
 }
 
 std::vector<PatchManifold>
-patches(const Shapes& shapes, ShapeRef other, const Pose& pose, double reach)
+patches(const Shapes& shapes, ShapeRef other, const Pose& pose, double speculative_margin)
 {
     std::vector<PatchManifold> out;
-    EXPECT_EQ(collide_solid(shapes, kFirst, other, pose, reach, out).left_out, 0U);
+    EXPECT_EQ(collide_solid(shapes, kFirst, other, pose, speculative_margin, out).left_out, 0U);
     return out;
 }
 
@@ -74,8 +77,8 @@ Errors ball_errors(int voxels_in_radius, bool solid)
         const double separation = dice.between(-0.1, 0.02);
         const Pose pose{way * (1.75 + separation), dice.turn()};
         const ShapeRef other = solid ? kSecond : ShapeRef{ShapeKind::sphere, 0};
-        const SurfaceTouch touch = deepest(shapes, other, pose, 0.1);
-        worst.depth = std::max(worst.depth, std::abs(touch.separation - separation));
+        const ContactCandidate candidate = deepest(shapes, other, pose, 0.1);
+        worst.depth = std::max(worst.depth, std::abs(candidate.separation - separation));
         const auto found = patches(shapes, other, pose, 0.1);
         double least = 0;
         const Vec3 normal = deepest(found, least).manifold.normal;
@@ -212,10 +215,11 @@ TEST(VoxelPairs, CrossedEdgesAreToldTheWayOutOfAFaceWithinHalfAVoxel)
         const Quat back = about_x.conjugate();
         const Pose pose{back * apart, back * about_y};
         for (const ShapeRef other : {kSecond, ShapeRef{ShapeKind::box, 0}}) {
-            const auto touch = deepest(shapes, other, pose, voxel);
+            const auto candidate = deepest(shapes, other, pose, voxel);
             // Each edge sees the faces of the other, at 45 degrees; points are half a voxel aside.
-            ASSERT_GT(touch.separation, separation - 1e-5 * voxel) << "seed 95, pair " << i;
-            ASSERT_LT(touch.separation, 0.7 * separation + 0.5 * voxel) << "seed 95, pair " << i;
+            ASSERT_GT(candidate.separation, separation - 1e-5 * voxel) << "seed 95, pair " << i;
+            ASSERT_LT(candidate.separation, 0.7 * separation + 0.5 * voxel)
+                << "seed 95, pair " << i;
         }
     }
 }
@@ -264,17 +268,17 @@ TEST(VoxelPairs, SwappedTheyTouchTheSame)
         const Pose pose{dice.point(0.5) + Vec3(0.7, 0, 0), dice.turn()};
         const Quat turn = pose.orientation.conjugate();
         const Pose back{turn * -pose.position, turn};
-        std::map<std::uint32_t, SurfaceTouch> one;
-        for (const SurfaceTouch& touch : touches_of(shapes, kFirst, kSecond, pose, voxel))
-            one[touch.feature ^ (1U << 30)] = touch;
+        std::map<std::uint32_t, ContactCandidate> one;
+        for (const ContactCandidate& candidate : touches_of(shapes, kFirst, kSecond, pose, voxel))
+            one[candidate.feature ^ (1U << 30)] = candidate;
         const auto other = touches_of(shapes, kSecond, kFirst, back, voxel);
         ASSERT_EQ(one.size(), other.size());
-        for (const SurfaceTouch& touch : other) {
-            ASSERT_EQ(one.count(touch.feature), 1U);
-            const SurfaceTouch& same = one[touch.feature];
-            ASSERT_NEAR(touch.separation, same.separation, 1e-12);
-            ASSERT_LT((pose * touch.position - same.position).norm(), 1e-9);
-            ASSERT_LT((pose.orientation * touch.normal + same.normal).norm(), 1e-9);
+        for (const ContactCandidate& candidate : other) {
+            ASSERT_EQ(one.count(candidate.feature), 1U);
+            const ContactCandidate& same = one[candidate.feature];
+            ASSERT_NEAR(candidate.separation, same.separation, 1e-12);
+            ASSERT_LT((pose * candidate.position - same.position).norm(), 1e-9);
+            ASSERT_LT((pose.orientation * candidate.normal + same.normal).norm(), 1e-9);
             ++compared;
         }
     }
@@ -289,7 +293,7 @@ TEST(VoxelPairs, CullingMissesNothing)
     shapes.solids = {small_torus(0.6, 0.3, voxel), small_torus(0.6, 0.3, voxel)};
     shapes.capsules = {{0.3, 0.5}};
     const SurfacePoints& points = shapes.solids[0].points;
-    const auto count = [&](const auto& side, const Pose& pose, double reach) {
+    const auto count = [&](const auto& side, const Pose& pose, double speculative_margin) {
         std::size_t all = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             using Real = typename std::decay_t<decltype(side)>::Real;
@@ -301,7 +305,8 @@ TEST(VoxelPairs, CullingMissesNothing)
             leaf.y[0] = static_cast<Real>(seen.y());
             leaf.z[0] = static_cast<Real>(seen.z());
             side.sample(leaf);
-            if (!(leaf.distance[0] <= reach) || !(leaf.distance[0] < side.furthest())) continue;
+            if (!(leaf.distance[0] <= speculative_margin) || !(leaf.distance[0] < side.furthest()))
+                continue;
             const Vec3 gradient(leaf.gx[0], leaf.gy[0], leaf.gz[0]);
             if (gradient.norm() < kNoGradient) {
                 ++all;
@@ -316,7 +321,7 @@ TEST(VoxelPairs, CullingMissesNothing)
     std::size_t total = 0;
     for (int i = 0; i < 60; ++i) {
         const Pose pose{dice.point(1.2), dice.turn()};
-        std::vector<PointTouch> found;
+        std::vector<PointCandidate> found;
         const FieldSide field(shapes.solids[1]);
         walk_surface(points, field, pose, voxel, found);
         ASSERT_EQ(found.size(), count(field, pose, voxel)) << "seed 97, pose " << i;
@@ -332,7 +337,7 @@ TEST(VoxelPairs, CullingMissesNothing)
 // What is told to be apart may come closer by that, in any way, and has no touch yet.
 TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
 {
-    const double voxel = 1.0 / 10, reach = 0.5 * voxel;
+    const double voxel = 1.0 / 10, speculative_margin = 0.5 * voxel;
     Shapes shapes;
     shapes.solids = {small_torus(0.6, 0.3, voxel), small_torus(0.6, 0.3, voxel)};
     shapes.capsules = {{0.3, 0.5}};
@@ -344,8 +349,9 @@ TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
         const ShapeRef other = kinds[i % 3];
         const Pose pose{dice.point(2), dice.turn()};
         std::vector<PatchManifold> out;
-        const SolidAnswer answer = collide_solid(shapes, kFirst, other, pose, reach, out);
-        const double free = answer.apart - reach;
+        const SolidAnswer answer =
+            collide_solid(shapes, kFirst, other, pose, speculative_margin, out);
+        const double free = answer.apart - speculative_margin;
         if (!out.empty() || !(free > 0)) continue;
         ++known;
         // Straight on, and turned about its own middle: none of them reaches further than 1 m.
@@ -354,7 +360,7 @@ TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
         const Quat turn(Eigen::AngleAxisd(angle, dice.point(1).normalized()));
         const Pose turned{pose.position, turn * pose.orientation};
         for (const Pose& moved : {closer, turned})
-            collide_solid(shapes, kFirst, other, moved, reach, out);
+            collide_solid(shapes, kFirst, other, moved, speculative_margin, out);
         ASSERT_TRUE(out.empty()) << "seed 101, pose " << i << " apart " << answer.apart;
     }
     EXPECT_GT(known, 100U);
@@ -368,10 +374,10 @@ TEST(VoxelPairs, WhereTheFieldEndsNothingIsTold)
         shapes.solids = {small_ball(0.3, voxel), small_ball(0.2, voxel)};
         const double band = shapes.solids[0].field.band;
         const Pose pose{Vec3(0.05, 0.02, 0.5 + 0.6 * band), Quat::Identity()};
-        const auto touches = touches_of(shapes, kFirst, kSecond, pose, 2 * band);
-        ASSERT_FALSE(touches.empty());
-        for (const SurfaceTouch& touch : touches)
-            ASSERT_LT(touch.separation, double{static_cast<float>(band)}) << "voxel " << voxel;
+        const auto candidates = touches_of(shapes, kFirst, kSecond, pose, 2 * band);
+        ASSERT_FALSE(candidates.empty());
+        for (const ContactCandidate& candidate : candidates)
+            ASSERT_LT(candidate.separation, double{static_cast<float>(band)}) << "voxel " << voxel;
     }
 }
 
@@ -395,9 +401,9 @@ TEST(VoxelPairs, NothingSmallFallsThroughBetweenThePoints)
                                                       {ShapeKind::box, small}};
         for (const auto& [kind, low] : kinds) {
             const Pose pose{at + Vec3(0, 0, 0.5 + low + sunk), Quat::Identity()};
-            const SurfaceTouch touch = deepest(shapes, {kind, 0}, pose, voxel);
-            ASSERT_NEAR(touch.separation, sunk, 1e-5 * voxel) << static_cast<int>(kind);
-            ASSERT_LT((touch.normal - Vec3::UnitZ()).norm(), 1e-5);
+            const ContactCandidate candidate = deepest(shapes, {kind, 0}, pose, voxel);
+            ASSERT_NEAR(candidate.separation, sunk, 1e-5 * voxel) << static_cast<int>(kind);
+            ASSERT_LT((candidate.normal - Vec3::UnitZ()).norm(), 1e-5);
         }
         // And well inside it is still told the way out.
         const Pose within{at + Vec3(0, 0, 0.2), dice.turn()};

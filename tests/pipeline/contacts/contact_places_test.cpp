@@ -136,8 +136,8 @@ std::size_t count_found(World& world)
         if (!contact || !is_recycled(colliders.shape[pair.a].kind, colliders.shape[pair.b].kind))
             continue;
         PairCache cache;
-        FoundManifold<Real> told;
-        const FoundManifold<Real>& kept = contacts.found[contacts.of_pair[i].contact];
+        CachedManifold<Real> told;
+        const CachedManifold<Real>& kept = contacts.found[contacts.of_pair[i].contact];
         EXPECT_FALSE(find_or_recycle(shapes, colliders, bounds, pair, &kept, cache, told));
         EXPECT_EQ(told.manifold.count, contact->count);
         for (std::size_t k = 0; k < static_cast<std::size_t>(contact->count); ++k)

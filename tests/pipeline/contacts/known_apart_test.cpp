@@ -34,11 +34,13 @@ std::size_t count_known_apart(World& world)
         const Pose seen =
             pose_seen_from_a(shapes, colliders.shape[b], bounds.placed[a], bounds.placed[b]);
         const Distance distance =
-            gjk(CorePair(shapes, colliders.shape[a], colliders.shape[b], seen),
+            gjk(ConvexCorePair(shapes, colliders.shape[a], colliders.shape[b], seen),
                 std::numeric_limits<double>::infinity());
         EXPECT_TRUE(distance.apart) << "pair " << i;
         const double near = 1e-5 * (colliders.outer_radius[a] + colliders.outer_radius[b]);
-        EXPECT_GT(distance.distance, bounds.reach[a] + bounds.reach[b] - near) << "pair " << i;
+        EXPECT_GT(distance.distance,
+                  bounds.speculative_margin[a] + bounds.speculative_margin[b] - near)
+            << "pair " << i;
     }
     return known;
 }

@@ -45,7 +45,7 @@ TEST(BackUp, ElasticBallKeepsItsEnergyWhereItsFlightDoes)
         double least = 1;
         for (int step = 0; step < 1000; ++step) {
             world.step();
-            least = std::min(least, least_gap(world, 1, 0.1));
+            least = std::min(least, least_separation(world, 1, 0.1));
             ASSERT_NEAR(energy_of(world), before, 1e-9 * before);
         }
         EXPECT_GT(least, 0);
@@ -102,7 +102,7 @@ TEST(BackUp, BouncingBallComesToRestInTheTimeItShould)
     int last = 0;
     for (int step = 1; step <= 200; ++step) {
         world.step();
-        ASSERT_GT(least_gap(world, 1, 0.1), 0);
+        ASSERT_GT(least_separation(world, 1, 0.1), 0);
         if (velocity_of(world, 1).norm() > 1e-3) last = step;
     }
     // Of the endless row of bounces those within the tolerance are left out.
@@ -132,7 +132,7 @@ TEST(BackUp, BallsNeverOverlapAndGainNoEnergy)
         double energy = energy_of(world);
         for (int step = 0; step < 60; ++step) {
             world.step();
-            ASSERT_GT(least_gap(world, 1, 0.1), 0) << "step " << step;
+            ASSERT_GT(least_separation(world, 1, 0.1), 0) << "step " << step;
             ASSERT_LT(energy_of(world), energy * (1 + 1e-6));
         }
         EXPECT_LT(energy_of(world), 0.9 * energy);

@@ -34,7 +34,7 @@ inline double energy_of(const World& world)
 }
 
 // The least distance between any two of balls of one radius, and of them from the floor.
-inline double least_gap(const World& world, std::size_t first, double radius)
+inline double least_separation(const World& world, std::size_t first, double radius)
 {
     double least = 1e30;
     for (std::size_t i = first; i < world.bodies().size(); ++i) {

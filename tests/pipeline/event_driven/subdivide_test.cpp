@@ -109,7 +109,7 @@ TEST(Subdivide, ElasticBallKeepsItsEnergyWhereItsFlightDoes)
     double least = 1;
     for (int step = 0; step < 500; ++step) {
         world.step();
-        least = std::min(least, least_gap(world, 1, 0.1));
+        least = std::min(least, least_separation(world, 1, 0.1));
         ASSERT_NEAR(energy_of(world), before, 1e-9 * before);
     }
     EXPECT_LT(least, 0.05);  // it does come down
@@ -137,7 +137,7 @@ TEST(Subdivide, BallsKeepTheirBoundAndGainNoEnergy)
         double energy = energy_of(world);
         for (int step = 0; step < 60; ++step) {
             world.step();
-            ASSERT_GT(least_gap(world, 1, 0.1), -bound) << "step " << step;
+            ASSERT_GT(least_separation(world, 1, 0.1), -bound) << "step " << step;
             ASSERT_LT(energy_of(world), energy * (1 + 1e-6));
         }
         EXPECT_LE(world.report().deepest, bound);

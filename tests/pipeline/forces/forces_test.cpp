@@ -609,7 +609,7 @@ TEST(Springs, ByDefaultAreToldNothingOfAndHold)
     add_body(scene, Vec3(1.1, 0, 0));
     scene.springs.push_back(spring_between(0, kNone, 2e8, 1));
     World world(scene);
-    EXPECT_TRUE(world.remarks().empty());
+    EXPECT_TRUE(world.warnings().empty());
     const double first = energy(world);
     world.step(500);
     EXPECT_NEAR(energy(world) / first, 1, 1e-6);
@@ -621,10 +621,10 @@ TEST(Springs, ThatSwingWiderAreToldWithWhatWouldDo)
     add_body(scene, Vec3(1, 0, 0));
     scene.springs.push_back(spring_between(0, kNone, 2e6, 1));  // limit 2 ms
     World world(scene);
-    ASSERT_EQ(world.remarks().size(), 1u);
-    EXPECT_NE(world.remarks()[0].find("substeps=5"), std::string::npos) << world.remarks()[0];
+    ASSERT_EQ(world.warnings().size(), 1u);
+    EXPECT_NE(world.warnings()[0].find("substeps=5"), std::string::npos) << world.warnings()[0];
     scene.settings.substeps = 5;
-    EXPECT_TRUE(World(scene).remarks().empty());
+    EXPECT_TRUE(World(scene).warnings().empty());
 }
 
 class EveryMotion : public testing::TestWithParam<std::tuple<Integrator, Rotation>> { };

@@ -65,13 +65,13 @@ TEST(ConvexQuery, TreesPartWhatIsFarAndNeverWhatTouches)
 
 TEST(ConvexQuery, TellsOfBoxesWhatEachMethodClaims)
 {
-    const double shift = 0.75, gap = 0.25;
+    const double shift = 0.75, clearance = 0.25;
     ConvexQuery query(box(0.5, 0.5, 0.5), box(0.5, 1, 1));
     EXPECT_EQ(query.trouble(), "");
     for (const MethodDescription& method : known_methods()) {
         for (const MethodStart start : kStarts) {
             const ConvexAnswer touching = query.ask(method.name, at(shift, 0.1, 0.2), start);
-            const ConvexAnswer apart = query.ask(method.name, at(1 + gap, 0.1, 0.2), start);
+            const ConvexAnswer apart = query.ask(method.name, at(1 + clearance, 0.1, 0.2), start);
             ASSERT_EQ(touching.trouble, "");
             EXPECT_NE(touching.verdict, QueryVerdict::apart) << method.name;
             EXPECT_NE(apart.verdict, QueryVerdict::touching) << method.name;
@@ -82,8 +82,8 @@ TEST(ConvexQuery, TellsOfBoxesWhatEachMethodClaims)
             }
             if (method.distance) {
                 EXPECT_EQ(apart.verdict, QueryVerdict::apart) << method.name;
-                EXPECT_NEAR(apart.separation, gap, 1e-12) << method.name;
-                EXPECT_NEAR((apart.on_b - apart.on_a - gap * Vec3::UnitX()).norm(), 0, 1e-12);
+                EXPECT_NEAR(apart.separation, clearance, 1e-12) << method.name;
+                EXPECT_NEAR((apart.on_b - apart.on_a - clearance * Vec3::UnitX()).norm(), 0, 1e-12);
             }
             if (method.volume) {
                 EXPECT_NEAR(touching.volume, 0.25, 1e-12) << method.name;
@@ -131,8 +131,8 @@ TEST(ConvexQuery, RefusesQuestionsThatMakeNoSense)
 {
     ConvexQuery query(box(1, 1, 1), box(1, 1, 1));
     const std::string_view good = known_methods().front().name;
-    const auto trouble = [&](std::string_view method, const Pose& pose, double reach = 1) {
-        const ConvexAnswer answer = query.ask(method, pose, MethodStart::cold, reach);
+    const auto trouble = [&](std::string_view method, const Pose& pose, double max_separation = 1) {
+        const ConvexAnswer answer = query.ask(method, pose, MethodStart::cold, max_separation);
         EXPECT_EQ(answer.verdict, QueryVerdict::refused);
         return answer.trouble;
     };

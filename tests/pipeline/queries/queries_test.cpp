@@ -244,9 +244,9 @@ std::vector<Vec3> points_within(const QueryShape& shape)
             continue;
         }
         // The cube is drawn in to a ball, or to a disk at each height.
-        const double reach = can ? at.head<2>().norm() : at.norm();
+        const double speculative_margin = can ? at.head<2>().norm() : at.norm();
         const double widest = can ? at.head<2>().cwiseAbs().maxCoeff() : at.cwiseAbs().maxCoeff();
-        const double by = reach > 0 ? widest / reach : 0;
+        const double by = speculative_margin > 0 ? widest / speculative_margin : 0;
         if (can) {
             points.emplace_back(at.x() * by * can->radius, at.y() * by * can->radius,
                                 at.z() * can->half_length);

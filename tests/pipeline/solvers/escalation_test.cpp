@@ -119,7 +119,7 @@ TEST(Escalation, DoesNotThrowAColumnThatIsDropped)
     }
 }
 
-// A column with a small one in it that stays where it is, but turns: levers press it in as its
+// A column with a small one in it that stays where it is, but turns: lever arms press it in as its
 // mass would be. Its upper half rocks on it, and is not thrown higher from time to time.
 TEST(Escalation, HoldsTheHeavyOnWhoCanOnlyTurn)
 {
@@ -147,7 +147,7 @@ TEST(Escalation, HoldsTheHeavyOnWhoCanOnlyTurn)
 }
 
 // Of a ball on a pivot and the floor neither gives way to the other; where the whole is turned
-// their contact has levers of rounding alone, by which the exact solve once spun the ball.
+// their contact has lever arms of rounding alone, by which the exact solve once spun the ball.
 TEST(Escalation, SpinsNobodyWhoCanOnlyTurn)
 {
     for (const Precision precision : {Precision::float_, Precision::double_}) {

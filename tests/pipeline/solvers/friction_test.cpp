@@ -124,8 +124,8 @@ Slid corners(const Vec3& velocity, double spin, double time)
         double torque = 0;
         for (int k = 0; k < 4; ++k) {
             const double at = angle + std::atan2(k < 2 ? 1 : -1, k % 2 == 0 ? 1 : -1);
-            const double reach = std::hypot(kHalf.x(), kHalf.y());
-            const Vec3 arm(reach * std::cos(at), reach * std::sin(at), 0);
+            const double speculative_margin = std::hypot(kHalf.x(), kHalf.y());
+            const Vec3 arm(speculative_margin * std::cos(at), speculative_margin * std::sin(at), 0);
             const Vec3 slip = state.velocity + Vec3(-state.spin * arm.y(), state.spin * arm.x(), 0);
             if (slip.norm() < 1e-9) continue;
             const Vec3 push = -0.25 * kFriction * kGravity * slip.normalized();

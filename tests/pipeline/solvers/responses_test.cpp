@@ -47,7 +47,7 @@ TEST(Responses, ABoxComesToRestOnAPlane)
             const double swing = world.settings().dt / world.settings().substeps / 0.5;
             const double sunk = response == Response::penalty ? 4 * kGravity * swing * swing : 0;
             EXPECT_NEAR(world.pose(last_of(world)).position.z(), 0.5 - sunk, 1e-5);
-            EXPECT_TRUE(world.remarks().empty());
+            EXPECT_TRUE(world.warnings().empty());
         }
 }
 
@@ -214,8 +214,8 @@ TEST(Responses, PenaltyBeyondTheLimitIsCutAndSaid)
     made.scene.settings.penalty_stiffness = 1e8;
     World world(made.scene);
     world.step(300);
-    ASSERT_EQ(world.remarks().size(), 1u);
-    const std::string said = world.remarks().front();
+    ASSERT_EQ(world.warnings().size(), 1u);
+    const std::string said = world.warnings().front();
     EXPECT_NE(said.find("penalty_stiffness"), std::string::npos) << said;
     EXPECT_LT(world.velocity(last_of(world)).norm(), 1e-3);
     const auto at = said.find("take substeps=");
@@ -224,7 +224,7 @@ TEST(Responses, PenaltyBeyondTheLimitIsCutAndSaid)
     made.scene.settings.substeps = std::stoi(said.substr(at + 14));
     World finer(made.scene);
     finer.step(60);
-    EXPECT_TRUE(finer.remarks().empty());
+    EXPECT_TRUE(finer.warnings().empty());
 }
 
 TEST(Responses, KinematicPartsBodiesNoFasterThanThePushLimit)

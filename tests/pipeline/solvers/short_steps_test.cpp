@@ -34,14 +34,14 @@ TEST(ShortSteps, FrictionOnABallIsWhatItShouldBeFarAlongAFloor)
 
 TEST(ShortSteps, InFloatAreWarnedOf)
 {
-    const auto remarks = [](double substep, Precision precision) {
+    const auto warnings = [](double substep, Precision precision) {
         Scene scene = slipping_ball(substep);
         scene.settings.precision = precision;
-        return World(scene).remarks().size();
+        return World(scene).warnings().size();
     };
-    EXPECT_EQ(remarks(1.1e-5, Precision::float_), 0u);
-    EXPECT_EQ(remarks(9e-6, Precision::float_), 1u);
-    EXPECT_EQ(remarks(9e-6, Precision::double_), 0u);
+    EXPECT_EQ(warnings(1.1e-5, Precision::float_), 0u);
+    EXPECT_EQ(warnings(9e-6, Precision::float_), 1u);
+    EXPECT_EQ(warnings(9e-6, Precision::double_), 0u);
 }
 
 }  // namespace

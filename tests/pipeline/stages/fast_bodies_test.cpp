@@ -190,21 +190,21 @@ TEST(FastBodies, OnAPivotAreHeldWithTheEnergyTheyHad)
 TEST(FastBodies, FlyPastACornerUndeflected)
 {
     for (const bool marked : {false, true})
-        for (const double gap : {1e-4, 0.02, 0.3}) {
+        for (const double separation : {1e-4, 0.02, 0.3}) {
             SceneOf made = weightless();
             still(made.box(Vec3::Constant(1), Vec3::Zero()));
             still(made.body(made.shape(sheet(1)), {0, -4, 0}));
             // Over the edges of the box and of the sheet, by less than their way in a step.
             const double radius = 0.2, speed = marked ? 8 : 40;
-            made.ball(radius, {-3.05, 1 + radius + gap, 0}).velocity = Vec3(speed, 0, 0);
+            made.ball(radius, {-3.05, 1 + radius + separation, 0}).velocity = Vec3(speed, 0, 0);
             made.scene.bodies.back().fast = marked;
-            made.ball(radius, {-3.05, -3 + radius + gap, 0}).velocity = Vec3(speed, 0, 0);
+            made.ball(radius, {-3.05, -3 + radius + separation, 0}).velocity = Vec3(speed, 0, 0);
             made.scene.bodies.back().fast = marked;
             World world(made.scene);
             for (int step = 0; step < 60; ++step) {
                 world.step();
                 for (std::size_t i = 2; i < 4; ++i)
-                    ASSERT_EQ(world.velocity(world.bodies()[i]), Vec3(speed, 0, 0)) << gap;
+                    ASSERT_EQ(world.velocity(world.bodies()[i]), Vec3(speed, 0, 0)) << separation;
             }
             EXPECT_GT(x_of(world, 2), 4);
             EXPECT_GT(x_of(world, 3), 4);
@@ -274,7 +274,7 @@ TEST(FastBodies, AreNoticedAsTheyFallFasterAndFaster)
     made.ball(0.03, {5.1, 0.2, 30});
     World world(made.scene);
     EXPECT_FALSE(world.effects().on.has(Effect::fast_motion));
-    EXPECT_FALSE(has_stage(world, "sweep_fast"));
+    EXPECT_FALSE(has_stage(world, "continuous_collision"));
     for (int step = 0; step < 240; ++step) {
         world.step();
         for (std::size_t i = 2; i < 4; ++i)
@@ -282,7 +282,7 @@ TEST(FastBodies, AreNoticedAsTheyFallFasterAndFaster)
     }
     EXPECT_TRUE(world.effects().on.has(Effect::fast_motion));
     EXPECT_EQ(world.effects().cause_of(Effect::fast_motion), "body 2");
-    EXPECT_TRUE(has_stage(world, "sweep_fast"));
+    EXPECT_TRUE(has_stage(world, "continuous_collision"));
 }
 
 TEST(FastBodies, AreStoppedWithinTheStepOfTheBlowThatMadeThemFast)

@@ -12,7 +12,7 @@ namespace {
 
 // Some dynamic bodies of unit mass and one ball each, awake, in a row along x.
 struct Bodies {
-    Conditions conditions;
+    StepContext context;
     Poses poses;
     Velocities velocities;
     Masses masses;
@@ -24,7 +24,7 @@ struct Bodies {
 
     explicit Bodies(std::uint32_t count, double apart = 1.0)
     {
-        conditions.effects = {Effect::motion, Effect::gravity, Effect::contact};
+        context.effects = {Effect::motion, Effect::gravity, Effect::contact};
         shapes.spheres.push_back({0.5});
         for (std::uint32_t i = 0; i < count; ++i) {
             poses.position.emplace_back(apart * i, 0, 0);
@@ -35,14 +35,14 @@ struct Bodies {
             masses.inverse_mass.push_back(1);
             masses.inertia.push_back({1, 1, 1, 0, 0, 0});
             masses.inverse_inertia.push_back({1, 1, 1, 0, 0, 0});
-            masses.spins_unevenly.push_back(0);
+            masses.gyroscopic_kind.push_back(0);
             states.kind.push_back(BodyKind::dynamic);
             states.awake.push_back(1);
             states.quarantined.push_back(0);
-            states.quiet_time.push_back(0);
-            states.bed.push_back(kNobody);
+            states.sleep_time.push_back(0);
+            states.sleeping_island.push_back(kNoBody);
             states.radius.push_back(0.5);
-            states.movers.dynamic.push_back(i);
+            states.active_bodies.dynamic.push_back(i);
             colliders.body.push_back(i);
             colliders.shape.push_back({ShapeKind::sphere, 0});
             colliders.local.emplace_back();
@@ -55,10 +55,7 @@ struct Bodies {
             bounds.touched.push_back(i);
         }
     }
-    void update()
-    {
-        update_bounds(conditions, shapes, colliders, poses, velocities, states, bounds);
-    }
+    void update() { update_bounds(context, shapes, colliders, poses, velocities, states, bounds); }
 };
 
 TEST(UpdateBounds, AsksAboutWhatLeftItsMarginAlone)
@@ -94,11 +91,11 @@ TEST(UpdateBounds, ABoxHoldsAllThatTheBodyMayReachInTheStep)
     Bodies b(1);
     b.velocities.linear[0] = Vec3(30, -60, 0);
     b.update();
-    const double dt = b.conditions.settings.dt;
+    const double dt = b.context.settings.dt;
     const Box3 there{Vec3(30 * dt - 0.5, -60 * dt - 0.5, -0.5),
                      Vec3(30 * dt + 0.5, -60 * dt + 0.5, 0.5)};
     EXPECT_TRUE(b.bounds.boxes[0].contains(there));
-    EXPECT_GE(b.bounds.reach[0], b.velocities.linear[0].norm() * dt);
+    EXPECT_GE(b.bounds.speculative_margin[0], b.velocities.linear[0].norm() * dt);
 }
 
 TEST(UpdateBounds, SleepersCostNothingAndRemovedOnesHaveNoBox)
@@ -107,7 +104,7 @@ TEST(UpdateBounds, SleepersCostNothingAndRemovedOnesHaveNoBox)
     b.update();
     b.states.awake[0] = 0;
     b.poses.position[0].x() += 50;  // it would be seen if it were looked at
-    b.colliders.body[1] = kNobody;
+    b.colliders.body[1] = kNoBody;
     b.bounds.touched = {1};
     b.update();
     EXPECT_EQ(b.bounds.asked, (std::vector<std::uint32_t>{1}));
@@ -123,16 +120,17 @@ TEST(UpdateBounds, NearHoldsTheTightBoxAndTheReachHoweverFarOut)
     b.update();
     for (std::size_t i = 0; i < 4; ++i)
         for (int k = 0; k < 3; ++k) {
-            const double reach = 0.5 + b.bounds.reach[i], at = b.poses.position[i][k];
-            EXPECT_LE(double{b.bounds.near[i].lower[k]}, at - reach);
-            EXPECT_GE(double{b.bounds.near[i].upper[k]}, at + reach);
+            const double speculative_margin = 0.5 + b.bounds.speculative_margin[i],
+                         at = b.poses.position[i][k];
+            EXPECT_LE(double{b.bounds.near[i].lower[k]}, at - speculative_margin);
+            EXPECT_GE(double{b.bounds.near[i].upper[k]}, at + speculative_margin);
             const double rounding = 1e-6 * (std::abs(at) + 1);
-            EXPECT_NEAR(double{b.bounds.near[i].lower[k]}, at - reach, rounding);
-            EXPECT_NEAR(double{b.bounds.near[i].upper[k]}, at + reach, rounding);
+            EXPECT_NEAR(double{b.bounds.near[i].lower[k]}, at - speculative_margin, rounding);
+            EXPECT_NEAR(double{b.bounds.near[i].upper[k]}, at + speculative_margin, rounding);
         }
     EXPECT_TRUE(b.bounds.near[0].overlaps(b.bounds.near[0]));
     EXPECT_FALSE(b.bounds.near[0].overlaps(b.bounds.near[1]));
-    b.colliders.body[0] = kNobody;
+    b.colliders.body[0] = kNoBody;
     b.bounds.touched = {0};
     b.update();
     EXPECT_FALSE(b.bounds.near[0].overlaps(b.bounds.near[0]));
@@ -164,7 +162,7 @@ TEST(FindPairs, APlaneMeetsOnlyWhatComesDownToIt)
     Bodies b(3, 5);
     b.shapes.planes.push_back({Vec3::UnitX(), 6});
     b.colliders.shape[0] = {ShapeKind::plane, 0};
-    b.states.kind[0] = BodyKind::still;
+    b.states.kind[0] = BodyKind::static_;
     b.states.awake[0] = 0;
     Finder finder;
     finder.finder = make_finder(FinderKind::all_pairs);
@@ -181,15 +179,15 @@ TEST(IntegratePoses, MovesTheLoneAndLeavesTheOthersToTheSolver)
     b.states.awake[2] = 0;
     Islands islands;
     islands.lone = {1, 2};
-    Trouble trouble;
+    StepDiagnostics diagnostics;
     Flights flights;
-    integrate_poses(b.conditions, islands, b.masses, b.states, {}, flights, b.poses, b.velocities,
-                    trouble);
+    integrate_poses(b.context, islands, b.masses, b.states, {}, flights, b.poses, b.velocities,
+                    diagnostics);
     EXPECT_EQ(b.poses.position[0], Vec3(0, 0, 0));
     EXPECT_NEAR(b.poses.position[1].x(), 1 + 1.0 / 60, 1e-15);
     EXPECT_LT(b.poses.position[1].z(), 0);
     EXPECT_EQ(b.poses.position[2], Vec3(2, 0, 0));
-    EXPECT_TRUE(trouble.quarantined.empty());
+    EXPECT_TRUE(diagnostics.quarantined.empty());
 }
 
 TEST(IntegratePoses, LeavesWhatAStepCannotHoldWhereItWasAndReportsIt)
@@ -198,73 +196,76 @@ TEST(IntegratePoses, LeavesWhatAStepCannotHoldWhereItWasAndReportsIt)
     b.velocities.linear[1] = Vec3(1e300, 0, 0);
     Islands islands;
     islands.lone = {0, 1};
-    Trouble trouble;
+    StepDiagnostics diagnostics;
     Flights flights;
-    integrate_poses(b.conditions, islands, b.masses, b.states, {}, flights, b.poses, b.velocities,
-                    trouble);
-    EXPECT_EQ(trouble.quarantined, (std::vector<std::uint32_t>{1}));
+    integrate_poses(b.context, islands, b.masses, b.states, {}, flights, b.poses, b.velocities,
+                    diagnostics);
+    EXPECT_EQ(diagnostics.quarantined, (std::vector<std::uint32_t>{1}));
     EXPECT_EQ(b.poses.position[1], Vec3(1, 0, 0));
-    quarantine_bodies(trouble, b.states, b.masses, b.velocities);
-    EXPECT_EQ(b.states.kind[1], BodyKind::still);
+    quarantine_bodies(diagnostics, b.states, b.masses, b.velocities);
+    EXPECT_EQ(b.states.kind[1], BodyKind::static_);
     EXPECT_EQ(b.velocities.linear[1], Vec3(Vec3::Zero()));
     EXPECT_EQ(b.states.quarantined[1], 1);
     EXPECT_EQ(b.states.quarantined[0], 0);
 }
 
-TEST(RestIslands, PutsAnIslandToBedOnceAllOfItIsQuiet)
+TEST(SleepIslands, PutsAnIslandToBedOnceAllOfItIsQuiet)
 {
     Bodies b(4);
     Islands islands;
     islands.body_begin = {0, 2, 4};
     islands.bodies = {0, 1, 2, 3};
     islands.contact_begin = {0, 0, 0};
-    Beds beds;
-    Rest rest;
+    SleepingIslands sleeping_islands;
+    SleepEvents sleep_events;
     b.velocities.linear[3] = Vec3(0.1, 0, 0);  // keeps its whole island up
     b.velocities.linear[0] = Vec3(0.01, 0, 0);
     int steps = 0;
     while (b.states.awake[0] != 0 && ++steps < 100)
-        rest_islands(b.conditions, {}, {}, islands, {}, b.states, beds, b.velocities, rest);
+        sleep_islands(b.context, {}, {}, islands, {}, b.states, sleeping_islands, b.velocities,
+                      sleep_events);
     EXPECT_NEAR(steps, 30, 1);
-    EXPECT_EQ(rest.rested, (std::vector<std::uint32_t>{0, 1}));
-    EXPECT_EQ(b.states.bed[0], b.states.bed[1]);
-    EXPECT_NE(b.states.bed[0], kNobody);
+    EXPECT_EQ(sleep_events.fell_asleep, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(b.states.sleeping_island[0], b.states.sleeping_island[1]);
+    EXPECT_NE(b.states.sleeping_island[0], kNoBody);
     EXPECT_EQ(b.velocities.linear[0], Vec3(Vec3::Zero()));
     EXPECT_EQ(b.states.awake[2], 1);
 }
 
-TEST(WakeTouched, WakesTheWholeBedOfWhoeverIsTouched)
+TEST(WakeIslands, WakesTheWholeBedOfWhoeverIsTouched)
 {
     Bodies b(4, 0.9);
-    Beds beds;
-    beds.sleepers = {{1, 3}};
+    SleepingIslands sleeping_islands;
+    sleeping_islands.bodies = {{1, 3}};
     for (const std::uint32_t body : {1u, 3u}) {
         b.states.awake[body] = 0;
-        b.states.bed[body] = 0;
+        b.states.sleeping_island[body] = 0;
     }
     Pairs pairs;
     pairs.keys = {pair_key(0, 1), pair_key(2, 3)};
     ConvexContacts<float> contacts;
     contacts.of_pair.resize(2);
     SolidContacts<float> solids;
-    Rest rest;
-    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
-    EXPECT_TRUE(rest.awoken.empty());
+    SleepEvents sleep_events;
+    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+                 sleep_events);
+    EXPECT_TRUE(sleep_events.woke.empty());
     contacts.contacts.resize(1);
     contacts.of_pair[0].contact = 0;
-    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
-    EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1, 3}));
+    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+                 sleep_events);
+    EXPECT_EQ(sleep_events.woke, (std::vector<std::uint32_t>{1, 3}));
     EXPECT_EQ(b.states.awake[3], 1);
-    EXPECT_EQ(beds.free, (std::vector<std::uint32_t>{0}));
+    EXPECT_EQ(sleeping_islands.free, (std::vector<std::uint32_t>{0}));
 }
 
-TEST(WakeTouched, SolidsWakeWhomTheyTouchAndNobodyNear)
+TEST(WakeIslands, SolidsWakeWhomTheyTouchAndNobodyNear)
 {
     Bodies b(2, 0.9);
     b.states.awake[1] = 0;
-    b.states.bed[1] = 0;
-    Beds beds;
-    beds.sleepers = {{1}};
+    b.states.sleeping_island[1] = 0;
+    SleepingIslands sleeping_islands;
+    sleeping_islands.bodies = {{1}};
     Pairs pairs;
     pairs.keys = {pair_key(0, 1)};
     pairs.on_solid = {0};
@@ -272,34 +273,38 @@ TEST(WakeTouched, SolidsWakeWhomTheyTouchAndNobodyNear)
     contacts.of_pair.resize(1);
     SolidContacts<float> solids;
     solids.entries.resize(1);
-    Rest rest;
-    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
-    EXPECT_TRUE(rest.awoken.empty()) << "a contact without points";
+    SleepEvents sleep_events;
+    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+                 sleep_events);
+    EXPECT_TRUE(sleep_events.woke.empty()) << "a contact without points";
     solids.entries[0].contact.count = 1;
-    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
-    EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1}));
+    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+                 sleep_events);
+    EXPECT_EQ(sleep_events.woke, (std::vector<std::uint32_t>{1}));
 }
 
-TEST(WakeTouched, WhatMovesByItselfWakesOnlyWhileItMoves)
+TEST(WakeIslands, WhatMovesByItselfWakesOnlyWhileItMoves)
 {
     Bodies b(2, 0.9);
     b.states.kind[0] = BodyKind::kinematic;
     b.states.awake[1] = 0;
-    b.states.bed[1] = 0;
-    Beds beds;
-    beds.sleepers = {{1}};
+    b.states.sleeping_island[1] = 0;
+    SleepingIslands sleeping_islands;
+    sleeping_islands.bodies = {{1}};
     Pairs pairs;
     pairs.keys = {pair_key(0, 1)};
     ConvexContacts<double> contacts;
     contacts.contacts.resize(1);
     contacts.of_pair.push_back({{}, 0});
     const SolidContacts<double> solids;
-    Rest rest;
-    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
-    EXPECT_TRUE(rest.awoken.empty());
+    SleepEvents sleep_events;
+    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+                 sleep_events);
+    EXPECT_TRUE(sleep_events.woke.empty());
     b.velocities.angular[0] = Vec3(0, 0, 1);
-    wake_touched(pairs, b.colliders, b.velocities, contacts, solids, beds, b.states, rest);
-    EXPECT_EQ(rest.awoken, (std::vector<std::uint32_t>{1}));
+    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+                 sleep_events);
+    EXPECT_EQ(sleep_events.woke, (std::vector<std::uint32_t>{1}));
 }
 
 TEST(SolveTable, ListsWhatASubstepDoes)
@@ -317,13 +322,14 @@ TEST(SolveTable, ListsWhatASubstepDoes)
     EXPECT_NE(solve_table(kinematic).data(), solve_table(penalty).data());
 }
 
-TEST(CarryTable, ListsWhatASpanOrAPieceDoes)
+TEST(EventDrivenTable, ListsWhatASpanOrAPieceDoes)
 {
     for (const char* stage : {"back_up", "subdivide"}) {
-        EXPECT_FALSE(carry_table(stage).empty()) << stage;
-        for (const InnerRow& row : carry_table(stage)) EXPECT_FALSE(row.when.empty()) << row.name;
+        EXPECT_FALSE(event_driven_table(stage).empty()) << stage;
+        for (const InnerRow& row : event_driven_table(stage))
+            EXPECT_FALSE(row.when.empty()) << row.name;
     }
-    EXPECT_TRUE(carry_table("solve_impulses").empty());
+    EXPECT_TRUE(event_driven_table("solve_impulses").empty());
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ std::string run_with(Set<Effect> effects, bool in_order, int threads)
     world.run_in_order(in_order);
     static_cast<void>(world.effects());
     auto& state = state_of(world);
-    state.get<Conditions>().effects = effects;
+    state.get<StepContext>().effects = effects;
     auto& step = std::get<Step<float>>(state.step);
     state.pool.run([&](std::size_t, std::size_t, std::size_t) {
         step.graph = std::make_unique<StepGraph<float>>(stages_for<float>(effects), step.data);

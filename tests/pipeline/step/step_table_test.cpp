@@ -43,11 +43,11 @@ TEST(Stage, WaitsForWhoeverTouchesItsData)
 TEST(Stage, RunsItsFunctionOnTheDataOfTheStep)
 {
     StepData<double> data;
-    std::get<Drives>(data).body = {1};
-    std::get<Drives>(data).velocity = {{2.0, std::nan(""), -1.0}};
+    std::get<PrescribedVelocities>(data).body = {1};
+    std::get<PrescribedVelocities>(data).velocity = {{2.0, std::nan(""), -1.0}};
     std::get<BodyStates>(data).awake = {1, 1};
     std::get<Velocities>(data).linear = {Vec3(5, 5, 5), Vec3(5, 5, 5)};
-    stage<double, drive_bodies>("drive_bodies", {}).run(data);
+    stage<double, prescribe_velocities>("prescribe_velocities", {}).run(data);
     EXPECT_EQ(std::get<Velocities>(data).linear[0], Vec3(5, 5, 5));
     EXPECT_EQ(std::get<Velocities>(data).linear[1], Vec3(2, 5, -1));
 }
@@ -58,7 +58,7 @@ TEST(StepTable, HoldsTheRowsThatAnEffectCallsForAndNoOther)
     EXPECT_EQ(names_of(stages_for<float>({Effect::motion})),
               (std::vector<std::string>{"integrate_poses", "quarantine_bodies"}));
     EXPECT_EQ(names_of(stages_for<float>({Effect::drive})),
-              (std::vector<std::string>{"drive_bodies"}));
+              (std::vector<std::string>{"prescribe_velocities"}));
     for (const auto& row : stages_for<float>({Effect::motion, Effect::contact}))
         EXPECT_TRUE(row.called_for_by.has(Effect::motion)
                     || row.called_for_by.has(Effect::contact));

@@ -89,7 +89,7 @@ std::string hash_when_cut(const char* name, int size, int threads, Precision pre
     scene.settings.precision = precision;
     scene.settings.sleep = false;
     World world(scene, threads);
-    state_of(world).get<Painter>().cut = {.from = 550, .slice = 60};
+    state_of(world).get<ConstraintGraph>().split_rule = {.from = 550, .slice = 60};
     world.step(kSteps);
     std::size_t most = 0;
     for (const Batch& batch : state_of(world).get<Layout>().batches)

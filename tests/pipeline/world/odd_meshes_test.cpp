@@ -38,11 +38,11 @@ TEST(OddMeshes, OpenOnesMoveAsSheetsAndSaySo)
     std::swap(bowl.triangles[5][0], bowl.triangles[5][1]);
     EXPECT_EQ(refusal_of(bowl), "");
     const World world(find_scene("knots")->make_of(2, 1, bowl));
-    std::string remarks;
-    for (const std::string& remark : world.remarks()) remarks += remark + '\n';
+    std::string warnings;
+    for (const std::string& warning : world.warnings()) warnings += warning + '\n';
     for (const char* part : {"1 triangle is wound against its neighbors", "24 edges are open",
                              "taken as a sheet 0.0", "as the surface of its level set"})
-        EXPECT_NE(remarks.find(part), std::string::npos) << part << " is not in " << remarks;
+        EXPECT_NE(warnings.find(part), std::string::npos) << part << " is not in " << warnings;
 }
 
 TEST(OddMeshes, AreRefusedWithWhatWasFound)

@@ -80,9 +80,9 @@ TEST(VoxelTerrain, BodiesOfEveryKindComeToRestOnTheSurface)
     const double found[] = {clearance(world, ids[1], {Vec3::Zero()}, 0.25),
                             clearance(world, ids[2], box, 0), clearance(world, ids[3], axis, 0.15),
                             clearance(world, ids[4], ring, 0.12)};
-    for (const double gap : found) {
-        EXPECT_GT(gap, -kStated - kBearing);
-        EXPECT_LT(gap, kStated);
+    for (const double separation : found) {
+        EXPECT_GT(separation, -kStated - kBearing);
+        EXPECT_LT(separation, kStated);
     }
     // The ball is looked up in the field itself, which is off by the curvature of the hills alone:
     // h^2 / 8 times the sum of two curvatures of 0.5 / m.

@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kSolidScenes[] = {"knots", "chain", "peg", "bolt", "terrain"};
 
 /// A ball about the origin of a body's own frame that holds its mesh.
-double reach_of(const Mesh& mesh)
+double extent_of(const Mesh& mesh)
 {
     double greatest = 0;
     for (const Vec3& vertex : mesh.vertices) greatest = std::max(greatest, vertex.norm());
@@ -57,7 +57,7 @@ public:
         const Pose pose_a{body_a.position, body_a.orientation};
         const Pose pose_b{body_b.position, body_b.orientation};
         const Mesh& mesh = *mesh_of(body_a.shape);
-        const double far = 1.5 * reach_of(mesh);
+        const double far = 1.5 * extent_of(mesh);
         double least = std::numeric_limits<double>::infinity();
         const auto look = [&](const Vec3& point) {
             const Vec3 at = pose_a.to_local(pose_b * point);
@@ -105,7 +105,7 @@ TEST(SolidScenes, NothingOverlapsAtFirst)
                            *mesh_b = solids.mesh_of(body_b.shape);
                 if (a == b || mesh_a == nullptr || mesh_b == nullptr) continue;
                 const double apart = (body_a.position - body_b.position).norm();
-                if (apart > reach_of(*mesh_a) + reach_of(*mesh_b)) continue;
+                if (apart > extent_of(*mesh_a) + extent_of(*mesh_b)) continue;
                 EXPECT_GT(solids.distance(a, b), 0) << name << ' ' << a << ' ' << b;
             }
     }
@@ -121,7 +121,7 @@ TEST(SolidScenes, SolidsFitTheCellsTheyAreDroppedFrom)
             const Body body = body_at(scene, id);
             const Mesh* mesh = solids.mesh_of(body.shape);
             if (mesh != nullptr && body.motion == Motion::dynamic)
-                balls.emplace_back(body.position, reach_of(*mesh));
+                balls.emplace_back(body.position, extent_of(*mesh));
         }
         ASSERT_GE(balls.size(), 30u);
         for (std::size_t i = 0; i < balls.size(); ++i)
@@ -219,7 +219,7 @@ TEST(SolidScenes, AnotherMeshIsBroughtToTheirSize)
 {
     TriangleSoup lump = noisy_ball(30, 0.5, 320, 4);
     for (Vec3& vertex : lump.vertices) vertex += Vec3(100, -50, 7);
-    for (const auto& [name, reach] : {std::pair{"knots", 0.5}, std::pair{"terrain", 0.6}}) {
+    for (const auto& [name, extent] : {std::pair{"knots", 0.5}, std::pair{"terrain", 0.6}}) {
         const CatalogEntry& entry = *find_scene(name);
         const Scene plain = entry.make(20, 3), scene = entry.make_of(20, 3, lump);
         EXPECT_EQ(scene.name, plain.name);
@@ -237,7 +237,7 @@ TEST(SolidScenes, AnotherMeshIsBroughtToTheirSize)
                 box.lower = box.lower.cwiseMin(vertex);
                 box.upper = box.upper.cwiseMax(vertex);
             }
-            EXPECT_NEAR(greatest, reach, 1e-12);
+            EXPECT_NEAR(greatest, extent, 1e-12);
             EXPECT_LT((box.upper + box.lower).norm(), 1e-12);
         }
         EXPECT_EQ(solids, 1);

@@ -18,14 +18,14 @@ TEST(MovingMesh, IsMendedOnceWhoeverAsks)
 {
     const MeshShape stated = ring();
     const auto first = moving_mesh(stated);
-    EXPECT_EQ(first->mended.mesh.triangles.size(), stated.triangles.size());
+    EXPECT_EQ(first->repaired.mesh.triangles.size(), stated.triangles.size());
     EXPECT_EQ(moving_mesh(stated), first);
     EXPECT_EQ(moving_mesh(ring()), first);
     forget_moving_mesh(stated);
     const auto again = moving_mesh(stated);
     EXPECT_NE(again, first);
-    EXPECT_EQ(again->mended.mesh.vertices, first->mended.mesh.vertices);
-    EXPECT_EQ(again->mended.mesh.triangles, first->mended.mesh.triangles);
+    EXPECT_EQ(again->repaired.mesh.vertices, first->repaired.mesh.vertices);
+    EXPECT_EQ(again->repaired.mesh.triangles, first->repaired.mesh.triangles);
     forget_moving_mesh(stated);
 }
 
@@ -36,8 +36,8 @@ TEST(MovingMesh, IsMendedAnewOnceAnythingOfItChanges)
     MeshShape moved = stated, turned = stated;
     moved.vertices[5].z() += 0x1p-40;
     std::swap(turned.triangles[7][0], turned.triangles[7][1]);
-    EXPECT_EQ(moving_mesh(moved)->mended.mesh.vertices[5], moved.vertices[5]);
-    EXPECT_EQ(moving_mesh(turned)->mended.health.turned, 1u);
+    EXPECT_EQ(moving_mesh(moved)->repaired.mesh.vertices[5], moved.vertices[5]);
+    EXPECT_EQ(moving_mesh(turned)->repaired.health.turned, 1u);
     EXPECT_EQ(moving_mesh(stated), first);
     for (const MeshShape& shape : {stated, moved, turned}) forget_moving_mesh(shape);
 }
@@ -49,7 +49,7 @@ TEST(MovingMesh, FarFromItsOriginIsTakenAboutItsMiddle)
     for (Vec3& vertex : away.vertices) vertex += far;
     const auto found = moving_mesh(away);
     EXPECT_LT((found->at - far).norm(), 1e-9);
-    EXPECT_LT(box_of(found->mended.mesh).upper.maxCoeff(), 0.55);
+    EXPECT_LT(box_of(found->repaired.mesh).upper.maxCoeff(), 0.55);
     EXPECT_TRUE(moving_mesh(ring())->at.isZero(0));
     for (const MeshShape& shape : {away, ring()}) forget_moving_mesh(shape);
 }

@@ -44,37 +44,38 @@ MeshShape taken_by(const char* way, const TriangleSoup& soup)
     return shape;
 }
 
-std::string remarks_of(const MeshShape& shape)
+std::string warnings_of(const MeshShape& shape)
 {
-    std::string remarks;
-    for (const std::string& remark : make_solid(shape, {}, {}).remarks) remarks += remark + '\n';
-    return remarks;
+    std::string warnings;
+    for (const std::string& warning : make_solid(shape, {}, {}).warnings)
+        warnings += warning + '\n';
+    return warnings;
 }
 
 TEST(MakeSolid, WarnsOfWhatAMeshLoses)
 {
     const TriangleSoup ring = torus_mesh(2, 0.5, 24, 12);
-    EXPECT_NE(remarks_of(taken_by("hull", ring)).find("hollows are filled, "), std::string::npos);
+    EXPECT_NE(warnings_of(taken_by("hull", ring)).find("hollows are filled, "), std::string::npos);
     MeshShape coarse = taken_by("parts", ring);
     coarse.max_parts = 1;
-    EXPECT_NE(remarks_of(coarse).find(" of its longest side; more max_parts"), std::string::npos);
+    EXPECT_NE(warnings_of(coarse).find(" of its longest side; more max_parts"), std::string::npos);
     coarse = taken_by("spheres", ring);
     coarse.sphere_levels = 1;
-    EXPECT_NE(remarks_of(coarse).find(" of its longest side; more sphere_l"), std::string::npos);
+    EXPECT_NE(warnings_of(coarse).find(" of its longest side; more sphere_l"), std::string::npos);
     coarse = taken_by("depth_image", ring);
     coarse.image_resolution = 4;
-    EXPECT_NE(remarks_of(coarse).find(" of its longest side; a greater im"), std::string::npos);
+    EXPECT_NE(warnings_of(coarse).find(" of its longest side; a greater im"), std::string::npos);
     coarse = taken_by("voxels", ring);
     coarse.voxel_size = 0.6;
-    EXPECT_NE(remarks_of(coarse).find(" of its longest side; a smaller vo"), std::string::npos);
+    EXPECT_NE(warnings_of(coarse).find(" of its longest side; a smaller vo"), std::string::npos);
 }
 
 TEST(MakeSolid, WarnsOfNothingWhereNothingIsLost)
 {
     for (const char* way : {"voxels", "parts", "spheres", "depth_image", "hull"})
-        EXPECT_EQ(remarks_of(taken_by(way, ball_mesh(1, 12, 6))), "") << way;
+        EXPECT_EQ(warnings_of(taken_by(way, ball_mesh(1, 12, 6))), "") << way;
     for (const char* way : {"voxels", "depth_image"})
-        EXPECT_EQ(remarks_of(taken_by(way, torus_mesh(2, 0.7, 24, 12))), "") << way;
+        EXPECT_EQ(warnings_of(taken_by(way, torus_mesh(2, 0.7, 24, 12))), "") << way;
 }
 
 // Two walls, a floor and nothing else: what is within reach from afar is no inside.
@@ -82,8 +83,8 @@ TEST(MakeSolid, TellsHowFarTheMassIsFromThatOfAnOpenMeshClosed)
 {
     TriangleSoup open = box_mesh({1, 1, 1});
     open.triangles.resize(open.triangles.size() - 4);
-    const std::string remarks = remarks_of(taken_by("voxels", open));
-    EXPECT_NE(remarks.find("% less than that of its triangles"), std::string::npos) << remarks;
+    const std::string warnings = warnings_of(taken_by("voxels", open));
+    EXPECT_NE(warnings.find("% less than that of its triangles"), std::string::npos) << warnings;
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST_F(DirectPoints, FrictionOfAnImpactTakesEnergyWithinItsCone)
         std::vector<DirectBody> bodies = {body(), body()};
         DirectPoint at = point();
         const double load = i % 10 == 0 ? 1e6 : 0.3, before = energy(bodies);
-        rub(load, at, bodies);
+        apply_impact_friction(load, at, bodies);
         EXPECT_LT(energy(bodies), before);
         EXPECT_LE(at.impulse.norm(), at.friction * load * (1 + 1e-12));
         EXPECT_LE(at.torque.norm(), at.rolling * load * (1 + 1e-12));

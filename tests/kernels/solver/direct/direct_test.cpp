@@ -2,7 +2,7 @@
 
 #include "kernels/solver/direct/contact_cones.hpp"
 #include "tests/kernels/solver/direct/direct_problems.hpp"
-#include "tests/kernels/solver/direct/plain_sweeps.hpp"
+#include "tests/kernels/solver/direct/plain_gauss_seidel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,13 +28,13 @@ void expect_law(const Problem& given, double tolerance)
     PlainSweeps look(problem.bodies, problem.points);
     for (const DirectPoint& point : given.points) {
         const Vec3 speed = look.speed(point);
-        const double parting = point.normal.dot(speed) - point.least;
+        const double separating_speed = point.normal.dot(speed) - point.least;
         const double load = point.normal.dot(point.impulse);
         const Vec3 held = point.impulse - load * point.normal;
         const Vec3 slip = speed - point.normal * point.normal.dot(speed);
-        EXPECT_GT(parting, -tolerance);
+        EXPECT_GT(separating_speed, -tolerance);
         EXPECT_GT(load, -tolerance);
-        EXPECT_LT(std::min(parting, load), tolerance);
+        EXPECT_LT(std::min(separating_speed, load), tolerance);
         EXPECT_LT(held.norm(), point.friction * load + tolerance);
         if (slip.norm() < 1e-4) continue;
         EXPECT_LT((held + point.friction * load * slip.normalized()).norm(), 10 * tolerance);
@@ -224,7 +224,7 @@ TEST(Direct, LegsOfUnequalLengthAreSolved)
 }
 
 // Of all masses and gaps. Where masses differ by more than 16 digits can tell it may miss.
-TEST(Direct, HeapsOfAllMassesAndGapsAreSolved)
+TEST(Direct, HeapsOfAllMassesAndSeparationsAreSolved)
 {
     Dice dice(19);
     for (const double digits : {2, 6})
@@ -318,8 +318,9 @@ TEST(Direct, BoxOnASlopeSticksAtExactlyTheTangentAndSlidesBelow)
 }
 
 // A ball that stays where it is, and turns, between the floor and a slab. Towards the floor neither
-// gives way, but for the rounding of a lever: taken for one it would be the measure of all speeds.
-TEST(Direct, WhoCanOnlyTurnIsSpunByNoLeverOfRounding)
+// gives way, but for the rounding of a lever arm: taken for one it would be the measure of all
+// speeds.
+TEST(Direct, WhoCanOnlyTurnIsSpunByNoLeverArmOfRounding)
 {
     Dice dice(31);
     for (int i = 0; i < 200; ++i) {

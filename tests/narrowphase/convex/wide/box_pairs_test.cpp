@@ -94,12 +94,12 @@ void expect_points_on_both(const PlacedPair& pair, const LocalManifold<float>& f
     // Corners this far beyond a side stay corners; edges that are apart may be nearest askew.
     const bool edges = found.points[0].feature >> 31 != 0;
     const double slack = 1e-3 * std::max(pair.half_a.minCoeff(), pair.half_b.minCoeff())
-        + 1e-5 * pair.size() + (edges ? pair.reach / 2 : 0);
+        + 1e-5 * pair.size() + (edges ? pair.speculative_margin / 2 : 0);
     for (int k = 0; k < found.count; ++k) {
         const auto& point = found.points[static_cast<std::size_t>(k)];
         const Vec3 middle = point.position.cast<double>();
         const Vec3 half = normal * (static_cast<double>(point.separation) / 2);
-        ASSERT_LE(point.separation, pair.reach * (1 + 1e-6));
+        ASSERT_LE(point.separation, pair.speculative_margin * (1 + 1e-6));
         ASSERT_LE(outside(pair.half_a, middle - half), slack);
         ASSERT_LE(outside(pair.half_b, pair.pose.to_local(middle + half)), slack);
     }
@@ -120,7 +120,7 @@ void compare(const PlacedPair& pair, const LocalManifold<float>& found, Tally& t
     if ((found.count == 0) != (expected.count == 0)) {
         // Only where the answer hangs on a rounding.
         PlacedPair wider = pair, tighter = pair;
-        wider.reach += rounding, tighter.reach -= rounding;
+        wider.speculative_margin += rounding, tighter.speculative_margin -= rounding;
         ASSERT_NE(wider.twin().count == 0, tighter.twin().count == 0);
         return;
     }
@@ -232,15 +232,16 @@ TEST(BoxPairs, AnswerPairsThatBrokeOthers)
             PlacedPair pair{broken.a.size * (scale / 2), broken.b.size * (scale / 2),
                             inverse(broken.a.pose) * broken.b.pose, 0};
             pair.pose.position *= scale;
-            pair.reach = 2e-5 * pair.size();
+            pair.speculative_margin = 2e-5 * pair.size();
             const auto found = collide_one(pair);
             ASSERT_TRUE(all_finite(found));
-            if (broken.separation * scale > 2 * pair.reach) {
+            if (broken.separation * scale > 2 * pair.speculative_margin) {
                 EXPECT_EQ(found.count, 0);
                 continue;
             }
             ASSERT_GT(found.count, 0);
-            EXPECT_NEAR(deepest(found), broken.separation * scale, pair.reach + 2 * pair.bias());
+            EXPECT_NEAR(deepest(found), broken.separation * scale,
+                        pair.speculative_margin + 2 * pair.bias());
         }
     }
 }
@@ -254,7 +255,7 @@ TEST(BoxPairs, AnySizeIsAnsweredAlike)
         for (const double scale : {0x1p-20, 0x1p20}) {
             auto scaled = pairs;
             for (PlacedPair& pair : scaled) {
-                pair.half_a *= scale, pair.half_b *= scale, pair.reach *= scale;
+                pair.half_a *= scale, pair.half_b *= scale, pair.speculative_margin *= scale;
                 pair.pose.position *= scale;
             }
             const Manifolds found = collide_all(box_kernels(), scaled);
@@ -342,7 +343,8 @@ TEST(BoxPairs, SwappingTheBoxesMirrorsTheManifold)
     int compared = 0;
     for (const Kind kind : kKinds) {
         for (const PlacedPair& pair : random_pairs(28, kind, 500)) {
-            const PlacedPair swapped{pair.half_b, pair.half_a, inverse(pair.pose), pair.reach};
+            const PlacedPair swapped{pair.half_b, pair.half_a, inverse(pair.pose),
+                                     pair.speculative_margin};
             const auto one = collide_one(pair), two = collide_one(swapped);
             if (one.count == 0 || two.count == 0) continue;
             const Vec3 back = pair.pose.orientation * -two.normal.cast<double>();

@@ -10,7 +10,7 @@ namespace throng {
 struct PlacedPair {
     Vec3 half_a, half_b;
     Pose pose;  // of b in a's frame
-    double reach;
+    double speculative_margin;
 
     double size() const { return std::max(half_a.maxCoeff(), half_b.maxCoeff()); }
     // By how much a face may be worse than the best axis and still lead.
@@ -18,11 +18,12 @@ struct PlacedPair {
     BoxPair rounded() const
     {
         return box_pair(cast<float>(pose), half_a.cast<float>(), half_b.cast<float>(),
-                        static_cast<float>(reach));
+                        static_cast<float>(speculative_margin));
     }
     LocalManifold<double> twin() const
     {
-        return run<double>(box_box<double>, two_boxes(half_a, half_b), kBoxA, kBoxB, pose, reach);
+        return run<double>(box_box<double>, two_boxes(half_a, half_b), kBoxA, kBoxB, pose,
+                           speculative_margin);
     }
 };
 
@@ -39,8 +40,8 @@ inline Quat about(const Vec3& axis, double angle)
     return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
 }
 
-// b moved along `from` until it comes to `gap` of touching.
-inline void bring_near(PlacedPair& pair, const Vec3& from, double gap)
+// b moved along `from` until it comes to `clearance` of touching.
+inline void bring_near(PlacedPair& pair, const Vec3& from, double clearance)
 {
     double touching = 0, apart = 4 * (pair.half_a.norm() + pair.half_b.norm());
     for (int i = 0; i < 40; ++i) {
@@ -50,7 +51,7 @@ inline void bring_near(PlacedPair& pair, const Vec3& from, double gap)
         const bool touch = polytope_separation(a.view(), b.view(), pair.pose, nullptr) <= 0;
         (touch ? touching : apart) = middle;
     }
-    pair.pose.position = (apart + gap) * from;
+    pair.pose.position = (apart + clearance) * from;
 }
 
 // An edge of b along its y lies across a's upper edge along x.

@@ -74,14 +74,14 @@ TEST(WideHull, AgreesWithEveryAxisAtEverySize)
             Pose pose = random.pose(scale);
             const double wanted[] = {-0.2, -0.01, -1e-4, 1e-3};
             if (i % 5 != 0) pose = parted_by(a, b, pose, wanted[i % 4] * scale);
-            const double reach = 0.005 * scale;
+            const double speculative_margin = 0.005 * scale;
             const double exact = polytope_separation(a, b, pose, nullptr);
-            const auto found =
-                run<float>(hull_hull<float>, shapes, box ? kBox : kHullA, kHullB, pose, reach);
+            const auto found = run<float>(hull_hull<float>, shapes, box ? kBox : kHullA, kHullB,
+                                          pose, speculative_margin);
             ASSERT_TRUE(all_finite(found) && features_differ(found));
             const double size = a.outer_radius + b.outer_radius + a.center.norm() + b.center.norm();
             const double near = 1e-5 * size, bias = bias_of(a, b);
-            ASSERT_TRUE(found.count == 0 || exact <= reach + near);
+            ASSERT_TRUE(found.count == 0 || exact <= speculative_margin + near);
             ASSERT_TRUE(found.count > 0 || exact >= -near);
             if (found.count == 0) continue;
             ASSERT_NEAR(found.normal.norm(), 1, 1e-5);
@@ -89,8 +89,8 @@ TEST(WideHull, AgreesWithEveryAxisAtEverySize)
             if (exact > 0) continue;
             ASSERT_NEAR(deepest(found), exact, 2 * bias + near);
             const Vec3 normal = found.normal.cast<double>();
-            const double along = -reach_of({b.vertices.begin(), b.vertices.end()}, pose)(-normal)
-                - reach_of({a.vertices.begin(), a.vertices.end()}, Pose{})(normal);
+            const double along = -extent_of({b.vertices.begin(), b.vertices.end()}, pose)(-normal)
+                - extent_of({a.vertices.begin(), a.vertices.end()}, Pose{})(normal);
             // A face may stand in for edges whose normal leans a fiftieth from its own.
             ASSERT_GE(along, exact - 2 * bias - near - 0.02 * size);
             ASSERT_LE(along, exact + near);
@@ -112,7 +112,7 @@ TEST(WideHull, TellsWhoTouchesHoweverLittleAnAxisLeads)
         const PolytopeShape a_shape(shapes, first), b_shape(shapes, kHullB);
         const PolytopeView &a = a_shape.view(), &b = b_shape.view();
         const double size = std::max(a.outer_radius, b.outer_radius);
-        const double reach = i % 2 == 0 ? 0 : 0.02;
+        const double speculative_margin = i % 2 == 0 ? 0 : 0.02;
         const double beyond = random.number(-6e-4, 3e-4) * size;
         Pose pose = random.pose(2);
         // A face all but along a face.
@@ -121,12 +121,14 @@ TEST(WideHull, TellsWhoTouchesHoweverLittleAnAxisLeads)
             pose.orientation = tilt.normalized()
                 * Quat::FromTwoVectors(b.normals[static_cast<std::size_t>(i) % b.normals.size()],
                                        -a.normals.back());
-        pose = parted_by(a, b, pose, beyond > 0 ? reach + beyond : beyond);
+        pose = parted_by(a, b, pose, beyond > 0 ? speculative_margin + beyond : beyond);
         const double exact = polytope_separation(a, b, pose, nullptr);
-        const auto coarse = run<float>(hull_hull<float>, shapes, first, kHullB, pose, reach);
-        const auto fine = run<double>(hull_hull<double>, shapes, first, kHullB, pose, reach);
+        const auto coarse =
+            run<float>(hull_hull<float>, shapes, first, kHullB, pose, speculative_margin);
+        const auto fine =
+            run<double>(hull_hull<double>, shapes, first, kHullB, pose, speculative_margin);
         // Within reach and apart, edges may still pass one another by further.
-        if (exact > reach + 1e-5 * size) {
+        if (exact > speculative_margin + 1e-5 * size) {
             ++apart;
             too_many += (coarse.count > 0) + (fine.count > 0);
         } else if (exact < -1e-5 * size) {
@@ -223,13 +225,13 @@ TEST(WideHull, EveryWidthGivesTheSameBits)
         const Pose pose = random.pose(0.8);
         const HullPair pair = pair_of(a, b, pose);
         HullGuess plain_guess;
-        HullTouch plain;
+        HullOverlap plain;
         hull_kernel_of("scalar")(pair, plain_guess, plain);
         for (const char* width : {"avx2", "avx512"}) {
             const HullKernel kernel = hull_kernel_of(width);
             if (!kernel) continue;
             HullGuess guess;
-            HullTouch wide;
+            HullOverlap wide;
             kernel(pair, guess, wide);
             ASSERT_EQ(wide.count, plain.count) << width;
             ASSERT_EQ(std::memcmp(&guess, &plain_guess, sizeof guess), 0) << width;
@@ -253,18 +255,18 @@ TEST(WideHull, WhatIsKnownToBeApartIsSoAtEveryWidthAlike)
         const Pose pose = random.pose(1.2);
         const HullPair pair = pair_of(a, b, pose);
         HullGuess first_guess;
-        HullTouch plain;
+        HullOverlap plain;
         hull_kernel_of("scalar")(pair, first_guess, plain);
         if (plain.count > 0) continue;
         const double exact =
             polytope_separation(view_of(shapes.hulls[0]), view_of(shapes.hulls[1]), pose, nullptr);
         ASSERT_LE(double{plain.apart}, exact + 1e-6);
-        apart += plain.apart > pair.reach ? 1 : 0;
+        apart += plain.apart > pair.speculative_margin ? 1 : 0;
         for (const char* width : {"avx2", "avx512"}) {
             const HullKernel kernel = hull_kernel_of(width);
             if (!kernel) continue;
             HullGuess guess;
-            HullTouch wide;
+            HullOverlap wide;
             kernel(pair, guess, wide);
             ASSERT_EQ(wide.count, 0) << width;
             ASSERT_EQ(wide.apart, plain.apart) << width;

@@ -1,0 +1,164 @@
+#include "kernels/solver/contact_packing.hpp"
+
+#include <cstddef>
+
+namespace throng {
+
+namespace {
+
+template <class Real>
+Vec3T<Real> get3(const Lane16<Real> (&from)[3], std::size_t lane)
+{
+    return {from[0].at[lane], from[1].at[lane], from[2].at[lane]};
+}
+
+}  // namespace
+
+template <class Real>
+Softness<Real> softness(double rate, double damping_ratio, double substep)
+{
+    const double omega = 2 * 3.14159265358979323846 * rate;
+    const double a1 = 2 * damping_ratio + substep * omega;
+    const double a2 = substep * omega * a1;
+    const double a3 = 1 / (1 + a2);
+    return {static_cast<Real>(omega / a1), static_cast<Real>(a3)};
+}
+
+template <class Real>
+void pack_contact(const Contact<Real>& contact,
+                  const ContactParameters<Real>& terms,
+                  int lane_at,
+                  PackedContacts<Real>& packed)
+{
+    using Of = Contact<Real>;
+    using Point = typename Of::Point;
+    constexpr std::size_t kNumber = sizeof(Real);
+    static_assert(offsetof(Of, normal) == contact_numbers::kNormal * kNumber
+                  && offsetof(Of, center_offset) == contact_numbers::kCenterOffset * kNumber
+                  && offsetof(Of, friction) == contact_numbers::kFriction * kNumber
+                  && offsetof(Of, rolling) == contact_numbers::kRolling * kNumber
+                  && offsetof(Of, round_a) == contact_numbers::kRoundA * kNumber
+                  && offsetof(Of, round_b) == contact_numbers::kRoundB * kNumber
+                  && offsetof(Of, torsional_impulse) == contact_numbers::kTorsionalImpulse * kNumber
+                  && offsetof(Of, points) == contact_numbers::kPoints * kNumber
+                  && sizeof(Point) == contact_numbers::kPoint * kNumber
+                  && offsetof(Point, anchor_a) == contact_numbers::kAnchorA * kNumber
+                  && offsetof(Point, separation) == contact_numbers::kSeparation * kNumber
+                  && offsetof(Point, impulse) == contact_numbers::kImpulse * kNumber
+                  && sizeof(Of) == contact_numbers::kAll * kNumber);
+    const auto lane = static_cast<std::size_t>(lane_at);
+    packed.contact[lane] = contact.normal.data();
+    packed.count.at[lane] = static_cast<Real>(contact.count);
+    packed.friction.at[lane] = terms.friction;
+    packed.restitution.at[lane] = terms.restitution;
+    packed.rolling_friction.at[lane] = terms.rolling_friction;
+    packed.bias_rate.at[lane] = terms.softness.bias_rate;
+    packed.impulse_scale.at[lane] = terms.softness.impulse_scale;
+    packed.deep.at[lane] = terms.deep;
+}
+
+template <class Real>
+void pack_empty_lane(int lane, PackedContacts<Real>& packed)
+{
+    static const Contact<Real> kNothing = [] {
+        Contact<Real> nothing;
+        nothing.count = 1;
+        return nothing;
+    }();
+    pack_contact(kNothing, {}, lane, packed);
+}
+
+template <class Real>
+void pack_unclamped_friction(const Contact<Real>& contact,
+                             int lane_at,
+                             ContactConstraintWide<Real>& block)
+{
+    const auto lane = static_cast<std::size_t>(lane_at);
+    const Vec3T<Real> tangent = get3(block.tangent, lane);
+    const Vec3T<Real> other = contact.normal.cross(tangent);
+    block.friction_impulse[0].at[lane] = tangent.dot(contact.friction);
+    block.friction_impulse[1].at[lane] = other.dot(contact.friction);
+}
+
+template <class Real>
+void store_impulses(const ContactConstraintsView<Real>& constraints,
+                    std::size_t place,
+                    int lane_at,
+                    Contact<Real>& contact)
+{
+    const auto lane = static_cast<std::size_t>(lane_at);
+    const ContactConstraintWide<Real>& block = constraints.blocks[place];
+    for (int k = 0; k < contact.count; ++k)
+        contact.points[static_cast<std::size_t>(k)].impulse =
+            constraints.points[block.first_point + static_cast<std::uint32_t>(k)].impulse.at[lane];
+    const Vec3T<Real> tangent = get3(block.tangent, lane);
+    const Vec3T<Real> other = contact.normal.cross(tangent);
+    contact.friction =
+        tangent * block.friction_impulse[0].at[lane] + other * block.friction_impulse[1].at[lane];
+    contact.torsional_impulse = block.torsional_impulse.at[lane];
+    if (constraints.rolling_frictions == nullptr) return;
+    const Vec3T<Real> rolling = get3(constraints.rolling_frictions[place].impulse, lane);
+    contact.rolling = tangent * rolling.x() + other * rolling.y() + contact.normal * rolling.z();
+}
+
+template <class Real>
+Vec3T<Real>
+impact_impulse(const ContactConstraints<Real>& constraints, std::size_t place, int lane_at)
+{
+    const auto lane = static_cast<std::size_t>(lane_at);
+    const ContactConstraintWide<Real>& block = constraints.blocks[place];
+    const Vec3T<Real> normal = get3(block.normal, lane), tangent = get3(block.tangent, lane);
+    const Vec3T<Real> given = get3(constraints.restitutions[place].impulse, lane);
+    return normal * given.x() + tangent * given.y() + normal.cross(tangent) * given.z();
+}
+
+template <class Real>
+void scale_impulses(Real scale, Contact<Real>& contact)
+{
+    for (auto& point : contact.points) point.impulse *= scale;
+    contact.friction *= scale;
+    contact.torsional_impulse *= scale;
+    contact.rolling *= scale;
+}
+
+template <class Real>
+void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& contact)
+{
+    bool any = false;
+    bool taken[4] = {};
+    for (int k = 0; k < contact.count; ++k) {
+        auto& point = contact.points[static_cast<std::size_t>(k)];
+        for (int old = 0; old < before.count; ++old) {
+            const auto& from = before.points[static_cast<std::size_t>(old)];
+            if (taken[old] || from.feature != point.feature) continue;
+            taken[old] = true;
+            point.impulse = from.impulse * scale;
+            any = any || point.impulse > 0;
+            break;
+        }
+    }
+    if (!any) return;
+    contact.friction =
+        scale * (before.friction - contact.normal * contact.normal.dot(before.friction));
+    // A single point holds no twist, and would never let go of one.
+    if (contact.count > 1) contact.torsional_impulse = before.torsional_impulse * scale;
+    contact.rolling = before.rolling * scale;
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template Softness<Real> softness<Real>(double, double, double);                                \
+    template void pack_contact<Real>(const Contact<Real>&, const ContactParameters<Real>&, int,    \
+                                     PackedContacts<Real>&);                                       \
+    template void pack_empty_lane<Real>(int, PackedContacts<Real>&);                               \
+    template void pack_unclamped_friction<Real>(const Contact<Real>&, int,                         \
+                                                ContactConstraintWide<Real>&);                     \
+    template void store_impulses<Real>(const ContactConstraintsView<Real>&, std::size_t, int,      \
+                                       Contact<Real>&);                                            \
+    template Vec3T<Real> impact_impulse<Real>(const ContactConstraints<Real>&, std::size_t, int);  \
+    template void scale_impulses<Real>(Real, Contact<Real>&);                                      \
+    template void carry_impulses<Real>(const Contact<Real>&, Real, Contact<Real>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng

@@ -1,0 +1,152 @@
+// Carried contacts: how those that a turning surface carries along slide by where they are now, and
+// those who walk. Written once over the width of the machine's registers.
+#include "kernels/solver/solve_lanes.hpp"
+
+namespace throng::THRONG_LANES {
+
+namespace {
+
+// Turned for a time, by a rotation that is exact to the third order and one for any spin.
+template <class L>
+V3<L> turned_on(const V3<L>& arm, const V3<L>& spin, L time)
+{
+    using Real = typename L::Number;
+    const V3<L> u = spin * (time * L(Real(0.5))), across = cross(u, arm);
+    return arm + (across + cross(u, across)) * (L(Real(2)) / (L(Real(1)) + dot(u, u)));
+}
+
+// One side of W contacts: how it spins, and how far the middle of the substep finds its center, and
+// what was at the contact as the step began.
+template <class L>
+struct Side {
+    using Real = typename L::Number;
+    V3<L> spin, center, material;
+
+    Side(const SolverBody<Real>* bodies, const std::int32_t* index, const V3<L>& arm, L half)
+    {
+        const Motion<L, true> motion(bodies, index);
+        const DeltaPose<L, true> delta_pose(bodies, index);
+        const V3<L> now = arm + delta_pose.change_of(arm);
+        spin = motion.spin;
+        center = delta_pose.moved + motion.velocity * half;
+        material = center + turned_on(now, spin, half) - arm;
+    }
+};
+
+template <class L>
+[[gnu::flatten]] void carry_lanes(const ContactConstraintsView<typename L::Number>& constraints,
+                                  std::size_t place,
+                                  int at,
+                                  typename L::Number half)
+{
+    const auto& block = constraints.blocks[place];
+    auto& carried = constraints.surface_velocities[place];
+    const Frame<L, true> frame(block, at);
+    // A round side is the same however it turns.
+    const V3<L> core_a = frame.center_a - frame.normal * lane<L>(block.round_a, at);
+    const V3<L> core_b = frame.center_b + frame.normal * lane<L>(block.round_b, at);
+    const Side<L> a(constraints.bodies, block.a + at, core_a, half);
+    const Side<L> b(constraints.bodies, block.b + at, core_b, half);
+    const L by_a = lane<L>(carried.by_a, at), by_b = lane<L>(carried.by_b, at);
+    const V3<L> contact = a.material * by_a + b.material * by_b;
+    const V3<L> slip = cross(b.spin, contact - b.center) - cross(a.spin, contact - a.center);
+    // Where nothing is carried the speed is what it was: of who walks, or none.
+    const L acts = by_a + by_b;
+    const auto carries = acts > L(typename L::Number(0));
+    const auto tell = [&](const V3<L>& along, Lane16<typename L::Number>& speed) {
+        select(carries, dot(along, slip) * acts, lane<L>(speed, at)).store(speed.at + at);
+    };
+    tell(frame.tangent, carried.speed[0]);
+    tell(frame.other, carried.speed[1]);
+}
+
+// As walk_of() has it: b walks on a, or a on b.
+template <class L>
+[[gnu::flatten]] void walk_lanes(const ContactConstraintsView<typename L::Number>& constraints,
+                                 std::size_t place,
+                                 int at,
+                                 const V3<L>& up)
+{
+    using Real = typename L::Number;
+    const auto& block = constraints.blocks[place];
+    auto& carried = constraints.surface_velocities[place];
+    const L zero = Real(0), one = Real(1);
+    const Frame<L, true> frame(block, at);
+    const auto driven = [&](const std::int32_t* index, L(&drive)[8]) {
+        gather_8(constraints.prescribed->number, 8, index, drive);
+    };
+    L a[8], b[8];
+    driven(block.a + at, a);
+    driven(block.b + at, b);
+    const L rises = dot(frame.normal, up);
+    // 1 where a side walks.
+    const auto walks = [&](const L(&drive)[8], L stands, const Lane16<Real>& round) {
+        const L rolls = select(lane<L>(round, at) > zero, drive[3], zero);
+        const L acts = drive[4] + drive[5] + drive[6];
+        return select(stands < L(Real(kSteepestWalk)), zero,
+                      select(acts > zero, one - rolls, zero));
+    };
+    const L by_b = walks(b, rises, block.round_b);
+    const L by_a = select(by_b > zero, zero, walks(a, zero - rises, block.round_a));
+    const L side = by_b - by_a, any = by_b + by_a;
+    const auto of_walker = [&](int k) { return select(by_b > zero, b[k], a[k]); };
+    const V3<L> acts{of_walker(4), of_walker(5), of_walker(6)};
+    const V3<L> of_a = Motion<L, true>(constraints.bodies, block.a + at).at(frame.center_a);
+    const V3<L> of_b = Motion<L, true>(constraints.bodies, block.b + at).at(frame.center_b);
+    const auto against = [&](int k, L ground_a, L ground_b, L act) {
+        return (of_walker(k) - select(by_b > zero, ground_a, ground_b)) * act;
+    };
+    V3<L> walk{against(0, of_a.x, of_b.x, acts.x), against(1, of_a.y, of_b.y, acts.y),
+               against(2, of_a.z, of_b.z, acts.z)};
+    // Where the ground slopes, what follows on the axes that the drive leaves free.
+    const V3<L>& n = frame.normal;
+    const V3<L> free{n.x * (one - acts.x), n.y * (one - acts.y), n.z * (one - acts.z)};
+    walk = walk - free * (dot(n, walk) / max(dot(free, free), L(Real(kLeastFreeWalk))));
+    const auto tell = [&](const V3<L>& along, Lane16<Real>& speed) {
+        select(any > zero, zero - side * dot(along, walk), lane<L>(speed, at)).store(speed.at + at);
+    };
+    tell(frame.tangent, carried.speed[0]);
+    tell(frame.other, carried.speed[1]);
+    for (Lane16<Real>* const by : {&carried.by_a, &carried.by_b})
+        select(any > zero, zero, lane<L>(*by, at)).store(by->at + at);
+}
+
+}  // namespace
+
+template <class Real>
+void walk_surface_velocity(const ContactConstraintsView<Real>& constraints,
+                           std::size_t place,
+                           const Real (&up)[3])
+{
+    using L = Lanes<Real>;
+    for (int at = 0; at < kBlock; at += L::kWidth)
+        walk_lanes<L>(constraints, place, at, V3<L>{L(up[0]), L(up[1]), L(up[2])});
+}
+
+template void
+walk_surface_velocity<float>(const ContactConstraintsView<float>&, std::size_t, const float (&)[3]);
+template void walk_surface_velocity<double>(const ContactConstraintsView<double>&,
+                                            std::size_t,
+                                            const double (&)[3]);
+
+template <class Real>
+void update_surface_velocity(const ContactConstraintsView<Real>& constraints,
+                             std::size_t begin,
+                             std::size_t end,
+                             Real half)
+{
+    for (std::size_t place = begin; place < end; ++place)
+        for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
+            carry_lanes<Lanes<Real>>(constraints, place, at, half);
+}
+
+template void update_surface_velocity<float>(const ContactConstraintsView<float>&,
+                                             std::size_t,
+                                             std::size_t,
+                                             float);
+template void update_surface_velocity<double>(const ContactConstraintsView<double>&,
+                                              std::size_t,
+                                              std::size_t,
+                                              double);
+
+}  // namespace throng::THRONG_LANES

@@ -1,0 +1,298 @@
+#include "pipeline/forces/spring_energy_limiter.hpp"
+
+#include "kernels/math/rotation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+// What is gained up to this share of the kinetic energy is let be: rounding makes some.
+constexpr double kLetBe = 1e-4;
+
+constexpr std::uint32_t kNoGroup = 0xffffffffu;
+
+template <class Real>
+Vec3 in_double(const Real* v)
+{
+    return {double{v[0]}, double{v[1]}, double{v[2]}};
+}
+
+template <class Real>
+void scale_lane(Lane16<Real>& number, std::size_t lane, Real share)
+{
+    number.at[lane] *= share;
+}
+
+// Whether more than springs and gravity may give energy to a body.
+bool is_fed(const Forces& forces, std::uint32_t body)
+{
+    const auto has = [&](const std::vector<Vec3>& of_bodies) {
+        return body < of_bodies.size() && !of_bodies[body].isZero(0);
+    };
+    return forces.field || !forces.attractors.empty() || has(forces.force) || has(forces.torque)
+        || forces.on_pivot(body) || (!forces.linear_drag.empty() && !forces.wind.isZero(0));
+}
+
+}  // namespace
+
+// Bodies of a batch, by which of them touch or are joined.
+template <class Real>
+class SpringEnergyLimiter<Real>::Sets {
+public:
+    Sets(const Layout& layout, const Batch& batch, const StateDependentForces& forces)
+        : layout_(layout), forces_(forces)
+    {
+        const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
+        first_ = slices.front().first_body;
+        bodies_ = slices.back().first_body + slices.back().dynamic - first_;
+        from_ = layout.blocks_of(slices.front()).begin * kBlock;
+        to_ = layout.blocks_of(slices.back()).end * kBlock;
+        sets_.reset(bodies_);
+        for (std::size_t lane = from_; lane < to_; ++lane) {
+            const std::int32_t a = layout.solver_index_a[lane], b = layout.solver_index_b[lane];
+            if (layout.movable(a) && layout.movable(b)) sets_.join(place(a), place(b));
+        }
+        for (const auto& joined : forces.joined())
+            for (const std::uint32_t other : joined) sets_.join(of(joined[0]), of(other));
+        group_of_.assign(bodies_, kNoGroup);
+    }
+
+    void list_springs(std::vector<Group>& groups)
+    {
+        for (std::uint32_t i = 0; i < forces_.joined().size(); ++i) {
+            std::uint32_t& group = group_of_[sets_.find(of(forces_.joined()[i][0]))];
+            if (group == kNoGroup) {
+                group = static_cast<std::uint32_t>(groups.size());
+                groups.emplace_back();
+            }
+            groups[group].springs.push_back(i);
+        }
+    }
+
+    void list_members(const RigidFacts& facts, std::vector<Group>& groups)
+    {
+        for (std::uint32_t at = 0; at < bodies_; ++at) {
+            const std::uint32_t place = group_of_[sets_.find(at)];
+            if (place == kNoGroup) continue;
+            Group& group = groups[place];
+            const std::uint32_t body = layout_.body_of_solver_index[first_ + at];
+            const double inverse_mass = facts.masses.inverse_mass[body];
+            const Sym3 inertia =
+                in_world_axes(facts.masses.inertia[body], facts.poses.orientation[body]);
+            group.members.push_back(
+                {first_ + at, inverse_mass > 0 ? 1 / inverse_mass : 0, inertia.matrix()});
+            group.fed = group.fed || throng::is_fed(facts.forces, body);
+            group.floats = group.floats && inverse_mass > 0;
+        }
+    }
+
+    void list_lanes(std::vector<Group>& groups)
+    {
+        for (std::size_t lane = from_; lane < to_; ++lane) {
+            const std::int32_t a = layout_.solver_index_a[lane], b = layout_.solver_index_b[lane];
+            const bool a_moves = layout_.movable(a), b_moves = layout_.movable(b);
+            if (!a_moves && !b_moves) continue;
+            const std::uint32_t place_of_group = group_of_[sets_.find(place(a_moves ? a : b))];
+            if (place_of_group == kNoGroup) continue;
+            Group& group = groups[place_of_group];
+            group.lanes.push_back(static_cast<std::uint32_t>(lane));
+            if (a_moves && b_moves) continue;
+            group.floats = false;
+            group.driven = group.driven || (a_moves ? b : a) > 0;
+        }
+    }
+
+private:
+    std::uint32_t place(std::int32_t solver_index) const
+    {
+        return static_cast<std::uint32_t>(solver_index) - first_;
+    }
+    std::uint32_t of(std::uint32_t forced) const
+    {
+        return layout_.solver_index[forces_.forced_bodies()[forced].body] - first_;
+    }
+
+    const Layout& layout_;
+    const StateDependentForces& forces_;
+    std::uint32_t first_ = 0, bodies_ = 0;  // among the solver bodies
+    std::size_t from_ = 0, to_ = 0;         // lanes
+    DisjointSets sets_;
+    std::vector<std::uint32_t> group_of_;  // [bodies] of the first of a set
+};
+
+template <class Real>
+SpringEnergyLimiter<Real>::SpringEnergyLimiter(const Layout& layout,
+                                               const Batch& batch,
+                                               const RigidFacts& facts,
+                                               const StateDependentForces& forces,
+                                               const Vec3& fall)
+    : forces_(forces), fall_(fall)
+{
+    Sets sets(layout, batch, forces);
+    sets.list_springs(groups_);
+    sets.list_members(facts, groups_);
+    sets.list_lanes(groups_);
+    std::erase_if(groups_, [](const Group& group) { return group.driven; });
+}
+
+template <class Real>
+double SpringEnergyLimiter<Real>::kinetic_of(const Group& group,
+                                             const ContactConstraints<Real>& constraints)
+{
+    double twice = 0;
+    for (const Member& member : group.members) {
+        const SolverBody<Real>& body = constraints.bodies[member.solver_index];
+        const Vec3 spin = in_double(body.motion + 4);
+        twice += member.mass * in_double(body.motion).squaredNorm();
+        twice += spin.dot(member.inertia * spin);
+    }
+    return twice / 2;
+}
+
+template <class Real>
+void SpringEnergyLimiter<Real>::open(const ContactConstraints<Real>& constraints)
+{
+    for (Group& group : groups_) {
+        group.kinetic = kinetic_of(group, constraints);
+        for (Member& member : group.members)
+            member.before = in_double(constraints.bodies[member.solver_index].motion);
+    }
+}
+
+// Along the impulses the kinetic energy is what it is without them + along s + square s^2.
+template <class Real>
+double SpringEnergyLimiter<Real>::share_of(const Group& group,
+                                           const ContactConstraints<Real>& constraints)
+{
+    double along = 0, square = 0;
+    for (const Member& member : group.members) {
+        const SolverBody<Real>& body = constraints.bodies[member.solver_index];
+        const Vec3 velocity = in_double(body.free), spin = in_double(body.free + 4);
+        const Vec3 given = in_double(body.motion) - velocity;
+        const Vec3 turned = in_double(body.motion + 4) - spin;
+        const Vec3 momentum = member.inertia * turned;
+        along += member.mass * given.dot(velocity) + momentum.dot(spin);
+        square += (member.mass * given.squaredNorm() + momentum.dot(turned)) / 2;
+    }
+    return 2 * square + along > 0 ? std::clamp(-along / (2 * square), 0.0, 1.0) : 1;
+}
+
+template <class Real>
+void SpringEnergyLimiter<Real>::scale(const Group& group,
+                                      Real share,
+                                      ContactConstraints<Real>& constraints)
+{
+    for (const Member& member : group.members) {
+        SolverBody<Real>& body = constraints.bodies[member.solver_index];
+        for (int k = 0; k < 8; ++k)
+            body.motion[k] = body.free[k] + share * (body.motion[k] - body.free[k]);
+    }
+    for (const std::uint32_t place : group.lanes) {
+        const std::size_t at = place / kBlock, lane = place % kBlock;
+        ContactConstraintWide<Real>& block = constraints.blocks[at];
+        for (auto& impulse : block.friction_impulse) scale_lane(impulse, lane, share);
+        scale_lane(block.torsional_impulse, lane, share);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
+            const std::size_t point = block.first_point + k;
+            scale_lane(constraints.points[point].impulse, lane, share);
+            if (constraints.point_frictions.empty()) continue;
+            for (auto& impulse : constraints.point_frictions[point].impulse)
+                scale_lane(impulse, lane, share);
+        }
+        if (constraints.rolling_frictions.empty()) continue;
+        for (auto& impulse : constraints.rolling_frictions[at].impulse)
+            scale_lane(impulse, lane, share);
+    }
+}
+
+template <class Real>
+void SpringEnergyLimiter<Real>::take_share(ContactConstraints<Real>& constraints) const
+{
+    for (const Group& group : groups_) {
+        const double share = share_of(group, constraints);
+        if (share < 1) scale(group, static_cast<Real>(share), constraints);
+    }
+}
+
+template <class Real>
+bool SpringEnergyLimiter<Real>::is_fed(const Group& group,
+                                       const ContactConstraints<Real>& constraints) const
+{
+    return group.fed || !constraints.prescribed.empty()
+        || std::any_of(group.springs.begin(), group.springs.end(),
+                       [&](std::uint32_t i) { return forces_.springs_of(i).are_drawn(); });
+}
+
+// J, in motion and in springs, but for what gravity gave: half of the velocity before, half after.
+template <class Real>
+double SpringEnergyLimiter<Real>::gained(const Group& group,
+                                         double kinetic,
+                                         const ContactConstraints<Real>& constraints) const
+{
+    double gained = kinetic - group.kinetic;
+    for (const std::uint32_t i : group.springs) gained += forces_.springs_of(i).stored();
+    for (const Member& member : group.members)
+        gained -= member.mass
+            * fall_.dot(member.before + in_double(constraints.bodies[member.solver_index].motion))
+            / 2;
+    return gained;
+}
+
+// What nothing holds keeps its momentum.
+template <class Real>
+Vec3 SpringEnergyLimiter<Real>::common_velocity(const Group& group,
+                                                const ContactConstraints<Real>& constraints) const
+{
+    Vec3 momentum = Vec3::Zero();
+    const bool tied = std::any_of(group.springs.begin(), group.springs.end(), [&](std::uint32_t i) {
+        return forces_.springs_of(i).are_tied();
+    });
+    if (tied || !group.floats) return momentum;
+    double mass = 0;
+    for (const Member& member : group.members) {
+        momentum += member.mass * in_double(constraints.bodies[member.solver_index].motion);
+        mass += member.mass;
+    }
+    return momentum / mass;
+}
+
+// With contacts and without, so that what contacts gave stays what it was.
+template <class Real>
+void SpringEnergyLimiter<Real>::slow_down(const Group& group,
+                                          double share,
+                                          ContactConstraints<Real>& constraints) const
+{
+    const Vec3 common = common_velocity(group, constraints);
+    for (const Member& member : group.members) {
+        SolverBody<Real>& body = constraints.bodies[member.solver_index];
+        for (int k = 0; k < 3; ++k) {
+            const Real linear =
+                static_cast<Real>((1 - share) * (common[k] - double{body.motion[k]}));
+            const Real angular = static_cast<Real>((share - 1) * double{body.motion[4 + k]});
+            for (Real* const motion : {body.motion, body.free}) {
+                motion[k] += linear;
+                motion[4 + k] += angular;
+            }
+        }
+    }
+}
+
+template <class Real>
+void SpringEnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) const
+{
+    for (const Group& group : groups_) {
+        if (is_fed(group, constraints)) continue;
+        const double kinetic = kinetic_of(group, constraints),
+                     more = gained(group, kinetic, constraints);
+        if (!(more > kLetBe * kinetic)) continue;
+        slow_down(group, std::sqrt(std::max(0.0, 1 - more / kinetic)), constraints);
+    }
+}
+
+template class SpringEnergyLimiter<float>;
+template class SpringEnergyLimiter<double>;
+
+}  // namespace throng

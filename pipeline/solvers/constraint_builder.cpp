@@ -1,0 +1,233 @@
+#include "pipeline/solvers/constraint_builder.hpp"
+
+#include "kernels/solver/carried_points.hpp"
+#include "kernels/solver/driven_contacts.hpp"
+#include "kernels/solver/solver_bodies.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace throng {
+
+namespace {
+
+// Contacts are damped far beyond critical: they give way slowly and do not ring.
+constexpr double kDampingRatio = 20;
+// Stiffness as a share of the substep's rate, by the number of points: the most that comes to rest.
+// Points share a body's mass among them, so the more there are the less each bears.
+constexpr double kRate[4] = {0.5, 0.3, 0.25, 0.25};
+// Overlap from which a contact stops giving way, as a share of the smaller body's half extent.
+constexpr double kDeep = 0.005;
+// Plain Gauss-Seidel: the share of the overlap taken away each substep.
+constexpr double kBaumgarte = 0.2;
+
+// Gaps are told to so many times the last digit of what they are the difference of.
+constexpr double kDigits = 4;
+// m: what this is the last digit of is smaller than scenes are.
+constexpr double kLeastPress = 1e-5;
+
+template <class Real>
+std::array<Softness<Real>, 4> softness_of(const StepContext& context)
+{
+    const Settings& settings = context.settings;
+    const double h = context.substep();
+    std::array<Softness<Real>, 4> terms;
+    for (std::size_t points = 0; points < terms.size(); ++points) {
+        const double rate = contact_rate(context, static_cast<int>(points) + 1);
+        terms[points] = settings.solver == Solver::pgs
+            ? Softness<Real>{static_cast<Real>(kBaumgarte / h), Real(0)}
+            : softness<Real>(rate, kDampingRatio, h);
+    }
+    return terms;
+}
+
+}  // namespace
+
+double contact_rate(const StepContext& context, int points)
+{
+    const Settings& settings = context.settings;
+    if (settings.contact_hertz > 0) return settings.contact_hertz;
+    const double share =
+        settings.contact_rate > 0 ? settings.contact_rate : kRate[std::size_t(points) - 1];
+    return share / context.substep();
+}
+
+double contact_frequency(const StepContext& context, int points)
+{
+    constexpr double kTurn = 2 * 3.14159265358979323846;
+    return kTurn * contact_rate(context, points);
+}
+
+double push_rate(const StepContext& context, int points)
+{
+    const double h = context.substep();
+    return softness<double>(contact_rate(context, points), kDampingRatio, h).bias_rate;
+}
+
+double rigid_overlap(double extent, int points)
+{
+    return kDeep * extent * (points > 2 ? kSharedDeep : 1);
+}
+
+template <class Real>
+ConstraintBuilder<Real>::ConstraintBuilder(const StepContext& context,
+                                           const Layout& layout,
+                                           const ActiveContacts& active,
+                                           ConvexContacts<Real>& convex,
+                                           MeshContacts<Real>& meshes,
+                                           SolidContacts<Real>& solids,
+                                           ContactConstraints<Real>& constraints)
+    : layout_(layout), active_(active), convex_(convex), meshes_(meshes), solids_(solids),
+      constraints_(constraints), view_(ContactConstraintsView<Real>::of(constraints)),
+      kernels_(solve_kernels<Real>()),
+      turns_(context.has(Effect::rotation) || context.friction_at_points_or_pyramid()),
+      uncut_(context.friction_at_points_or_pyramid()
+             && context.settings.friction_cone == FrictionCone::pyramid),
+      dt_(context.settings.dt), softness_(softness_of<Real>(context))
+{
+    for (std::size_t points = 0; points < pressed_.size(); ++points) {
+        const double omega = contact_frequency(context, static_cast<int>(points) + 1);
+        pressed_[points] = context.gravity.norm() / (omega * omega);
+    }
+    settles_ = pressed_[0] < kLeastPress;
+    const Vec3 up = up_of(context.gravity);
+    for (int k = 0; k < 3; ++k) up_[k] = static_cast<Real>(up[k]);
+}
+
+template <class Real>
+Contact<Real>& ConstraintBuilder<Real>::contact_of(const ActiveContacts::Entry& source) const
+{
+    switch (source.list) {
+    case ContactList::mesh:
+        return meshes_.entries[source.list_index].contact;
+    case ContactList::solid:
+        return solids_.entries[source.list_index].contact;
+    case ContactList::convex:
+        break;
+    }
+    return convex_.contacts[source.list_index];
+}
+
+template <class Real>
+void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed) const
+{
+    ContactConstraintWide<Real>& block = constraints_.blocks[at];
+    block.points = layout_.points[at];
+    block.first_point = constraints_.first_point[at];
+    block.writes_a = block.writes_b = 0;
+    for (std::size_t lane = 0; lane < kBlock; ++lane) {
+        const std::size_t place = at * kBlock + lane;
+        const int lane_at = static_cast<int>(lane);
+        block.a[lane] = layout_.solver_index_a[place];
+        block.b[lane] = layout_.solver_index_b[place];
+        const std::uint32_t entry = layout_.lanes[place].entry;
+        if (entry == LaneSource{}.entry) {
+            pack_empty_lane(lane_at, packed);
+            continue;
+        }
+        const auto& source = active_.entries[entry];
+        const Surfaces::MaterialPair materials = materials_of(entry);
+        const auto writes = [&](std::int32_t solver_index) {
+            return layout_.movable(solver_index) ? 1u << lane : 0u;
+        };
+        block.writes_a = static_cast<std::uint16_t>(block.writes_a | writes(block.a[lane]));
+        block.writes_b = static_cast<std::uint16_t>(block.writes_b | writes(block.b[lane]));
+        pack_contact(contact_of(source),
+                     {Real(materials.friction), Real(materials.restitution),
+                      Real(materials.rolling_friction), softness_[source.points - 1u],
+                      static_cast<Real>(kDeep * double{source.extent})},
+                     lane_at, packed);
+    }
+    kernels_.prepare(packed, at, view_, turns_);
+    if (view_.surface_velocities != nullptr) {
+        constraints_.surface_velocities[at] = {};
+        if (constraints_.surfaces_turn) find_carried(at);
+        if (view_.prescribed != nullptr) kernels_.walk_surface_velocity(view_, at, up_);
+    }
+    if (!uncut_ && !settles_) return;
+    for (std::size_t lane = 0; lane < kBlock; ++lane) {
+        const std::uint32_t entry = layout_.lanes[at * kBlock + lane].entry;
+        if (entry == LaneSource{}.entry) continue;
+        const Contact<Real>& contact = contact_of(active_.entries[entry]);
+        if (uncut_) pack_unclamped_friction(contact, static_cast<int>(lane), block);
+        if (settles_) settle_separation(contact, lane, block);
+    }
+}
+
+template <class Real>
+Surfaces::MaterialPair ConstraintBuilder<Real>::materials_of(std::uint32_t entry) const
+{
+    if (!active_.materials.empty()) return active_.materials[entry];
+    const ActiveContacts::Entry& source = active_.entries[entry];
+    return {source.friction, source.restitution, source.rolling_friction};
+}
+
+// Where substeps are short, a separation that is rounding alone would ask for more speed than
+// weight gives in a substep: the contact would be thrown open and pressed shut by turns, and
+// friction, which takes from what presses, would act several times too much. Such a separation is
+// none.
+template <class Real>
+void ConstraintBuilder<Real>::settle_separation(const Contact<Real>& contact,
+                                                std::size_t lane,
+                                                ContactConstraintWide<Real>& block) const
+{
+    constexpr double kLastDigit = kDigits * double{std::numeric_limits<Real>::epsilon()} / 2;
+    const double pressed = pressed_[static_cast<std::size_t>(contact.count) - 1];
+    const double apart = double{contact.center_offset.norm()};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        const auto& point = contact.points[k];
+        const double told = kLastDigit * (double{point.anchor_a.norm()} + apart);
+        const double most = std::max(0.0, told - pressed);
+        Real& separation = constraints_.points[block.first_point + k].separation.at[lane];
+        // One that is open stays so, by a hair: it stops what comes, and does not give way.
+        const Real hair = separation > 0 ? std::numeric_limits<Real>::min() : Real(0);
+        separation -= std::clamp(separation, static_cast<Real>(-most), static_cast<Real>(most));
+        if (separation == 0) separation = hair;
+    }
+}
+
+template <class Real>
+void ConstraintBuilder<Real>::find_carried(std::size_t at) const
+{
+    const ContactConstraintWide<Real>& block = constraints_.blocks[at];
+    SurfaceVelocityWide<Real>& carried = constraints_.surface_velocities[at];
+    for (std::size_t lane = 0; lane < kBlock; ++lane) {
+        const auto& a = constraints_.bodies[static_cast<std::size_t>(block.a[lane])];
+        const auto& b = constraints_.bodies[static_cast<std::size_t>(block.b[lane])];
+        const bool by_a = carries(a, inverse_mass_of(b), dt_);
+        if (!by_a && !carries(b, inverse_mass_of(a), dt_)) continue;
+        const Real round_a = block.round_a.at[lane], round_b = block.round_b.at[lane];
+        const double share = goes_with_b(double{round_a}, double{round_b}, by_a);
+        carried.by_a.at[lane] = static_cast<Real>(1 - share);
+        carried.by_b.at[lane] = static_cast<Real>(share);
+    }
+}
+
+template <class Real>
+void ConstraintBuilder<Real>::make(std::size_t begin, std::size_t end) const
+{
+    PackedContacts<Real> packed;
+    for (std::size_t block = begin; block < end; ++block) fill(block, packed);
+}
+
+template <class Real>
+void ConstraintBuilder<Real>::store(std::size_t begin, std::size_t end) const
+{
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t lane = layout_.lane[i];
+        store_impulses(view_, lane / kBlock, static_cast<int>(lane % kBlock),
+                       contact_of(active_.entries[layout_.contacts[i]]));
+    }
+}
+
+template <class Real>
+void ConstraintBuilder<Real>::scale_impulses(const Slice& slice, Real scale) const
+{
+    for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i)
+        throng::scale_impulses(scale, contact_of(active_.entries[layout_.contacts[i]]));
+}
+
+template class ConstraintBuilder<float>;
+template class ConstraintBuilder<double>;
+
+}  // namespace throng

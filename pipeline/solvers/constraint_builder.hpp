@@ -1,0 +1,73 @@
+// Constraint builder: contacts into the constraints of the solver, and impulses back into contacts.
+//
+// The solver does both itself, slice by slice, so that constraints are in cache when they are first
+// and last needed.
+#pragma once
+
+#include "kernels/solver/contact_packing.hpp"
+#include "pipeline/step/step_data.hpp"
+
+namespace throng {
+
+/// Hz, of the spring that a contact of so many points is.
+double contact_rate(const StepContext& context, int points);
+/// The same as an angular frequency, rad/s.
+double contact_frequency(const StepContext& context, int points);
+/// 1/s, the share of its overlap that it pushes apart.
+double push_rate(const StepContext& context, int points);
+/// m, overlap under a load that so many points share, from which they begin to turn rigid.
+///
+///   extent  m, the lesser of the smallest half extents of the two shapes
+double rigid_overlap(double extent, int points);
+
+template <class Real>
+class ConstraintBuilder {
+public:
+    /// Of constraints that have their places (see prepare_constraints).
+    ConstraintBuilder(const StepContext& context,
+                      const Layout& layout,
+                      const ActiveContacts& active,
+                      ConvexContacts<Real>& convex,
+                      MeshContacts<Real>& meshes,
+                      SolidContacts<Real>& solids,
+                      ContactConstraints<Real>& constraints);
+
+    /// Makes the constraints of blocks from `begin` to before `end`. Bodies have not moved yet.
+    void make(std::size_t begin, std::size_t end) const;
+    /// Gives their impulses back to the contacts of these places in Layout::contacts: in the order
+    /// in which they lie in memory, as there are more of them than of the constraints that they lie
+    /// in.
+    void store(std::size_t begin, std::size_t end) const;
+
+    /// Makes what the contacts of a slice hold this times as much, for substeps of another length.
+    void scale_impulses(const Slice& slice, Real scale) const;
+
+    Contact<Real>& contact_of(const ActiveContacts::Entry& source) const;
+
+private:
+    void fill(std::size_t block, PackedContacts<Real>& packed) const;
+    Surfaces::MaterialPair materials_of(std::uint32_t entry) const;
+    void settle_separation(const Contact<Real>& contact,
+                           std::size_t lane,
+                           ContactConstraintWide<Real>& block) const;
+    void find_carried(std::size_t block) const;
+
+    const Layout& layout_;
+    const ActiveContacts& active_;
+    ConvexContacts<Real>& convex_;
+    MeshContacts<Real>& meshes_;
+    SolidContacts<Real>& solids_;
+    ContactConstraints<Real>& constraints_;
+    ContactConstraintsView<Real> view_;
+    const SolveKernels<Real>& kernels_;
+    bool turns_;
+    bool uncut_;                              // friction is not cut to a round cone
+    double dt_;                               // s, of a step
+    Real up_[3];                              // see driven_contacts.hpp
+    std::array<Softness<Real>, 4> softness_;  // by the number of points, less one
+    // m, the overlap that weight makes; by the number of points, less one.
+    std::array<double, 4> pressed_;
+    bool settles_;  // that is so little that the digits of separations are next to it
+};
+
+}  // namespace throng

@@ -1,0 +1,298 @@
+#include "pipeline/solvers/island_solver.hpp"
+
+#include "kernels/math/rotation.hpp"
+#include "kernels/solver/carried_points.hpp"
+#include "kernels/solver/driven_contacts.hpp"
+
+namespace throng {
+
+namespace {
+
+// The share of the overlap that a substep takes away.
+constexpr double kPartShare = 0.5;
+constexpr int kPartTries = 3;
+// How often contacts and stiff springs take turns in a substep: each sees what the other gave the
+// time before.
+constexpr int kSpringTurns = 4;
+// Share of the steps of a solve that each still has when those of the whole step are spent.
+constexpr int kFewSteps = 6;
+
+}  // namespace
+
+Vec3 IslandSolver::arm_now(const Vec3& arm, std::int32_t index, const Vec3& round) const
+{
+    if (index < 0) return arm + round;
+    return bodies_[static_cast<std::size_t>(index)].turned * arm + round;
+}
+
+// By the arms that place_points() last found.
+double IslandSolver::separation_now(std::size_t at) const
+{
+    const auto moved = [&](std::int32_t index) -> Vec3 {
+        return index < 0 ? Vec3(Vec3::Zero()) : bodies_[static_cast<std::size_t>(index)].moved;
+    };
+    const IslandContact& contact = contacts_[at];
+    const DirectPoint& point = points_[at];
+    const Vec3 by_a =
+        moved(contact.a) + point.arm_a - contact.arm_a - Vec3(contact.normal * contact.round_a);
+    const Vec3 by_b =
+        moved(contact.b) + point.arm_b - contact.arm_b + Vec3(contact.normal * contact.round_b);
+    return contact.separation + contact.normal.dot(by_b - by_a);
+}
+
+// Arms and separations by where the bodies are now.
+void IslandSolver::place_points()
+{
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const IslandContact& contact = contacts_[i];
+        DirectPoint& point = points_[i];
+        const Vec3 round_a = contact.normal * contact.round_a,
+                   round_b = -contact.normal * contact.round_b;
+        point.arm_a = arm_now(contact.arm_a, contact.a, round_a);
+        point.arm_b = arm_now(contact.arm_b, contact.b, round_b);
+        separations_[i] = separation_now(i);
+    }
+    find_walks();
+}
+
+// Who is driven walks on what bears it: see driven_contacts.hpp. By the arms as they are.
+void IslandSolver::find_walks()
+{
+    for (const IslandWalk& walk : walks_) {
+        const IslandContact& contact = contacts_[walk.contact];
+        DirectPoint& point = points_[walk.contact];
+        const auto rolls = [&](bool is_b) {
+            const auto index = static_cast<std::size_t>(is_b ? contact.b : contact.a);
+            return (is_b ? contact.round_b : contact.round_a) > 0
+                && !(inverse_inertia_[index] == Sym3{});
+        };
+        const auto velocity = [&](bool is_b) -> Vec3 {
+            const std::int32_t index = is_b ? contact.b : contact.a;
+            if (index < 0) return Vec3::Zero();
+            const DirectBody& body = after_[static_cast<std::size_t>(index)];
+            if (!spins_) return body.velocity;
+            return body.velocity + body.spin.cross(is_b ? point.arm_b : point.arm_a);
+        };
+        point.walk = walk_of(walk.by_a, walk.by_b, point.normal, up_, rolls, velocity);
+    }
+}
+
+// Who is carried by a surface that turns by itself meets it where the middle of the coming time
+// finds the two, as the carried contacts of the other solvers do (SurfaceVelocityWide).
+void IslandSolver::carry_arms(double half, double dt)
+{
+    const auto carried_by = [&](std::int32_t carrier, std::int32_t carried) {
+        if (carrier < 0) return false;
+        const DirectBody& body = after_[static_cast<std::size_t>(carrier)];
+        const InverseMass other = carried < 0
+            ? InverseMass{}
+            : inverse_mass_of(after_[static_cast<std::size_t>(carried)]);
+        return carries(body.spin, inverse_mass_of(body), other, dt);
+    };
+    const auto side = [&](std::int32_t index, const Vec3& core) -> CarriedSide {
+        if (index < 0) return {};
+        const auto at = static_cast<std::size_t>(index);
+        return carried_side(bodies_[at].moved, bodies_[at].turned, after_[at], core, half);
+    };
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const IslandContact& contact = contacts_[i];
+        const bool by_a = carried_by(contact.a, contact.b);
+        if (!by_a && !carried_by(contact.b, contact.a)) continue;
+        points_[i].arm_a = contact.arm_a + contact.normal * contact.round_a;
+        points_[i].arm_b = contact.arm_b - contact.normal * contact.round_b;
+        throng::carry_arms(side(contact.a, contact.arm_a), side(contact.b, contact.arm_b),
+                           goes_with_b(contact.round_a, contact.round_b, by_a), points_[i]);
+    }
+    find_walks();
+}
+
+// Into world axes, as the bodies are turned now.
+void IslandSolver::turn_inertias()
+{
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (!bodies_[i].dynamic) continue;
+        after_[i].inverse_inertia =
+            in_world_axes(inverse_inertia_[i], bodies_[i].turned * bodies_[i].orientation);
+    }
+}
+
+// What a substep does to the bodies besides contacts.
+void IslandSolver::move_freely(const StepContext& context, double time)
+{
+    before_ = after_;
+    turn_inertias();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const IslandBody& island_body = bodies_[i];
+        DirectBody& body = after_[i];
+        if (!island_body.dynamic) continue;
+        if (context.has(Effect::gravity) && body.inverse_mass > 0)
+            body.velocity += context.gravity * time;
+        body.velocity += island_body.acceleration * time;
+        body.spin += island_body.angular_acceleration * time;
+        if (!island_body.precesses || context.settings.gyroscopic == Gyroscopic::off) continue;
+        const auto torque = context.settings.gyroscopic == Gyroscopic::implicit
+            ? after_gyroscopic_torque
+            : after_explicit_gyroscopic_torque;
+        body.spin =
+            torque(body.spin, inertia_[i], island_body.turned * island_body.orientation, time);
+    }
+    begin_state_forces(time);
+    free_ = after_;
+}
+
+void IslandSolver::update_forced_bodies()
+{
+    for (ForcedBody& forced : state_forces_->forced_bodies()) {
+        const IslandBody& island_body = bodies_[forced.at];
+        forced.pose = {island_body.position + island_body.moved,
+                       island_body.turned * island_body.orientation};
+        forced.velocity = after_[forced.at].velocity;
+        forced.spin = after_[forced.at].spin;
+    }
+}
+
+void IslandSolver::move_forced_bodies(std::vector<DirectBody>& bodies) const
+{
+    for (const ForcedBody& forced : state_forces_->forced_bodies()) {
+        bodies[forced.at].velocity += forced.gained;
+        bodies[forced.at].spin += forced.gained_spin;
+    }
+}
+
+void IslandSolver::begin_state_forces(double time)
+{
+    if (!state_forces_) return;
+    update_forced_bodies();
+    state_forces_->begin(elapsed_, time);
+    move_forced_bodies(after_);
+}
+
+// False where nothing acts after bodies moved.
+bool IslandSolver::end_state_forces()
+{
+    if (!state_forces_ || !state_forces_->late()) return false;
+    update_forced_bodies();
+    state_forces_->end();
+    move_forced_bodies(after_);
+    return true;
+}
+
+// Contacts, and stiff springs with them, which have the last word: see solve_batch.cpp.
+void IslandSolver::hold_contacts(double time)
+{
+    for (std::size_t i = 0; i < points_.size(); ++i)
+        points_[i].least = -std::max(separations_[i], 0.0) / time;
+    solve(after_, points_);
+    if (!state_forces_ || !state_forces_->stiff()) return;
+    for (int turn = 1;; ++turn) {
+        update_forced_bodies();
+        state_forces_->again();
+        if (turn == kSpringTurns) return move_forced_bodies(after_);
+        move_forced_bodies(free_);
+        after_ = free_;
+        solve(after_, points_);
+    }
+}
+
+// What acts after bodies moved, contacts answer then.
+void IslandSolver::answer_late_forces(const StepContext& context)
+{
+    if (!end_state_forces()) return;
+    place_points();
+    others_ = points_;
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+        others_[i].least = -std::max(separations_[i], 0.0) / context.substep();
+        others_[i].impulse = others_[i].torque = Vec3::Zero();
+    }
+    solve(after_, others_);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+        points_[i].impulse += others_[i].impulse;
+        points_[i].torque += others_[i].torque;
+    }
+}
+
+void IslandSolver::solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
+{
+    residual_ = std::max(residual_, ask(bodies, points));
+}
+
+// The residual of one more solve. Those of a step together may take as many steps as one a
+// substep, and two more, may at most; from then on each has a few.
+double IslandSolver::ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
+{
+    DirectEffort effort = effort_;
+    effort.steps = std::clamp(left_, (effort.steps + kFewSteps - 1) / kFewSteps, effort.steps);
+    const DirectAnswer answer = solver_.solve(bodies, points, effort);
+    left_ -= std::min(left_, answer.steps);
+    return answer.residual;
+}
+
+// Speed along the normal, of b against a.
+double IslandSolver::approach(std::size_t at, std::span<const DirectBody> bodies) const
+{
+    return relative_normal_velocity(points_[at], bodies);
+}
+
+// Who overlaps is moved apart in this substep, on top of what else it does.
+bool IslandSolver::push_out_of_overlap(const StepContext& context)
+{
+    const double time = context.substep(), most = context.settings.push_limit;
+    bool any = false;
+    others_ = points_;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        if (!(separations_[i] < -contacts_[i].tolerance)) continue;
+        any = true;
+        others_[i].least = std::min(most, -separations_[i] * kPartShare / time);
+    }
+    if (!any || !(most > 0)) return false;
+    push_as_far_as_goes();
+    return true;
+}
+
+// Who is wedged between what does not move cannot part from all of it: each point is then asked
+// for what a try at the whole came to, which can be had. What is still asked for in vain is no law
+// of contact that was missed, and no residual: at rest it would be all there is to compare with.
+void IslandSolver::push_as_far_as_goes()
+{
+    const int most = effort_.pivots ? kPartTries : 1;
+    for (int tries = 1;; ++tries) {
+        going_ = free_;
+        const double residual = ask(going_, others_);
+        if (residual <= kDirectResidual || tries >= most) return;
+        for (std::size_t i = 0; i < others_.size(); ++i)
+            others_[i].least = std::min(others_[i].least, std::max(0.0, approach(i, going_)));
+    }
+}
+
+void IslandSolver::advance(double time)
+{
+    elapsed_ += time;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (!bodies_[i].advances) continue;
+        bodies_[i].moved += going_[i].velocity * time;
+        const Quat turn = exponential(going_[i].spin * time);
+        bodies_[i].turned = turn * bodies_[i].turned;
+        // Turned otherwise than it spins, it keeps the spin that it has in its own axes: of a
+        // needle whose spin stayed where it was a share would become tumbling.
+        if (bodies_[i].precesses && after_[i].spin != going_[i].spin)
+            after_[i].spin = turn * after_[i].spin;
+    }
+}
+
+void IslandSolver::substep(const StepContext& context)
+{
+    if (context.settings.response == Response::penalty) return penalise(context);
+    if (context.settings.response == Response::kinematic) return separate(context);
+    const double time = context.substep();
+    place_points();
+    carry_arms(time / 2, context.settings.dt);
+    move_freely(context, time);
+    hold_contacts(time);
+    going_ = after_;
+    push_out_of_overlap(context);
+    if (bounce(context)) points_ = others_;
+    advance(time);
+    answer_late_forces(context);
+}
+
+}  // namespace throng

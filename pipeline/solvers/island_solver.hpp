@@ -1,0 +1,159 @@
+// Island solver: the bodies and touching points of one island as they go through a step together,
+// by the direct solver, by penalty forces or by kinematic pushes.
+#pragma once
+
+#include "kernels/solver/direct/direct_points.hpp"
+#include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/solvers/solve_direct.hpp"
+
+#include <memory>
+
+namespace throng {
+
+/// A body of the island, through the step.
+///
+///   moved, turned  since the step began
+struct IslandBody {
+    std::uint32_t body = kNoBody;
+    bool dynamic = false, advances = false, precesses = false;
+    Vec3 position = Vec3::Zero();         // as the step began
+    Quat orientation = Quat::Identity();  // likewise
+    Vec3 acceleration = Vec3::Zero(),
+         angular_acceleration = Vec3::Zero();  // m/s2, rad/s2: what forces do
+    Vec3 moved = Vec3::Zero();
+    Quat turned = Quat::Identity();
+};
+
+/// Where two bodies of the island meet.
+///
+///   arms        m, as the step began, of what turns with the body
+///   rounds      m, from there along the normal to the surface: round sides do not turn
+///   separation  m, as the step began; below 0 where they overlap
+struct IslandContact {
+    std::uint32_t contact = 0, point = 0;  // place in Layout::contacts; of the contact
+    std::int32_t a = -1, b = -1;           // places among the bodies
+    Vec3 normal = Vec3::UnitZ();
+    Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
+    double round_a = 0, round_b = 0;
+    double separation = 0;
+    double restitution = 0;
+    double extent = 0;     // m, smallest half extent of the lesser shape
+    double tolerance = 0;  // m, overlap that is let be
+};
+
+/// A touch of somebody driven: by what each side is, or null.
+struct IslandWalk {
+    std::size_t contact = 0;
+    const PrescribedVelocity *by_a = nullptr, *by_b = nullptr;
+};
+
+class IslandSolver {
+public:
+    template <class Real>
+    IslandSolver(const DirectScene<Real>& scene, const Batch& batch);
+
+    /// Takes the island through one substep.
+    void substep(const StepContext& context);
+    /// Gives poses, velocities and impulses back.
+    template <class Real>
+    void finish(const DirectScene<Real>& scene,
+                const Batch& batch,
+                ContactConstraints<Real>& constraints) const;
+
+    /// The greatest of the solves that hold contacts and bounce them; pushes out of overlap, which
+    /// cannot always be had, are none of them.
+    double residual() const { return residual_; }
+    /// The most parts that penalty forces cut a substep into.
+    int cuts() const { return cuts_; }
+
+private:
+    template <class Real>
+    void take_bodies(const DirectScene<Real>& scene, const Slice& slice);
+    template <class Real>
+    void take_forces(const DirectScene<Real>& scene, const Slice& slice);
+    template <class Real>
+    void take_contact(const DirectScene<Real>& scene, const Slice& slice, std::uint32_t place);
+    template <class Real>
+    void give_states(const DirectScene<Real>& scene,
+                     const Slice& slice,
+                     ContactConstraints<Real>& constraints) const;
+    template <class Real>
+    void give_impulses(std::size_t first, Contact<Real>& contact) const;
+    std::int32_t
+    index_of(const Layout& layout, const Slice& slice, std::int32_t solver_index) const;
+    Vec3 arm_now(const Vec3& arm, std::int32_t index, const Vec3& round) const;
+    void place_points();
+    void carry_arms(double half, double dt);
+    void find_walks();
+    void turn_inertias();
+    double separation_now(std::size_t at) const;
+    void move_freely(const StepContext& context, double time);
+    double approach(std::size_t point, std::span<const DirectBody> bodies) const;
+    // Forces that change as bodies go.
+    void update_forced_bodies();
+    void move_forced_bodies(std::vector<DirectBody>& bodies) const;
+    void begin_state_forces(double time);
+    bool end_state_forces();
+    void hold_contacts(double time);
+    void answer_late_forces(const StepContext& context);
+    void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
+    double ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
+    // Impacts: see island_impacts.cpp.
+    bool bounce(const StepContext& context);
+    void list_touching(double threshold);
+    bool reflect(std::size_t begin, std::size_t end, double least_speed);
+    bool reflect_in_order(double least_speed);
+    bool gains(double work) const;
+    void hold_struck();
+    void add_to_struck();
+    void settle_after_impacts();
+
+    // Other responses: see penalty_forces.cpp and kinematic_pushes.cpp.
+    struct Give;
+    void penalise(const StepContext& context);
+    bool presses(std::size_t at, const StepContext& context, double ahead) const;
+    void count_touching(const StepContext& context, double ahead);
+    Give give_of(std::size_t at, const Settings& settings, double time) const;
+    void find_unearned(const StepContext& context);
+    void throw_back(const StepContext& context, double time);
+    void apply_penalty_forces(const StepContext& context, double time);
+    void find_held(double time);
+    void resist_sliding(std::size_t at, double normal_force, double time, std::uint32_t share);
+    void damp_turning(DirectPoint& point, double normal_force, std::uint32_t share);
+    void separate(const StepContext& context);
+    void stop_approach(std::size_t at);
+    void push_out(std::size_t at, double most);
+    std::pair<double, double> shares_of(const DirectPoint& point) const;
+    double mass_of(const DirectPoint& point) const;
+
+    bool push_out_of_overlap(const StepContext& context);
+    void push_as_far_as_goes();
+    void advance(double time);
+
+    std::vector<IslandBody> bodies_;  // those that can be moved, then those that move by themselves
+    std::vector<IslandContact> contacts_;
+    std::vector<IslandWalk> walks_;
+    std::vector<DirectBody> before_, free_, after_, going_;  // [bodies]; going_: how places change
+    std::vector<DirectPoint> points_, others_;               // [touches]
+    std::vector<double> separations_;                        // [touches] m, now
+    std::vector<DirectBody> struck_, stopped_;               // [bodies] after impacts; and if e = 0
+    std::vector<std::size_t> touching_, hits_;               // touches that may be struck; that are
+    std::vector<DirectPoint> struck_points_;                 // [hits]
+    std::vector<double> hit_speeds_, hit_restitution_;       // [hits] m/s closing
+    std::vector<double> struck_impulse_;                     // [touches] N s, of all impacts
+    std::vector<Sym3> inertia_, inverse_inertia_;            // [bodies] body axes
+    std::vector<std::uint32_t> pressed_;                     // [bodies] touches that overlap
+    std::vector<double> unearned_;                           // [touches] m, overlap without a push
+    std::vector<Vec3> held_;                                 // [touches] N, by friction's springs
+    std::unique_ptr<StateDependentForces> state_forces_;     // none: empty
+    Vec3 up_ = Vec3::Zero();                                 // see driven_contacts.hpp
+    bool spins_ = true;                                      // contacts see how bodies spin
+    double elapsed_ = 0;                                     // s, since the step began
+    DirectSolver solver_;
+    DirectEffort effort_;
+    int left_ = 0;  // steps, of all solves
+    int cuts_ = 1;
+    double residual_ = 0;
+};
+
+}  // namespace throng

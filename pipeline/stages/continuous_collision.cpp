@@ -1,0 +1,712 @@
+// Continuous collision: who goes so far in a step that it could pass through something is held
+// where it first meets it, turned as it was then. The contacts of the next step find it there.
+//
+// The ways are those from the poses before the step to the poses after it. Of two fast bodies that
+// meet both are held. One that meets what is not fast goes on with that: it stays where it is
+// against a wall, and rides on a plate that moves by itself. Impacts are taken in the order of
+// their times, so that one held out of the way of another is not met there any more.
+//
+// Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
+//          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
+#include "kernels/dynamics/energy.hpp"
+#include "kernels/geometry/shape_bounds.hpp"
+#include "kernels/parallel/blocks.hpp"
+#include "narrowphase/ccd/time_of_impact.hpp"
+#include "pipeline/step/fast_bodies.hpp"
+#include "pipeline/step/stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <span>
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kPairs = 8;        // a block: some 20 microseconds of work
+constexpr std::size_t kMovers = 4096;    // a block
+constexpr std::size_t kKeys = 1 << 13;   // a block
+constexpr std::size_t kWays = 512;       // a block
+constexpr std::size_t kBoxes = 1 << 14;  // a block
+constexpr double kNever = 2;             // later than the step
+
+// Of a shape that touches another from the start contact takes care. What it does not hold back
+// must not get through all the same: that is for the same shape, smaller by so much, or for a ball
+// within it. The greatest of them that does not touch yet is taken; contact may have pressed a thin
+// one in by more than a tenth.
+constexpr double kScales[] = {0.9, 0.6, 0.3, 0.1};
+
+// What a sliding one may meet with no more than this share of its smallest half extent, it is not
+// held by.
+constexpr double kSkin = 0.1;
+
+// The first of these scales for one that contacts look ahead of: they will have held it.
+constexpr std::size_t kHeldAhead = 1;
+
+struct Candidate {
+    PairKey key = 0;
+    double time = kNever;        // of their next impact
+    Vec3 normal = Vec3::Zero();  // from a to b then
+    bool pressed = false;        // they touched before, and contact has not held them
+    bool followed = false;       // contacts were looked for ahead of them
+};
+
+// The way of a body from some time on: that of another it has come to ride on, or its own.
+struct Way {
+    std::uint32_t body = kNoBody;
+    RigidTrajectory trajectory;
+    Pose attached;                  // the body in the frame that is swept
+    std::uint32_t rides = kNoBody;  // on this body
+    double since = 0;               // 0 to 1, when it was held
+    bool fast = false, held = false;
+    bool ahead = false;   // of contacts: those that it may come to were not looked for
+    bool slides = false;  // it touches what does not yield to it
+};
+
+class ContinuousCollision {
+public:
+    ContinuousCollision(const StepContext& context,
+                        const Shapes& shapes,
+                        const Colliders& colliders,
+                        const Surfaces& surfaces,
+                        const PairFilter& filter,
+                        const Forces& forces,
+                        const Masses& masses,
+                        const Bounds& bounds,
+                        const Pairs& pairs,
+                        const BodyStates& states,
+                        std::span<const std::uint32_t> followed,
+                        std::span<const std::uint32_t> on_meshes,
+                        Poses& poses,
+                        Velocities& velocities,
+                        FastBodies& fast)
+        : settings_(context.settings), gravity_(context.gravity), shapes_(shapes),
+          colliders_(colliders), surfaces_(surfaces), filter_(filter), forces_(forces),
+          masses_(masses), bounds_(bounds), pairs_(pairs), states_(states), followed_(followed),
+          on_meshes_(on_meshes), poses_(poses), velocities_(velocities), fast_(fast)
+    { }
+
+    void run(const std::vector<std::uint32_t>& woke)
+    {
+        fast_.held.clear();
+        find_fast(woke);
+        if (found_.empty()) return;
+        fast_.flags.resize(states_.kind.size(), 0);
+        for (const std::uint32_t body : found_) fast_.flags[body] = 1;
+        find_candidates();
+        for (const std::uint32_t body : found_) fast_.flags[body] = 0;
+        if (candidates_.empty()) return;
+        find_ways();
+        for_each_block(candidates_.size(), kPairs, [&](auto begin, auto end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) ask(candidates_[i], 0);
+        });
+        note_sliding();
+        for_each_block(candidates_.size(), kPairs, [&](auto begin, auto end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) leave_to_contact(candidates_[i], 0);
+        });
+        hold_all();
+    }
+
+private:
+    // Before the step, from where a collider of it was.
+    Pose began(std::uint32_t body) const
+    {
+        const std::uint32_t at = colliders_.begin[body];
+        const Pose& local = colliders_.local[at];
+        const Pose& placed = bounds_.placed[at];
+        if (local.position.isZero(0) && local.orientation.vec().isZero(0)) return placed;
+        return placed * local.inverse();
+    }
+
+    // Most are: neither fast candidates as the step began nor fast as it ended.
+    bool surely_slow(std::uint32_t body) const
+    {
+        if (colliders_.count[body] != 1) return false;
+        const std::uint32_t at = colliders_.begin[body];
+        const double inner = colliders_.inner_extent[at], dt = settings_.dt;
+        const double turned = velocities_.angular[body].squaredNorm() * dt * dt;
+        return bounds_.speculative_margin[at] <= kFastCandidateMargin * inner
+            && 4 * velocities_.linear[body].squaredNorm() * dt * dt <= inner * inner
+            && turned <= kSmallTurn * kSmallTurn && !strays(colliders_, at, turned);
+    }
+
+    // Round all of a collider's way.
+    Box3 box_of_way(std::uint32_t at) const
+    {
+        const Box3 before = shape_bounds(shapes_, colliders_.shape[at], bounds_.placed[at]);
+        const std::uint32_t body = colliders_.body[at];
+        if (states_.kind[body] == BodyKind::static_) return before;
+        const Pose ends = poses_.at(body) * colliders_.local[at];
+        Box3 box = joined(before, shape_bounds(shapes_, colliders_.shape[at], ends));
+        // Between the two it may reach further, by as much as its turning takes any point of it.
+        const double angle = velocities_.angular[body].norm() * settings_.dt;
+        const double turning = angle > 0 ? std::min(angle, 2.0) * colliders_.outer_radius[at] : 0;
+        const double slack = turning + settings_.toi_tolerance * colliders_.inner_extent[at];
+        box.lower.array() -= slack;
+        box.upper.array() += slack;
+        return box;
+    }
+
+    // Whether a body has come far enough to have passed through something. What moves by itself is
+    // measured against those that it may run over: see worth_asking().
+    bool went_far(std::uint32_t body) const
+    {
+        if (colliders_.count[body] == 0 || states_.kind[body] == BodyKind::removed) return false;
+        if (surely_slow(body)) return false;
+        const Pose before = began(body);
+        const double length = (poses_.position[body] - before.position).norm();
+        const double angle = velocities_.angular[body].norm() * settings_.dt;
+        // What it turned by, where it has been stopped since.
+        const Vec3 half_turn = (before.orientation.conjugate() * poses_.orientation[body]).vec();
+        const double square = std::max(angle * angle, 4 * half_turn.squaredNorm());
+        if (!(length > 0 || square > 0) || !std::isfinite(length)) return false;
+        for (std::uint32_t k = 0; k < colliders_.count[body]; ++k) {
+            const std::uint32_t at = colliders_.begin[body] + k;
+            const double inner = colliders_.inner_extent[at];
+            const double turning = inner > 0 ? way_of_turning(colliders_, at, angle) : 0;
+            if (length + turning > inner || strays(colliders_, at, square)) return true;
+        }
+        return false;
+    }
+
+    // Ascending: those that were known to be fast before, and those that a blow made so.
+    void find_fast(const std::vector<std::uint32_t>& woke)
+    {
+        found_ = bounds_.fast;
+        for (const auto* active_bodies :
+             {&states_.active_bodies.dynamic, &states_.active_bodies.kinematic, &woke}) {
+            BlockLists<std::uint32_t> lists;
+            lists.start(block_count(active_bodies->size(), kMovers));
+            for_each_block(active_bodies->size(), kMovers, [&](auto begin, auto end, auto block) {
+                for (std::size_t i = begin; i < end; ++i)
+                    if (went_far((*active_bodies)[i])) lists[block].push_back((*active_bodies)[i]);
+            });
+            lists.append_to(found_);
+        }
+        std::sort(found_.begin(), found_.end());
+        found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    }
+
+    bool is_fast(std::uint32_t body) const { return fast_.flags[body] != 0; }
+
+    // Two of which one at least is dynamic and one fast. A thing that moves by itself has to go
+    // further than the half extent of what it runs over.
+    bool worth_asking(PairKey key) const
+    {
+        std::uint32_t a = colliders_.body[first_of(key)], b = colliders_.body[second_of(key)];
+        if (a == kNoBody || b == kNoBody || a == b) return false;
+        if (!is_fast(a) && !is_fast(b)) return false;
+        if (!states_.dynamic(a) && !states_.dynamic(b)) return false;
+        for (const auto& [fast, slow, at] :
+             {std::tuple(a, b, second_of(key)), std::tuple(b, a, first_of(key))})
+            if (is_fast(fast) && states_.kind[fast] == BodyKind::kinematic && !is_fast(slow)) {
+                const double way = (poses_.position[fast] - began(fast).position).norm()
+                    + velocities_.angular[fast].norm() * settings_.dt * states_.radius[fast];
+                return way > colliders_.inner_extent[at];
+            }
+        return true;
+    }
+
+    bool on_mesh(PairKey key) const
+    {
+        return colliders_.shape[first_of(key)].kind == ShapeKind::mesh
+            || colliders_.shape[second_of(key)].kind == ShapeKind::mesh;
+    }
+
+    bool ways_cross(PairKey key) const
+    {
+        const std::uint32_t a = first_of(key), b = second_of(key);
+        if (colliders_.shape[a].kind == ShapeKind::plane
+            || colliders_.shape[b].kind == ShapeKind::plane)
+            return true;
+        return box_of_way(a).overlaps(box_of_way(b));
+    }
+
+    void find_candidates()
+    {
+        candidates_.clear();
+        BlockLists<Candidate> lists;
+        lists.start(block_count(pairs_.keys.size(), kKeys));
+        for_each_block(pairs_.keys.size(), kKeys, [&](auto begin, auto end, auto block) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const PairKey key = pairs_.keys[i];
+                if (!worth_asking(key) || !ways_cross(key)) continue;
+                Candidate& found = lists[block].emplace_back();
+                found.key = key;
+                const auto list = on_mesh(key) ? on_meshes_ : followed_;
+                found.followed = std::binary_search(list.begin(), list.end(), i);
+            }
+        });
+        lists.append_to(candidates_);
+        for (const std::uint32_t body : found_)
+            for (std::uint32_t k = 0; k < colliders_.count[body]; ++k)
+                look_beyond_box(colliders_.begin[body] + k);
+        const auto less = [](const Candidate& a, const Candidate& b) { return a.key < b.key; };
+        const auto same = [](const Candidate& a, const Candidate& b) { return a.key == b.key; };
+        std::stable_sort(candidates_.begin(), candidates_.end(), less);
+        candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), same),
+                          candidates_.end());
+    }
+
+    // What a blow has driven out of its box may meet what the broad phase did not think of.
+    void look_beyond_box(std::uint32_t at)
+    {
+        if (colliders_.shape[at].kind == ShapeKind::plane) return;
+        const Box3 way = box_of_way(at);
+        if (bounds_.boxes[at].contains(way)) return;
+        BlockLists<Candidate> lists;
+        lists.start(block_count(colliders_.size(), kBoxes));
+        for_each_block(colliders_.size(), kBoxes, [&](auto begin, auto end, auto block) {
+            for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+                if (colliders_.body[i] == kNoBody || !bounds_.boxes[i].overlaps(way)) continue;
+                const PairKey key = pair_key(at, i);
+                if (i != at && filter_.allows(at, i) && worth_asking(key) && ways_cross(key))
+                    lists[block].push_back({key});
+            }
+        });
+        lists.append_to(candidates_);
+    }
+
+    void find_ways()
+    {
+        std::vector<std::uint32_t> bodies;
+        for (const Candidate& candidate : candidates_)
+            for (const std::uint32_t at : {first_of(candidate.key), second_of(candidate.key)})
+                bodies.push_back(colliders_.body[at]);
+        std::sort(bodies.begin(), bodies.end());
+        bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+        ways_.resize(bodies.size());
+        for_each_block(bodies.size(), kWays, [&](auto begin, auto end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) ways_[i] = way_from_start(bodies[i]);
+        });
+    }
+
+    Way way_from_start(std::uint32_t body) const
+    {
+        Way way;
+        way.body = body;
+        way.fast = std::binary_search(found_.begin(), found_.end(), body) && states_.dynamic(body);
+        way.ahead = std::binary_search(bounds_.fast.begin(), bounds_.fast.end(), body);
+        if (states_.kind[body] == BodyKind::static_)
+            way.trajectory.begin = poses_.at(body);
+        else
+            way.trajectory = trajectory_between(began(body), poses_.at(body),
+                                                velocities_.angular[body] * settings_.dt);
+        return way;
+    }
+
+    std::uint32_t way_at(std::uint32_t body) const
+    {
+        const auto less = [](const Way& way, std::uint32_t wanted) { return way.body < wanted; };
+        const auto found = std::lower_bound(ways_.begin(), ways_.end(), body, less);
+        return static_cast<std::uint32_t>(found - ways_.begin());
+    }
+    Way& way_of(std::uint32_t body) { return ways_[way_at(body)]; }
+
+    MovingShape moving(std::uint32_t at)
+    {
+        const Way& way = way_of(colliders_.body[at]);
+        return {colliders_.shape[at], way.trajectory, way.attached * colliders_.local[at]};
+    }
+
+    // What must not get through whatever contact does.
+    MovingShape smaller(std::uint32_t at, double scale)
+    {
+        MovingShape inner = moving(at);
+        const ShapeKind kind = inner.shape.kind;
+        if (kind == ShapeKind::hull)
+            inner.local.position +=
+                inner.local.orientation * shapes_.hulls[inner.shape.index].center;
+        if (kind == ShapeKind::hull || kind == ShapeKind::solid || kind == ShapeKind::mesh)
+            inner.ball = scale * colliders_.inner_extent[at];
+        else
+            inner.scale = scale;
+        return inner;
+    }
+
+    ImpactRule rule_of(PairKey key) const
+    {
+        const double size =
+            impact_size(shapes_, colliders_.shape[first_of(key)], colliders_.shape[second_of(key)]);
+        return impact_rule(settings_.toi_method, settings_.toi_tolerance * size);
+    }
+
+    // When two meet next. Of those that touch already contact takes care.
+    void ask(Candidate& candidate, double since)
+    {
+        candidate.time = kNever;
+        const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
+        const ImpactRule rule = rule_of(candidate.key);
+        const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
+        const bool ahead = (way_a.ahead || way_b.ahead) && !candidate.followed;
+        Impact impact;
+        if (ahead) impact = time_of_impact(shapes_, moving(a), moving(b), since, 1, rule);
+        candidate.pressed = impact.state == ToiState::touching_at_start;
+        if (!ahead || candidate.pressed) {
+            const bool of_a = way_a.fast || (!way_b.fast && states_.dynamic(way_a.body));
+            if (!(colliders_.inner_extent[of_a ? a : b] > 0)) return;
+            for (std::size_t i = ahead ? 0 : kHeldAhead; i < std::size(kScales); ++i) {
+                impact = of_a
+                    ? time_of_impact(shapes_, smaller(a, kScales[i]), moving(b), since, 1, rule)
+                    : time_of_impact(shapes_, moving(a), smaller(b, kScales[i]), since, 1, rule);
+                if (impact.state != ToiState::touching_at_start) break;
+                candidate.pressed = true;
+            }
+        }
+        if (impact.state != ToiState::hit) return;
+        candidate.time = impact.time;
+        candidate.normal = impact.normal;
+    }
+
+    // Who touches from the start what is not dynamic.
+    void note_sliding()
+    {
+        for (const Candidate& candidate : candidates_) {
+            if (!candidate.pressed) continue;
+            Way& a = way_of(colliders_.body[first_of(candidate.key)]);
+            Way& b = way_of(colliders_.body[second_of(candidate.key)]);
+            a.slides = a.slides || !states_.dynamic(b.body);
+            b.slides = b.slides || !states_.dynamic(a.body);
+        }
+    }
+
+    // What slides is a little deep in what bears it, and all but its skin clears a rim that lies
+    // flush with that: not held there, but left to contact, which knows both.
+    void leave_to_contact(Candidate& candidate, double since)
+    {
+        if (candidate.time == kNever || candidate.pressed) return;
+        const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
+        const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
+        const bool of_a = way_a.slides && !states_.dynamic(way_b.body);
+        const bool of_b = way_b.slides && !states_.dynamic(way_a.body);
+        if (!of_a && !of_b) return;
+        const std::uint32_t at = of_a ? a : b, other = of_a ? b : a;
+        const ShapeKind kind = colliders_.shape[at].kind;
+        if (kind == ShapeKind::hull || kind == ShapeKind::solid || kind == ShapeKind::mesh) return;
+        const double thick = kSkin * colliders_.inner_extent[at];
+        // What comes no further than through its skin, it would be held by too late.
+        const double closing =
+            candidate.normal.dot(way_a.trajectory.shift - way_b.trajectory.shift);
+        if (closing * (1 - candidate.time) <= thick) return;
+        const double skin = thick / outer_radius(shapes_, colliders_.shape[at]);
+        const ImpactRule rule = rule_of(candidate.key);
+        const Impact impact =
+            time_of_impact(shapes_, smaller(at, 1 - skin), moving(other), since, 1, rule);
+        if (impact.state == ToiState::separated) candidate.time = kNever;
+    }
+
+    static Pose pose_on(const Way& way, double time)
+    {
+        return way.trajectory.at(time) * way.attached;
+    }
+
+    // From now on a body goes where another does, as it is against it now.
+    void ride(Way& way, std::uint32_t on, double time)
+    {
+        const Pose now = pose_on(way, time);
+        const RigidTrajectory& trajectory = way_of(on).trajectory;
+        way.attached = trajectory.at(time).inverse() * now;
+        way.trajectory = trajectory;
+        way.rides = on;
+        way.held = true;
+        way.since = time;
+        riders_.push_back(way_at(way.body));
+    }
+
+    void hold(Way& way, double time)
+    {
+        way.trajectory = {pose_on(way, time), Vec3::Zero(), Vec3::Zero()};
+        way.attached = Pose{};
+        way.rides = kNoBody;
+        way.held = true;
+        way.since = time;
+    }
+
+    // What becomes of two that meet. Whoever is changed by it is told.
+    void process(const Candidate& candidate, std::vector<std::uint32_t>& changed)
+    {
+        Way& a = way_of(colliders_.body[first_of(candidate.key)]);
+        Way& b = way_of(colliders_.body[second_of(candidate.key)]);
+        const double time = candidate.time;
+        const bool free_a = may_change(a), free_b = may_change(b);
+        if (free_a && free_b && a.fast == b.fast) {
+            hold(a, time);
+            hold(b, time);
+            changed = {a.body, b.body};
+            return;
+        }
+        // The fast one yields, else the one that may.
+        const bool yields_a = free_a && (a.fast || !free_b);
+        if (!free_a && !free_b) return;
+        Way &yields = yields_a ? a : b, &other = yields_a ? b : a;
+        if (candidate.pressed && !states_.dynamic(other.body))
+            stop_pressing(yields.body, other.body,
+                          yields_a ? candidate.normal : Vec3(-candidate.normal),
+                          restitution_of(candidate.key));
+        if (yields.rides != kNoBody || other.trajectory.still())
+            hold(yields, time);
+        else
+            ride(yields, other.body, time);
+        changed = {yields.body};
+    }
+
+    // Its middle goes no further into what it is pressed into, and cannot move: a corner that holds
+    // it at its side, while it turns about that faster than steps can follow, would let it. What
+    // bounces is thrown back.
+    void stop_pressing(std::uint32_t body, std::uint32_t on, const Vec3& normal, double restitution)
+    {
+        Vec3& velocity = velocities_.linear[body];
+        const double pressing = normal.dot(velocity - velocities_.linear[on]);
+        if (pressing > 0) velocity -= (1 + restitution) * pressing * normal;
+    }
+
+    double restitution_of(PairKey key) const
+    {
+        return surfaces_
+            .between(colliders_.material[first_of(key)], colliders_.material[second_of(key)])
+            .restitution;
+    }
+
+    // m/s2, of the wind where it drives the body on: what it brakes is lost.
+    Vec3 wind_on(std::uint32_t body) const
+    {
+        if (body >= forces_.linear_drag.size()) return Vec3::Zero();
+        const Vec3& velocity = velocities_.linear[body];
+        const Vec3 past = forces_.wind - velocity;
+        if (!(past.dot(velocity) > 0)) return Vec3::Zero();
+        return masses_.inverse_mass[body] * forces_.linear_drag[body] * past;
+    }
+
+    // m/s2, of what pulls alike all along its way: gravity, attractors, wind and what pushes it.
+    Vec3 acceleration_of(std::uint32_t body) const
+    {
+        Vec3 pull = gravity_ + wind_on(body);
+        for (const AttractorForce& attractor : forces_.attractors) {
+            const Vec3 towards = attractor.position - poses_.position[body];
+            const double square = towards.squaredNorm();
+            if (square > 0) pull += attractor.strength / (square * std::sqrt(square)) * towards;
+        }
+        if (body < forces_.force.size()) pull += masses_.inverse_mass[body] * forces_.force[body];
+        return pull;
+    }
+
+    // Who is kept from the rest of its way has not fallen down it: what its pull gave it for that
+    // goes, also where it has been thrown back by the end of it, and what it took comes back. Else
+    // who is held high bounces higher than it fell.
+    void take_back_fall(std::uint32_t body, const Vec3& held)
+    {
+        const Vec3 pulled = acceleration_of(body);
+        const double pull = pulled.norm();
+        if (!(pull > 0) || !states_.dynamic(body)) return;
+        const Vec3 down = pulled / pull;
+        Vec3& velocity = velocities_.linear[body];
+        const double falling = down.dot(velocity);
+        const double gained = 2 * pulled.dot(held - poses_.position[body]);
+        if (!(gained < 0 || falling < 0)) return;
+        const double left = std::sqrt(std::max(0.0, falling * falling + gained));
+        velocity += (std::copysign(left, falling) - falling) * down;
+    }
+
+    // J, of what pulls at the middle of one that goes round a pivot.
+    double hanging_energy_of(std::uint32_t body) const
+    {
+        if (!forces_.on_pivot(body)) return 0;
+        const Vec3 middle = poses_.at(body) * forces_.pivot_to_center_of(body);
+        return attraction_of(forces_, masses_, poses_, body)
+            - masses_.mass[body] * gravity_.dot(middle);
+    }
+
+    // Nor has its weight turned it down that way about a pivot. One that has not so much gives what
+    // it has: what pressed it in has stopped it, and it is held all the same.
+    void take_back_swing(std::uint32_t body, double gained)
+    {
+        if (!take_back_energy(body, gained)) velocities_.angular[body] *= 0;
+    }
+
+    // J, of its motion. False for one that has not so much, which keeps it.
+    bool take_back_energy(std::uint32_t body, double gained)
+    {
+        if (!(gained > 0)) return true;
+        const double had = kinetic_energy_of(body, masses_, poses_, velocities_);
+        if (had < gained) return false;
+        const double kept = std::sqrt(1 - gained / had);
+        velocities_.linear[body] *= kept;
+        velocities_.angular[body] *= kept;
+        return true;
+    }
+
+    void hold_at(const Way& way, const Pose& end)
+    {
+        const Pose went = poses_.at(way.body);
+        const Vec3 velocity = velocities_.linear[way.body], spin = velocities_.angular[way.body];
+        const double before = springs_energy_of(way.body, forces_, poses_);
+        const double hung = hanging_energy_of(way.body);
+        // What goes by itself lifts and lowers who rides on it: there it is where he would have
+        // been.
+        const bool driven = way.rides != kNoBody && !states_.dynamic(way.rides);
+        take_back_fall(way.body, driven ? pose_on(way, way.since).position : end.position);
+        poses_.position[way.body] = end.position;
+        turn_back(way.body, end.orientation.normalized());
+        take_back_swing(way.body, hanging_energy_of(way.body) - hung);
+        // Nor have its springs drawn it down that way: what they hold the more for it goes. One
+        // that has not so much is left to contacts.
+        const double drawn = springs_energy_of(way.body, forces_, poses_) - before;
+        if (take_back_energy(way.body, drawn)) return fast_.held.push_back(way.body);
+        poses_.position[way.body] = went.position;
+        poses_.orientation[way.body] = went.orientation;
+        velocities_.linear[way.body] = velocity;
+        velocities_.angular[way.body] = spin;
+    }
+
+    // What does not turn as far as it would have keeps the spin that it has in its own axes: its
+    // inertia is in these.
+    void turn_back(std::uint32_t body, const Quat& held)
+    {
+        Quat& orientation = poses_.orientation[body];
+        if (masses_.gyroscopic_kind[body] != 0 && settings_.gyroscopic != Gyroscopic::off) {
+            Vec3& spin = velocities_.angular[body];
+            spin = held * (orientation.conjugate() * spin);
+        }
+        orientation = held;
+    }
+
+    // Each is stopped on its own way once, and once more on that of what carries it.
+    bool may_change(const Way& way) const
+    {
+        return states_.dynamic(way.body) && !(way.held && way.trajectory.still());
+    }
+
+    // Those that ride on a body that was stopped are stopped with it.
+    void stop_riders(double time, std::vector<std::uint32_t>& changed)
+    {
+        for (std::size_t i = 0; i < changed.size(); ++i)
+            for (const std::uint32_t rider : riders_) {
+                Way& way = ways_[rider];
+                if (way.rides != changed[i]) continue;
+                hold(way, time);
+                changed.push_back(way.body);
+            }
+    }
+
+    // Which candidates each way is in.
+    void index_candidates()
+    {
+        in_way_.begin.assign(ways_.size() + 1, 0);
+        in_way_.candidates.resize(2 * candidates_.size());
+        const auto for_each_end = [&](auto&& visit) {
+            for (std::uint32_t i = 0; i < candidates_.size(); ++i)
+                for (const std::uint32_t at :
+                     {first_of(candidates_[i].key), second_of(candidates_[i].key)})
+                    visit(way_at(colliders_.body[at]), i);
+        };
+        for_each_end([&](std::uint32_t way, std::uint32_t) { ++in_way_.begin[way + 1]; });
+        std::partial_sum(in_way_.begin.begin(), in_way_.begin.end(), in_way_.begin.begin());
+        std::vector<std::uint32_t> next(in_way_.begin.begin(), in_way_.begin.end() - 1);
+        for_each_end(
+            [&](std::uint32_t way, std::uint32_t i) { in_way_.candidates[next[way]++] = i; });
+    }
+
+    // The earliest impact, what it changes, and again. Of those at one time the first goes first.
+    void hold_all()
+    {
+        index_candidates();
+        using Due = std::pair<double, std::uint32_t>;  // when, and which candidate
+        std::priority_queue<Due, std::vector<Due>, std::greater<>> due;
+        const auto await = [&](std::uint32_t i) {
+            if (candidates_[i].time < kNever) due.emplace(candidates_[i].time, i);
+        };
+        for (std::uint32_t i = 0; i < candidates_.size(); ++i) await(i);
+        // Each impact changes a body, and no body more than twice.
+        std::size_t left = 2 * ways_.size();
+        while (left > 0 && !due.empty()) {
+            const auto [time, which] = due.top();
+            due.pop();
+            if (candidates_[which].time != time) continue;  // it has been asked again since
+            --left;
+            std::vector<std::uint32_t> changed;
+            process(candidates_[which], changed);
+            candidates_[which].time = kNever;
+            stop_riders(time, changed);
+            for (const std::uint32_t body : changed) {
+                const std::uint32_t way = way_at(body);
+                for (std::uint32_t k = in_way_.begin[way]; k < in_way_.begin[way + 1]; ++k) {
+                    const std::uint32_t other = in_way_.candidates[k];
+                    if (other == which) continue;
+                    ask(candidates_[other], time);
+                    leave_to_contact(candidates_[other], time);
+                    await(other);
+                }
+            }
+        }
+        for (const Way& way : ways_)
+            if (way.held) hold_at(way, pose_on(way, 1));
+    }
+
+    const Settings& settings_;
+    const Vec3 gravity_;
+    const Shapes& shapes_;
+    const Colliders& colliders_;
+    const Surfaces& surfaces_;
+    const PairFilter& filter_;
+    const Forces& forces_;
+    const Masses& masses_;
+    const Bounds& bounds_;
+    const Pairs& pairs_;
+    const BodyStates& states_;
+    // Pairs whose contacts saw ahead, ascending.
+    std::span<const std::uint32_t> followed_, on_meshes_;
+    Poses& poses_;
+    Velocities& velocities_;
+    FastBodies& fast_;
+    std::vector<std::uint32_t> found_;  // fast bodies, ascending
+    std::vector<Candidate> candidates_;
+    std::vector<Way> ways_;              // by body
+    std::vector<std::uint32_t> riders_;  // ways that ride, or did
+    struct {
+        std::vector<std::uint32_t> begin;  // [ways + 1]
+        std::vector<std::uint32_t> candidates;
+    } in_way_;
+};
+
+}  // namespace
+
+template <class Real>
+void continuous_collision(const StepContext& context,
+                          const Shapes& shapes,
+                          const Colliders& colliders,
+                          const Surfaces& surfaces,
+                          const PairFilter& filter,
+                          const Forces& forces,
+                          const Masses& masses,
+                          const Bounds& bounds,
+                          const Pairs& pairs,
+                          const BodyStates& states,
+                          const SleepEvents& sleep_events,
+                          const ConvexContacts<Real>& contacts,
+                          const MeshContacts<Real>& on_meshes,
+                          Poses& poses,
+                          Velocities& velocities,
+                          FastBodies& fast)
+{
+    // Where nothing can touch, nothing is in the way.
+    if (bounds.placed.size() != colliders.size()) return;
+    ContinuousCollision(context, shapes, colliders, surfaces, filter, forces, masses, bounds, pairs,
+                        states, contacts.followed, on_meshes.followed, poses, velocities, fast)
+        .run(sleep_events.woke);
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void continuous_collision<Real>(                                                      \
+        const StepContext&, const Shapes&, const Colliders&, const Surfaces&, const PairFilter&,   \
+        const Forces&, const Masses&, const Bounds&, const Pairs&, const BodyStates&,              \
+        const SleepEvents&, const ConvexContacts<Real>&, const MeshContacts<Real>&, Poses&,        \
+        Velocities&, FastBodies&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng

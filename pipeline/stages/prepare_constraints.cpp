@@ -1,0 +1,204 @@
+// Prepare constraints: bodies into what the solver walks, and room for the constraints of their
+// contacts.
+#include "kernels/math/rotation.hpp"
+#include "kernels/parallel/blocks.hpp"
+#include "kernels/solver/solver_bodies.hpp"
+#include "pipeline/step/stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kBodies = 256;  // a block: some 20 microseconds of work
+
+template <class Real>
+void fill_body(std::uint32_t body,
+               const Poses& poses,
+               const Velocities& velocities,
+               const Masses& masses,
+               const BodyStates& states,
+               SolverBody<Real>& out)
+{
+    out = {};
+    out.delta_pose[7] = 1;
+    if (body == kNoBody) return;
+    for (int k = 0; k < 3; ++k) {
+        out.motion[k] = static_cast<Real>(velocities.linear[body][k]);
+        out.motion[4 + k] = static_cast<Real>(velocities.angular[body][k]);
+    }
+    if (!states.dynamic(body)) return;
+    const Sym3 six = in_world_axes(masses.inverse_inertia[body], poses.orientation[body]);
+    const double numbers[7] = {
+        masses.inverse_mass[body], six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
+    for (int k = 0; k < 7; ++k) out.inertia[k] = static_cast<Real>(numbers[k]);
+}
+
+template <class Real>
+void fill_inertia(std::uint32_t body,
+                  const Poses& poses,
+                  const Masses& masses,
+                  const BodyStates& states,
+                  GyroscopicInertia<Real>& out)
+{
+    out = {};
+    if (body == kNoBody || !states.dynamic(body) || masses.gyroscopic_kind[body] == 0) return;
+    const Sym3 six = in_world_axes(masses.inertia[body], poses.orientation[body]);
+    const double trace = six.xx + six.yy + six.zz;
+    const double numbers[6] = {six.xx, six.yy, six.zz, six.xy, six.xz, six.yz};
+    for (int k = 0; k < 6; ++k) out.share[k] = static_cast<Real>(numbers[k] / trace);
+    out.share[6] = 1;
+    const Vec3& own = masses.symmetry_axis[body];
+    if (own.isZero(0)) return;
+    const Vec3 axis = poses.orientation[body] * own;
+    const double about = own.dot(Vec3(masses.inertia[body].matrix() * own));
+    for (int k = 0; k < 3; ++k) out.axis[k] = static_cast<Real>(axis[k]);
+    out.axis[3] = static_cast<Real>(2 * about / (trace - about));
+}
+
+template <class Real>
+void fill_acceleration(std::uint32_t body,
+                       const ExternalAcceleration& accelerations,
+                       const BodyStates& states,
+                       SolverAcceleration<Real>& out)
+{
+    out = {};
+    if (body == kNoBody || !states.movable(body)) return;
+    for (int k = 0; k < 3; ++k) {
+        out.rate[k] = static_cast<Real>(accelerations.linear[body][k]);
+        out.rate[4 + k] = static_cast<Real>(accelerations.angular[body][k]);
+    }
+}
+
+// Whether anybody turns who would carry what is as light as any, and as easily turned.
+template <class Real>
+bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
+{
+    const auto turns = [](const SolverBody<Real>& body) {
+        return body.motion[4] != 0 || body.motion[5] != 0 || body.motion[6] != 0;
+    };
+    // The first that moves says so, but in a crowd of those that never turn.
+    if (std::none_of(bodies.begin(), bodies.end(), turns)) return false;
+    InverseMass lightest;
+    for (const SolverBody<Real>& body : bodies) {
+        const InverseMass inverse_mass = inverse_mass_of(body);
+        lightest = {std::max(lightest.linear, inverse_mass.linear),
+                    std::max(lightest.angular, inverse_mass.angular)};
+    }
+    return std::any_of(bodies.begin(), bodies.end(), [&](const SolverBody<Real>& body) {
+        // Most are told by a number or two.
+        if (!turns(body)) return false;
+        const double inverse_mass{body.inertia[0]};
+        return !(inverse_mass > 0 && inverse_mass * kHeavier > lightest.linear)
+            && carries(body, lightest, dt);
+    });
+}
+
+template <class Real>
+void fill_prescribed_velocity(const PrescribedVelocity& velocity,
+                              const SolverBody<Real>& body,
+                              SolverPrescribedVelocity<Real>& drive)
+{
+    for (std::size_t k = 0; k < 3; ++k) {
+        const bool free = std::isnan(velocity[k]);
+        drive.number[k] = free ? Real(0) : static_cast<Real>(velocity[k]);
+        drive.number[4 + k] = free ? Real(0) : Real(1);
+    }
+    drive.number[3] = inverse_mass_of(body).angular > 0 ? Real(1) : Real(0);
+}
+
+// Drives of those that contacts push. Of nobody else does friction ask.
+template <class Real>
+void prepare_prescribed_velocities(const PrescribedVelocities& prescribed,
+                                   const Layout& layout,
+                                   ContactConstraints<Real>& constraints)
+{
+    constraints.prescribed.clear();
+    const auto solver_index = [&](std::uint32_t body) {
+        return body < layout.solver_index.size() ? layout.solver_index[body]
+                                                 : Layout::kNoSolverIndex;
+    };
+    if (std::none_of(prescribed.body.begin(), prescribed.body.end(), [&](std::uint32_t body) {
+            return solver_index(body) != Layout::kNoSolverIndex;
+        }))
+        return;
+    constraints.prescribed.assign(constraints.bodies.size(), SolverPrescribedVelocity<Real>{});
+    for_each_block(prescribed.body.size(), kBodies, [&](auto begin, auto end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (const std::uint32_t at = solver_index(prescribed.body[i]);
+                at != Layout::kNoSolverIndex)
+                fill_prescribed_velocity(prescribed.velocity[i], constraints.bodies[at],
+                                         constraints.prescribed[at]);
+    });
+}
+
+}  // namespace
+
+template <class Real>
+void prepare_constraints(const StepContext& context,
+                         const Layout& layout,
+                         const Poses& poses,
+                         const Velocities& velocities,
+                         const Masses& masses,
+                         const BodyStates& states,
+                         const ExternalAcceleration& accelerations,
+                         const PrescribedVelocities& prescribed,
+                         ContactConstraints<Real>& constraints)
+{
+    const bool forced = context.effects.meets(kForces);
+    const bool gyroscopic = context.has(Effect::gyroscopic);
+    constraints.bodies.resize(layout.body_of_solver_index.size());
+    constraints.inertias.resize(gyroscopic ? constraints.bodies.size() : 0);
+    constraints.accelerations.resize(forced ? constraints.bodies.size() : 0);
+    const auto fill = [&](std::uint32_t body, std::size_t solver_index) {
+        fill_body(body, poses, velocities, masses, states, constraints.bodies[solver_index]);
+        if (gyroscopic)
+            fill_inertia(body, poses, masses, states, constraints.inertias[solver_index]);
+        if (forced)
+            fill_acceleration(body, accelerations, states, constraints.accelerations[solver_index]);
+    };
+    fill(kNoBody, 0);
+    // In order of bodies, of which many arrays are read; that of solver bodies may be any other.
+    const std::size_t bodies = layout.solver_index.size();
+    for_each_block(bodies, kBodies, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body)
+            if (layout.solver_index[body] != Layout::kNoSolverIndex)
+                fill(body, layout.solver_index[body]);
+    });
+    for (std::size_t solver_index = layout.dynamic + std::size_t{1};
+         solver_index < constraints.bodies.size(); ++solver_index)
+        fill(layout.body_of_solver_index[solver_index], solver_index);
+
+    const std::size_t blocks = layout.points.size();
+    constraints.blocks.resize(blocks);
+    constraints.first_point.resize(blocks);
+    std::uint32_t points = 0;
+    for (std::size_t i = 0; i < blocks; ++i) {
+        constraints.first_point[i] = points;
+        points += layout.points[i];
+    }
+    constraints.points.resize(points);
+    constraints.restitutions.resize(context.has(Effect::restitution) ? blocks : 0);
+    constraints.surfaces_turn = anybody_carries(constraints.bodies, context.settings.dt);
+    if (context.has(Effect::drive))
+        prepare_prescribed_velocities(prescribed, layout, constraints);
+    else
+        constraints.prescribed.clear();
+    constraints.surface_velocities.resize(
+        constraints.surfaces_turn || !constraints.prescribed.empty() ? blocks : 0);
+    constraints.point_frictions.resize(context.friction_at_points_or_pyramid() ? points : 0);
+    constraints.rolling_frictions.resize(context.has(Effect::rolling_friction) ? blocks : 0);
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void prepare_constraints<Real>(                                                       \
+        const StepContext&, const Layout&, const Poses&, const Velocities&, const Masses&,         \
+        const BodyStates&, const ExternalAcceleration&, const PrescribedVelocities&,               \
+        ContactConstraints<Real>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng
