@@ -129,7 +129,9 @@ test_preset() {
 # one another or that do the same many times over; tsan and tsan-tbb those with threads.
 test_sanitized() {
     local which=(-LE "slow|tree") steady=()
-    export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
+    # The module that makes level sets has copies of its own of what it needs of throng.
+    export ASAN_OPTIONS=detect_stack_use_after_return=1:detect_odr_violation=1
+    export UBSAN_OPTIONS=print_stacktrace=1
     export LSAN_OPTIONS=print_suppressions=0:suppressions=$root/tools/leaks.supp
     export TSAN_OPTIONS=halt_on_error=1:suppressions=$root/tools/races.supp
     if [[ $1 == tsan* ]]; then

@@ -11,15 +11,19 @@ namespace {
 
 constexpr const char* kFile = "libthrong_cooking.so";
 
-// The folder of the program or library that this is in.
-std::filesystem::path own_folder()
+// Where the library that this is in may be, and where the program is. What the linker tells of a
+// program is how it was called, which may be a name that the shell looked up.
+std::vector<std::filesystem::path> own_folders()
 {
+    std::vector<std::filesystem::path> folders;
     Dl_info told{};
     const auto* const here = reinterpret_cast<const void*>(&field_module);
-    if (::dladdr(here, &told) == 0 || told.dli_fname == nullptr) return {};
+    if (::dladdr(here, &told) != 0 && told.dli_fname != nullptr && *told.dli_fname == '/')
+        folders.push_back(std::filesystem::path(told.dli_fname).parent_path());
     std::error_code trouble;
-    const auto whole = std::filesystem::canonical(told.dli_fname, trouble);
-    return trouble ? std::filesystem::path() : whole.parent_path();
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", trouble);
+    if (!trouble) folders.push_back(program.parent_path());
+    return folders;
 }
 
 // In the order in which they are tried. The last is for the system to find.
@@ -29,7 +33,7 @@ std::vector<std::string> places()
         named != nullptr && *named != '\0')
         return {named};
     std::vector<std::string> all;
-    if (const std::filesystem::path folder = own_folder(); !folder.empty())
+    for (const std::filesystem::path& folder : own_folders())
         for (const std::filesystem::path& place :
              {folder, folder / ".." / THRONG_LIBRARIES, folder / ".." / "lib",
               folder / ".." / ".." / "lib"})
