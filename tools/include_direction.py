@@ -68,7 +68,7 @@ INSIDE = {
 # threads offer counts as one, so that a loop goes through blocks.hpp.
 LIBRARIES = {
     r"(tbb|oneapi)/": ["*_tbb.cpp", "broadphase/embree_tree.cpp", "kernels/parallel/sort_keys.cpp",
-                       "cooking/fields/openvdb/vdb_fill.cpp"],
+                       "cooking/fields/openvdb/module.cpp"],
     r"embree\d*/": ["broadphase/embree_tree.cpp"],
     r"(hdf5|H5)": ["pipeline/records/run_file*.cpp", "tests/pipeline/records/run_file*.cpp"],
     r"(openvdb|nanovdb)/": ["cooking/fields/openvdb/*", "perf/cooking/tree_samples.cpp"],

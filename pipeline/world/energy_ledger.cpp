@@ -67,13 +67,10 @@ class EnergyLedger::Inside {
 public:
     void before_step(const World& world);
     void after_step(const World& world);
-    double gained() const { return gained_; }
-    std::uint64_t from_step() const { return from_step_; }
-    std::uint64_t to_step() const { return to_step_; }
-    double net() const { return net_; }
-    double greatest_kinetic() const { return greatest_kinetic_; }
 
 private:
+    friend class EnergyLedger;  // which tells what was found
+
     struct OfBody {
         double kinetic = 0, potential = 0;  // J
         Vec3 place = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
@@ -295,10 +292,10 @@ EnergyLedger& EnergyLedger::operator=(EnergyLedger&&) noexcept = default;
 
 void EnergyLedger::before_step(const World& world) { inside_->before_step(world); }
 void EnergyLedger::after_step(const World& world) { inside_->after_step(world); }
-double EnergyLedger::gained() const { return inside_->gained(); }
-std::uint64_t EnergyLedger::from_step() const { return inside_->from_step(); }
-std::uint64_t EnergyLedger::to_step() const { return inside_->to_step(); }
-double EnergyLedger::net() const { return inside_->net(); }
-double EnergyLedger::greatest_kinetic() const { return inside_->greatest_kinetic(); }
+double EnergyLedger::gained() const { return inside_->gained_; }
+std::uint64_t EnergyLedger::from_step() const { return inside_->from_step_; }
+std::uint64_t EnergyLedger::to_step() const { return inside_->to_step_; }
+double EnergyLedger::net() const { return inside_->net_; }
+double EnergyLedger::greatest_kinetic() const { return inside_->greatest_kinetic_; }
 
 }  // namespace throng

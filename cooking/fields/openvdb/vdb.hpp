@@ -5,9 +5,6 @@
 
 namespace throng::vdb {
 
-/// To be called before anything is asked of OpenVDB.
-void start();
-
 /// Bricks filled with distances of a mesh; see FieldModule.
 VoxelBricks fill(const Mesh& mesh, const VoxelBricks& laid, FieldSign sign);
 

@@ -379,7 +379,6 @@ VdbFile read_grid(VdbWants wants, Read read)
 {
     VdbFile result;
     try {
-        start();
         const FloatGrid::Ptr grid = read();
         if (grid != nullptr) return from_grid(*grid, wants);
         result.trouble = "holds no float level-set grid; wanted one";
@@ -392,17 +391,12 @@ VdbFile read_grid(VdbWants wants, Read read)
 
 }  // namespace
 
-MeshResult surface(const VoxelBricks& bricks)
-{
-    start();
-    return surface_of(*grid_of(bricks, {}));
-}
+MeshResult surface(const VoxelBricks& bricks) { return surface_of(*grid_of(bricks, {})); }
 
 std::string
 write(const std::filesystem::path& path, const VoxelBricks& bricks, const FieldNotes& notes)
 {
     try {
-        start();
         openvdb::io::File file(path.string());
         // Plain numbers: a few megabytes, read as fast as they are copied.
         file.setCompression(openvdb::io::COMPRESS_NONE);

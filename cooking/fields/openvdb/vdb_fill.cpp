@@ -8,9 +8,6 @@
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
-#ifdef THRONG_PLAIN_THREADS
-#include <tbb/global_control.h>
-#endif
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +40,6 @@ GridMesh on_grid(const Mesh& mesh, const VoxelBricks& laid)
 FloatGrid::Ptr near_surface(const Mesh& mesh, const VoxelBricks& laid, FieldSign sign)
 {
     using namespace openvdb::tools;
-    start();
     const GridMesh made = on_grid(mesh, laid);
     const QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(made.points,
                                                                              made.triangles);
@@ -111,19 +107,6 @@ void thicken(VoxelBricks& bricks, double by)
 }
 
 }  // namespace
-
-// The plain-threads build, which has no use for oneTBB, keeps
-// it on the calling thread.
-void start()
-{
-#ifdef THRONG_PLAIN_THREADS
-    static const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-#endif
-    [[maybe_unused]] static const bool started = [] {
-        openvdb::initialize();
-        return true;
-    }();
-}
 
 VoxelBricks fill(const Mesh& mesh, const VoxelBricks& laid, FieldSign sign)
 {
