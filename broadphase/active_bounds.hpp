@@ -53,8 +53,8 @@ using ActiveBoundsKernel = std::size_t (*)(const ActiveBoundsRule& rule,
                                            std::uint32_t* asked);
 
 /// The kernel of the width that this run takes; see lane_width().
-ActiveBoundsKernel active_bounds_kernel();
+const ActiveBoundsKernel& active_bounds_kernel();
 /// That of a width by name; null where this machine has not got it.
-ActiveBoundsKernel active_bounds_kernel_of(const char* width);
+const ActiveBoundsKernel* active_bounds_kernel_of(const char* width);
 
 }  // namespace throng

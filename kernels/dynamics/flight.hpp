@@ -51,8 +51,8 @@ using FlyKernel = std::size_t (*)(const FlightRule& rule,
                                   std::uint32_t* left);
 
 /// The kernel of the width that this run takes; see lane_width().
-FlyKernel fly_kernel();
+const FlyKernel& fly_kernel();
 /// That of a width by name; null where this machine has not got it.
-FlyKernel fly_kernel_of(const char* width);
+const FlyKernel* fly_kernel_of(const char* width);
 
 }  // namespace throng

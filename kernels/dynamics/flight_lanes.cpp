@@ -1,6 +1,7 @@
 // Free flight, written once over the width of the machine's registers.
 #include "kernels/dynamics/flight.hpp"
 #include "kernels/simd/lane_rows.hpp"
+#include "kernels/simd/lane_vectors.hpp"
 
 namespace throng::THRONG_LANES {
 
@@ -18,18 +19,11 @@ constexpr double kLeast = 1e-300;
 // As much of anything as a step can hold, see holdable().
 constexpr double kMost = 1e16;
 
-L absolute(L x) { return max(x, -x); }
-
 // v turned by q, or back by it where `back` is -1.
 void turn(const L (&q)[4], double back, const L (&v)[3], L (&out)[3])
 {
-    const L two = 2.0, x = q[0] * L(back), y = q[1] * L(back), z = q[2] * L(back);
-    const L tx = two * (y * v[2] - z * v[1]);
-    const L ty = two * (z * v[0] - x * v[2]);
-    const L tz = two * (x * v[1] - y * v[0]);
-    out[0] = v[0] + q[3] * tx + (y * tz - z * ty);
-    out[1] = v[1] + q[3] * ty + (z * tx - x * tz);
-    out[2] = v[2] + q[3] * tz + (x * ty - y * tx);
+    const V3<L> w = turned(V3<L>{q[0], q[1], q[2]} * L(back), q[3], V3<L>{v[0], v[1], v[2]});
+    out[0] = w.x, out[1] = w.y, out[2] = w.z;
 }
 
 // Sine and cosine of an angle as series of its square that are exact to double up to half a turn of
@@ -248,7 +242,7 @@ void nod(const FlightRule& rule,
     turns.go(rule.substeps);
     L length = 0.0;
     for (const L part : momentum) length += part * part;
-    const L nodding = L(4.0) * length * absolute(turns.inverse_mass[0] * turns.inverse_mass[1]);
+    const L nodding = L(4.0) * length * abs(turns.inverse_mass[0] * turns.inverse_mass[1]);
     body.trouble += select(uneven > L(0.0), trouble_where(nodding < L(kNodSquared)), L(0.0));
     spin.fastest = max(select(uneven > L(0.0), turns.fastest, L(0.0)), spin.fastest);
 
@@ -323,8 +317,8 @@ unsigned sound_ones(Bodies& body, std::size_t valid)
 {
     L sum = 0.0;
     for (int k = 0; k < 3; ++k)
-        sum += absolute(body.position[k]) + absolute(body.linear[k]) + absolute(body.angular[k]);
-    for (const L part : body.orientation) sum += absolute(part);
+        sum += abs(body.position[k]) + abs(body.linear[k]) + abs(body.angular[k]);
+    for (const L part : body.orientation) sum += abs(part);
     body.trouble += trouble_where(sum < L(kMost));
     double trouble[kWidth];
     body.trouble.store(trouble);

@@ -32,8 +32,8 @@ struct SampleArrays {
 using SampleKernel = void (*)(const BrickView& view, const SampleArrays& arrays, std::size_t count);
 
 /// The kernel of the width that this run takes; see lane_width().
-SampleKernel sample_kernel();
+const SampleKernel& sample_kernel();
 /// That of a width by name; null where this machine has not got it.
-SampleKernel sample_kernel_of(const char* width);
+const SampleKernel* sample_kernel_of(const char* width);
 
 }  // namespace throng

@@ -21,3 +21,28 @@ T of_width(const char* width, T scalar, T avx2, T avx512)
 }
 
 }  // namespace throng
+
+/// Defines two functions for a constant that a file of wide kernels has once a width: `kernel_of`,
+/// a pointer to that of a width by name, null where this machine has not got it or the name is
+/// another; and `kernel`, the one that this run takes (see lane_width()). For a file that is
+/// compiled for every machine, in the namespace throng. What comes last stands before each
+/// function.
+#define THRONG_WIDTHS(Type, kConstant, kernel_of, kernel, ...)                                     \
+    namespace scalar {                                                                             \
+    extern const Type kConstant;                                                                   \
+    }                                                                                              \
+    namespace avx2 {                                                                               \
+    extern const Type kConstant;                                                                   \
+    }                                                                                              \
+    namespace avx512 {                                                                             \
+    extern const Type kConstant;                                                                   \
+    }                                                                                              \
+    __VA_ARGS__ const Type* kernel_of(const char* width)                                           \
+    {                                                                                              \
+        return of_width(width, &scalar::kConstant, &avx2::kConstant, &avx512::kConstant);          \
+    }                                                                                              \
+    __VA_ARGS__ const Type& kernel()                                                               \
+    {                                                                                              \
+        static const Type& chosen = *kernel_of(lane_width());                                      \
+        return chosen;                                                                             \
+    }

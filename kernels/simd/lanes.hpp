@@ -105,6 +105,11 @@ Wide<T, W> min(Wide<T, W> a, Wide<T, W> b)
 {
     return a.v < b.v ? a.v : b.v;
 }
+template <class T, int W>
+Wide<T, W> abs(Wide<T, W> a)
+{
+    return max(a, -a);
+}
 inline float root(float x) { return __builtin_sqrtf(x); }
 inline double root(double x) { return __builtin_sqrt(x); }
 // The compiler would take roots of wide registers one number at a time.

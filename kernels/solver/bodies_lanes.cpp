@@ -9,12 +9,6 @@ namespace {
 
 constexpr std::int32_t kInOrder[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-template <class L>
-L length_of(L a)
-{
-    return max(a, -a);
-}
-
 // The symmetric inertia of W bodies, as a share of its trace.
 template <class L>
 struct Inertia {
@@ -25,15 +19,6 @@ struct Inertia {
                 xz * w.x + yz * w.y + zz * w.z};
     }
 };
-
-// Turned by the unit quaternion (axis, w).
-template <class L>
-V3<L> turned(const V3<L>& axis, L w, const V3<L>& v)
-{
-    const V3<L> t = cross(axis, v);
-    const V3<L> twice = t + t;
-    return v + twice * w + cross(axis, twice);
-}
 
 // before / after, where before = after + lost. The loss is told apart, and no more of it made up
 // for than is left: of the least moments of a needle rounding may leave nothing but the loss.
@@ -66,7 +51,7 @@ V3<L> after_implicit(const Inertia<L>& inertia, const V3<L>& w, L time)
     const V3<L> z = column_z + (cross(w, column_z) - V3<L>{m.y, -m.x, zero}) * time;
     const V3<L> yz = cross(y, z);
     const L determinant = dot(x, yz);
-    const L sound = length_of(determinant);
+    const L sound = abs(determinant);
     const L inverse = L(Real(1)) / select(sound > zero, determinant, L(Real(1)));
     const V3<L> change =
         V3<L>{dot(residual, yz), dot(residual, cross(z, x)), dot(residual, cross(x, y))} * inverse;
@@ -94,7 +79,7 @@ V3<L> after_explicit(const Inertia<L>& inertia, const V3<L>& w, L time)
         z{inertia.xz, inertia.yz, inertia.zz};
     const V3<L> yz = cross(y, z);
     const L determinant = dot(x, yz), zero = Real(0);
-    const L inverse = select(length_of(determinant) > zero, time / determinant, zero);
+    const L inverse = select(abs(determinant) > zero, time / determinant, zero);
     return w - V3<L>{dot(torque, yz), dot(torque, cross(z, x)), dot(torque, cross(x, y))} * inverse;
 }
 

@@ -2,39 +2,9 @@
 #pragma once
 
 #include "kernels/data/contact_constraints.hpp"
-#include "kernels/simd/lanes.hpp"
+#include "kernels/simd/lane_vectors.hpp"
 
 namespace throng::THRONG_LANES {
-
-template <class L>
-struct V3 {
-    L x, y, z;
-};
-template <class L>
-V3<L> operator+(const V3<L>& a, const V3<L>& b)
-{
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class L>
-V3<L> operator-(const V3<L>& a, const V3<L>& b)
-{
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class L>
-V3<L> operator*(const V3<L>& a, L s)
-{
-    return {a.x * s, a.y * s, a.z * s};
-}
-template <class L>
-L dot(const V3<L>& a, const V3<L>& b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class L>
-V3<L> cross(const V3<L>& a, const V3<L>& b)
-{
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 template <class L>
 L lane(const Lane16<typename L::Number>& of, int at)

@@ -291,7 +291,7 @@ bool meet_wide(const Shapes& shapes,
 
     HullGuess guess{cache.kind, cache.feature_a, cache.feature_b};
     HullOverlap overlap;
-    static const HullKernel collide = hull_kernel();
+    static const HullKernel& collide = hull_kernel();
     collide(pair, guess, overlap);
     cache = {guess.a, guess.b, guess.kind, overlap.count == 0 ? overlap.apart : 0};
     out.count = 0;

@@ -116,11 +116,11 @@ void sample_all(benchmark::State& state, int voxels, bool patches, const Sample&
 
 void sample(benchmark::State& state, int voxels, bool patches, const char* width)
 {
-    const SampleKernel kernel = sample_kernel_of(width);
+    const SampleKernel* const kernel = sample_kernel_of(width);
     if (kernel == nullptr) return state.SkipWithError("this machine has not got that width");
     const BrickView view = view_of(field_of(voxels));
     sample_all(state, voxels, patches,
-               [&](const SampleArrays& arrays) { kernel(view, arrays, kPatch); });
+               [&](const SampleArrays& arrays) { (*kernel)(view, arrays, kPatch); });
 }
 
 void sample_tree(benchmark::State& state, int voxels, bool patches)

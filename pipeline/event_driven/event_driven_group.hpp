@@ -7,7 +7,7 @@
 #pragma once
 
 #include "kernels/dynamics/rigid_motion.hpp"
-#include "kernels/solver/direct/direct_points.hpp"
+#include "kernels/solver/direct/impacts.hpp"
 #include "narrowphase/ccd/first_impact.hpp"
 #include "narrowphase/convex/convex_pair.hpp"
 #include "narrowphase/dispatch.hpp"
@@ -164,8 +164,6 @@ private:
     Motions motions(bool ends) const;
     bool resolve_impacts();
     void settle_impacts();
-    bool reflect(std::size_t begin, std::size_t end, Motions& bodies);
-    bool reflect_in_order(Motions& bodies);
     bool leave_as_reflected(std::vector<DirectPoint>& points, Motions& bodies);
     void apply_friction(Motions& bodies);
     double restitution_of(const GroupContact& contact) const;
@@ -204,6 +202,7 @@ private:
     std::vector<std::size_t> resting_;          // touches that may press, of this span
     std::vector<DirectPoint> pressed_;          // [resting_] with the impulses of this span
     std::vector<Press> pressing_;               // by pair, of the last span that held any
+    Impacts impacts_;                           // of this moment
     std::vector<double> struck_;                // [touches] N s, of all impacts of this moment
     std::map<PairKey, double> separation_now_;  // m, of pairs that touch
     std::map<PairKey, int> impact_counts_;      // in this step

@@ -1,12 +1,10 @@
 // Group contacts: what happens where bodies of a group touch.
 //
 // Who closes faster than a fall through the tolerance makes him bounces: all pairs together, or
-// pair by pair in order of pair ids, as impact_law has it, by the generalised reflections that
-// island_impacts.cpp tells of. Friction comes last, and sees the impulses of all. Who closes slower
+// pair by pair in order of pair ids, as impact_law has it, by generalised reflections (see
+// impacts.hpp). Friction comes last, and sees the impulses of all. Who closes slower
 // rests: a joint solve keeps it half the tolerance away. A pair that has bounced too often in a
 // step rests too, so that a step's work is bounded.
-//
-// Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
 #include "kernels/math/rotation.hpp"
 #include "kernels/solver/carried_points.hpp"
 #include "kernels/solver/driven_contacts.hpp"
@@ -20,10 +18,8 @@ namespace throng {
 
 namespace {
 
-constexpr int kMostPasses = 500;    // of impacts at a moment; what still closes then is stopped
-constexpr int kMostStrikes = 1000;  // of a pair in a step
-// Slower than this, of the greatest speed, nobody closes.
-constexpr double kRounding = 1e-11;
+constexpr int kMostStrikes = 1000;   // of a pair in a step
+constexpr double kRounding = 1e-11;  // of a distance
 // The share of what is missing to the separation at rest that a span gives back.
 constexpr double kPartShare = 0.5;
 // As far as this, in tolerances, at the end of a span, bodies are not held.
@@ -162,43 +158,6 @@ double EventDrivenGroup::restitution_of(const GroupContact& contact) const
     return worn ? 0 : contact.restitution;
 }
 
-// Gives those that close among the touches from `begin` to before `end` back their share of what
-// stops them. False if none does.
-bool EventDrivenGroup::reflect(std::size_t begin, std::size_t end, Motions& bodies)
-{
-    std::vector<std::size_t> hits;
-    std::vector<DirectPoint> points;
-    std::vector<double> speeds, restitution;
-    for (std::size_t i = begin; i < end; ++i) {
-        const double speed = relative_normal_velocity(contacts_[i].point, bodies);
-        if (!(speed < -contacts_[i].least_speed)) continue;
-        hits.push_back(i);
-        speeds.push_back(-speed);
-        restitution.push_back(restitution_of(contacts_[i]));
-        points.push_back(contacts_[i].point);
-        points.back().friction = points.back().rolling = 0;
-    }
-    if (hits.empty()) return false;
-    Motions stopped = bodies;
-    solve(stopped, points);
-    const double twice = 1 + shared_restitution(points, speeds, restitution);
-    mirror(stopped, twice, bodies);
-    for (std::size_t k = 0; k < hits.size(); ++k)
-        struck_[hits[k]] += points[k].normal.dot(points[k].impulse) * twice;
-    return true;
-}
-
-// Pair by pair: the points of one meet together.
-bool EventDrivenGroup::reflect_in_order(Motions& bodies)
-{
-    bool any = false;
-    for (std::size_t begin = 0, end = 0; begin < contacts_.size(); begin = end) {
-        while (end < contacts_.size() && contacts_[end].key == contacts_[begin].key) ++end;
-        any = reflect(begin, end, bodies) || any;
-    }
-    return any;
-}
-
 // The impacts of reflected bodies with friction, where every struck point leaves with the speed
 // that it has now. False, and nothing done, where that takes energy that nobody gave.
 bool EventDrivenGroup::leave_as_reflected(std::vector<DirectPoint>& points, Motions& bodies)
@@ -212,7 +171,7 @@ bool EventDrivenGroup::leave_as_reflected(std::vector<DirectPoint>& points, Moti
     for (DirectPoint& point : held) point.impulse.setZero();
     Motions after = before;
     solve(after, held);
-    if (work_of(held, before, after) > work + kRounding * size) return false;
+    if (work_of(held, before, after) > work + Impacts::kRounding * size) return false;
     bodies = std::move(after);
     points = std::move(held);
     return true;
@@ -255,22 +214,29 @@ bool EventDrivenGroup::resolve_impacts()
         greatest = std::max(greatest, std::abs(relative_normal_velocity(contact.point, bodies)));
     bool any = false;
     for (GroupContact& contact : contacts_) {
-        contact.least_speed = std::max(contact.least_speed, kRounding * greatest);
+        contact.least_speed = std::max(contact.least_speed, Impacts::kRounding * greatest);
         any = any
             || (restitution_of(contact) > 0
                 && relative_normal_velocity(contact.point, bodies) < -contact.least_speed);
     }
     if (!any) return false;
-    struck_.assign(contacts_.size(), 0);
-    const bool together = scene_.context.settings.impact_law == ImpactLaw::simultaneous;
+    impacts_.points.clear();
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const GroupContact& contact = contacts_[i];
+        impacts_.points.push_back(
+            {contact.point, i, contact.key, restitution_of(contact), contact.least_speed, 0});
+    }
+    const bool in_order = scene_.context.settings.impact_law == ImpactLaw::sequential;
+    const auto stop = [&](auto& stopped, auto& points) { solve(stopped, points); };
     int passes = 0;
-    while (passes < kMostPasses && may_go_on()
-           && (together ? reflect(0, contacts_.size(), bodies) : reflect_in_order(bodies)))
+    while (passes < Impacts::kMostPasses && may_go_on() && impacts_.pass(in_order, bodies, stop))
         ++passes;
+    struck_.assign(contacts_.size(), 0);
+    for (const ImpactPoint& impact : impacts_.points) struck_[impact.at] = impact.impulse;
     apply_friction(bodies);
     for (std::size_t i = 0; i < contacts_.size(); ++i)
         if (struck_[i] > 0)
-            impact_counts_[contacts_[i].key] += passes < kMostPasses ? 1 : kMostStrikes;
+            impact_counts_[contacts_[i].key] += passes < Impacts::kMostPasses ? 1 : kMostStrikes;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         scene_.velocities.linear[bodies_[i]] = bodies[i].velocity;
         scene_.velocities.angular[bodies_[i]] = bodies[i].spin;

@@ -1,88 +1,46 @@
 // Island impacts: how those who meet faster than gravity makes them leave one another.
 //
-// impact_law=simultaneous: all pairs that close are stopped together, by one solve, and given back
-// their share e of what stopped them; then those that close now, and so on until none does: the
-// generalised reflections of Smith and others. Momentum is kept, energy too where e = 1, what is
-// symmetric stays so, and the order of bodies means nothing. Where coefficients differ the mean
-// over the work done is taken, so that no pass gains energy.
-//
-// impact_law=sequential: the same pair by pair, in order of pair ids, round after round.
+// By generalised reflections (see impacts.hpp): all pairs that close together, or, by
+// impact_law=sequential, pair by pair in order of pair ids, round after round.
 //
 // Friction comes last, and sees the impulses of both: a solve that asks every struck point for the
 // speed that it leaves with.
-//
-// Source: Smith, Kaufman, Vouga, Tamstorf and Grinspun, Reflections on Simultaneous Impact (2012).
 #include "pipeline/solvers/island_solver.hpp"
 
 #include <algorithm>
 
 namespace throng {
 
-namespace {
-
-// Passes at most: those between a wall and a heavy body that closes in may be without end. What
-// still closes then is stopped.
-constexpr int kMostPasses = 500;
-// Slower than this, of the greatest speed, nobody closes.
-constexpr double kRounding = 1e-11;
-
-}  // namespace
-
-// Those that were touching as the substep began, or came to touch within it.
-void IslandSolver::list_touching(double threshold)
+// Those that were touching as the substep began, or came to touch within it. False if none of them
+// bounces.
+bool IslandSolver::list_touching(double threshold)
 {
-    touching_.clear();
+    impacts_.points.clear();
     bool any = false;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const bool touches = separations_[i] <= contacts_[i].tolerance
             || points_[i].normal.dot(points_[i].impulse) > 0;
         if (!touches) continue;
-        touching_.push_back(i);
+        add_impact(i);
         any = any || (contacts_[i].restitution > 0 && approach(i, struck_) < -threshold);
     }
-    if (!any) touching_.clear();
-}
-
-// Reflects those that close among the touching from `begin` to before `end`. False if none does.
-bool IslandSolver::reflect(std::size_t begin, std::size_t end, double least_speed)
-{
-    hits_.clear();
-    struck_points_.clear();
-    hit_speeds_.clear();
-    hit_restitution_.clear();
-    for (std::size_t k = begin; k < end; ++k) {
-        const std::size_t at = touching_[k];
-        const double speed = approach(at, struck_);
-        if (!(speed < -least_speed)) continue;
-        DirectPoint point = points_[at];
-        point.friction = point.rolling = point.least = 0;
-        point.impulse = point.torque = Vec3::Zero();
-        hits_.push_back(at);
-        hit_speeds_.push_back(-speed);
-        hit_restitution_.push_back(contacts_[at].restitution);
-        struck_points_.push_back(point);
-    }
-    if (hits_.empty()) return false;
-    stopped_ = struck_;
-    solve(stopped_, struck_points_);
-    const double twice = 1 + shared_restitution(struck_points_, hit_speeds_, hit_restitution_);
-    mirror(stopped_, twice, struck_);
-    for (std::size_t k = 0; k < hits_.size(); ++k)
-        struck_impulse_[hits_[k]] +=
-            struck_points_[k].normal.dot(struck_points_[k].impulse) * twice;
-    return true;
-}
-
-// Contact by contact: the points of one meet together.
-bool IslandSolver::reflect_in_order(double least_speed)
-{
-    bool any = false;
-    for (std::size_t begin = 0, end = 0; begin < touching_.size(); begin = end) {
-        const std::uint32_t contact = contacts_[touching_[begin]].contact;
-        while (end < touching_.size() && contacts_[touching_[end]].contact == contact) ++end;
-        any = reflect(begin, end, least_speed) || any;
-    }
     return any;
+}
+
+void IslandSolver::add_impact(std::size_t at)
+{
+    impacts_.points.push_back(
+        {points_[at], at, contacts_[at].contact, contacts_[at].restitution, 0, 0});
+}
+
+// Passes of impacts, until nobody closes faster than that, m/s.
+void IslandSolver::reflect(bool in_order, int most_passes, double least_speed)
+{
+    for (ImpactPoint& point : impacts_.points) point.least_speed = least_speed;
+    const auto stop = [&](auto& bodies, auto& points) { solve(bodies, points); };
+    for (int pass = 0; pass < most_passes && impacts_.pass(in_order, struck_, stop); ++pass) { }
+    struck_impulse_.assign(contacts_.size(), 0);
+    for (const ImpactPoint& point : impacts_.points) struck_impulse_[point.at] = point.impulse;
 }
 
 // What the impacts did, J, but for rounding; and more than friction and rest may leave of that.
@@ -94,7 +52,7 @@ bool IslandSolver::gains(double work) const
         size = std::max(size,
                         point.impulse.norm() * (speed + relative_velocity(point, after_).norm()));
     }
-    return work_of(others_, free_, after_) > work + kRounding * size;
+    return work_of(others_, free_, after_) > work + Impacts::kRounding * size;
 }
 
 // What gravity did in the substep, resting contacts and friction: every struck point leaves with
@@ -161,17 +119,12 @@ bool IslandSolver::bounce(const StepContext& context)
     struck_ = before_;
     for (std::size_t i = 0; i < struck_.size(); ++i)
         struck_[i].inverse_inertia = free_[i].inverse_inertia;
-    list_touching(threshold);
-    if (touching_.empty()) return false;
+    if (!list_touching(threshold)) return false;
     double greatest = 0;
-    for (const std::size_t at : touching_)
-        greatest = std::max(greatest, std::abs(approach(at, struck_)));
-    const double least_speed = std::max(threshold, kRounding * greatest);
-    struck_impulse_.assign(contacts_.size(), 0);
-    const bool together = context.settings.impact_law == ImpactLaw::simultaneous;
-    for (int pass = 0; pass < kMostPasses; ++pass)
-        if (!(together ? reflect(0, touching_.size(), least_speed) : reflect_in_order(least_speed)))
-            break;
+    for (const ImpactPoint& point : impacts_.points)
+        greatest = std::max(greatest, std::abs(approach(point.at, struck_)));
+    reflect(context.settings.impact_law == ImpactLaw::sequential, Impacts::kMostPasses,
+            std::max(threshold, Impacts::kRounding * greatest));
     settle_after_impacts();
     return true;
 }

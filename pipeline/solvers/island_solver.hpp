@@ -2,7 +2,7 @@
 // by the direct solver, by penalty forces or by kinematic pushes.
 #pragma once
 
-#include "kernels/solver/direct/direct_points.hpp"
+#include "kernels/solver/direct/impacts.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/solvers/solve_direct.hpp"
 
@@ -100,9 +100,9 @@ private:
     double ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     // Impacts: see island_impacts.cpp.
     bool bounce(const StepContext& context);
-    void list_touching(double threshold);
-    bool reflect(std::size_t begin, std::size_t end, double least_speed);
-    bool reflect_in_order(double least_speed);
+    bool list_touching(double threshold);
+    void add_impact(std::size_t at);
+    void reflect(bool in_order, int most_passes, double least_speed);
     bool gains(double work) const;
     void hold_struck();
     void add_to_struck();
@@ -136,10 +136,9 @@ private:
     std::vector<DirectBody> before_, free_, after_, going_;  // [bodies]; going_: how places change
     std::vector<DirectPoint> points_, others_;               // [touches]
     std::vector<double> separations_;                        // [touches] m, now
-    std::vector<DirectBody> struck_, stopped_;               // [bodies] after impacts; and if e = 0
-    std::vector<std::size_t> touching_, hits_;               // touches that may be struck; that are
-    std::vector<DirectPoint> struck_points_;                 // [hits]
-    std::vector<double> hit_speeds_, hit_restitution_;       // [hits] m/s closing
+    std::vector<DirectBody> struck_;                         // [bodies] after impacts
+    Impacts impacts_;                                        // of touches that may be struck
+    std::vector<DirectPoint> struck_points_;                 // [touches]
     std::vector<double> struck_impulse_;                     // [touches] N s, of all impacts
     std::vector<Sym3> inertia_, inverse_inertia_;            // [bodies] body axes
     std::vector<std::uint32_t> pressed_;                     // [bodies] touches that overlap

@@ -18,8 +18,6 @@ namespace {
 
 // Rounds of impacts a part of a substep; springs stop what comes in after so many.
 constexpr int kImpactRounds = 16;
-// Slower than this, of the greatest speed, nobody closes.
-constexpr double kRounding = 1e-11;
 
 // Of auto: by how many radians it swings in a substep, and the share of critical damping where
 // nothing bounces; together half of what a semi-implicit step bears.
@@ -175,19 +173,20 @@ void IslandSolver::throw_back(const StepContext& context, double time)
     double greatest = 0;
     for (std::size_t i = 0; i < contacts_.size(); ++i)
         greatest = std::max(greatest, -approach(i, after_));
-    const double least = std::max(2 * context.gravity.norm() * settings.dt, kRounding * greatest);
+    const double least =
+        std::max(2 * context.gravity.norm() * settings.dt, Impacts::kRounding * greatest);
     if (!(greatest > least)) return;
     struck_ = after_;
     for (int round = 0; round < kImpactRounds; ++round) {
-        touching_.clear();
+        impacts_.points.clear();
         for (std::size_t i = 0; i < contacts_.size(); ++i) {
             const double speed = approach(i, struck_);
-            if (speed < -least && separations_[i] + speed * time < 0) touching_.push_back(i);
+            if (speed < -least && separations_[i] + speed * time < 0) add_impact(i);
         }
-        if (touching_.empty()) break;
-        struck_impulse_.assign(contacts_.size(), 0);
-        reflect_in_order(least);
-        for (const std::size_t at : touching_) {
+        if (impacts_.points.empty()) break;
+        reflect(true, 1, least);
+        for (const ImpactPoint& impact : impacts_.points) {
+            const std::size_t at = impact.at;
             points_[at].impulse += points_[at].normal * struck_impulse_[at];
             if (struck_impulse_[at] > 0)
                 apply_impact_friction(struck_impulse_[at], points_[at], struck_);

@@ -106,8 +106,9 @@ struct ActiveBodies {
                                         speculative_margin.data(),
                                         near[0].lower};
         std::vector<std::uint32_t> asked(colliders.size());
-        asked.resize(active_bounds_kernel_of(width)(rule(), arrays, colliders.data(), bodies.data(),
-                                                    colliders.size(), asked.data()));
+        const ActiveBoundsKernel& update = *active_bounds_kernel_of(width);
+        asked.resize(update(rule(), arrays, colliders.data(), bodies.data(), colliders.size(),
+                            asked.data()));
         return asked;
     }
 };

@@ -18,7 +18,6 @@ constexpr int kWidth = Floats::kWidth;
 // the normal of a body at rest does not jump between axes that are as good as one another.
 constexpr float kFaceBias = 1e-3f;
 
-inline Floats abs(Floats a) { return max(a, -a); }
 inline Floats sign_of(Floats a) { return select(a < Floats(0.f), Floats(-1.f), Floats(1.f)); }
 inline Floats least_of(const Floats (&a)[3]) { return min(min(a[0], a[1]), a[2]); }
 inline Floats dot(const Floats (&a)[3], const Floats (&b)[3])

@@ -1,21 +1,10 @@
 #include "narrowphase/convex/wide/box_pairs.hpp"
 
 #include "kernels/check.hpp"
-#include "kernels/simd/lane_width.hpp"
 
 #include <algorithm>
 
 namespace throng {
-
-namespace scalar {
-extern const BoxKernels kBoxes;
-}
-namespace avx2 {
-extern const BoxKernels kBoxes;
-}
-namespace avx512 {
-extern const BoxKernels kBoxes;
-}
 
 namespace {
 
@@ -30,17 +19,6 @@ static_assert(offsetof(LocalManifold<float>, points) == 3 * sizeof(float));
 static_assert(offsetof(LocalManifold<float>, count) == 23 * sizeof(float));
 
 }  // namespace
-
-const BoxKernels* box_kernels_of(const char* width)
-{
-    return of_width(width, &scalar::kBoxes, &avx2::kBoxes, &avx512::kBoxes);
-}
-
-const BoxKernels& box_kernels()
-{
-    static const BoxKernels& chosen = *box_kernels_of(lane_width());
-    return chosen;
-}
 
 void collide_boxes(const BoxKernels& kernels,
                    std::span<const BoxPair> pairs,

@@ -260,7 +260,7 @@ void Search::cross_edges(HullOverlap& out) const
     const float limit = pair_.speculative_margin + pair_.bias;
     out.count = 0;
     if (edge_.separation > 0 && dot(apart, apart) > limit * limit) return;
-    edge_.normal.store(out.normal);
+    store(edge_.normal, out.normal);
     out.count = 1;
     const std::uint32_t edges =
         static_cast<std::uint32_t>(edge_.a) << 8 | static_cast<std::uint32_t>(edge_.b);
@@ -290,7 +290,7 @@ F3 Search::face_normal(bool by_b) const
 float Search::clip_face(bool by_b, HullOverlap& out) const
 {
     out.count = 0;
-    face_normal(by_b).store(out.normal);
+    store(face_normal(by_b), out.normal);
     const int face = (by_b ? best_b_ : best_a_).face;
     const float deepest =
         clip_under(by_b ? by_b_ : by_a_, face, pair_.speculative_margin, pair_.bias, out);
@@ -307,7 +307,7 @@ void Search::collide_vertex(bool by_b, HullOverlap& out) const
     const int vertex = lowest_vertex(side.other, side.to_other(normal));
     const F3 corner = side.from_other(vertex_of(side.other, vertex)) + side.center;
     const F3 middle = corner - normal * (face.separation / 2);
-    face_normal(by_b).store(out.normal);
+    store(face_normal(by_b), out.normal);
     const auto name =
         static_cast<std::uint32_t>(face.face) << 8 | static_cast<std::uint32_t>(vertex);
     out.points[out.count++] = {{middle.x, middle.y, middle.z}, face.separation, 1u << 30 | name};

@@ -46,9 +46,9 @@ struct HullOverlap {
 using HullKernel = void (*)(const HullPair& pair, HullGuess& guess, HullOverlap& out);
 
 /// The kernel of "scalar", "avx2" or "avx512"; null where this machine has not got it.
-HullKernel hull_kernel_of(const char* width);
+const HullKernel* hull_kernel_of(const char* width);
 
 /// The one that this run takes.
-HullKernel hull_kernel();
+const HullKernel& hull_kernel();
 
 }  // namespace throng

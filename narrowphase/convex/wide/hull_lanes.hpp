@@ -1,31 +1,20 @@
-// Hull lanes: small vectors, and a polytope's furthest vertex, for the hull kernels.
+// Hull lanes: a polytope's furthest vertex, for the hull kernels.
 #pragma once
 
-#include "kernels/simd/lanes.hpp"
+#include "kernels/simd/lane_vectors.hpp"
 #include "narrowphase/convex/wide/hull_kernels.hpp"
 
 namespace throng::THRONG_LANES {
 
 using L = Lanes<float>;
 
-struct F3 {
-    float x, y, z;
+using F3 = V3<float>;
 
-    void store(float* to) const
-    {
-        to[0] = x;
-        to[1] = y;
-        to[2] = z;
-    }
-    friend F3 operator+(F3 a, F3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    friend F3 operator-(F3 a, F3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend F3 operator-(F3 a) { return {-a.x, -a.y, -a.z}; }
-    friend F3 operator*(F3 a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-};
-inline float dot(F3 a, F3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline F3 cross(F3 a, F3 b)
+inline void store(const F3& v, float* to)
 {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    to[0] = v.x;
+    to[1] = v.y;
+    to[2] = v.z;
 }
 inline float most(float a, float b) { return a > b ? a : b; }
 inline float least(float a, float b) { return a < b ? a : b; }

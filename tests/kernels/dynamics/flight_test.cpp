@@ -89,7 +89,8 @@ std::vector<std::uint32_t> fly(const char* width,
                                Flyers& flyers)
 {
     std::vector<std::uint32_t> left(ids.size());
-    left.resize(fly_kernel_of(width)(rule, flyers.arrays(), ids.data(), ids.size(), left.data()));
+    const FlyKernel& kernel = *fly_kernel_of(width);
+    left.resize(kernel(rule, flyers.arrays(), ids.data(), ids.size(), left.data()));
     return left;
 }
 

@@ -74,13 +74,13 @@ TEST_F(VoxelLanes, GiveTheBitsOfSingleSamplesAtEveryWidth)
     const Samples wanted = plain(x_.size());
     ASSERT_NE(std::count(bricks_.brick_of.begin(), bricks_.brick_of.end(), -1), 0);
     for (const char* width : {"scalar", "avx2", "avx512"}) {
-        const SampleKernel kernel = sample_kernel_of(width);
+        const SampleKernel* const kernel = sample_kernel_of(width);
         if (kernel == nullptr) continue;
         Samples got(x_.size());
-        kernel(view_of(bricks_),
-               {x_.data(), y_.data(), z_.data(), got.distance.data(), got.gx.data(), got.gy.data(),
-                got.gz.data()},
-               x_.size());
+        (*kernel)(view_of(bricks_),
+                  {x_.data(), y_.data(), z_.data(), got.distance.data(), got.gx.data(),
+                   got.gy.data(), got.gz.data()},
+                  x_.size());
         EXPECT_TRUE(same_bits(got.distance, wanted.distance)) << width;
         EXPECT_TRUE(same_bits(got.gx, wanted.gx)) << width;
         EXPECT_TRUE(same_bits(got.gy, wanted.gy)) << width;
@@ -92,14 +92,14 @@ TEST_F(VoxelLanes, WriteEveryPointOfEveryLengthAndNoOther)
 {
     const Samples wanted = plain(80);
     for (const char* width : {"scalar", "avx2", "avx512"}) {
-        const SampleKernel kernel = sample_kernel_of(width);
+        const SampleKernel* const kernel = sample_kernel_of(width);
         if (kernel == nullptr) continue;
         for (std::size_t count = 0; count <= 70; ++count) {
             Samples got(80);
-            kernel(view_of(bricks_),
-                   {x_.data(), y_.data(), z_.data(), got.distance.data(), got.gx.data(),
-                    got.gy.data(), got.gz.data()},
-                   count);
+            (*kernel)(view_of(bricks_),
+                      {x_.data(), y_.data(), z_.data(), got.distance.data(), got.gx.data(),
+                       got.gy.data(), got.gz.data()},
+                      count);
             for (std::size_t i = 0; i < 80; ++i)
                 ASSERT_EQ(got.distance[i], i < count ? wanted.distance[i] : 0) << width << count;
         }

@@ -226,13 +226,13 @@ TEST(WideHull, EveryWidthGivesTheSameBits)
         const HullPair pair = pair_of(a, b, pose);
         HullGuess plain_guess;
         HullOverlap plain;
-        hull_kernel_of("scalar")(pair, plain_guess, plain);
+        (*hull_kernel_of("scalar"))(pair, plain_guess, plain);
         for (const char* width : {"avx2", "avx512"}) {
-            const HullKernel kernel = hull_kernel_of(width);
+            const HullKernel* const kernel = hull_kernel_of(width);
             if (!kernel) continue;
             HullGuess guess;
             HullOverlap wide;
-            kernel(pair, guess, wide);
+            (*kernel)(pair, guess, wide);
             ASSERT_EQ(wide.count, plain.count) << width;
             ASSERT_EQ(std::memcmp(&guess, &plain_guess, sizeof guess), 0) << width;
             if (wide.count == 0) continue;
@@ -256,18 +256,18 @@ TEST(WideHull, WhatIsKnownToBeApartIsSoAtEveryWidthAlike)
         const HullPair pair = pair_of(a, b, pose);
         HullGuess first_guess;
         HullOverlap plain;
-        hull_kernel_of("scalar")(pair, first_guess, plain);
+        (*hull_kernel_of("scalar"))(pair, first_guess, plain);
         if (plain.count > 0) continue;
         const double exact =
             polytope_separation(view_of(shapes.hulls[0]), view_of(shapes.hulls[1]), pose, nullptr);
         ASSERT_LE(double{plain.apart}, exact + 1e-6);
         apart += plain.apart > pair.speculative_margin ? 1 : 0;
         for (const char* width : {"avx2", "avx512"}) {
-            const HullKernel kernel = hull_kernel_of(width);
+            const HullKernel* const kernel = hull_kernel_of(width);
             if (!kernel) continue;
             HullGuess guess;
             HullOverlap wide;
-            kernel(pair, guess, wide);
+            (*kernel)(pair, guess, wide);
             ASSERT_EQ(wide.count, 0) << width;
             ASSERT_EQ(wide.apart, plain.apart) << width;
         }

@@ -1,33 +1,12 @@
-// The widths that voxel_bricks_lanes.cpp was compiled for, and the way to them.
+// Many points in bricks: the wide kernel where it can, one after another where it cannot.
+#include "kernels/geometry/voxel_kernels.hpp"
+
 #include "kernels/check.hpp"
 #include "kernels/geometry/voxel_bricks.hpp"
-#include "kernels/geometry/voxel_kernels.hpp"
-#include "kernels/simd/lane_width.hpp"
 
 #include <limits>
 
 namespace throng {
-
-namespace scalar {
-extern const SampleKernel kSample;
-}
-namespace avx2 {
-extern const SampleKernel kSample;
-}
-namespace avx512 {
-extern const SampleKernel kSample;
-}
-
-SampleKernel sample_kernel_of(const char* width)
-{
-    return of_width(width, scalar::kSample, avx2::kSample, avx512::kSample);
-}
-
-SampleKernel sample_kernel()
-{
-    static const SampleKernel chosen = sample_kernel_of(lane_width());
-    return chosen;
-}
 
 BrickView view_of(const VoxelBricks& bricks)
 {

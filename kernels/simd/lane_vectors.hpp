@@ -1,0 +1,52 @@
+// Lane vectors: W vectors side by side, and one where L is a plain number. For sources compiled once
+// a width.
+#pragma once
+
+#include "kernels/simd/lanes.hpp"
+
+namespace throng::THRONG_LANES {
+
+template <class L>
+struct V3 {
+    L x, y, z;
+};
+template <class L>
+V3<L> operator+(const V3<L>& a, const V3<L>& b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class L>
+V3<L> operator-(const V3<L>& a, const V3<L>& b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class L>
+V3<L> operator-(const V3<L>& a)
+{
+    return {-a.x, -a.y, -a.z};
+}
+template <class L>
+V3<L> operator*(const V3<L>& a, L s)
+{
+    return {a.x * s, a.y * s, a.z * s};
+}
+template <class L>
+L dot(const V3<L>& a, const V3<L>& b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class L>
+V3<L> cross(const V3<L>& a, const V3<L>& b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/// Turned by the unit quaternion (axis, w).
+template <class L>
+V3<L> turned(const V3<L>& axis, L w, const V3<L>& v)
+{
+    const V3<L> t = cross(axis, v);
+    const V3<L> twice = t + t;
+    return v + twice * w + cross(axis, twice);
+}
+
+}  // namespace throng::THRONG_LANES
