@@ -29,14 +29,15 @@ class Run:
 
     stretch: time by the clock over time of the processor, which others may use as well
     first: stats after one step, of what has stand-ins for its shapes
+    held: stats of when energy began to be gained, of what gained any
     """
 
     def __init__(self, code, words, stats=None, before=None, bodies=(), timed_out=False, stretch=1,
-                 first=None):
+                 first=None, held=None):
         self.code, self.words, self.timed_out = code, words, timed_out
         self.stretch = max(stretch, 1)
         self.stats, self.before, self.bodies = stats or {}, before or {}, bodies
-        self.first = first or {}
+        self.first, self.held = first or {}, held or {}
 
 
 def read_json(path):
@@ -88,15 +89,16 @@ def trivial_energy(made, stats, first):
     return made.mass * (0.01 * (gravity * dt) ** 2 / 2 + gravity * lifted)
 
 
-def borne_energy(made, stats):
+def borne_energy(made, stats, held):
     """J: what soft contacts may hold under the weight of all, as deep as any is found and allowed
-    to be; penalty forces, whose springs are as soft as the step asks, as deep as any is. No ledger
-    has these springs: motion and height take turns with what they hold."""
+    to be, at the end or as a gain began, for who is let go gives back what he held then; penalty
+    forces, whose springs are as soft as the step asks, as deep as any is. No ledger has these
+    springs: motion and height take turns with what they hold."""
     settings = made.scene["settings"]
     if settings.get("overlap", "allow") != "allow" or \
             not any(made.scene.get("gravity", [0, 0, -9.81])):
         return 0.0
-    deep = stats["max_overlap_m"]
+    deep = max(stats["max_overlap_m"], held.get("max_overlap_m", 0))
     if settings.get("response") != "penalty":
         deep = min(deep, OVERLAP_SHARE * thickness_of(made))
     return made.mass * 9.81 * deep / 2
@@ -145,7 +147,7 @@ def energy_made(made, run):
     if is_textbook(made.scene):
         return None
     greatest = max(stats["greatest_kinetic_energy_j"], run.before.get("kinetic_energy_j", 0))
-    bound = ENERGY_SHARE * greatest + borne_energy(made, stats) \
+    bound = ENERGY_SHARE * greatest + borne_energy(made, stats, run.held) \
         + trivial_energy(made, stats, run.first)
     gained = stats["energy_gained_j"]
     if not gained <= bound:

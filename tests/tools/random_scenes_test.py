@@ -72,11 +72,11 @@ def good_stats(**changes):
 BEFORE = {"kinetic_energy_j": 0.0, "potential_energy_j": 200.0}
 
 
-def told(made=None, code=0, bodies=None, timed_out=False, timed=True, **changes):
+def told(made=None, code=0, bodies=None, timed_out=False, timed=True, held=None, **changes):
     """The kinds of failures of a run that is good but for these changes."""
     standing = [([0, 0, -1], [0, 0, 0]), ([0, 0, 1], [0, 0, 0])]
     run = judge.Run(code, "", good_stats(**changes), BEFORE,
-                    standing if bodies is None else bodies, timed_out)
+                    standing if bodies is None else bodies, timed_out, held=held)
     return [line.split(":")[0] for line in judge.failures(made or box_on_floor(), run, timed)]
 
 
@@ -106,6 +106,11 @@ class Judge(unittest.TestCase):
     def test_takes_what_contacts_hold_and_what_is_lifted_apart_for_no_gain(self):
         self.assertEqual(told(energy_gained_j=40.0, max_overlap_m=0.01), [])
         self.assertEqual(told(energy_gained_j=150.0, max_overlap_m=0.01), ["energy"])
+        # They gave it back since.
+        then = {"max_overlap_m": 0.01}
+        self.assertEqual(told(held=then, energy_gained_j=40.0), [])
+        self.assertEqual(told(held=then, energy_gained_j=150.0), ["energy"])
+        self.assertEqual(told(held={"max_overlap_m": 10.0}, energy_gained_j=1000.0), ["energy"])
         deep = {"energy_gained_j": 1000.0, "max_overlap_m": 0.25}
         soft = box_on_floor()
         soft.scene["settings"]["response"] = "penalty"
