@@ -54,24 +54,32 @@ double fastest_arm(const RigidFacts& facts, std::span<const std::uint32_t> group
     return fastest;
 }
 
+// Whether a substep is too long for the springs of bodies that they join, or turns an arm too far.
+bool too_long(const StepContext& context,
+              const RigidFacts& facts,
+              std::span<const std::uint32_t> group)
+{
+    const double span = context.substep();
+    return span > kWithin * longest_step(facts.forces, facts.masses, group)
+        || span * fastest_arm(facts, group) > kTurn;
+}
+
 }  // namespace
 
 bool too_stiff(const StepContext& context,
                const RigidFacts& facts,
                std::span<const std::uint32_t> group)
 {
-    // Penalty forces are taken as they are, in parts of a substep that bear them.
-    const double span = context.substep();
-    return context.settings.response != Response::penalty
-        && (span > kWithin * longest_step(facts.forces, facts.masses, group)
-            || span * fastest_arm(facts, group) > kTurn);
+    // Among penalty forces springs are taken as they are, in parts of a substep that bear them.
+    return context.settings.response != Response::penalty && too_long(context, facts, group);
 }
 
+// Whatever response contacts have: in flight nothing cuts a substep.
 bool by_stiff_springs(const StepContext& context,
                       const RigidFacts& facts,
                       std::span<const std::uint32_t> group)
 {
-    return bears_stiff_springs(context.settings.integrator) && too_stiff(context, facts, group);
+    return bears_stiff_springs(context.settings.integrator) && too_long(context, facts, group);
 }
 
 StateDependentForces::StateDependentForces(const StepContext& context,

@@ -26,7 +26,7 @@ namespace throng {
 bool too_stiff(const StepContext& context,
                const RigidFacts& facts,
                std::span<const std::uint32_t> group);
-/// The same where they all fly.
+/// The same where they all fly, whatever answers contacts.
 bool by_stiff_springs(const StepContext& context,
                       const RigidFacts& facts,
                       std::span<const std::uint32_t> group);

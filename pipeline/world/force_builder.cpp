@@ -154,8 +154,8 @@ std::vector<std::string>
 unstable_springs(const Forces& forces, const Masses& masses, const Settings& settings)
 {
     // Then they go by a rule that bears any step: see pipeline/forces/state_dependent_forces.hpp.
-    if (bears_stiff_springs(settings.integrator) && settings.response != Response::penalty)
-        return {};
+    // Among penalty forces the step is cut for them.
+    if (bears_stiff_springs(settings.integrator)) return {};
     const IntegratorRow& integrator = chosen(settings.integrator, true);
     const double span = settings.dt / settings.substeps;
     std::map<double, double> limits;  // by damping ratio: springs are mostly alike

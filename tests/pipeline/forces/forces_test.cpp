@@ -615,6 +615,34 @@ TEST(Springs, ByDefaultAreToldNothingOfAndHold)
     EXPECT_NEAR(energy(world) / first, 1, 1e-6);
 }
 
+// Nobody cuts a substep for a spring whose bodies touch nothing, whatever contacts would answer by:
+// as it is, it would swing wider and wider, or be seen to.
+TEST(Springs, InFlightMakeNoEnergyByAnyResponse)
+{
+    for (const Response response : {Response::impulse, Response::penalty, Response::kinematic})
+        for (const double stiffness : {2e2, 2e4, 2e5, 2e6, 2e8})
+            for (const bool by_an_arm : {false, true}) {
+                Scene scene = empty_scene(Integrator::auto_);
+                scene.settings.response = response;
+                add_body(scene, Vec3(1.1, 0, 0));
+                add_body(scene, Vec3(2.2, 0, 0));
+                scene.springs.push_back(spring_between(0, kNone, stiffness, 1));
+                scene.springs.push_back(spring_between(1, 0, stiffness, 1));
+                if (by_an_arm) scene.springs.back().at_a = Vec3(0, 0.3, 0);
+                World world(scene);
+                EXPECT_TRUE(world.warnings().empty());
+                const double first = energy(world);
+                double greatest = first;
+                for (int step = 0; step < 500; ++step) {
+                    world.step();
+                    greatest = std::max(greatest, energy(world));
+                }
+                EXPECT_LT(greatest / first, 1.01)
+                    << stiffness << " N/m, response " << static_cast<int>(response)
+                    << (by_an_arm ? ", by an arm" : "");
+            }
+}
+
 TEST(Springs, ThatSwingWiderAreToldWithWhatWouldDo)
 {
     Scene scene = empty_scene(Integrator::splitting);
