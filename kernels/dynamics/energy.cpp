@@ -1,5 +1,6 @@
 #include "kernels/dynamics/energy.hpp"
 
+#include "kernels/dynamics/attraction.hpp"
 #include "kernels/math/rotation.hpp"
 
 namespace throng {
@@ -15,15 +16,18 @@ double spring_energy(const SpringForce& spring, const Forces& forces, const Pose
     return 0.5 * spring.stiffness * stretch * stretch;
 }
 
-double
-attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, std::uint32_t body)
+double attraction_of(const Forces& forces,
+                     const Masses& masses,
+                     const Poses& poses,
+                     std::uint32_t body,
+                     double substep)
 {
     double energy = 0;
     for (const AttractorForce& attractor : forces.attractors) {
         const Vec3 place = poses.at(body) * forces.pivot_to_center_of(body);
         const double distance = (place - attractor.position).norm();
-        if (masses.mass[body] > 0 && distance > 0)
-            energy -= masses.mass[body] * attractor.strength / distance;
+        if (masses.mass[body] > 0)
+            energy -= attraction_energy(attractor, masses.mass[body], distance, substep);
     }
     return energy;
 }
@@ -48,12 +52,12 @@ double kinetic_energy_of(std::uint32_t body,
     return 0.5 * (masses.mass[body] * velocities.linear[body].squaredNorm() + w.dot(spin));
 }
 
-double potential_of(const Forces& forces, const Masses& masses, const Poses& poses)
+double potential_of(const Forces& forces, const Masses& masses, const Poses& poses, double substep)
 {
     double energy = 0;
     for (const SpringForce& spring : forces.springs) energy += spring_energy(spring, forces, poses);
     for (std::uint32_t body = 0; body < masses.mass.size(); ++body)
-        energy += attraction_of(forces, masses, poses, body);
+        energy += attraction_of(forces, masses, poses, body, substep);
     return energy;
 }
 

@@ -6,10 +6,14 @@
 
 namespace throng {
 
-/// J that a spring holds; and that attractors have given up for a body, negative.
+/// J that a spring holds; and that attractors have given up for a body, negative, as far as a
+/// substep follows them (see attraction.hpp).
 double spring_energy(const SpringForce& spring, const Forces& forces, const Poses& poses);
-double
-attraction_of(const Forces& forces, const Masses& masses, const Poses& poses, std::uint32_t body);
+double attraction_of(const Forces& forces,
+                     const Masses& masses,
+                     const Poses& poses,
+                     std::uint32_t body,
+                     double substep);
 
 /// J that the springs of a body hold.
 double springs_energy_of(std::uint32_t body, const Forces& forces, const Poses& poses);
@@ -21,6 +25,6 @@ double kinetic_energy_of(std::uint32_t body,
                          const Velocities& velocities);
 
 /// J that the springs hold, and that attractors have given up.
-double potential_of(const Forces& forces, const Masses& masses, const Poses& poses);
+double potential_of(const Forces& forces, const Masses& masses, const Poses& poses, double substep);
 
 }  // namespace throng

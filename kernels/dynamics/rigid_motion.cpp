@@ -1,5 +1,6 @@
 #include "kernels/dynamics/rigid_motion.hpp"
 
+#include "kernels/dynamics/attraction.hpp"
 #include "kernels/dynamics/free_rotation.hpp"
 #include "kernels/math/numbers.hpp"
 #include "kernels/math/rotation.hpp"
@@ -268,7 +269,7 @@ void RigidMotion::find_wrenches(double time, bool all_drag, std::size_t begin, s
             const Vec3 towards = attractor.position - (now.position + now.arm);
             const double square = towards.squaredNorm();
             if (square > 0)
-                on.force += mass * attractor.strength / (square * std::sqrt(square)) * towards;
+                on.force += attraction_pull(attractor, mass, square, rule_.substep) * towards;
         }
         if (forces.field) {
             const Pose center{now.position + now.arm, Quat(now.turn)};

@@ -26,6 +26,7 @@ namespace throng {
 struct RigidRule {
     Vec3 gravity = Vec3::Zero();  // m/s2
     double time = 0;              // s, since the world began, as the step begins
+    double substep = 0;           // s, as finely as attractors are followed
     bool turns = true;            // bodies may turn at all
     Rotation rotation = Rotation::quaternion;
     // How gyrate() takes the gyroscopic torque; to rates it is there or not.

@@ -8,6 +8,7 @@
 //
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
+#include "kernels/dynamics/attraction.hpp"
 #include "kernels/dynamics/energy.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
@@ -84,10 +85,11 @@ public:
                         Poses& poses,
                         Velocities& velocities,
                         FastBodies& fast)
-        : settings_(context.settings), gravity_(context.gravity), shapes_(shapes),
-          colliders_(colliders), surfaces_(surfaces), filter_(filter), forces_(forces),
-          masses_(masses), bounds_(bounds), pairs_(pairs), states_(states), followed_(followed),
-          on_meshes_(on_meshes), poses_(poses), velocities_(velocities), fast_(fast)
+        : settings_(context.settings), gravity_(context.gravity), substep_(context.substep()),
+          shapes_(shapes), colliders_(colliders), surfaces_(surfaces), filter_(filter),
+          forces_(forces), masses_(masses), bounds_(bounds), pairs_(pairs), states_(states),
+          followed_(followed), on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
+          fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& woke)
@@ -488,7 +490,7 @@ private:
         for (const AttractorForce& attractor : forces_.attractors) {
             const Vec3 towards = attractor.position - poses_.position[body];
             const double square = towards.squaredNorm();
-            if (square > 0) pull += attractor.strength / (square * std::sqrt(square)) * towards;
+            if (square > 0) pull += attraction_pull(attractor, 1, square, substep_) * towards;
         }
         if (body < forces_.force.size()) pull += masses_.inverse_mass[body] * forces_.force[body];
         return pull;
@@ -516,7 +518,7 @@ private:
     {
         if (!forces_.on_pivot(body)) return 0;
         const Vec3 middle = poses_.at(body) * forces_.pivot_to_center_of(body);
-        return attraction_of(forces_, masses_, poses_, body)
+        return attraction_of(forces_, masses_, poses_, body, substep_)
             - masses_.mass[body] * gravity_.dot(middle);
     }
 
@@ -648,6 +650,7 @@ private:
 
     const Settings& settings_;
     const Vec3 gravity_;
+    const double substep_;  // s
     const Shapes& shapes_;
     const Colliders& colliders_;
     const Surfaces& surfaces_;

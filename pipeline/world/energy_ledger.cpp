@@ -125,7 +125,8 @@ void EnergyLedger::Inside::look(const World& world, Look& look) const
         of.kinetic = kinetic_energy_of(body, masses, poses, velocities);
         const Vec3 then = forces.act_on(body) ? of.place : Vec3(of.place - lag * of.velocity);
         of.potential =
-            attraction_of(forces, masses, poses, body) - masses.mass[body] * gravity.dot(then);
+            attraction_of(forces, masses, poses, body, state.get<StepContext>().substep())
+            - masses.mass[body] * gravity.dot(then);
         if (!forces.field) continue;
         const Wrench wrench =
             forces.field({body, state.get<StepContext>().time, masses.mass[body],

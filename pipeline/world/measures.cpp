@@ -120,7 +120,8 @@ Measures World::measure() const
         measures.momentum += masses.mass[body] * v;
         measures.angular_momentum += masses.mass[body] * poses.position[body].cross(v) + spin;
     }
-    measures.potential_energy += potential_of(state_->get<Forces>(), masses, poses);
+    measures.potential_energy +=
+        potential_of(state_->get<Forces>(), masses, poses, state_->get<StepContext>().substep());
     return measures;
 }
 
