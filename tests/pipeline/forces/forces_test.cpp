@@ -1,4 +1,6 @@
 // Forces: what acts besides gravity and contacts, in flight and on what touches something.
+#include "tests/pipeline/forces/force_scenes.hpp"
+#include "throng/energy_ledger.hpp"
 #include "throng/world.hpp"
 
 #include <gtest/gtest.h>
@@ -9,65 +11,7 @@
 namespace throng {
 namespace {
 
-Scene empty_scene(Integrator integrator = Integrator::rk4)
-{
-    Scene scene;
-    scene.gravity = Vec3::Zero();
-    scene.settings.precision = Precision::double_;
-    scene.settings.integrator = integrator;
-    scene.settings.dt = 1e-2;
-    scene.settings.substeps = 2;
-    return scene;
-}
-
-// 2 kg, moments 1, 2 and 3 times 0.1 kg m2.
-BodyDescription& add_body(Scene& scene, const Vec3& position = Vec3::Zero())
-{
-    BodyDescription body;
-    body.mass = 2;
-    body.inertia = Sym3{0.1, 0.2, 0.3};
-    body.position = position;
-    scene.bodies.push_back(body);
-    return scene.bodies.back();
-}
-
-Spring spring_between(std::uint32_t a, std::uint32_t b, double stiffness, double length)
-{
-    Spring spring;
-    spring.a = a;
-    spring.b = b;
-    spring.stiffness = stiffness;
-    spring.length = length;
-    return spring;
-}
-
-void add_floor(Scene& scene, double friction)
-{
-    scene.materials.push_back({"m", 1000, friction, 0, 0});
-    scene.shapes.push_back({"floor", PlaneShape{}});
-    scene.shapes.push_back({"crate", BoxShape{Vec3(0.5, 0.5, 0.25)}});
-    BodyDescription floor;
-    floor.shape = floor.material = 0;
-    floor.motion = Motion::static_;
-    scene.bodies.push_back(floor);
-}
-
-BodyDescription& add_crate(Scene& scene, const Vec3& position)
-{
-    BodyDescription crate;
-    crate.shape = 1;
-    crate.material = 0;
-    crate.mass = 1;
-    crate.position = position;
-    scene.bodies.push_back(crate);
-    return scene.bodies.back();
-}
-
-double energy(const World& world)
-{
-    const Measures now = world.measure();
-    return now.kinetic_energy + now.potential_energy;
-}
+using namespace test;
 
 TEST(Forces, AConstantOneGivesAParabolaAndATorqueASpin)
 {
@@ -179,6 +123,29 @@ TEST(Forces, AnAttractorHoldsABodyInItsOrbit)
         EXPECT_LT((world.pose(world.bodies()[0]).position - Vec3(3, 0, 0)).norm(), 2e-2);
         EXPECT_NEAR(energy(world), before, 1e-6);
     }
+}
+
+// However close they come to it, and however few substeps see it: all that they have is turned
+// round there, and once more each time that they are back.
+TEST(Forces, AnAttractorGivesNothingToWhoFallThroughIt)
+{
+    for (const double sideways : {0.0, 1e-9, 1e-3, 3e-2, 0.3})
+        for (const double strength : {4.0, 400.0})
+            for (const int substeps : {1, 4}) {
+                Scene scene = empty_scene(Integrator::auto_);
+                scene.settings.substeps = substeps;
+                scene.attractors.push_back({Vec3(1, 0, 0), strength});
+                add_body(scene, Vec3(3, 0, 0)).velocity = Vec3(0, sideways, 0);
+                World world(scene);
+                EnergyLedger ledger;
+                for (int step = 0; step < 3000; ++step) {
+                    ledger.before_step(world);
+                    world.step();
+                    ledger.after_step(world);
+                }
+                EXPECT_LT(ledger.gained(), 0.015 * ledger.greatest_kinetic())
+                    << sideways << " m/s, strength " << strength << ", substeps " << substeps;
+            }
 }
 
 TEST(Forces, AttractorsAndWindGoWithTheLastBodyOfTheirScene)
@@ -374,285 +341,6 @@ TEST(Forces, OfAProgramsOwnFieldAreAskedForAtEveryStage)
     const Vec3 before = world.velocity(world.bodies()[0]);
     world.step(10);
     EXPECT_EQ(world.velocity(world.bodies()[0]), before);
-}
-
-TEST(Pivot, APendulumSwingsByItsMomentAboutThePivot)
-{
-    for (const Integrator integrator : {Integrator::semi_implicit, Integrator::midpoint,
-                                        Integrator::splitting, Integrator::rk4}) {
-        Scene scene = empty_scene(integrator);
-        scene.gravity = Vec3(0, 0, -10);
-        scene.settings.substeps = 10;
-        BodyDescription& body = add_body(scene);
-        body.pivot = Vec3(0, 0, 0.5);
-        const double tilt = 1e-3;
-        body.orientation = Quat(std::cos(0.5 * tilt), std::sin(0.5 * tilt), 0, 0);
-        World world(scene);
-        const BodyId id = world.bodies()[0];
-        const Vec3 hung = world.pose(id) * Vec3(0, 0, 0.5);
-        // A quarter of the period 2 pi sqrt((I + m l2) / (m g l)): at the lowest point.
-        const double quarter =
-            0.5 * std::numbers::pi * std::sqrt((0.1 + 2 * 0.25) / (2 * 10 * 0.5));
-        world.step(static_cast<int>(std::lround(quarter / 1e-2)));
-        const double angle = 2 * world.pose(id).orientation.x();
-        const double wanted =
-            tilt * std::cos(std::round(quarter / 1e-2) * 1e-2 / quarter * 0.5 * std::numbers::pi);
-        EXPECT_NEAR(angle, wanted, 5e-3 * tilt);
-        EXPECT_LT((world.pose(id) * Vec3(0, 0, 0.5) - hung).norm(), 1e-15);
-        const Vec3 arm = world.pose(id).orientation * Vec3(0, 0, -0.5);
-        EXPECT_LT((world.velocity(id) - world.angular_velocity(id).cross(arm)).norm(), 1e-15);
-    }
-}
-
-// Three moments, and axes that are not those of the body: nothing about it is symmetric.
-Quat after_swinging(Integrator integrator, Rotation rotation, double substep)
-{
-    Scene scene = empty_scene(integrator);
-    scene.gravity = Vec3(0, 0, -10);
-    scene.settings.rotation = rotation;
-    scene.settings.substeps = static_cast<int>(std::lround(scene.settings.dt / substep));
-    BodyDescription& body = add_body(scene);
-    body.pivot = Vec3(0.1, 0.2, 0.5);
-    body.angular_velocity = Vec3(3, -2, 15);
-    World world(scene);
-    world.step(100);
-    return world.pose(world.bodies()[0]).orientation;
-}
-
-TEST(Pivot, WhatIsNotSymmetricSwingsAsExactlyAsEachMethodsOrder)
-{
-    const Quat wanted = after_swinging(Integrator::rk4, Rotation::quaternion, 1e-4);
-    for (const Rotation rotation :
-         {Rotation::quaternion, Rotation::rotation_vector, Rotation::matrix})
-        for (const auto& [integrator, order] :
-             {std::pair(Integrator::midpoint, 2), std::pair(Integrator::splitting, 2),
-              std::pair(Integrator::rk4, 4)}) {
-            const auto error = [&](double substep) {
-                return wanted.angularDistance(after_swinging(integrator, rotation, substep));
-            };
-            const double coarse = error(2e-3), fine = error(1e-3);
-            EXPECT_LT(fine, order == 2 ? 1e-3 : 1e-6) << int(integrator);
-            EXPECT_NEAR(std::log2(coarse / fine), order, 0.2) << int(integrator);
-        }
-}
-
-TEST(Pivot, AContactTurnsTheBodyAboutIt)
-{
-    // A beam on a pivot in its middle; a crate that falls on one end brings that end down.
-    Scene scene = empty_scene(Integrator::semi_implicit);
-    scene.gravity = Vec3(0, 0, -10);
-    add_floor(scene, 0.5);
-    scene.shapes.push_back({"beam", BoxShape{Vec3(2, 0.5, 0.1)}});
-    BodyDescription beam;
-    beam.shape = 2;
-    beam.material = 0;
-    beam.mass = 5;
-    beam.position = Vec3(0, 0, 3);
-    beam.pivot = Vec3::Zero();
-    scene.bodies.push_back(beam);
-    add_crate(scene, Vec3(1.4, 0, 3.5));
-    World world(scene);
-    world.step(60);
-    const BodyId id = world.bodies()[1];
-    EXPECT_LT((world.pose(id) * Vec3(1, 0, 0)).z(), 2.95);
-    EXPECT_LT((world.pose(id).position - Vec3(0, 0, 3)).norm(), 1e-12);
-}
-
-TEST(Pivot, RulesOutAVelocityOfItsOwn)
-{
-    Scene scene = empty_scene();
-    BodyDescription& body = add_body(scene);
-    body.pivot = Vec3(0, 0, 1);
-    body.velocity = Vec3(1, 0, 0);
-    EXPECT_THROW(World{scene}, std::invalid_argument);
-}
-
-// A crate on a smooth floor, 0.1 m along a spring; without a substep that it flies.
-double widest_swing(Scene scene, double stiffness, int steps)
-{
-    scene.gravity = Vec3(0, 0, -10);
-    add_floor(scene, 0);
-    add_crate(scene, Vec3(0.1, 0, 0.25));
-    Spring spring = spring_between(1, kNone, stiffness, 2);
-    spring.at_b = Vec3(-2, 0, 0.25);
-    scene.springs.push_back(spring);
-    World world(scene);
-    double widest = 0;
-    for (int i = 0; i < steps; ++i) {
-        world.step(1);
-        widest = std::max(widest, std::abs(world.pose(world.bodies()[1]).position.x()));
-    }
-    EXPECT_GT(world.report().contacts, 0u);
-    return widest;
-}
-
-TEST(Springs, OnWhatTouchesSomethingSwingNoWiderThanTheyBegan)
-{
-    for (const double stiffness : {1e2, 1e4, 1e6, 1e8})
-        for (const Response response : {Response::impulse, Response::penalty, Response::kinematic})
-            for (const Solver solver : {Solver::soft_step, Solver::pgs, Solver::direct}) {
-                if (response != Response::impulse && solver != Solver::soft_step) continue;
-                Scene scene = empty_scene(Integrator::semi_implicit);
-                scene.settings.response = response;
-                scene.settings.solver = solver;
-                EXPECT_LT(widest_swing(scene, stiffness, 300), 0.116)
-                    << stiffness << " N/m, response " << static_cast<int>(response) << ", solver "
-                    << static_cast<int>(solver);
-            }
-}
-
-TEST(Springs, KeepTheSwingOfWhatTouchesSomethingByEveryIntegrator)
-{
-    for (const Integrator integrator :
-         {Integrator::semi_implicit, Integrator::splitting, Integrator::rk4}) {
-        Scene scene = empty_scene(integrator);
-        EXPECT_NEAR(widest_swing(scene, 100, 1000), 0.1, 1e-3);
-    }
-}
-
-// What damps must not bear up what is at rest: the weight hangs as deep as the spring says.
-TEST(Springs, DampedOnesBearAWeightByAWall)
-{
-    for (const double stiffness : {1e3, 1e5, 1e7}) {
-        Scene scene = empty_scene(Integrator::semi_implicit);
-        scene.gravity = Vec3(0, 0, -10);
-        scene.materials.push_back({"m", 1000, 0, 0, 0});
-        scene.shapes.push_back({"wall", PlaneShape{Vec3::UnitX(), 0}});
-        scene.shapes.push_back({"crate", BoxShape{Vec3::Constant(0.1)}});
-        BodyDescription wall;
-        wall.shape = wall.material = 0;
-        wall.motion = Motion::static_;
-        scene.bodies.push_back(wall);
-        BodyDescription& crate = add_crate(scene, Vec3(0.1, 0, 0));
-        crate.force = Vec3(-5, 0, 0);
-        Spring spring = spring_between(1, kNone, stiffness, 1);
-        spring.at_b = Vec3(0.1, 0, 1);
-        spring.damping = 2 * std::sqrt(stiffness);
-        scene.springs.push_back(spring);
-        World world(scene);
-        world.step(300);
-        const BodyId id = world.bodies()[1];
-        EXPECT_NEAR(-world.pose(id).position.z() * stiffness / 10, 1, 1e-3) << stiffness;
-        EXPECT_LT(world.velocity(id).norm(), 1e-6) << stiffness;
-        EXPECT_NEAR(world.contact_force(id).x(), 5, 0.01) << stiffness;
-    }
-}
-
-// A pendulum whose side slides along a smooth wall swings as it does in the air.
-TEST(Pivot, OfWhatTouchesSomethingMakesNoEnergy)
-{
-    Scene scene = empty_scene(Integrator::semi_implicit);
-    scene.gravity = Vec3(0, 0, -10);
-    scene.materials.push_back({"m", 1000, 0, 0, 0});
-    scene.shapes.push_back({"wall", PlaneShape{Vec3::UnitY(), -0.1}});
-    scene.shapes.push_back({"bar", BoxShape{Vec3(0.1, 0.1, 0.5)}});
-    BodyDescription wall;
-    wall.shape = wall.material = 0;
-    wall.motion = Motion::static_;
-    scene.bodies.push_back(wall);
-    BodyDescription& bar = add_crate(scene, Vec3(0.5, 0, 1));
-    bar.orientation = Quat(std::sqrt(0.5), 0, std::sqrt(0.5), 0);
-    bar.pivot = Vec3(0, 0, -0.5);
-    World world(scene);
-    const double first = energy(world);
-    double most = first;
-    for (int i = 0; i < 1000; ++i) {
-        world.step(1);
-        most = std::max(most, energy(world));
-    }
-    EXPECT_GT(world.report().contacts, 0u);
-    EXPECT_LT(most - first, 0.1);  // of 10 J that it swings by
-    EXPECT_GT(energy(world) - first, -0.3);
-}
-
-// The spring is now stiff for the step and now not, by how it stands to the rod, and the rod is
-// carried by two laws in turn. Nothing turns it about its length.
-TEST(Springs, OnARodOnAPivotLeaveItsOwnSpinAloneWhicheverLawCarriesIt)
-{
-    Scene scene;
-    scene.shapes.push_back({"rod", CapsuleShape{0.021, 0.069}});
-    BodyDescription& rod = scene.bodies.emplace_back();
-    rod.shape = 0;
-    rod.mass = 31;
-    rod.pivot = Vec3(0, 0, 0.09);
-    rod.orientation = Quat(0.799, 0.199, -0.552, -0.133).normalized();
-    rod.angular_velocity = Vec3(-22, -25, -13);
-    BodyDescription other;
-    other.shape = 0;
-    other.mass = 62;
-    other.position = Vec3(0, 0, -2.1);
-    other.velocity = Vec3(-0.4, 0.2, -2.2);
-    other.angular_velocity = Vec3(-16, 4, -37);
-    scene.bodies.push_back(other);
-    scene.springs.push_back({});
-    scene.springs[0].a = 0;
-    scene.springs[0].b = 1;
-    scene.springs[0].stiffness = 1100;
-    scene.springs[0].length = 2;
-    World world(scene);
-    const BodyId id = world.bodies().front();
-    const auto own_spin = [&] {
-        return world.angular_velocity(id).dot(world.pose(id).orientation * Vec3::UnitZ());
-    };
-    // Exact where flight carries it; where the spring is stiff, the solver's arms are those of a
-    // moment, and the rod turns on within it.
-    const double begun = own_spin();
-    for (int step = 0; step < 180; ++step) {
-        world.step();
-        ASSERT_NEAR(own_spin(), begun, 1e-5 * std::abs(begun)) << "step " << step;
-    }
-}
-
-TEST(Springs, ByDefaultAreToldNothingOfAndHold)
-{
-    Scene scene = empty_scene(Integrator::semi_implicit);
-    add_body(scene, Vec3(1.1, 0, 0));
-    scene.springs.push_back(spring_between(0, kNone, 2e8, 1));
-    World world(scene);
-    EXPECT_TRUE(world.warnings().empty());
-    const double first = energy(world);
-    world.step(500);
-    EXPECT_NEAR(energy(world) / first, 1, 1e-6);
-}
-
-// Nobody cuts a substep for a spring whose bodies touch nothing, whatever contacts would answer by:
-// as it is, it would swing wider and wider, or be seen to.
-TEST(Springs, InFlightMakeNoEnergyByAnyResponse)
-{
-    for (const Response response : {Response::impulse, Response::penalty, Response::kinematic})
-        for (const double stiffness : {2e2, 2e4, 2e5, 2e6, 2e8})
-            for (const bool by_an_arm : {false, true}) {
-                Scene scene = empty_scene(Integrator::auto_);
-                scene.settings.response = response;
-                add_body(scene, Vec3(1.1, 0, 0));
-                add_body(scene, Vec3(2.2, 0, 0));
-                scene.springs.push_back(spring_between(0, kNone, stiffness, 1));
-                scene.springs.push_back(spring_between(1, 0, stiffness, 1));
-                if (by_an_arm) scene.springs.back().at_a = Vec3(0, 0.3, 0);
-                World world(scene);
-                EXPECT_TRUE(world.warnings().empty());
-                const double first = energy(world);
-                double greatest = first;
-                for (int step = 0; step < 500; ++step) {
-                    world.step();
-                    greatest = std::max(greatest, energy(world));
-                }
-                EXPECT_LT(greatest / first, 1.01)
-                    << stiffness << " N/m, response " << static_cast<int>(response)
-                    << (by_an_arm ? ", by an arm" : "");
-            }
-}
-
-TEST(Springs, ThatSwingWiderAreToldWithWhatWouldDo)
-{
-    Scene scene = empty_scene(Integrator::splitting);
-    add_body(scene, Vec3(1, 0, 0));
-    scene.springs.push_back(spring_between(0, kNone, 2e6, 1));  // limit 2 ms
-    World world(scene);
-    ASSERT_EQ(world.warnings().size(), 1u);
-    EXPECT_NE(world.warnings()[0].find("substeps=5"), std::string::npos) << world.warnings()[0];
-    scene.settings.substeps = 5;
-    EXPECT_TRUE(World(scene).warnings().empty());
 }
 
 class EveryMotion : public testing::TestWithParam<std::tuple<Integrator, Rotation>> { };

@@ -41,7 +41,7 @@ Scene swing(Integrator integrator)
     made.ball(0.1, Vec3(1.5, 0, 0)).mass = 1;
     Spring spring;
     spring.a = 0;
-    spring.b = kNoBody;
+    spring.b = kNone;
     spring.stiffness = 100;
     spring.length = 1;
     made.scene.springs.push_back(spring);
