@@ -14,13 +14,7 @@ namespace {
 // Pairs that never meet here: planes with planes, and all that goes by triangles (collide_mesh) or
 // that is a solid (collide_solid).
 template <class Real>
-void apart(const Shapes&,
-           ShapeRef,
-           ShapeRef,
-           const PoseT<Real>&,
-           Real,
-           PairCache&,
-           LocalManifold<Real>& out)
+void apart(const PairInput<Real>&, PairCache&, LocalManifold<Real>& out)
 {
     out.count = 0;
 }
@@ -61,19 +55,11 @@ separation_from_plane(const Shapes& shapes, ShapeRef a, const Plane& plane, cons
 }  // namespace
 
 template <class Real>
-void collide(const Shapes& shapes,
-             ShapeRef a,
-             ShapeRef b,
-             const PoseT<Real>& b_in_a,
-             Real speculative_margin,
-             PairCache& cache,
-             LocalManifold<Real>& out)
+void collide(const PairInput<Real>& in, PairCache& cache, LocalManifold<Real>& out)
 {
-    if (a.kind <= b.kind) {
-        function_for<Real>(a.kind, b.kind)(shapes, a, b, b_in_a, speculative_margin, cache, out);
-        return;
-    }
-    function_for<Real>(b.kind, a.kind)(shapes, b, a, b_in_a.inverse(), speculative_margin, cache,
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
+    if (a.kind <= b.kind) return function_for<Real>(a.kind, b.kind)(in, cache, out);
+    function_for<Real>(b.kind, a.kind)({shapes, b, a, b_in_a.inverse(), speculative_margin}, cache,
                                        out);
     out.normal = b_in_a.orientation * -out.normal;
     for (int i = 0; i < out.count; ++i) {
@@ -99,7 +85,7 @@ double penetration_depth(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pos
         // Closed forms of one point, so the point's separation is the answer.
         PairCache cache;
         LocalManifold<double> manifold;
-        collide<double>(shapes, a, b, b_in_a, 0, cache, manifold);
+        collide<double>({shapes, a, b, b_in_a, 0}, cache, manifold);
         if (manifold.count > 0) separation = manifold.points[0].separation;
     } else if (is_polytope(a) && is_polytope(b)) {
         const PolytopeShape polytope_a(shapes, a);

@@ -10,13 +10,7 @@ namespace throng {
 /// function from the shape-by-shape table, turning the pair round where the table wants it so;
 /// the answer is in a's frame either way.
 template <class Real>
-void collide(const Shapes& shapes,
-             ShapeRef a,
-             ShapeRef b,
-             const PoseT<Real>& b_in_a,
-             Real speculative_margin,
-             PairCache& cache,
-             LocalManifold<Real>& out);
+void collide(const PairInput<Real>& in, PairCache& cache, LocalManifold<Real>& out);
 
 /// The pose of shape b in a's frame, in double, as pair functions want it.
 ///

@@ -10,18 +10,15 @@ namespace throng {
 namespace {
 
 // The separating axes and the clipping that `auto` uses for small hulls, with a box seen as one.
-bool collide_by_axes(const Shapes& shapes,
-                     ShapeRef a,
-                     ShapeRef b,
-                     const Pose& b_in_a,
-                     double speculative_margin,
+bool collide_by_axes(const PairInput<double>& in,
                      MethodStart start,
                      MethodMemory& memory,
                      LocalManifold<double>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     PairCache cache;
     if (start == MethodStart::cached) cache = {memory.a[0], memory.b[0], memory.kind};
-    hull_hull_by_axes(shapes, a, b, b_in_a, speculative_margin, cache, out);
+    hull_hull_by_axes({shapes, a, b, b_in_a, speculative_margin}, cache, out);
     memory.a[0] = cache.feature_a;
     memory.b[0] = cache.feature_b;
     memory.kind = cache.kind;
@@ -81,14 +78,11 @@ void settle_on_face(const ConvexCorePair& pair, Vec3& normal)
 
 bool collide_by(const ConvexMethod& method,
                 MethodStart start,
-                const Shapes& shapes,
-                ShapeRef a,
-                ShapeRef b,
-                const Pose& b_in_a,
-                double speculative_margin,
+                const PairInput<double>& in,
                 MethodMemory& memory,
                 LocalManifold<double>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     out.count = 0;
     const bool depth = (method.tells & tells_depth) != 0;
     const bool distance = (method.tells & tells_distance) != 0;
@@ -96,7 +90,7 @@ bool collide_by(const ConvexMethod& method,
     const ConvexPair pair(shapes, a, b, b_in_a);
     if (!method.serves(pair)) return false;
     if (depth && !distance && start != MethodStart::plain)
-        return collide_by_axes(shapes, a, b, b_in_a, speculative_margin, start, memory, out);
+        return collide_by_axes({shapes, a, b, b_in_a, speculative_margin}, start, memory, out);
 
     const MethodAnswer answer = method.ask(pair, speculative_margin, start, memory);
     if (answer.overlap == OverlapState::undecided) return false;

@@ -4,6 +4,7 @@
 #include "kernels/data/manifolds.hpp"
 #include "narrowphase/alternatives/convex_methods.hpp"
 #include "narrowphase/alternatives/k_dop.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 
 #include <vector>
 
@@ -22,11 +23,7 @@ namespace throng {
 ///   out  in a's frame; count 0 where nothing is within the margin
 bool collide_by(const ConvexMethod& method,
                 MethodStart start,
-                const Shapes& shapes,
-                ShapeRef a,
-                ShapeRef b,
-                const Pose& b_in_a,
-                double speculative_margin,
+                const PairInput<double>& in,
                 MethodMemory& memory,
                 LocalManifold<double>& out);
 

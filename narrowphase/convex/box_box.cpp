@@ -301,18 +301,13 @@ void edge_manifold(const BoxPair<Real>& pair,
 }  // namespace
 
 template <class Real>
-void box_box(const Shapes& shapes,
-             ShapeRef a,
-             ShapeRef b,
-             const PoseT<Real>& b_in_a,
-             Real speculative_margin,
-             PairCache& cache,
-             LocalManifold<Real>& out)
+void box_box(const PairInput<Real>& in, PairCache& cache, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     out.count = 0;
     BoxPair<Real> pair;
-    pair.half_a = shapes.boxes[a.index].half_extents.cast<Real>();
-    pair.half_b = shapes.boxes[b.index].half_extents.cast<Real>();
+    pair.half_a = shapes.boxes[a.index].half_extents.template cast<Real>();
+    pair.half_b = shapes.boxes[b.index].half_extents.template cast<Real>();
     pair.center = b_in_a.position;
     pair.turn = b_in_a.orientation.toRotationMatrix();
     pair.abs_turn = pair.turn.cwiseAbs();

@@ -240,14 +240,9 @@ along_turned_edge(const Seen<Real>& seen, const CapsuleAxis<Real>& axis, int edg
 }  // namespace
 
 template <class Real>
-void capsule_box(const Shapes& shapes,
-                 ShapeRef a,
-                 ShapeRef b,
-                 const PoseT<Real>& b_in_a,
-                 Real speculative_margin,
-                 PairCache&,
-                 LocalManifold<Real>& out)
+void capsule_box(const PairInput<Real>& in, PairCache&, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     out.count = 0;
     const Mat3T<Real> turn = b_in_a.orientation.toRotationMatrix();
     const Seen<Real> seen =

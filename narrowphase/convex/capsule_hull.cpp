@@ -101,14 +101,9 @@ SegmentRange<double> over_face(const Seen& seen, std::size_t face)
 }  // namespace
 
 template <class Real>
-void capsule_hull(const Shapes& shapes,
-                  ShapeRef a,
-                  ShapeRef b,
-                  const PoseT<Real>& b_in_a,
-                  Real speculative_margin,
-                  PairCache& cache,
-                  LocalManifold<Real>& out)
+void capsule_hull(const PairInput<Real>& in, PairCache& cache, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     out.count = 0;
     const Hull& hull = shapes.hulls[b.index];
     const Seen seen = seen_from_hull(shapes.capsules[a.index], hull, b_in_a);
@@ -128,7 +123,7 @@ void capsule_hull(const Shapes& shapes,
         cache.feature_b = static_cast<std::uint32_t>(face);
         if (above > limit) return;
         if (!stands_clear(seen, face, above, axis)) {
-            convex_convex(shapes, a, b, b_in_a, speculative_margin, cache, out);
+            convex_convex({shapes, a, b, b_in_a, speculative_margin}, cache, out);
             return;
         }
     }

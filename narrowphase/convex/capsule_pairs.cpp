@@ -100,14 +100,9 @@ SegmentRange<Real> beside(const Axes<Real>& axes, const Vec3T<Real>& normal)
 }  // namespace
 
 template <class Real>
-void capsule_capsule(const Shapes& shapes,
-                     ShapeRef a,
-                     ShapeRef b,
-                     const PoseT<Real>& b_in_a,
-                     Real speculative_margin,
-                     PairCache&,
-                     LocalManifold<Real>& out)
+void capsule_capsule(const PairInput<Real>& in, PairCache&, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     out.count = 0;
     Axes<Real> axes;
     const Capsule& one = shapes.capsules[a.index];

@@ -10,14 +10,9 @@
 namespace throng {
 
 template <class Real>
-void convex_convex(const Shapes& shapes,
-                   ShapeRef a,
-                   ShapeRef b,
-                   const PoseT<Real>& b_in_a,
-                   Real speculative_margin,
-                   PairCache&,
-                   LocalManifold<Real>& out)
+void convex_convex(const PairInput<Real>& in, PairCache&, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     out.count = 0;
     const Pose pose = {b_in_a.position.template cast<double>(),
                        b_in_a.orientation.template cast<double>().normalized()};

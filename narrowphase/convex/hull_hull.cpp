@@ -267,14 +267,9 @@ void collide_polytopes(const PolytopePair& pair,
 constexpr float kUnlike = 2e-3F;
 
 // False where float will not do.
-bool meet_wide(const Shapes& shapes,
-               ShapeRef a,
-               ShapeRef b,
-               const PoseT<float>& b_in_a,
-               float speculative_margin,
-               PairCache& cache,
-               LocalManifold<float>& out)
+bool meet_wide(const PairInput<float>& in, PairCache& cache, LocalManifold<float>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const WideShape wide_a(shapes, a), wide_b(shapes, b);
     if (!wide_a.suited() || !wide_b.suited()) return false;
     HullPair pair;
@@ -316,15 +311,12 @@ constexpr std::size_t kManyVertices = 192;
 
 // `searches` false looks at all axes however many they are.
 template <class Real>
-void meet_plain(const Shapes& shapes,
-                ShapeRef a,
-                ShapeRef b,
-                const PoseT<Real>& b_in_a,
+void meet_plain(const PairInput<Real>& in,
                 bool searches,
-                Real speculative_margin,
                 PairCache& cache,
                 LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const PolytopeShape shape_a(shapes, a), shape_b(shapes, b);
     const Pose pose{b_in_a.position.template cast<double>(),
                     b_in_a.orientation.template cast<double>()};
@@ -341,39 +333,20 @@ void meet_plain(const Shapes& shapes,
 }  // namespace
 
 template <>
-void hull_hull<float>(const Shapes& shapes,
-                      ShapeRef a,
-                      ShapeRef b,
-                      const PoseT<float>& b_in_a,
-                      float speculative_margin,
-                      PairCache& cache,
-                      LocalManifold<float>& out)
+void hull_hull<float>(const PairInput<float>& in, PairCache& cache, LocalManifold<float>& out)
 {
-    if (!meet_wide(shapes, a, b, b_in_a, speculative_margin, cache, out))
-        meet_plain(shapes, a, b, b_in_a, true, speculative_margin, cache, out);
+    if (!meet_wide(in, cache, out)) meet_plain(in, true, cache, out);
 }
 
 template <>
-void hull_hull<double>(const Shapes& shapes,
-                       ShapeRef a,
-                       ShapeRef b,
-                       const Pose& b_in_a,
-                       double speculative_margin,
-                       PairCache& cache,
-                       LocalManifold<double>& out)
+void hull_hull<double>(const PairInput<double>& in, PairCache& cache, LocalManifold<double>& out)
 {
-    meet_plain(shapes, a, b, b_in_a, true, speculative_margin, cache, out);
+    meet_plain(in, true, cache, out);
 }
 
-void hull_hull_by_axes(const Shapes& shapes,
-                       ShapeRef a,
-                       ShapeRef b,
-                       const Pose& b_in_a,
-                       double speculative_margin,
-                       PairCache& cache,
-                       LocalManifold<double>& out)
+void hull_hull_by_axes(const PairInput<double>& in, PairCache& cache, LocalManifold<double>& out)
 {
-    meet_plain(shapes, a, b, b_in_a, false, speculative_margin, cache, out);
+    meet_plain(in, false, cache, out);
 }
 
 }  // namespace throng

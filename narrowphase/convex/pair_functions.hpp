@@ -2,26 +2,19 @@
 #pragma once
 
 #include "kernels/data/manifolds.hpp"
-#include "kernels/data/shapes.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 
 namespace throng {
 
 /// Finds where two convex shapes touch or come within the margin of one another.
 ///
-///   a, b                shapes, a's kind not after b's kind in ShapeKind (collide() sees to that)
-///   b_in_a              pose of b in a's frame; computed in double: exact however far from the
-///                       origin
-///   speculative_margin  m, points further apart than this are left out (at least 0)
-///   cache               what the pair remembers
-///   out                 in a's frame; count 0 where nothing is within the margin
+///   in     a's kind not after b's kind in ShapeKind (collide() sees to that)
+///   cache  what the pair remembers
+///   out    in a's frame; count 0 where nothing is within the margin
 ///
 /// Never throws; finite input gives finite output. Instantiated for float and double.
 template <class Real>
-using PairFunction = void (*)(const Shapes& shapes,
-                              ShapeRef a,
-                              ShapeRef b,
-                              const PoseT<Real>& b_in_a,
-                              Real speculative_margin,
+using PairFunction = void (*)(const PairInput<Real>& in,
                               PairCache& cache,
                               LocalManifold<Real>& out);
 
@@ -32,8 +25,7 @@ inline constexpr std::uint32_t kFellBack = 1u << 31;
 // One declaration for each function in the table of dispatch.cpp.
 #define THRONG_PAIR_FUNCTION(name)                                                                 \
     template <class Real>                                                                          \
-    void name(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real, PairCache&,             \
-              LocalManifold<Real>&)
+    void name(const PairInput<Real>&, PairCache&, LocalManifold<Real>&)
 
 THRONG_PAIR_FUNCTION(sphere_sphere);  // sphere_pairs.cpp
 THRONG_PAIR_FUNCTION(sphere_capsule);
@@ -51,13 +43,11 @@ THRONG_PAIR_FUNCTION(convex_convex);    // convex_pairs.cpp: any two, by their c
 #undef THRONG_PAIR_FUNCTION
 
 /// As hull_hull(), which may ask GJK where hulls are large, by all separating axes.
-void hull_hull_by_axes(
-    const Shapes&, ShapeRef, ShapeRef, const Pose&, double, PairCache&, LocalManifold<double>&);
+void hull_hull_by_axes(const PairInput<double>&, PairCache&, LocalManifold<double>&);
 
 // For the file that defines one: its instances.
 #define THRONG_PAIR_INSTANCE(name, Real)                                                           \
-    template void name<Real>(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real,          \
-                             PairCache&, LocalManifold<Real>&);
+    template void name<Real>(const PairInput<Real>&, PairCache&, LocalManifold<Real>&);
 #define THRONG_PAIR_INSTANCES(name)                                                                \
     THRONG_PAIR_INSTANCE(name, float) THRONG_PAIR_INSTANCE(name, double)
 

@@ -227,14 +227,9 @@ void touch_hull(const Hull& hull, Real size, const Ground<Real>& ground)
 }  // namespace
 
 template <class Real>
-void convex_plane(const Shapes& shapes,
-                  ShapeRef a,
-                  ShapeRef b,
-                  const PoseT<Real>& b_in_a,
-                  Real speculative_margin,
-                  PairCache&,
-                  LocalManifold<Real>& out)
+void convex_plane(const PairInput<Real>& in, PairCache&, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     out.count = 0;
     const Plane& plane = shapes.planes[b.index];
     const Vec3T<Real> normal = b_in_a.orientation * plane.normal.template cast<Real>();

@@ -183,14 +183,9 @@ Outward<double> outward_of_convex(
 }
 
 template <class Real>
-void sphere_sphere(const Shapes& shapes,
-                   ShapeRef a,
-                   ShapeRef b,
-                   const PoseT<Real>& b_in_a,
-                   Real speculative_margin,
-                   PairCache&,
-                   LocalManifold<Real>& out)
+void sphere_sphere(const PairInput<Real>& in, PairCache&, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     out.count = 0;
     const Real radius = radius_of<Real>(shapes, a);
     const Vec3T<Real> normal = unit_or(b_in_a.position, Vec3T<Real>(Vec3T<Real>::UnitZ()));
@@ -201,56 +196,36 @@ void sphere_sphere(const Shapes& shapes,
 }
 
 template <class Real>
-void sphere_capsule(const Shapes& shapes,
-                    ShapeRef a,
-                    ShapeRef b,
-                    const PoseT<Real>& b_in_a,
-                    Real speculative_margin,
-                    PairCache&,
-                    LocalManifold<Real>& out)
+void sphere_capsule(const PairInput<Real>& in, PairCache&, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
     const Outward<Real> outward = outward_of(shapes.capsules[b.index], center);
     fill_manifold(outward, radius_of<Real>(shapes, a), b_in_a, speculative_margin, out);
 }
 
 template <class Real>
-void sphere_cylinder(const Shapes& shapes,
-                     ShapeRef a,
-                     ShapeRef b,
-                     const PoseT<Real>& b_in_a,
-                     Real speculative_margin,
-                     PairCache&,
-                     LocalManifold<Real>& out)
+void sphere_cylinder(const PairInput<Real>& in, PairCache&, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
     const Outward<Real> outward = outward_of(shapes.cylinders[b.index], center);
     fill_manifold(outward, radius_of<Real>(shapes, a), b_in_a, speculative_margin, out);
 }
 
 template <class Real>
-void sphere_box(const Shapes& shapes,
-                ShapeRef a,
-                ShapeRef b,
-                const PoseT<Real>& b_in_a,
-                Real speculative_margin,
-                PairCache&,
-                LocalManifold<Real>& out)
+void sphere_box(const PairInput<Real>& in, PairCache&, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
     const Outward<Real> outward = outward_of(shapes.boxes[b.index], center);
     fill_manifold(outward, radius_of<Real>(shapes, a), b_in_a, speculative_margin, out);
 }
 
 template <class Real>
-void sphere_hull(const Shapes& shapes,
-                 ShapeRef a,
-                 ShapeRef b,
-                 const PoseT<Real>& b_in_a,
-                 Real speculative_margin,
-                 PairCache& cache,
-                 LocalManifold<Real>& out)
+void sphere_hull(const PairInput<Real>& in, PairCache& cache, LocalManifold<Real>& out)
 {
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const Real radius = radius_of<Real>(shapes, a);
     const Vec3T<Real> center = b_in_a.to_local(Vec3T<Real>::Zero());
     // Hulls are stored in double.

@@ -168,15 +168,12 @@ Vec3 nearest_of(const LocalManifold<double>& found)
 }
 
 // A solid tells inside from outside by other means: its triangles have their fronts alone.
-void collide_triangles(const Shapes& shapes,
-                       ShapeRef mesh,
-                       ShapeRef b,
-                       const Pose& pose,
-                       double speculative_margin,
+void collide_triangles(const PairInput<double>& in,
                        std::span<const std::uint32_t> near,
                        std::span<const std::uint32_t> held,
                        const auto& take)
 {
+    const auto& [shapes, mesh, b, pose, speculative_margin] = in;
     const Mesh& surface = *mesh_of(shapes, mesh);
     const MeshSides sides(surface, near, held, center_of(shapes, b, pose), inner_extent(shapes, b));
     const bool sided = mesh.kind == ShapeKind::mesh;
@@ -205,14 +202,11 @@ void keep_held(std::span<const std::uint32_t> held, std::vector<std::uint32_t>& 
 }  // namespace
 
 template <class Real>
-void collide_mesh(const Shapes& shapes,
-                  ShapeRef mesh,
-                  ShapeRef b,
-                  const PoseT<Real>& b_in_a,
-                  Real speculative_margin,
+void collide_mesh(const PairInput<Real>& in,
                   std::span<const std::uint32_t> held,
                   std::vector<TriangleManifold<Real>>& out)
 {
+    const auto& [shapes, mesh, b, b_in_a, speculative_margin] = in;
     thread_local std::vector<std::uint32_t> near;
     const Pose pose{b_in_a.position.template cast<double>(),
                     b_in_a.orientation.template cast<double>().normalized()};
@@ -222,28 +216,22 @@ void collide_mesh(const Shapes& shapes,
     near.clear();
     find_triangles(*mesh_of(shapes, mesh), box, near);
     keep_held(held, near);
-    collide_triangles(shapes, mesh, b, pose, double{speculative_margin}, near, held,
+    collide_triangles({shapes, mesh, b, pose, double{speculative_margin}}, near, held,
                       [&](std::uint32_t triangle, const LocalManifold<double>& found) {
                           out.push_back({triangle, found.cast<Real>()});
                       });
 }
 
 template <class Real>
-void collide_mesh(const Shapes& shapes,
-                  ShapeRef mesh,
-                  ShapeRef b,
-                  const PoseT<Real>& b_in_a,
-                  Real speculative_margin,
-                  std::vector<TriangleManifold<Real>>& out)
+void collide_mesh(const PairInput<Real>& in, std::vector<TriangleManifold<Real>>& out)
 {
-    collide_mesh(shapes, mesh, b, b_in_a, speculative_margin, {}, out);
+    collide_mesh(in, {}, out);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void collide_mesh<Real>(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real,  \
+    template void collide_mesh<Real>(const PairInput<Real>&,                                       \
                                      std::vector<TriangleManifold<Real>>&);                        \
-    template void collide_mesh<Real>(const Shapes&, ShapeRef, ShapeRef, const PoseT<Real>&, Real,  \
-                                     std::span<const std::uint32_t>,                               \
+    template void collide_mesh<Real>(const PairInput<Real>&, std::span<const std::uint32_t>,       \
                                      std::vector<TriangleManifold<Real>>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

@@ -3,6 +3,7 @@
 
 #include "kernels/data/manifolds.hpp"
 #include "kernels/data/shapes.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 
 #include <vector>
 
@@ -18,15 +19,9 @@ struct TriangleManifold {
 /// Where a convex shape touches a static triangle mesh: one manifold a triangle, in order of
 /// triangle, contacts on internal edges turned to the surface so that sliding meets no bumps.
 ///
-///   mesh     or a solid, which is its triangles here
-///   b_in_a   pose of the convex shape in the mesh's frame
-///   out      appended to
+///   in   a: mesh, or a solid, which is its triangles here; b: the convex shape
+///   out  appended to
 template <class Real>
-void collide_mesh(const Shapes& shapes,
-                  ShapeRef mesh,
-                  ShapeRef b,
-                  const PoseT<Real>& b_in_a,
-                  Real speculative_margin,
-                  std::vector<TriangleManifold<Real>>& out);
+void collide_mesh(const PairInput<Real>& in, std::vector<TriangleManifold<Real>>& out);
 
 }  // namespace throng

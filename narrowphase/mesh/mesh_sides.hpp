@@ -6,6 +6,7 @@
 #pragma once
 
 #include "kernels/data/mesh.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 #include "narrowphase/mesh/mesh_pairs.hpp"
 
 #include <span>
@@ -55,11 +56,7 @@ private:
 /// The same as collide_mesh() of mesh_pairs.hpp for a shape that touched these triangles in the
 /// last step; those that are touched from behind have kBehind in their number.
 template <class Real>
-void collide_mesh(const Shapes& shapes,
-                  ShapeRef mesh,
-                  ShapeRef b,
-                  const PoseT<Real>& b_in_a,
-                  Real speculative_margin,
+void collide_mesh(const PairInput<Real>& in,
                   std::span<const std::uint32_t> held,
                   std::vector<TriangleManifold<Real>>& out);
 

@@ -298,13 +298,9 @@ void append_touches(const View& view,
 
 }  // namespace
 
-void find_image_candidates(const Shapes& shapes,
-                           ShapeRef solid,
-                           ShapeRef other,
-                           const Pose& other_in_solid,
-                           double speculative_margin,
-                           std::vector<ContactCandidate>& candidates)
+void find_image_candidates(const PairInput<double>& in, std::vector<ContactCandidate>& candidates)
 {
+    const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     thread_local std::array<View, 3> views;
     const Box3 part = part_to_look_at(shapes, solid, other, other_in_solid, speculative_margin);
     const double pixel = pixel_of(shapes, solid, other);

@@ -16,27 +16,22 @@
 #pragma once
 
 #include "kernels/data/shapes.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 #include "narrowphase/manifold/contact_patches.hpp"
 
 namespace throng {
 
 /// Appends a touch for each ray and layer along which a solid and another shape share something or
-/// come within `speculative_margin` of one another, in the solid's frame, view by view and ray by
-/// ray.
+/// come within the margin of one another along their normal, in the solid's frame, view by view and
+/// ray by ray.
 ///
-///   other               of any kind but a triangle or a solid without triangles; a mesh by its
-///                       front faces
-///   speculative_margin  m, touches further apart along their normal are left out
+///   in  a: solid; b: of any kind but a triangle or a solid without triangles, a mesh by its front
+///       faces
 ///
 /// The rays stay where they are in the solid's frame, whatever the other does: a pixel is the
 /// longest side of the smaller shape's own box over Solid::rays, the greater of two. `feature`
 /// names view, ray and layer. Never throws but for want of memory; allocates until it has met its
 /// largest pair, once a thread.
-void find_image_candidates(const Shapes& shapes,
-                           ShapeRef solid,
-                           ShapeRef other,
-                           const Pose& other_in_solid,
-                           double speculative_margin,
-                           std::vector<ContactCandidate>& candidates);
+void find_image_candidates(const PairInput<double>& in, std::vector<ContactCandidate>& candidates);
 
 }  // namespace throng

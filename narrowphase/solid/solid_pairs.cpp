@@ -44,14 +44,11 @@ least_separation(const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pos
 }
 
 // The other's spheres against this one, told from this one.
-void find_candidates_from_other(const Shapes& shapes,
-                                ShapeRef solid,
-                                ShapeRef other,
-                                const Pose& other_in_solid,
-                                double speculative_margin,
+void find_candidates_from_other(const PairInput<double>& in,
                                 std::vector<ContactCandidate>& candidates)
 {
-    find_sphere_candidates(shapes, other, solid, other_in_solid.inverse(), speculative_margin, {},
+    const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
+    find_sphere_candidates({shapes, other, solid, other_in_solid.inverse(), speculative_margin}, {},
                            candidates);
     for (ContactCandidate& candidate : candidates) {
         candidate.position = other_in_solid * candidate.position;
@@ -61,13 +58,9 @@ void find_candidates_from_other(const Shapes& shapes,
 
 }  // namespace
 
-SolidAnswer collide_solid(const Shapes& shapes,
-                          ShapeRef solid,
-                          ShapeRef other,
-                          const Pose& other_in_solid,
-                          double speculative_margin,
-                          std::vector<PatchManifold>& out)
+SolidAnswer collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out)
 {
+    const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     SolidAnswer answer;
     answer.apart = least_separation(shapes, solid, other, other_in_solid) - error_of(shapes, solid)
         - error_of(shapes, other);
@@ -80,12 +73,13 @@ SolidAnswer collide_solid(const Shapes& shapes,
         : SolidRepresentation::voxels;
     if (representation == SolidRepresentation::depth_image
         || other_representation == SolidRepresentation::depth_image)
-        find_image_candidates(shapes, solid, other, other_in_solid, speculative_margin, candidates);
+        find_image_candidates({shapes, solid, other, other_in_solid, speculative_margin},
+                              candidates);
     else if (representation == SolidRepresentation::spheres)
-        find_sphere_candidates(shapes, solid, other, other_in_solid, speculative_margin, {},
+        find_sphere_candidates({shapes, solid, other, other_in_solid, speculative_margin}, {},
                                candidates);
     else if (other_representation == SolidRepresentation::spheres)
-        find_candidates_from_other(shapes, solid, other, other_in_solid, speculative_margin,
+        find_candidates_from_other({shapes, solid, other, other_in_solid, speculative_margin},
                                    candidates);
     else
         answer.apart =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/data/shapes.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 #include "narrowphase/manifold/contact_patches.hpp"
 
 namespace throng {
@@ -17,20 +18,14 @@ struct SolidAnswer {
     double apart = 0;
 };
 
-/// Where a solid touches another shape of any kind, out to `speculative_margin`: manifolds in the
-/// solid's frame, normals from the solid to the other, in order of patch.
+/// Where a solid touches another shape of any kind, out to the margin: manifolds in the solid's
+/// frame, normals from the solid to the other, in order of patch.
 ///
-///   other      sphere, capsule, cylinder, box, hull, plane, mesh (its front faces) or solid
-///   other_in_solid  its pose in the solid's frame
-///   out        appended to
+///   in   a: solid; b: sphere, capsule, cylinder, box, hull, plane, mesh (its front faces) or solid
+///   out  appended to
 ///
 /// Two solids go by depth images where either asks for them, else by the spheres of those that are
 /// spheres, else by voxels both ways. Never throws.
-SolidAnswer collide_solid(const Shapes& shapes,
-                          ShapeRef solid,
-                          ShapeRef other,
-                          const Pose& other_in_solid,
-                          double speculative_margin,
-                          std::vector<PatchManifold>& out);
+SolidAnswer collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out);
 
 }  // namespace throng

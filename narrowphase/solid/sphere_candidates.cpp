@@ -366,14 +366,11 @@ private:
 
 }  // namespace
 
-SphereAnswer find_sphere_candidates(const Shapes& shapes,
-                                    ShapeRef solid,
-                                    ShapeRef other,
-                                    const Pose& other_in_solid,
-                                    double speculative_margin,
+SphereAnswer find_sphere_candidates(const PairInput<double>& in,
                                     const SphereBudget& budget,
                                     std::vector<ContactCandidate>& candidates)
 {
+    const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     THRONG_CHECK(solid.kind == ShapeKind::solid, "spheres stand for a solid");
     const SphereTree& tree = shapes.solids[solid.index].spheres;
     // Without spheres nothing is known.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/data/shapes.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 #include "narrowphase/manifold/contact_patches.hpp"
 
 #include <limits>
@@ -36,12 +37,11 @@ struct SphereAnswer {
     std::size_t tests = 0;
 };
 
-/// Where a solid's spheres touch another shape, out to `speculative_margin`, in the solid's frame
-/// with normals from it to the other.
+/// Where a solid's spheres touch another shape, out to the margin, in the solid's frame with
+/// normals from it to the other.
 ///
-///   solid       one with spheres
-///   other       solid (by its spheres, else its field, else its triangles), sphere, capsule,
-///               cylinder, box, hull, plane, or mesh (its front faces)
+///   in          a: solid with spheres; b: solid (by its spheres, else its field, else its
+///               triangles), sphere, capsule, cylinder, box, hull, plane, or mesh (its front faces)
 ///   candidates  appended to. Separations are those of spheres: with the other's surface, or of two
 ///               spheres, each with the one that it is deepest in or nearest to and no other
 ///   budget      see above; counts no more tests than it has, but for the first level
@@ -51,11 +51,7 @@ struct SphereAnswer {
 /// spheres that merely lie side by side. Where even that one is on the far side, it pushes through.
 ///
 /// Never throws; the same for the same input.
-SphereAnswer find_sphere_candidates(const Shapes& shapes,
-                                    ShapeRef solid,
-                                    ShapeRef other,
-                                    const Pose& other_in_solid,
-                                    double speculative_margin,
+SphereAnswer find_sphere_candidates(const PairInput<double>& in,
                                     const SphereBudget& budget,
                                     std::vector<ContactCandidate>& candidates);
 

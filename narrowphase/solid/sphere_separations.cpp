@@ -110,13 +110,12 @@ double distance_from(const Shapes& shapes, ShapeRef shape, const Vec3& place, do
     return distance_to(shapes, shape, place).distance;
 }
 
-void find_sphere_separations(const Shapes& shapes,
-                             ShapeRef solid,
-                             ShapeRef other,
-                             const Pose& other_in_solid,
-                             double speculative_margin,
-                             std::vector<LocalManifold<double>>& out)
+void find_sphere_separations(const PairInput<double>& in, std::vector<LocalManifold<double>>& out)
 {
+    const Shapes& shapes = in.shapes;
+    const ShapeRef solid = in.a, other = in.b;
+    const Pose& other_in_solid = in.b_in_a;
+    const double speculative_margin = in.speculative_margin;
     THRONG_CHECK(solid.kind == ShapeKind::solid, "spheres stand for a solid");
     const SphereTree& tree = shapes.solids[solid.index].spheres;
     NearestSeparations separations;

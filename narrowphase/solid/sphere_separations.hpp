@@ -7,6 +7,7 @@
 
 #include "kernels/data/manifolds.hpp"
 #include "kernels/data/shapes.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 
 #include <vector>
 
@@ -17,19 +18,13 @@ namespace throng {
 inline constexpr std::size_t kMostSphereSeparations = 64;
 
 /// Appends a manifold of one point for each sphere of the solid's last level that is within
-/// `speculative_margin` of the other shape, or for each two of a pair of solids; in the solid's
+/// the margin of the other shape, or for each two of a pair of solids; in the solid's
 /// frame, normals from it to the other. Where there are more than kMostSphereSeparations, the
 /// nearest. Never throws.
 ///
-///   solid  one with spheres
-///   other  solid (by its spheres, else the front of its triangles), sphere, capsule, cylinder,
-///          box, hull, plane, or mesh (its front)
-void find_sphere_separations(const Shapes& shapes,
-                             ShapeRef solid,
-                             ShapeRef other,
-                             const Pose& other_in_solid,
-                             double speculative_margin,
-                             std::vector<LocalManifold<double>>& out);
+///   in  a: solid with spheres; b: solid (by its spheres, else the front of its triangles), sphere,
+///       capsule, cylinder, box, hull, plane, or mesh (its front)
+void find_sphere_separations(const PairInput<double>& in, std::vector<LocalManifold<double>>& out);
 
 /// m, how far the place, in the shape's frame, is from it at least: from a mesh or a solid that of
 /// the nearest triangle, or infinity where that is more than `limit`; of others below 0 inside.

@@ -265,16 +265,11 @@ double least_of(const std::vector<Manifold>& found)
 }
 
 // What contacts that let bodies overlap have of the two, where they overlap by more than `most`.
-bool append_deep(const Shapes& shapes,
-                 ShapeRef solid,
-                 ShapeRef other,
-                 const Pose& other_in_solid,
-                 double speculative_margin,
-                 double most,
-                 std::vector<Manifold>& out)
+bool append_deep(const PairInput<double>& in, double most, std::vector<Manifold>& out)
 {
+    const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     std::vector<PatchManifold> patches;
-    collide_solid(shapes, solid, other, other_in_solid, speculative_margin, patches);
+    collide_solid({shapes, solid, other, other_in_solid, speculative_margin}, patches);
     std::vector<Manifold> found;
     for (const PatchManifold& patch : patches) found.push_back(patch.manifold);
     if (!(least_of(found) < -most)) return false;
@@ -284,13 +279,9 @@ bool append_deep(const Shapes& shapes,
 
 }  // namespace
 
-void find_surface_separations(const Shapes& shapes,
-                              ShapeRef solid,
-                              ShapeRef other,
-                              const Pose& other_in_solid,
-                              double speculative_margin,
-                              std::vector<LocalManifold<double>>& out)
+void find_surface_separations(const PairInput<double>& in, std::vector<LocalManifold<double>>& out)
 {
+    const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     const Mesh& mesh = *mesh_of(shapes, solid);
     if (other.kind == ShapeKind::plane) {
         append_spread(
@@ -304,7 +295,7 @@ void find_surface_separations(const Shapes& shapes,
         return;
     }
     const double seen = error_of(shapes, solid) + error_of(shapes, other);
-    if (append_deep(shapes, solid, other, other_in_solid, speculative_margin, 2 * seen, out))
+    if (append_deep({shapes, solid, other, other_in_solid, speculative_margin}, 2 * seen, out))
         return;
     TwoSurfaces shallow(mesh, *mesh_of(shapes, other), other_in_solid, speculative_margin,
                         4 * seen);

@@ -9,6 +9,7 @@
 #include "kernels/data/manifolds.hpp"
 #include "kernels/data/shapes.hpp"
 #include "kernels/geometry/mesh.hpp"
+#include "narrowphase/convex/pair_input.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -22,19 +23,14 @@ namespace throng {
 inline constexpr std::size_t kMostSurfaceSeparations = 32;
 
 /// Appends a manifold of one point for each place where the two come as near as anywhere about it,
-/// out to `speculative_margin`: of corners and faces, edges and edges, and whatever else sticks out
+/// out to the margin: of corners and faces, edges and edges, and whatever else sticks out
 /// to the other; in the solid's frame, normals from it to the other. Where the surfaces cross,
 /// places of separations below 0: by what is behind what, and where that is more than the two
 /// solids' errors twice over, what collide_solid() has of them. Never throws.
 ///
-///   solid  what it is in contact is left aside, but for that
-///   other  solid, or mesh (its front), taken by triangles; or a plane
-void find_surface_separations(const Shapes& shapes,
-                              ShapeRef solid,
-                              ShapeRef other,
-                              const Pose& other_in_solid,
-                              double speculative_margin,
-                              std::vector<LocalManifold<double>>& out);
+///   in  a: solid, and what it is in contact is left aside, but for that; b: solid, or mesh (its
+///       front), taken by triangles; or a plane
+void find_surface_separations(const PairInput<double>& in, std::vector<LocalManifold<double>>& out);
 
 /// Whether one of two triangles lies further than `wide` to one side of the other's plane: the two
 /// are as far apart then. Normals of unit length.

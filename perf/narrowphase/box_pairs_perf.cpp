@@ -34,7 +34,7 @@ Pose touching_pose(const Shapes& shapes, Random& random)
         pose.position = middle * from;
         PairCache cache;
         LocalManifold<double> found;
-        collide<double>(shapes, {ShapeKind::box, 0}, {ShapeKind::box, 1}, pose, 0, cache, found);
+        collide<double>({shapes, {ShapeKind::box, 0}, {ShapeKind::box, 1}, pose, 0}, cache, found);
         (found.count > 0 ? touching : apart) = middle;
     }
     pose.position = (touching - kOverlap) * from;
@@ -108,8 +108,12 @@ void time_box_box(benchmark::State& state, const BoxCase& boxes)
     std::vector<LocalManifold<float>> found(kManyPairs);
     for ([[maybe_unused]] auto iteration : state) {
         for (std::uint32_t i = 0; i < kManyPairs; ++i)
-            collide<float>(made.shapes, {ShapeKind::box, 2 * i}, {ShapeKind::box, 2 * i + 1},
-                           made.poses[i], static_cast<float>(kReach), caches[i], found[i]);
+            collide<float>({made.shapes,
+                            {ShapeKind::box, 2 * i},
+                            {ShapeKind::box, 2 * i + 1},
+                            made.poses[i],
+                            static_cast<float>(kReach)},
+                           caches[i], found[i]);
         benchmark::ClobberMemory();
     }
     state.counters["a_pair"] = time_of_one(kManyPairs);

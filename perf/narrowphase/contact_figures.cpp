@@ -26,8 +26,8 @@ Turn colliding_by(std::string_view name, const Shapes& shapes, const RollingPair
         LocalManifold<double> found;
         for (std::size_t i = 0; i < count; ++i) {
             const auto& one = rolling.pairs[i];
-            collide_by(*method, MethodStart::cached, shapes, one.a, one.b, one.b_in_a[step], kReach,
-                       memory[i], found);
+            collide_by(*method, MethodStart::cached,
+                       {shapes, one.a, one.b, one.b_in_a[step], kReach}, memory[i], found);
             sum += told(found);
         }
         return sum;
@@ -49,7 +49,7 @@ Turn colliding(const Shapes& shapes, const RollingPairs& rolling)
             const auto& one = rolling.pairs[i];
             const PoseT<Real> pose{one.b_in_a[step].position.template cast<Real>(),
                                    one.b_in_a[step].orientation.template cast<Real>()};
-            collide(shapes, one.a, one.b, pose, static_cast<Real>(kReach), caches[i], found);
+            collide({shapes, one.a, one.b, pose, static_cast<Real>(kReach)}, caches[i], found);
             sum += told(found);
         }
         return sum;

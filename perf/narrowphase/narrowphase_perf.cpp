@@ -110,7 +110,7 @@ Pose touching_pose(const Shapes& shapes, const Case& pair, Random& random)
         pose.position = middle * from;
         PairCache cache;
         LocalManifold<double> found;
-        collide<double>(shapes, {pair.a, 0}, {pair.b, 0}, pose, 0, cache, found);
+        collide<double>({shapes, {pair.a, 0}, {pair.b, 0}, pose, 0}, cache, found);
         (found.count > 0 ? touching : apart) = middle;
     }
     const bool apart_for_good = pair.pair_case == PairCase::apart;
@@ -134,7 +134,7 @@ void time_pairs(benchmark::State& state, const Case& pair)
     std::size_t points = 0;
     const auto collide_all = [&] {
         for (std::size_t i = 0; i < kPairs; ++i) {
-            collide<Real>(shapes, {pair.a, 0}, {pair.b, 0}, poses[i], static_cast<Real>(kReach),
+            collide<Real>({shapes, {pair.a, 0}, {pair.b, 0}, poses[i], static_cast<Real>(kReach)},
                           caches[i], found);
             points += static_cast<std::size_t>(found.count);
         }

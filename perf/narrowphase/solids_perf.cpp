@@ -102,7 +102,7 @@ std::vector<Pose> make_poses(bool apart)
             const double middle = (touching + parted) / 2;
             pose.position = middle * from;
             patches.clear();
-            collide_solid(lumps.shapes, lumps.of[0][0], lumps.of[1][0], pose, 0, patches);
+            collide_solid({lumps.shapes, lumps.of[0][0], lumps.of[1][0], pose, 0}, patches);
             (patches.empty() ? parted : touching) = middle;
         }
         pose.position = (apart ? touching + 2 * kReach : touching - kOverlap) * from;
@@ -131,7 +131,7 @@ void find_touches(benchmark::State& state, const std::string& way, bool apart)
     for ([[maybe_unused]] auto iteration : state) {
         patches.clear();
         for (const Pose& pose : poses)
-            collide_solid(lumps.shapes, lumps.of[0][0], lumps.of[1][0], pose, kReach, patches);
+            collide_solid({lumps.shapes, lumps.of[0][0], lumps.of[1][0], pose, kReach}, patches);
         benchmark::DoNotOptimize(patches.data());
     }
     std::size_t points = 0;
@@ -154,7 +154,7 @@ std::vector<Known> make_known(const Lumps& lumps, bool apart)
         Known& pair = known.emplace_back();
         pair.then = pose;
         pair.now = {pose.position + Vec3(0, 0, kMoved), pose.orientation * Quat(turned)};
-        collide_solid(lumps.shapes, lumps.of[0][0], lumps.of[1][0], pose, kReach, pair.patches);
+        collide_solid({lumps.shapes, lumps.of[0][0], lumps.of[1][0], pose, kReach}, pair.patches);
     }
     return known;
 }
@@ -218,7 +218,7 @@ void collide_parts(benchmark::State& state, bool apart, bool warm)
         manifolds = points = 0;
         for (HullPairPlace& pair : pairs) {
             if (!warm) pair.cache = {};
-            collide<float>(lumps.shapes, pair.a, pair.b, pair.b_in_a, static_cast<float>(kReach),
+            collide<float>({lumps.shapes, pair.a, pair.b, pair.b_in_a, static_cast<float>(kReach)},
                            pair.cache, found);
             manifolds += found.count > 0 ? 1 : 0;
             points += static_cast<std::size_t>(found.count);

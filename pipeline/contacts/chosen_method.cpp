@@ -106,7 +106,7 @@ bool ChosenMethod::collide(std::size_t i,
     const Pose seen = seen_from_first(pair.a, pair.b, shapes_, colliders_, bounds_);
     MethodMemory fresh;
     MethodMemory& memory = start_ == MethodStart::cached ? memories_.of_pair[i] : fresh;
-    if (collide_by(*method_, start_, shapes_, a, b, seen, pair.speculative_margin, memory, out))
+    if (collide_by(*method_, start_, {shapes_, a, b, seen, pair.speculative_margin}, memory, out))
         return true;
     ++memories_.fallbacks[block];
     return false;

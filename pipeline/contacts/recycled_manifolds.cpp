@@ -34,7 +34,7 @@ bool find_or_recycle(const Shapes& shapes,
                    static_cast<Real>(colliders.outer_radius[pair.b]),
                    static_cast<Real>(kRecycled * least), out.manifold))
         return false;
-    collide(shapes, a, b, out.b_in_a, out.speculative_margin, cache, out.manifold);
+    collide({shapes, a, b, out.b_in_a, out.speculative_margin}, cache, out.manifold);
     return true;
 }
 

@@ -54,25 +54,25 @@ void EventDrivenGroup::collide_pair(PairKey key,
     const ShapeRef shape_a = colliders.shape[first], shape_b = colliders.shape[second];
     const Pose seen = pose_seen_from_a(shapes, shape_b, pose_a, pose_b);
     if (has_spheres(shapes, shape_a)) {
-        find_sphere_separations(shapes, shape_a, shape_b, seen, speculative_margin,
+        find_sphere_separations({shapes, shape_a, shape_b, seen, speculative_margin},
                                 manifolds_.manifolds);
         return;
     }
     const bool flat = shape_b.kind == ShapeKind::plane;
     if (mesh_of(shapes, shape_a) && (flat || mesh_of(shapes, shape_b))) {
-        find_surface_separations(shapes, shape_a, shape_b, seen, speculative_margin,
+        find_surface_separations({shapes, shape_a, shape_b, seen, speculative_margin},
                                  manifolds_.manifolds);
         return;
     }
     if (mesh_of(shapes, shape_a)) {
         triangles_.clear();
-        collide_mesh<double>(shapes, shape_a, shape_b, seen, speculative_margin, triangles_);
+        collide_mesh<double>({shapes, shape_a, shape_b, seen, speculative_margin}, triangles_);
         for (const auto& touched : triangles_) manifolds_.manifolds.push_back(touched.manifold);
         return;
     }
     PairCache cache;
     LocalManifold<double> found;
-    collide<double>(shapes, shape_a, shape_b, seen, speculative_margin, cache, found);
+    collide<double>({shapes, shape_a, shape_b, seen, speculative_margin}, cache, found);
     const auto is_simple = [](ShapeRef shape) {
         return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::plane;
     };

@@ -81,9 +81,12 @@ ConvexAnswer contacts_of(const Shapes& shapes, ShapeRef a, ShapeRef b, const Pos
 {
     PairCache cache;
     LocalManifold<Real> found;
-    collide<Real>(shapes, a, b,
-                  {b_in_a.position.cast<Real>(), b_in_a.orientation.normalized().cast<Real>()},
-                  Real(0), cache, found);
+    collide<Real>({shapes,
+                   a,
+                   b,
+                   {b_in_a.position.cast<Real>(), b_in_a.orientation.normalized().cast<Real>()},
+                   Real(0)},
+                  cache, found);
     ConvexAnswer answer;
     answer.verdict = found.count > 0 ? QueryVerdict::touching : QueryVerdict::apart;
     for (int i = 0; i < found.count; ++i)

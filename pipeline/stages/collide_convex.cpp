@@ -207,8 +207,9 @@ private:
         const Pose seen = seen_from_first(first, second, shapes_, colliders_, bounds_);
         LocalManifold<Real> manifold;
         PairCache cache = contacts_.of_pair[i].cache;
-        collide(shapes_, colliders_.shape[first], colliders_.shape[second], rounded<Real>(seen),
-                static_cast<Real>(pair.speculative_margin), cache, manifold);
+        collide({shapes_, colliders_.shape[first], colliders_.shape[second], rounded<Real>(seen),
+                 static_cast<Real>(pair.speculative_margin)},
+                cache, manifold);
         contacts_.of_pair[i].cache = cache;
         chosen_.note_fallback(cache, block);
         take(i, pair, turned, manifold, block);

@@ -39,10 +39,11 @@ void collide_meshes(const StepContext& context,
         }
         held.clear();
         for (const auto& before : old) held.push_back(before.part);
-        collide_mesh(shapes, colliders.shape[mesh], colliders.shape[other],
-                     rounded<Real>(pose_seen_from_a(shapes, colliders.shape[other],
-                                                    bounds.placed[mesh], bounds.placed[other])),
-                     static_cast<Real>(speculative_margin), held, found);
+        collide_mesh({shapes, colliders.shape[mesh], colliders.shape[other],
+                      rounded<Real>(pose_seen_from_a(shapes, colliders.shape[other],
+                                                     bounds.placed[mesh], bounds.placed[other])),
+                      static_cast<Real>(speculative_margin)},
+                     held, found);
         for (const TriangleManifold<Real>& on_triangle : found) {
             auto& entry = out.emplace_back();
             entry.part = on_triangle.triangle;

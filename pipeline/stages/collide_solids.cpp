@@ -95,8 +95,9 @@ private:
         std::vector<PatchManifold>& patches = contacts_.patches_of_block[block];
         const std::size_t first = patches.size();
         const SolidAnswer answer =
-            collide_solid(shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
-                          pose, speculative_margin, patches);
+            collide_solid({shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
+                           pose, speculative_margin},
+                          patches);
         for (std::size_t k = first; k < patches.size(); ++k)
             add(sides, patches[k].patch, patches[k].manifold, out);
         found.count = static_cast<std::uint32_t>(patches.size() - first);

@@ -76,8 +76,8 @@ void check_contacts(const ConvexMethod& method,
 {
     LocalManifold<double> out;
     const double speculative_margin = std::min(now.speculative_margin, placing.size());
-    const bool told = collide_by(method, start, shapes, refs[0], refs[1], now.pose,
-                                 speculative_margin, memory, out);
+    const bool told = collide_by(
+        method, start, {shapes, refs[0], refs[1], now.pose, speculative_margin}, memory, out);
     expect(out.count >= 0 && out.count <= 4, "contacts are four at most", out.count);
     if (!told) return;
     expect(all_finite(out), "contacts are finite");
@@ -103,9 +103,12 @@ void check_step(const Shapes& shapes,
     const double speculative_margin = std::min(now.speculative_margin, placing.size());
     const double slack = kOfStraying * placing.size();
     LocalManifold<Real> out;
-    collide<Real>(shapes, refs[0], refs[1],
-                  {now.pose.position.cast<Real>(), now.pose.orientation.cast<Real>()},
-                  static_cast<Real>(speculative_margin), cache, out);
+    collide<Real>({shapes,
+                   refs[0],
+                   refs[1],
+                   {now.pose.position.cast<Real>(), now.pose.orientation.cast<Real>()},
+                   static_cast<Real>(speculative_margin)},
+                  cache, out);
     expect(out.count >= 0 && out.count <= 4 && all_finite(out), "a step's contacts are finite");
     if (out.count == 0) {
         expect(placing.by_points() >= -slack, "a step sees what is deep", placing.by_points());

@@ -95,7 +95,7 @@ LocalManifold<Real> run(PairFunction<Real> function,
 {
     PairCache cache;
     LocalManifold<Real> out;
-    function(shapes, a, b, cast<Real>(pose), static_cast<Real>(extent), cache, out);
+    function({shapes, a, b, cast<Real>(pose), static_cast<Real>(extent)}, cache, out);
     return out;
 }
 

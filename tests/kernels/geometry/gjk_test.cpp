@@ -64,7 +64,7 @@ double manifold_separation(const BoxPair& pair)
     const PoseT<Real> pose = {pair.b_in_a.position.cast<Real>(),
                               pair.b_in_a.orientation.cast<Real>()};
     const auto extent = static_cast<Real>(10 * pair.size());
-    convex_convex<Real>(pair.shapes, pair.a, pair.b, pose, extent, cache, out);
+    convex_convex<Real>({pair.shapes, pair.a, pair.b, pose, extent}, cache, out);
     EXPECT_GT(out.count, 0);
     double least = 1e300;
     for (int i = 0; i < out.count; ++i) {

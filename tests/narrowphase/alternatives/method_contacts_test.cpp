@@ -34,8 +34,8 @@ protected:
     bool collide(ShapeRef a, ShapeRef b, const Pose& b_in_a, double speculative_margin = 0.01)
     {
         MethodMemory memory;
-        return collide_by(*find_convex_method(GetParam()), MethodStart::cached, all_, a, b, b_in_a,
-                          speculative_margin, memory, out_);
+        return collide_by(*find_convex_method(GetParam()), MethodStart::cached,
+                          {all_, a, b, b_in_a, speculative_margin}, memory, out_);
     }
 
     Shapes all_ = shapes();
@@ -100,8 +100,8 @@ TEST(CollideBy, GjkAndSatTellOfWhatIsWithinTheMargin)
         for (const MethodStart start : {MethodStart::cached, MethodStart::cold}) {
             MethodMemory memory;
             LocalManifold<double> out;
-            ASSERT_TRUE(collide_by(*find_convex_method(name), start, all, kBox, kSmall,
-                                   at({0, 0, 0.755}), 0.01, memory, out));
+            ASSERT_TRUE(collide_by(*find_convex_method(name), start,
+                                   {all, kBox, kSmall, at({0, 0, 0.755}), 0.01}, memory, out));
             ASSERT_EQ(out.count, 4) << name;
             EXPECT_NEAR(out.points[0].separation, 5e-3, 1e-9) << name;
         }
@@ -112,14 +112,14 @@ TEST(CollideBy, RoundShapesAreGjksAlone)
     const Shapes all = shapes();
     MethodMemory memory;
     LocalManifold<double> out;
-    ASSERT_TRUE(collide_by(*find_convex_method("gjk"), MethodStart::cached, all, kBall, kBox,
-                           at({0, 0, 0.999}), 0.01, memory, out));
+    ASSERT_TRUE(collide_by(*find_convex_method("gjk"), MethodStart::cached,
+                           {all, kBall, kBox, at({0, 0, 0.999}), 0.01}, memory, out));
     ASSERT_EQ(out.count, 1);
     EXPECT_NEAR(out.points[0].separation, -1e-3, 1e-9);
     EXPECT_NEAR((out.points[0].position - Vec3(0, 0, 0.4995)).norm(), 0, 1e-6);
     for (const char* name : {"sat", "clip_volume", "containment"})
-        EXPECT_FALSE(collide_by(*find_convex_method(name), MethodStart::cached, all, kBall, kBox,
-                                at({0, 0, 0.999}), 0.01, memory, out))
+        EXPECT_FALSE(collide_by(*find_convex_method(name), MethodStart::cached,
+                                {all, kBall, kBox, at({0, 0, 0.999}), 0.01}, memory, out))
             << name;
 }
 
@@ -129,11 +129,11 @@ TEST(CollideBy, WhoTellsOfTouchAloneLeavesTheRestToOthers)
     for (const char* name : {"chung_wang", "containment", "k_dop:14", "sphere"}) {
         MethodMemory memory;
         LocalManifold<double> out;
-        EXPECT_FALSE(collide_by(*find_convex_method(name), MethodStart::cached, all, kBox, kSmall,
-                                at({0, 0, 0.749}), 0.01, memory, out))
+        EXPECT_FALSE(collide_by(*find_convex_method(name), MethodStart::cached,
+                                {all, kBox, kSmall, at({0, 0, 0.749}), 0.01}, memory, out))
             << name;
-        EXPECT_TRUE(collide_by(*find_convex_method(name), MethodStart::cached, all, kBox, kSmall,
-                               at({0, 0, 3}), 0.01, memory, out))
+        EXPECT_TRUE(collide_by(*find_convex_method(name), MethodStart::cached,
+                               {all, kBox, kSmall, at({0, 0, 3}), 0.01}, memory, out))
             << name;
         EXPECT_EQ(out.count, 0);
     }
@@ -152,9 +152,10 @@ TEST(CollideBy, WhoTellsOfTouchAloneLeavesWhatIsWithinTheMarginToOthers)
                     const Pose a_in_b{b_in_a.orientation.conjugate() * -b_in_a.position,
                                       b_in_a.orientation.conjugate()};
                     MethodMemory memory;
-                    return collide_by(*find_convex_method(name), MethodStart::cached, all,
-                                      swapped ? kSmall : kBox, swapped ? kBox : kSmall,
-                                      swapped ? a_in_b : b_in_a, 0.01, memory, out);
+                    return collide_by(*find_convex_method(name), MethodStart::cached,
+                                      {all, swapped ? kSmall : kBox, swapped ? kBox : kSmall,
+                                       swapped ? a_in_b : b_in_a, 0.01},
+                                      memory, out);
                 };
                 LocalManifold<double> out;
                 EXPECT_FALSE(told(0.005, out)) << name << ' ' << way.transpose();

@@ -41,9 +41,12 @@ double separation_at(const MovingShape& ring,
 {
     const Pose a = ring.trajectory.at(time), b = other.trajectory.at(time);
     std::vector<LocalManifold<double>> found;
-    find_sphere_separations(shapes(), ring.shape, other.shape,
-                            {a.to_local(b.position), a.orientation.conjugate() * b.orientation},
-                            speculative_margin, found);
+    find_sphere_separations({shapes(),
+                             ring.shape,
+                             other.shape,
+                             {a.to_local(b.position), a.orientation.conjugate() * b.orientation},
+                             speculative_margin},
+                            found);
     double least = speculative_margin;
     for (const auto& manifold : found) least = std::min(least, manifold.points[0].separation);
     return least;

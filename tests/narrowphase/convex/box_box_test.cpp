@@ -285,7 +285,7 @@ TEST(BoxBox, RememberingNeverChangesTheAnswer)
             pose.position += random.vector(-0.1, 0.1);
             LocalManifold<float> warm,
                 cold = run<float>(box_box<float>, shapes, kBoxA, kBoxB, pose, 0.02);
-            box_box<float>(shapes, kBoxA, kBoxB, cast<float>(pose), 0.02f, cache, warm);
+            box_box<float>({shapes, kBoxA, kBoxB, cast<float>(pose), 0.02f}, cache, warm);
             ASSERT_EQ(warm.count, cold.count) << "seed 17, pair " << i;
             for (int k = 0; k < warm.count; ++k) {
                 const auto at = static_cast<std::size_t>(k);

@@ -109,8 +109,8 @@ TEST(HullHull, LargeHullsTouchWhereAllAxesSayWhateverTheyRemember)
             pose.position += random.vector(-0.003, 0.003);
             LocalManifold<double> warm, by_axes;
             const auto cold = run<double>(hull_hull<double>, shapes, kHullA, kHullB, pose, 0.02);
-            hull_hull<double>(shapes, kHullA, kHullB, pose, 0.02, searched, warm);
-            hull_hull_by_axes(shapes, kHullA, kHullB, pose, 0.02, looked, by_axes);
+            hull_hull<double>({shapes, kHullA, kHullB, pose, 0.02}, searched, warm);
+            hull_hull_by_axes({shapes, kHullA, kHullB, pose, 0.02}, looked, by_axes);
             ASSERT_EQ(searched.kind & kFellBack, 0U);
             for (const auto& found : {cold, warm}) {
                 bool agrees = found.count == by_axes.count;
@@ -178,7 +178,7 @@ TEST(HullHull, RememberingNeverChangesTheAnswer)
             pose.position += random.vector(-0.05, 0.05);
             LocalManifold<double> warm;
             const auto cold = run<double>(hull_hull<double>, shapes, kHullA, kHullB, pose, 0.02);
-            hull_hull<double>(shapes, kHullA, kHullB, pose, 0.02, cache, warm);
+            hull_hull<double>({shapes, kHullA, kHullB, pose, 0.02}, cache, warm);
             ASSERT_EQ(warm.count, cold.count) << "seed 24, pair " << i;
             for (int k = 0; k < warm.count; ++k) {
                 const auto at = static_cast<std::size_t>(k);
@@ -287,9 +287,10 @@ TEST(HullHull, WhatIsDeepHasContactsThoughTheLeadingFaceHasNothingOverIt)
     PairCache cache, wide_cache;
     LocalManifold<double> exact;
     LocalManifold<float> wide;
-    hull_hull<double>(shapes, hull_a, hull_b, {offset, Quat::Identity()}, 0.5, cache, exact);
-    hull_hull<float>(shapes, hull_a, hull_b, {offset.cast<float>(), QuatT<float>::Identity()}, 0.5F,
-                     wide_cache, wide);
+    hull_hull<double>({shapes, hull_a, hull_b, {offset, Quat::Identity()}, 0.5}, cache, exact);
+    hull_hull<float>(
+        {shapes, hull_a, hull_b, {offset.cast<float>(), QuatT<float>::Identity()}, 0.5F},
+        wide_cache, wide);
     ASSERT_GT(exact.count, 0);
     ASSERT_GT(wide.count, 0);
     double deepest = 0, wide_deepest = 0;
@@ -329,9 +330,12 @@ TEST(HullHull, WhatIsShallowHasContactsThoughTheLeadingFaceHasNothingOverIt)
     PairCache cache, wide_cache;
     LocalManifold<double> exact;
     LocalManifold<float> wide;
-    collide<double>(shapes, hull, box, box_in_hull, 0, cache, exact);
-    collide<float>(shapes, hull, box,
-                   {box_in_hull.position.cast<float>(), box_in_hull.orientation.cast<float>()}, 0,
+    collide<double>({shapes, hull, box, box_in_hull, 0}, cache, exact);
+    collide<float>({shapes,
+                    hull,
+                    box,
+                    {box_in_hull.position.cast<float>(), box_in_hull.orientation.cast<float>()},
+                    0},
                    wide_cache, wide);
     ASSERT_GT(exact.count, 0);
     ASSERT_GT(wide.count, 0);
@@ -366,9 +370,10 @@ TEST(HullHull, WhatIsDeepHasContactsHoweverUnevenTheFaces)
         PairCache cache, wide_cache;
         LocalManifold<double> exact;
         LocalManifold<float> wide;
-        hull_hull<double>(shapes, a, b, pose, 0.4, cache, exact);
-        hull_hull<float>(shapes, a, b, {pose.position.cast<float>(), QuatT<float>::Identity()},
-                         0.4F, wide_cache, wide);
+        hull_hull<double>({shapes, a, b, pose, 0.4}, cache, exact);
+        hull_hull<float>(
+            {shapes, a, b, {pose.position.cast<float>(), QuatT<float>::Identity()}, 0.4F},
+            wide_cache, wide);
         EXPECT_GT(exact.count, 0) << i;
         EXPECT_GT(wide.count, 0) << i;
     }

@@ -72,7 +72,7 @@ struct Case {
         PairCache cache;
         LocalManifold<Real> manifold;
         const PoseT<Real> pose = {b_in_a.position.cast<Real>(), b_in_a.orientation.cast<Real>()};
-        throng::collide<Real>(shapes, a, b, pose, speculative_margin, cache, manifold);
+        throng::collide<Real>({shapes, a, b, pose, speculative_margin}, cache, manifold);
         return manifold;
     }
 };

@@ -42,7 +42,7 @@ collide(ShapeRef a, ShapeRef b, const Pose& b_in_a, double speculative_margin = 
 {
     PairCache cache;
     LocalManifold<double> manifold;
-    collide<double>(some_shapes(), a, b, b_in_a, speculative_margin, cache, manifold);
+    collide<double>({some_shapes(), a, b, b_in_a, speculative_margin}, cache, manifold);
     return manifold;
 }
 
@@ -148,7 +148,7 @@ TEST(ConvexPlane, PlaneFarAlongItselfIsTheSameInFloat)
     PairCache cache;
     LocalManifold<float> manifold;
     const PoseT<float> pose = {seen.position.cast<float>(), seen.orientation.cast<float>()};
-    collide<float>(shapes, kBox, kPlane, pose, 0.02F, cache, manifold);
+    collide<float>({shapes, kBox, kPlane, pose, 0.02F}, cache, manifold);
     ASSERT_EQ(manifold.count, 4);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(manifold.points[i].separation, -0.001, 1e-6);
 }
@@ -163,7 +163,7 @@ TEST(ConvexPlane, SunkenCardIsHeldAtAllFourCornersOfItsSide)
         const Pose card = {Vec3(0, 0, 0.25 - 0.06), turn_about(Vec3(0, 1, 0), lean)};
         PairCache cache;
         LocalManifold<double> manifold;
-        collide<double>(shapes, kBox, kPlane, inverse_of(card), 0.02, cache, manifold);
+        collide<double>({shapes, kBox, kPlane, inverse_of(card), 0.02}, cache, manifold);
         ASSERT_EQ(manifold.count, 4) << lean;
         EXPECT_GT(area_of(manifold), 0.9 * 0.4 * 0.25) << lean;
     }
@@ -201,8 +201,9 @@ TEST(ConvexPlane, FinelyRoundedDrumStandsOnItsFlatEnd)
                                    turn_about(Vec3(0.6, 0.8, 0), 1e-6)};
                 PairCache cache;
                 LocalManifold<double> manifold;
-                collide<double>(shapes, kHull, kPlane, inverse_of(drum),
-                                speculative_margin * radius, cache, manifold);
+                collide<double>(
+                    {shapes, kHull, kPlane, inverse_of(drum), speculative_margin * radius}, cache,
+                    manifold);
                 ASSERT_EQ(manifold.count, 4) << radius << ' ' << speculative_margin << ' ' << sunk;
                 for (std::size_t i = 0; i < 4; ++i)
                     EXPECT_NEAR(manifold.points[i].separation, -sunk * radius, 1e-5 * radius);
@@ -220,7 +221,7 @@ TEST(ConvexPlane, DrumThatTipsIsHeldOnEitherSideOfItsMiddle)
         const Pose drum = {Vec3(1, 2, 0.25 + 0.5 + 0.45 * tilt), turn_about(Vec3(0, 1, 0), tilt)};
         PairCache cache;
         LocalManifold<double> manifold;
-        collide<double>(shapes, kHull, kPlane, inverse_of(drum), 2 * tilt, cache, manifold);
+        collide<double>({shapes, kHull, kPlane, inverse_of(drum), 2 * tilt}, cache, manifold);
         double first = 0, last = 0;
         for (int i = 0; i < manifold.count; ++i) {
             const double x = manifold.points[static_cast<std::size_t>(i)].position.x();
@@ -370,7 +371,7 @@ TEST(CylinderPairs, OverhangingLogRestsOnTheEdgesOfTheBox)
     const Pose pose = {turn * Vec3(0, 0, -(0.3 + 0.3 - 0.001)), turn};
     PairCache cache;
     LocalManifold<double> manifold;
-    collide<double>(shapes, kCylinder, kBox, pose, 0.02, cache, manifold);
+    collide<double>({shapes, kCylinder, kBox, pose, 0.02}, cache, manifold);
     ASSERT_EQ(manifold.count, 2);
     for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_NEAR(std::abs(manifold.points[i].position.z()), 0.2, 1e-6);

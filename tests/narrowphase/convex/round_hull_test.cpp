@@ -57,7 +57,7 @@ void expect_cache_never_tells(PairFunction<Real> function, Placement pair, std::
         const PoseT<Real> pose = {pair.b_in_a.position.cast<Real>(),
                                   QuatT<Real>(pair.b_in_a.orientation.cast<Real>())};
         LocalManifold<Real> warm;
-        function(pair.shapes, pair.a, pair.b, pose, Real(0.5), cache, warm);
+        function({pair.shapes, pair.a, pair.b, pose, Real(0.5)}, cache, warm);
         EXPECT_TRUE(same(warm, given::collide<Real>(function, pair, 0.5))) << "step " << i;
     }
 }

@@ -42,7 +42,7 @@ collide(PairFunction<Real> function, const Placement& pair, double speculative_m
     LocalManifold<Real> manifold;
     const PoseT<Real> pose = {pair.b_in_a.position.cast<Real>(),
                               QuatT<Real>(pair.b_in_a.orientation.cast<Real>())};
-    function(pair.shapes, pair.a, pair.b, pose, static_cast<Real>(speculative_margin), cache,
+    function({pair.shapes, pair.a, pair.b, pose, static_cast<Real>(speculative_margin)}, cache,
              manifold);
     return manifold;
 }

@@ -65,8 +65,8 @@ std::vector<TriangleManifold<Real>>
 touch_mesh(const Shapes& shapes, ShapeRef shape, const Pose& pose, double speculative_margin)
 {
     std::vector<TriangleManifold<Real>> found;
-    collide_mesh<Real>(shapes, kMesh, shape, cast<Real>(pose),
-                       static_cast<Real>(speculative_margin), found);
+    collide_mesh<Real>(
+        {shapes, kMesh, shape, cast<Real>(pose), static_cast<Real>(speculative_margin)}, found);
     return found;
 }
 

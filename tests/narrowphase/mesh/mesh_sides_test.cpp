@@ -81,7 +81,7 @@ struct Stage {
         std::vector<std::uint32_t> held;
         for (const auto& one : before) held.push_back(one.triangle);
         Found found;
-        collide_mesh<double>(shapes, {ShapeKind::mesh, 0}, guest.shape, {at, turn}, 0.01, held,
+        collide_mesh<double>({shapes, {ShapeKind::mesh, 0}, guest.shape, {at, turn}, 0.01}, held,
                              found);
         return found;
     }

@@ -34,7 +34,7 @@ std::vector<ContactCandidate>
 candidate(const Shapes& shapes, ShapeRef other, const Pose& pose, double speculative_margin = 0)
 {
     std::vector<ContactCandidate> candidates;
-    find_image_candidates(shapes, kSolid, other, pose, speculative_margin, candidates);
+    find_image_candidates({shapes, kSolid, other, pose, speculative_margin}, candidates);
     return candidates;
 }
 

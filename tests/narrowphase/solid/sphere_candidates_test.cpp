@@ -62,8 +62,8 @@ Told ask(ShapeRef a,
          const SphereBudget& budget = {})
 {
     Told told;
-    told.answer =
-        find_sphere_candidates(shapes(), a, b, b_in_a, speculative_margin, budget, told.candidates);
+    told.answer = find_sphere_candidates({shapes(), a, b, b_in_a, speculative_margin}, budget,
+                                         told.candidates);
     return told;
 }
 
@@ -187,7 +187,7 @@ TEST(SphereCandidates, FeaturesStayApartAndOnTheirLevelOnALargeMesh)
     all.solids[0].spheres.levels = {level, level};
 
     std::vector<ContactCandidate> candidates;
-    find_sphere_candidates(all, kRing, {ShapeKind::mesh, 0}, {}, 0, {}, candidates);
+    find_sphere_candidates({all, kRing, {ShapeKind::mesh, 0}, {}, 0}, {}, candidates);
     ASSERT_GE(candidates.size(), 2000U);
     std::set<std::uint32_t> features;
     for (const ContactCandidate& candidate : candidates) {
@@ -327,8 +327,12 @@ TEST(SphereCandidates, AgreesWithSphereByCollide)
                 PairCache cache;
                 LocalManifold<double> out;
                 const auto ball = static_cast<std::uint32_t>(first + k);
-                collide<double>(all, {ShapeKind::sphere, ball}, {kind, 0},
-                                {pose.position - center, pose.orientation}, 0.05, cache, out);
+                collide<double>({all,
+                                 {ShapeKind::sphere, ball},
+                                 {kind, 0},
+                                 {pose.position - center, pose.orientation},
+                                 0.05},
+                                cache, out);
                 if (out.count == 0) continue;
                 ASSERT_LT(found, told.candidates.size());
                 const ContactCandidate& candidate = told.candidates[found++];

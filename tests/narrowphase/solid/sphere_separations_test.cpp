@@ -39,7 +39,7 @@ std::vector<double>
 separations(ShapeRef solid, ShapeRef other, const Pose& pose, double speculative_margin)
 {
     std::vector<LocalManifold<double>> found;
-    find_sphere_separations(shapes(), solid, other, pose, speculative_margin, found);
+    find_sphere_separations({shapes(), solid, other, pose, speculative_margin}, found);
     std::vector<double> all;
     for (const auto& manifold : found) {
         EXPECT_EQ(manifold.count, 1);

@@ -69,7 +69,7 @@ struct Told {
 Told ask(ShapeRef a, ShapeRef b, const Pose& b_in_a, double speculative_margin)
 {
     std::vector<LocalManifold<double>> found;
-    find_surface_separations(shapes(), a, b, b_in_a, speculative_margin, found);
+    find_surface_separations({shapes(), a, b, b_in_a, speculative_margin}, found);
     Told told;
     told.count = found.size();
     for (const auto& manifold : found) {
@@ -115,7 +115,7 @@ TEST(SurfaceSeparations, FacesOnFacesAreHeldAtTheCornersOfWhatTheyShare)
     // Quarter turned: corners of neither are over the other.
     const Pose pose{Vec3(0, 0, 0.6 + 1e-4), Quat(std::sqrt(0.5), 0, 0, std::sqrt(0.5))};
     std::vector<LocalManifold<double>> found;
-    find_surface_separations(shapes(), kBox, kBox, pose, 1e-3, found);
+    find_surface_separations({shapes(), kBox, kBox, pose, 1e-3}, found);
     Box3 places;
     for (const auto& manifold : found) {
         EXPECT_NEAR(manifold.points[0].separation, 1e-4, 1e-12);

@@ -42,7 +42,7 @@ std::vector<PatchManifold>
 patches(const Shapes& shapes, ShapeRef other, const Pose& pose, double speculative_margin)
 {
     std::vector<PatchManifold> out;
-    EXPECT_EQ(collide_solid(shapes, kFirst, other, pose, speculative_margin, out).left_out, 0U);
+    EXPECT_EQ(collide_solid({shapes, kFirst, other, pose, speculative_margin}, out).left_out, 0U);
     return out;
 }
 
@@ -350,7 +350,7 @@ TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
         const Pose pose{dice.point(2), dice.turn()};
         std::vector<PatchManifold> out;
         const SolidAnswer answer =
-            collide_solid(shapes, kFirst, other, pose, speculative_margin, out);
+            collide_solid({shapes, kFirst, other, pose, speculative_margin}, out);
         const double free = answer.apart - speculative_margin;
         if (!out.empty() || !(free > 0)) continue;
         ++known;
@@ -360,7 +360,7 @@ TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
         const Quat turn(Eigen::AngleAxisd(angle, dice.point(1).normalized()));
         const Pose turned{pose.position, turn * pose.orientation};
         for (const Pose& moved : {closer, turned})
-            collide_solid(shapes, kFirst, other, moved, speculative_margin, out);
+            collide_solid({shapes, kFirst, other, moved, speculative_margin}, out);
         ASSERT_TRUE(out.empty()) << "seed 101, pose " << i << " apart " << answer.apart;
     }
     EXPECT_GT(known, 100U);
@@ -475,7 +475,7 @@ TEST(VoxelPairs, AStaticMeshIsTouchedInFrontAlone)
         std::vector<PatchManifold> stung;
         const Pose tip{Vec3(dice.between(-0.3, 0.3), dice.between(-0.3, 0.3), -0.5 - separation),
                        Quat::Identity()};
-        collide_solid(shapes, kSecond, {ShapeKind::mesh, 1}, tip, voxel, stung);
+        collide_solid({shapes, kSecond, {ShapeKind::mesh, 1}, tip, voxel}, stung);
         ASSERT_FALSE(stung.empty());
         deepest(stung, depth);
         ASSERT_NEAR(depth, separation, 0.1 * voxel) << "seed 99, tip " << i;

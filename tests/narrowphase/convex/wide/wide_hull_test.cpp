@@ -190,14 +190,14 @@ TEST(WideHull, RememberingNeverChangesABit)
             pose.orientation = (turn.normalized() * pose.orientation).normalized();
             const auto cold = run<float>(hull_hull<float>, shapes, a, kHullB, pose, 0.02);
             LocalManifold<float> warm;
-            hull_hull<float>(shapes, a, kHullB, cast<float>(pose), 0.02F, cache, warm);
+            hull_hull<float>({shapes, a, kHullB, cast<float>(pose), 0.02F}, cache, warm);
             ASSERT_TRUE(same(cold, warm)) << "seed 33, pair " << i << ", step " << step;
             // What is remembered of another pair is no worse than nothing.
             PairCache other{static_cast<std::uint32_t>(random.number(0, 300)),
                             static_cast<std::uint32_t>(random.number(0, 300)),
                             static_cast<std::uint32_t>(random.number(0, 5))};
             LocalManifold<float> misled;
-            hull_hull<float>(shapes, a, kHullB, cast<float>(pose), 0.02F, other, misled);
+            hull_hull<float>({shapes, a, kHullB, cast<float>(pose), 0.02F}, other, misled);
             ASSERT_TRUE(same(cold, misled)) << "seed 33, pair " << i << ", step " << step;
         }
     }

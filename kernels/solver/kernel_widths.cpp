@@ -1,4 +1,4 @@
-// The widths that the wide kernels of this folder were compiled for.
+// The widths that the wide kernels of kernels/ were compiled for.
 #include "kernels/dynamics/flight.hpp"
 #include "kernels/geometry/voxel_kernels.hpp"
 #include "kernels/simd/lane_width.hpp"
