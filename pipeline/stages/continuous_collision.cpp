@@ -8,7 +8,6 @@
 //
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
-#include "kernels/dynamics/attraction.hpp"
 #include "kernels/dynamics/energy.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
@@ -483,15 +482,10 @@ private:
         return masses_.inverse_mass[body] * forces_.linear_drag[body] * past;
     }
 
-    // m/s2, of what pulls alike all along its way: gravity, attractors, wind and what pushes it.
+    // m/s2, of what pulls alike all along its way: gravity, wind and what pushes it.
     Vec3 acceleration_of(std::uint32_t body) const
     {
         Vec3 pull = gravity_ + wind_on(body);
-        for (const AttractorForce& attractor : forces_.attractors) {
-            const Vec3 towards = attractor.position - poses_.position[body];
-            const double square = towards.squaredNorm();
-            if (square > 0) pull += attraction_pull(attractor, 1, square, substep_) * towards;
-        }
         if (body < forces_.force.size()) pull += masses_.inverse_mass[body] * forces_.force[body];
         return pull;
     }
@@ -526,15 +520,23 @@ private:
     // it has: what pressed it in has stopped it, and it is held all the same.
     void take_back_swing(std::uint32_t body, double gained)
     {
-        if (!take_back_energy(body, gained)) velocities_.angular[body] *= 0;
+        if (!take_back_energy(body, std::max(0.0, gained))) velocities_.angular[body] *= 0;
     }
 
-    // J, of its motion. False for one that has not so much, which keeps it.
+    // J, of what attractors have given up for one that is on no pivot.
+    double attraction_energy_of(std::uint32_t body) const
+    {
+        if (forces_.attractors.empty() || forces_.on_pivot(body)) return 0;
+        return attraction_of(forces_, masses_, poses_, body, substep_);
+    }
+
+    // J, of its motion; below 0 it is given. False for one that has not so much, which keeps it.
     bool take_back_energy(std::uint32_t body, double gained)
     {
-        if (!(gained > 0)) return true;
+        if (gained == 0) return true;
         const double had = kinetic_energy_of(body, masses_, poses_, velocities_);
         if (had < gained) return false;
+        if (!(had > 0)) return true;
         const double kept = std::sqrt(1 - gained / had);
         velocities_.linear[body] *= kept;
         velocities_.angular[body] *= kept;
@@ -546,6 +548,7 @@ private:
         const Pose went = poses_.at(way.body);
         const Vec3 velocity = velocities_.linear[way.body], spin = velocities_.angular[way.body];
         const double before = springs_energy_of(way.body, forces_, poses_);
+        const double attracted = attraction_energy_of(way.body);
         const double hung = hanging_energy_of(way.body);
         // What goes by itself lifts and lowers who rides on it: there it is where he would have
         // been.
@@ -554,9 +557,10 @@ private:
         poses_.position[way.body] = end.position;
         turn_back(way.body, end.orientation.normalized());
         take_back_swing(way.body, hanging_energy_of(way.body) - hung);
-        // Nor have its springs drawn it down that way: what they hold the more for it goes. One
-        // that has not so much is left to contacts.
-        const double drawn = springs_energy_of(way.body, forces_, poses_) - before;
+        // Nor have its springs drawn it down that way: what they hold the more for it goes. And
+        // attractors have given up another amount. One that has not so much is left to contacts.
+        const double drawn = std::max(0.0, springs_energy_of(way.body, forces_, poses_) - before)
+            + (attraction_energy_of(way.body) - attracted);
         if (take_back_energy(way.body, drawn)) return fast_.held.push_back(way.body);
         poses_.position[way.body] = went.position;
         poses_.orientation[way.body] = went.orientation;
