@@ -121,6 +121,8 @@ constexpr HardCase kCases[] = {
      case_wedged_solids, Fault::haste},
     {"H88", "what falls on something light and bounces off nothing is thrown back by nothing",
      case_crushed, Fault::haste},
+    {"H89", "who bounces wins nothing, whatever acts besides gravity", case_forced_bounces,
+     Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

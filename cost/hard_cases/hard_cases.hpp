@@ -96,6 +96,7 @@ void case_tiles(CaseBench& bench);          // H81, tiles.cpp
 void case_both_sides(CaseBench& bench);     // H82, both_sides.cpp
 void case_wedged_solids(CaseBench& bench);  // H87, wedged_solids.cpp
 void case_crushed(CaseBench& bench);
+void case_forced_bounces(CaseBench& bench);
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

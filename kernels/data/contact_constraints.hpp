@@ -34,7 +34,8 @@ inline constexpr double kLeastLeverArm = 1e-2;
 ///   delta_pose  how far it moved since the step began (3), 1 once it ran away (see begin_substep)
 ///               and else 0, and its turn as a quaternion x, y, z, w
 ///   inertia     inverse mass, inverse inertia in world axes as of the step's beginning xx, yy, zz,
-///               xy, xz, yz, 0
+///               xy, xz, yz, and 1 where gravity acts in halves, before a body moves and after (see
+///               StateDependentForces), else 0
 ///   free        `motion` as it would be in this substep without any contact
 template <class Real>
 struct SolverBody {

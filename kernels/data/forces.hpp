@@ -95,8 +95,14 @@ struct FlightMemory {
 };
 
 /// By body; empty where none is kept.
+///
+///   lags  1 where contacts left a velocity half a substep behind (see
+///         pipeline/forces/velocity_lag.hpp); may be shorter
 struct Flights {
     std::vector<FlightMemory> memory;
+    std::vector<std::uint8_t> lags;
+
+    bool lags_of(std::size_t body) const { return body < lags.size() && lags[body] != 0; }
 };
 
 }  // namespace throng

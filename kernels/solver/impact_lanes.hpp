@@ -41,19 +41,32 @@ bool any_below_zero(L x)
     return any;
 }
 
-// What gravity adds to the velocity between two in a substep: nothing where both fall.
+// What half of a substep's gravity adds to the velocity between two: nothing where both fall.
+//
+//   all   of the half to come, before they move
+//   lags  of the half that is behind but has not been added yet, of those to whom all of it is at
+//         once
+template <class L>
+struct HalfFall {
+    V3<L> all, lags;
+};
 template <class L, bool turns>
-V3<L> fall_between(const Contacts<L, turns>& c,
-                   const SolverBody<typename L::Number>* bodies,
-                   const SolverIteration<typename L::Number>& iteration)
+HalfFall<L> half_fall_between(const Contacts<L, turns>& c,
+                              const SolverBody<typename L::Number>* bodies,
+                              const SolverIteration<typename L::Number>& iteration)
 {
     using Real = typename L::Number;
     const L zero = Real(0), one = Real(1);
-    const Mobility<L, turns> a(bodies, c.block.a + c.at), b(bodies, c.block.b + c.at);
-    const L falls =
-        select(b.inverse_mass > zero, one, zero) - select(a.inverse_mass > zero, one, zero);
-    return {falls * L(iteration.gravity_step[0]), falls * L(iteration.gravity_step[1]),
-            falls * L(iteration.gravity_step[2])};
+    L a[8], b[8];
+    gather_bodies(bodies->inertia, c.block.a + c.at, a);
+    gather_bodies(bodies->inertia, c.block.b + c.at, b);
+    const auto fall = [&](L of_b, L of_a) -> V3<L> {
+        const L falls = select(b[0] > zero, of_b, zero) - select(a[0] > zero, of_a, zero);
+        return V3<L>{falls * L(iteration.gravity_step[0]), falls * L(iteration.gravity_step[1]),
+                     falls * L(iteration.gravity_step[2])}
+        * L(Real(0.5));
+    };
+    return {fall(one, one), fall(one - b[7], one - a[7])};
 }
 
 // Who comes in fast and would touch before the substep ends. From here on the speeds are those in
@@ -77,10 +90,10 @@ void find_impact_points(Contacts<L, turns>& c,
             select(elastic > zero, fastest + L(iteration.restitution_threshold - fall), zero)))
         return;
 
-    const V3<L> falls = fall_between(c, constraints.bodies, iteration) * L(Real(0.5));
-    c.relative.n += dot(c.frame.normal, falls);
-    c.relative.v1 += dot(c.frame.tangent, falls);
-    c.relative.v2 += dot(c.frame.other, falls);
+    const HalfFall<L> fall_between = half_fall_between(c, constraints.bodies, iteration);
+    c.relative.n += dot(c.frame.normal, fall_between.lags);
+    c.relative.v1 += dot(c.frame.tangent, fall_between.lags);
+    c.relative.v2 += dot(c.frame.other, fall_between.lags);
     const SeparationChange<L> change = separation_change(c, constraints.bodies);
     const L slow = -iteration.restitution_threshold,
             at_rest = Real(-kAtRest) * iteration.inverse_substep;
@@ -93,8 +106,8 @@ void find_impact_points(Contacts<L, turns>& c,
         if constexpr (turns)
             separation += lane<L>(point.lever_arm[0], c.at) * change.along_0
                 + lane<L>(point.lever_arm[1], c.at) * change.along_1;
-        const L then =
-            separation * L(iteration.inverse_substep) + speed + dot(c.frame.normal, falls);
+        const L then = separation * L(iteration.inverse_substep) + speed
+            + dot(c.frame.normal, fall_between.all);
         const L mass = select(elastic > zero, lane<L>(point.mass, c.at), zero);
         impact.mass[k] = select(speed < slow, select(then < zero, mass, zero), zero);
         hits -= impact.mass[k];

@@ -117,6 +117,12 @@ bool IslandSolver::bounce(const StepContext& context)
     // Slower than what gravity gives in two steps is resting, not bouncing.
     const double threshold = 2 * context.gravity.norm() * context.settings.dt;
     struck_ = before_;
+    // Of others the half of gravity that is behind has not been added yet: with them it comes
+    // after.
+    if (state_forces_)
+        for (const ForcedBody& forced : state_forces_->forced_bodies())
+            if (forced.late && context.has(Effect::gravity) && struck_[forced.at].inverse_mass > 0)
+                struck_[forced.at].velocity -= 0.5 * context.substep() * context.gravity;
     for (std::size_t i = 0; i < struck_.size(); ++i)
         struck_[i].inverse_inertia = free_[i].inverse_inertia;
     if (!list_touching(threshold)) return false;

@@ -186,8 +186,10 @@ private:
                 bodies.push_back(layout_.body_of_solver_index[slice.first_body + k]);
         }
         state_forces_.emplace(context_, facts_, bodies);
-        if (state_forces_->forced_bodies().empty()) state_forces_.reset();
-        if (state_forces_ && state_forces_->stiff())
+        if (state_forces_->forced_bodies().empty()) return state_forces_.reset();
+        for (const ForcedBody& forced : state_forces_->forced_bodies())
+            if (forced.late) constraints_.bodies[layout_.solver_index[forced.body]].inertia[7] = 1;
+        if (state_forces_->stiff())
             limiter_.emplace(layout_, batch_, facts_, *state_forces_,
                              context_.gravity * context_.substep());
     }

@@ -8,6 +8,7 @@
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/forces/rigid_law.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/forces/velocity_lag.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
@@ -136,6 +137,7 @@ public:
              StepDiagnostics& diagnostics)
     {
         flights_.memory.resize(states.kind.size());
+        catch_up_velocities(context_, bodies, flights_, velocities_);
         const Forces& forces = facts_.forces;
         // The outcome is written down when all have read.
         std::vector<std::vector<Landing>> landings(block_count(bodies.size(), kBodies));

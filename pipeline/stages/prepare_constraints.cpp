@@ -3,6 +3,7 @@
 #include "kernels/math/rotation.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solver/solver_bodies.hpp"
+#include "pipeline/forces/velocity_lag.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
@@ -139,14 +140,19 @@ void prepare_prescribed_velocities(const PrescribedVelocities& prescribed,
 template <class Real>
 void prepare_constraints(const StepContext& context,
                          const Layout& layout,
+                         const Forces& forces,
                          const Poses& poses,
-                         const Velocities& velocities,
                          const Masses& masses,
                          const BodyStates& states,
                          const ExternalAcceleration& accelerations,
                          const PrescribedVelocities& prescribed,
+                         Flights& flights,
+                         Velocities& velocities,
                          ContactConstraints<Real>& constraints)
 {
+    lag_velocities(context, forces, masses,
+                   std::span(layout.body_of_solver_index).subspan(1, layout.dynamic), flights,
+                   velocities);
     const bool forced = context.effects.meets(kForces);
     const bool gyroscopic = context.has(Effect::gyroscopic);
     constraints.bodies.resize(layout.body_of_solver_index.size());
@@ -194,9 +200,9 @@ void prepare_constraints(const StepContext& context,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void prepare_constraints<Real>(                                                       \
-        const StepContext&, const Layout&, const Poses&, const Velocities&, const Masses&,         \
-        const BodyStates&, const ExternalAcceleration&, const PrescribedVelocities&,               \
-        ContactConstraints<Real>&);
+        const StepContext&, const Layout&, const Forces&, const Poses&, const Masses&,             \
+        const BodyStates&, const ExternalAcceleration&, const PrescribedVelocities&, Flights&,     \
+        Velocities&, ContactConstraints<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

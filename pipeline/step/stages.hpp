@@ -124,12 +124,14 @@ void apply_forces(const StepContext&,
 template <class Real>
 void prepare_constraints(const StepContext&,
                          const Layout&,
+                         const Forces&,
                          const Poses&,
-                         const Velocities&,
                          const Masses&,
                          const BodyStates&,
                          const ExternalAcceleration&,
                          const PrescribedVelocities&,
+                         Flights&,
+                         Velocities&,
                          ContactConstraints<Real>&);
 
 /// Contacts into constraints, constraints into impulses, velocities and poses. Substeps live here:

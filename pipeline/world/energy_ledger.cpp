@@ -33,14 +33,18 @@ bool moves_by_itself(const WorldState& state, std::uint32_t body)
     return !velocities.linear[body].isZero(0) || !velocities.angular[body].isZero(0);
 }
 
-// s, by which velocities of what only falls are behind its places. Kicked, then moved, it has in
-// each place the velocity of half a substep before: beside the height of that time its energy stays
-// what it is, beside that of now it is less on the way down than on the way up, and whoever bounces
-// would seem to win by it.
-double lag_of(const StepContext& context)
+// s, by which a velocity is behind its place. Kicked, then moved, a body has in each place the
+// velocity of half a substep before: beside the height of that time its energy stays what it is,
+// beside that of now it is less on the way down than on the way up, and whoever bounces would seem
+// to win by it. So has who touches something, see velocity_lag.hpp.
+double lag_of(const WorldState& state, std::uint32_t body)
 {
-    const bool kicked = falls_by_kicks(context.settings.integrator);
-    return kicked && !context.effects.meets(kEventDriven) ? context.substep() / 2 : 0;
+    const StepContext& context = state.get<StepContext>();
+    if (context.effects.meets(kEventDriven)) return 0;
+    const Integrator integrator = context.settings.integrator;
+    const bool kicked = integrator == Integrator::semi_implicit
+        || (integrator == Integrator::auto_ && !state.get<Forces>().act_on(body));
+    return kicked || state.get<Flights>().lags_of(body) ? context.substep() / 2 : 0;
 }
 
 // W, the most that drag in the wind gives at a velocity between two.
@@ -114,7 +118,6 @@ void EnergyLedger::Inside::look(const World& world, Look& look) const
     const Velocities& velocities = state.get<Velocities>();
     const Forces& forces = state.get<Forces>();
     const Vec3 gravity = world.gravity();
-    const double lag = lag_of(state.get<StepContext>());
     look.bodies.assign(states.kind.size(), {});
     for (std::uint32_t body = 0; body < look.bodies.size(); ++body) {
         if (!states.dynamic(body)) continue;
@@ -123,7 +126,7 @@ void EnergyLedger::Inside::look(const World& world, Look& look) const
         of.velocity = state.velocity(body);
         of.spin = velocities.angular[body];
         of.kinetic = kinetic_energy_of(body, masses, poses, velocities);
-        const Vec3 then = forces.act_on(body) ? of.place : Vec3(of.place - lag * of.velocity);
+        const Vec3 then = of.place - lag_of(state, body) * of.velocity;
         of.potential =
             attraction_of(forces, masses, poses, body, state.get<StepContext>().substep())
             - masses.mass[body] * gravity.dot(then);

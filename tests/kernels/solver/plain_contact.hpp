@@ -21,6 +21,7 @@ struct PlainBody {
     double inverse_mass = 0;
     Mat3 inverse_inertia;
     bool written = false;
+    bool halves = false;  // of gravity come before it moves and after
 
     template <class Real>
     PlainBody(const SolverBody<Real>& body, bool may_write, bool turns = true) : written(may_write)
@@ -35,6 +36,7 @@ struct PlainBody {
                     double{body.delta_pose[5]}, double{body.delta_pose[6]})
                    .toRotationMatrix();
         inverse_mass = double{body.inertia[0]};
+        halves = body.inertia[7] != 0;
         inverse_inertia =
             Sym3{double{body.inertia[1]}, double{body.inertia[2]}, double{body.inertia[3]},
                  double{body.inertia[4]}, double{body.inertia[5]}, double{body.inertia[6]}}
@@ -139,13 +141,15 @@ public:
     }
 
     // An impact is a contact of its own that holds nothing yet: of the points that strike, seen in
-    // the middle of what gravity does.
+    // the middle of what gravity does, where those are that it comes in halves to.
     void apply_restitution(const PlainIteration& iteration)
     {
         PlainContact struck = *this;
-        const double falls = (b.inverse_mass > 0 ? 1 : 0) - (a.inverse_mass > 0 ? 1 : 0);
-        const Vec3 half = iteration.gravity_step * falls / 2;
-        struck.b.velocity += half;
+        const auto falls = [](const PlainBody& body) { return body.inverse_mass > 0 ? 1.0 : 0.0; };
+        const auto lags = [&](const PlainBody& body) { return body.halves ? 0.0 : falls(body); };
+        const Vec3 half = iteration.gravity_step * (falls(b) - falls(a)) / 2;
+        const Vec3 behind = iteration.gravity_step * (lags(b) - lags(a)) / 2;
+        struck.b.velocity += behind;
         struck.friction_impulse = struck.rolling_impulse = Vec3::Zero();
         struck.torsional_impulse = 0;
         std::vector<std::size_t> hits;
@@ -164,7 +168,7 @@ public:
         if (iteration.has_friction) struck.hold(iteration);
         a = struck.a;
         b = struck.b;
-        b.velocity -= half;
+        b.velocity -= behind;
         for (const Point& point : struck.points) impact_impulse += normal * point.impulse;
         impact_impulse += struck.friction_impulse;
     }

@@ -243,6 +243,7 @@ BlockCase<Real> packed_block(std::mt19937& random, const BlockWish& wish)
     bodies.push_back(still);
     for (int i = 0; i < 2 * kBlock; ++i) {
         bodies.push_back(random_body<Real>(random));
+        if (i % 3 == 1) bodies.back().inertia[7] = 1;  // gravity in halves
         if (wish.pivots && random() % 3 != 0) {
             bodies.back().inertia[0] = 0;
             for (int k = 0; k < 3; ++k) bodies.back().motion[k] = bodies.back().delta_pose[k] = 0;

@@ -1,0 +1,77 @@
+// Velocity lag: who goes from flight to contact and back wins nothing by it.
+#include "throng/energy_ledger.hpp"
+#include "throng/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace throng {
+namespace {
+
+// A ball that falls half a meter and loses nothing.
+Scene bouncing(Integrator integrator)
+{
+    Scene scene;
+    scene.settings.integrator = integrator;
+    scene.materials.push_back({"m", 1000, 0, 1, 0});
+    scene.shapes.push_back({"floor", PlaneShape{}});
+    scene.shapes.push_back({"ball", SphereShape{0.05}});
+    BodyDescription floor, ball;
+    floor.shape = floor.material = ball.material = 0;
+    floor.motion = Motion::static_;
+    ball.shape = 1;
+    ball.position = Vec3(0, 0, 0.55);
+    scene.bodies = {floor, ball};
+    return scene;
+}
+
+// m, the greatest in the last second of twenty.
+double height_after(const Scene& scene)
+{
+    World world(scene);
+    EnergyLedger ledger;
+    double highest = 0;
+    for (int step = 0; step < 1200; ++step) {
+        ledger.before_step(world);
+        world.step();
+        ledger.after_step(world);
+        if (step >= 1140) highest = std::max(highest, world.pose(world.bodies()[1]).position.z());
+    }
+    EXPECT_LT(ledger.gained(), 1e-3 * ledger.greatest_kinetic());
+    return highest;
+}
+
+TEST(VelocityLag, WhoBouncesWinsNothingByAnyIntegrator)
+{
+    for (const Integrator integrator :
+         {Integrator::auto_, Integrator::semi_implicit, Integrator::midpoint, Integrator::splitting,
+          Integrator::rk4}) {
+        Scene scene = bouncing(integrator);
+        EXPECT_NEAR(height_after(scene), 0.55, 0.02) << int(integrator);
+        scene.bodies[1].linear_drag = 1e-12;
+        EXPECT_NEAR(height_after(scene), 0.55, 0.02) << int(integrator) << ", drag";
+        scene.attractors.push_back({Vec3(0, 0, 50), 1e-12});
+        EXPECT_NEAR(height_after(scene), 0.55, 0.02) << int(integrator) << ", attractor";
+    }
+}
+
+// What rests is not moved by it: the velocity that contacts leave is that of a body at rest.
+TEST(VelocityLag, LeavesWhoRestsAtRest)
+{
+    for (const Integrator integrator : {Integrator::auto_, Integrator::rk4}) {
+        Scene scene = bouncing(integrator);
+        scene.materials[0].restitution = 0;
+        scene.bodies[1].position.z() = 0.05;
+        scene.bodies[1].linear_drag = 0.1;
+        World world(scene);
+        world.step(60);
+        for (int step = 0; step < 60; ++step) {
+            world.step();
+            EXPECT_LT(world.velocity(world.bodies()[1]).norm(), 1e-4) << int(integrator);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace throng
