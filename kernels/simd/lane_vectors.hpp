@@ -1,5 +1,5 @@
-// Lane vectors: W vectors side by side, and one where L is a plain number. For sources compiled once
-// a width.
+// Lane vectors: W vectors side by side, and one where L is a plain number. For sources compiled
+// once a width.
 #pragma once
 
 #include "kernels/simd/lanes.hpp"
