@@ -47,10 +47,9 @@ struct SolverBody {
 
 /// What turning a body takes, for the gyroscopic torque, in world axes as of the step's beginning.
 ///
-///   share  inertia as a share of its trace, xx, yy, zz, xy, xz, yz; then 1 where the torque acts;
-///   0 axis   the axis that the inertia is symmetric about (3), the moment about it as a share of
-///   that
-///          across; zeros where there is none such
+///   share  inertia as a share of its trace, xx, yy, zz, xy, xz, yz; 1 where the torque acts; 0
+///   axis   the axis that the inertia is symmetric about (3), the moment about it as a share of
+///          that across; zeros where there is none such
 template <class Real>
 struct GyroscopicInertia {
     alignas(64) Real share[8];

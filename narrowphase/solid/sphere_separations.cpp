@@ -112,6 +112,7 @@ double distance_from(const Shapes& shapes, ShapeRef shape, const Vec3& place, do
 
 void find_sphere_separations(const PairInput<double>& in, std::vector<LocalManifold<double>>& out)
 {
+    // Not as structured bindings: clang 14 cannot capture these.
     const Shapes& shapes = in.shapes;
     const ShapeRef solid = in.a, other = in.b;
     const Pose& other_in_solid = in.b_in_a;

@@ -20,13 +20,14 @@ bool differs(const StepContext& context, const Forces& forces, std::uint32_t bod
     return settings.response == Response::penalty || !forces.depends_on_state(body);
 }
 
-}  // namespace
-
-bool velocities_differ(const StepContext& context)
+// Whether anybody can be such a one: most scenes have none, and nobody is looked at.
+bool anybody_differs(const StepContext& context)
 {
     return context.has(Effect::gravity)
         && (!falls_by_kicks(context.settings.integrator) || context.effects.meets(kForces));
 }
+
+}  // namespace
 
 void lag_velocities(const StepContext& context,
                     const Forces& forces,
@@ -35,7 +36,7 @@ void lag_velocities(const StepContext& context,
                     Flights& flights,
                     Velocities& velocities)
 {
-    if (!velocities_differ(context)) return;
+    if (!anybody_differs(context)) return;
     flights.lags.resize(masses.mass.size());
     for (const std::uint32_t body : bodies) {
         if (flights.lags[body] != 0 || !(masses.inverse_mass[body] > 0)

@@ -14,9 +14,6 @@
 
 namespace throng {
 
-/// Whether anybody's velocity can be of another moment in flight than among contacts.
-bool velocities_differ(const StepContext& context);
-
 /// Before contacts are solved: velocities of these bodies, where they are of the moment, to where
 /// the solver has them.
 void lag_velocities(const StepContext& context,
