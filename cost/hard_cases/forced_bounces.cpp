@@ -105,6 +105,7 @@ void case_forced_bounces(CaseBench& bench)
     const auto plainly = [](Settings& settings) { settings.solver = Solver::pgs; };
     const auto finely = [](Settings& settings) { settings.precision = Precision::double_; };
     const auto more = [](Settings& settings) { settings.substeps = 16; };
+    const auto exactly = [](Settings& settings) { settings.solver = Solver::direct; };
     const auto wait = [](Settings& settings) { settings.overlap = Overlap::back_up; };
     using enum Acts;
     const Bounce all[] = {
@@ -141,6 +142,14 @@ void case_forced_bounces(CaseBench& bench)
          .integrator = Integrator::semi_implicit},
         {.setting = "pgs, faint drag", .choose = plainly},
         {.setting = "double, faint drag", .choose = finely},
+        {.setting = "direct, nothing acts", .acts = nothing, .choose = exactly},
+        {.setting = "direct, a box", .acts = nothing, .box = true, .choose = exactly},
+        {.setting = "direct, faint drag", .choose = exactly},
+        {.setting = "direct, a faint attractor", .acts = attractor, .choose = exactly},
+        {.setting = "direct, nothing acts, dt=1e-3",
+         .acts = nothing,
+         .dt = 1e-3,
+         .choose = exactly},
         {.setting = "back_up, faint drag", .choose = wait},
     };
     for (const Bounce& bounce : all) let_bounce(bench, bounce);

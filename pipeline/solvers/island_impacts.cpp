@@ -76,26 +76,22 @@ void IslandSolver::add_to_struck()
     solve(after_, others_);
 }
 
-// By impacts with friction each point leaves as fast as without, unless that takes energy that
-// nobody gave: then friction bears its share of the impulse, and the point leaves as it comes.
+// Each struck point leaves as fast as it is reflected, friction or not, unless that takes energy
+// that nobody gave: then friction bears its share of the impulse, and the point leaves as it comes.
 void IslandSolver::settle_after_impacts()
 {
-    bool has_friction = false;
     double work = 0;
     others_ = points_;
     for (std::size_t i = 0; i < others_.size(); ++i) {
         DirectPoint& point = others_[i];
         const bool struck = struck_impulse_[i] > 0;
-        has_friction = has_friction || (struck && (point.friction > 0 || point.rolling > 0));
         point.least = struck ? 0 : std::min(point.least, 0.0);
         point.impulse = point.torque = Vec3::Zero();
         if (struck)
             work += 0.5 * struck_impulse_[i] * (approach(i, before_) + approach(i, struck_));
     }
-    if (has_friction) {
-        hold_struck();
-        if (!gains(work)) return;
-    }
+    hold_struck();
+    if (!gains(work)) return;
     struck_points_ = others_;
     for (std::size_t i = 0; i < others_.size(); ++i) {
         DirectPoint& point = struck_points_[i];

@@ -288,9 +288,11 @@ void IslandSolver::substep(const StepContext& context)
     carry_arms(time / 2, context.settings.dt);
     move_freely(context, time);
     hold_contacts(time);
+    // Who bounces does so as the substep begins, and goes on as he leaves: stopped where he
+    // touches, he would lose the rest of the substep's way, and with it height.
+    if (bounce(context)) points_ = others_;
     going_ = after_;
     push_out_of_overlap(context);
-    if (bounce(context)) points_ = others_;
     advance(time);
     answer_late_forces(context);
 }
