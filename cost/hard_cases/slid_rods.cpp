@@ -7,6 +7,7 @@
 //
 // Source: Painleve 1895; Stewart, "Rigid-body dynamics with friction and impact", 2000.
 #include "cost/hard_cases/hard_cases.hpp"
+#include "throng/energy_ledger.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
 
@@ -37,9 +38,10 @@ std::uint32_t add_rod(SceneParts& parts, std::uint32_t material, double length, 
 
 struct Watched {
     double not_finite = 0;
-    double gain = 0;     // J, the most that energy grew from one step to the next
-    double overlap = 0;  // m
-    double first = 0;    // J, energy at the start, of motion and height
+    double step_gain = 0;  // J, the most that energy grew from one step to the next
+    double gain = 0;       // J, the most that it rose, told by the ledger
+    double overlap = 0;    // m
+    double first = 0;      // J, energy at the start, of motion and height
     double speed = 0, force = 0;
 };
 
@@ -51,17 +53,20 @@ Watched watch(CaseBench& bench, const Scene& scene, double time)
         const Measures measures = world.measure();
         last = seen.first = measures.kinetic_energy + measures.potential_energy;
     });
-    bench.run(scene, time, [&](World& world, double) {
+    EnergyLedger ledger;
+    const auto look = [&](World& world, double) {
         const Measures measures = world.measure();
         const double energy = measures.kinetic_energy + measures.potential_energy;
         if (!std::isfinite(energy)) seen.not_finite = 1;
-        seen.gain = std::max(seen.gain, energy - last);
+        seen.step_gain = std::max(seen.step_gain, energy - last);
         last = energy;
         seen.overlap = std::max(seen.overlap, measures.greatest_overlap);
         seen.speed = world.velocity(world.bodies().back()).norm();
         seen.force = -world.contact_force(world.bodies().front()).z();
         return seen.not_finite == 0;
-    });
+    };
+    bench.run(scene, time, look, &ledger);
+    seen.gain = ledger.gained();
     return seen;
 }
 
@@ -94,20 +99,25 @@ Scene dropped_rod(const CaseBench& bench, double restitution)
     return parts.scene();
 }
 
-void follow(CaseBench& bench, const std::string& name, Scene scene, double time)
+// Who stays on the floor has a velocity of the moment; that of who bounces is half a substep
+// behind, and beside the place of the moment it would seem to win g h v: of such the ledger tells.
+void follow(
+    CaseBench& bench, const std::string& name, Scene scene, double time, double Watched::*gain)
 {
     const Watched soft = watch(bench, scene, time);
-    const char *const grows = "growth of energy in a step over the first",
+    const bool in_steps = gain == &Watched::step_gain;
+    const char *const grows = in_steps ? "growth of energy in a step over the first"
+                                       : "growth of energy over the first",
                       *const sinks = "greatest overlap";
     const std::string usual = name + ", default", met_by = "solver=direct, dt 1e-3";
-    bench.report_default(usual, grows, soft.gain / soft.first, 1e-9, "1", met_by);
+    bench.report_default(usual, grows, soft.*gain / soft.first, 1e-9, "1", met_by);
     bench.report_default(usual, sinks, soft.overlap, kSlop, "m", met_by);
     ask_exactly(scene.settings);
     scene.settings.dt = 1e-3;
     const Watched exact = watch(bench, scene, time);
     const std::string direct = name + ", direct, dt 1e-3";
     bench.report(direct, "states that are not finite", exact.not_finite, 0, "1");
-    bench.report(direct, grows, exact.gain / exact.first, 1e-9, "1");
+    bench.report(direct, grows, exact.*gain / exact.first, 1e-9, "1");
     bench.report(direct, sinks, exact.overlap, kSlop, "m");
     bench.report(direct, "speed at the end", exact.speed, 1e-6, "m/s");
     bench.report(direct, "error of the force on the floor at the end",
@@ -120,11 +130,11 @@ void case_painleve(CaseBench& bench)
 {
     for (const double friction : {1.2, 1.5, 3.0})
         follow(bench, "rod slid at 63.4 degrees, mu " + std::to_string(friction).substr(0, 3),
-               slid_rod(bench, friction), 4);
+               slid_rod(bench, friction), 4, &Watched::step_gain);
     for (const double restitution : {0.0, 0.5, 0.9})
         follow(bench,
                "rod dropped at 5 degrees, restitution " + std::to_string(restitution).substr(0, 3),
-               dropped_rod(bench, restitution), 4);
+               dropped_rod(bench, restitution), 4, &Watched::gain);
 }
 
 }  // namespace throng

@@ -112,6 +112,7 @@ constexpr OtherFault kOtherFaults[] = {
     {"H18", Fault::skew, "difference by the order of bodies"},
     {"H21", Fault::sink, "greatest overlap"},
     {"H21", Fault::haste, "growth of energy in a step over the first"},
+    {"H21", Fault::haste, "growth of energy over the first"},
     {"H21", Fault::skew, "speed at the end"},
     {"H22", Fault::grip, "falls: wrong outcomes"},
     {"H23", Fault::haste, "error of the wedge's acceleration"},
