@@ -26,12 +26,18 @@ inline bool holdable(const Vec3& v)
     return std::abs(v.x()) < kMost && std::abs(v.y()) < kMost && std::abs(v.z()) < kMost;
 }
 
-/// The same of all that a step gives a body.
-inline bool
-holdable(const Vec3& position, const Quat& orientation, const Vec3& linear, const Vec3& angular)
+/// All that a step gives a body: where its center of mass is and how its axes are turned; its
+/// velocity, m/s; its spin in world axes, rad/s.
+struct BodyMotion {
+    Vec3 position;
+    Quat orientation;
+    Vec3 linear, angular;
+};
+
+inline bool holdable(const BodyMotion& of)
 {
-    return holdable(position) && orientation.coeffs().allFinite() && holdable(linear)
-        && holdable(angular);
+    return holdable(of.position) && of.orientation.coeffs().allFinite() && holdable(of.linear)
+        && holdable(of.angular);
 }
 
 /// Where each body's center of mass is and how its axes are turned.
@@ -47,6 +53,18 @@ struct Velocities {
     std::vector<Vec3> linear;
     std::vector<Vec3> angular;
 };
+
+/// Gives a body its new motion. False, and the body as it was, where a step cannot hold that.
+inline bool
+give_motion(const BodyMotion& motion, std::size_t body, Poses& poses, Velocities& velocities)
+{
+    if (!holdable(motion)) return false;
+    poses.position[body] = motion.position;
+    poses.orientation[body] = motion.orientation;
+    velocities.linear[body] = motion.linear;
+    velocities.angular[body] = motion.angular;
+    return true;
+}
 
 /// What resists motion. Zero inverses do not move, or do not turn.
 struct Masses {

@@ -144,19 +144,19 @@ RigidMotion::Outcome RigidMotion::outcome(std::size_t i) const
     const Body& body = bodies_[i];
     Outcome out;
     out.position = vector_at(state_.data() + place_of(i));
-    out.velocity = vector_at(state_.data() + speed_of(i));
+    out.linear = vector_at(state_.data() + speed_of(i));
     out.orientation = body.turns ? read_orientation(rule_.rotation, body.orientation.data())
                                  : facts_.poses.orientation[body.body];
     const Vec3 spin = vector_at(state_.data() + speed_of(i) + 3);
     if (body.by_momentum) {
         const Mat3 turn = out.orientation.toRotationMatrix();
-        out.angular_velocity = turn * body_spin(i, turn, state_.data());
+        out.angular = turn * body_spin(i, turn, state_.data());
     } else {
         // What nothing has changed keeps its bits.
-        out.angular_velocity =
+        out.angular =
             spin == body.spin ? facts_.velocities.angular[body.body] : Vec3(out.orientation * spin);
     }
-    out.memory = {body.orientation, spin, body.by_momentum, out.orientation, out.angular_velocity};
+    out.memory = {body.orientation, spin, body.by_momentum, out.orientation, out.angular};
     return out;
 }
 

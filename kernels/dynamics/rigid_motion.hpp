@@ -66,9 +66,7 @@ public:
     void settle();
 
     /// What has become of the body that was taken up at a place.
-    struct Outcome {
-        Vec3 position, velocity, angular_velocity;
-        Quat orientation;
+    struct Outcome : BodyMotion {
         FlightMemory memory;
     };
     Outcome outcome(std::size_t i) const;

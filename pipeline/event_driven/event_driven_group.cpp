@@ -85,10 +85,8 @@ bool EventDrivenGroup::note_ends(const RigidMotion& law)
 {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const RigidMotion::Outcome now = law.outcome(i);
-        ends_[i] = {
-            {now.position, now.orientation}, now.velocity, now.angular_velocity, now.memory, true};
-        if (!holdable(now.position, now.orientation, now.velocity, now.angular_velocity))
-            return false;
+        ends_[i] = {{now.position, now.orientation}, now.linear, now.angular, now.memory, true};
+        if (!holdable(now)) return false;
     }
     return true;
 }

@@ -203,13 +203,9 @@ void IslandSolver::give_states(const DirectScene<Real>& scene,
         const Vec3 position = scene.poses.position[island_body.body] + island_body.moved;
         Quat orientation = island_body.turned * island_body.orientation;
         orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
-        const bool sound = holdable(position, orientation, after_[i].velocity, after_[i].spin);
+        const bool sound = give_motion({position, orientation, after_[i].velocity, after_[i].spin},
+                                       island_body.body, scene.poses, scene.velocities);
         constraints.settled[slice.first_body + i] = sound ? Settled::yes : Settled::lost;
-        if (!sound) continue;
-        scene.poses.position[island_body.body] = position;
-        scene.poses.orientation[island_body.body] = orientation;
-        scene.velocities.linear[island_body.body] = after_[i].velocity;
-        scene.velocities.angular[island_body.body] = after_[i].spin;
     }
 }
 

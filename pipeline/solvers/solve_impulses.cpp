@@ -106,12 +106,8 @@ bool take_back(const SolverBody<Real>& solver_body,
     Quat orientation = turn_of(solver_body) * poses.orientation[body];
     const double length = std::sqrt(orientation.squaredNorm());
     orientation.coeffs() /= length;
-    if (ran_away(solver_body) || !holdable(position, orientation, v, w)) return false;
-    poses.position[body] = position;
-    poses.orientation[body] = orientation;
-    velocities.linear[body] = v;
-    velocities.angular[body] = w;
-    return true;
+    return !ran_away(solver_body)
+        && give_motion({position, orientation, v, w}, body, poses, velocities);
 }
 
 bool any_compound(const Colliders& colliders)

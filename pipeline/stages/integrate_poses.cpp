@@ -109,12 +109,7 @@ bool fly_one(const StepContext& context,
         if (!split || !turn_in_parts(rule, masses.principal_of(body), orientation, angular))
             turn_by_steps(context, masses, body, orientation, angular);
     }
-    if (!holdable(position, orientation, linear, angular)) return false;
-    poses.position[body] = position;
-    poses.orientation[body] = orientation;
-    velocities.linear[body] = linear;
-    velocities.angular[body] = angular;
-    return true;
+    return give_motion({position, orientation, linear, angular}, body, poses, velocities);
 }
 
 // Bodies by the law of rigid motion: any integrator, any rotation, any forces.
@@ -216,7 +211,7 @@ private:
         for (std::size_t i = 0; i < bodies.size(); ++i)
             landings.push_back({bodies[i], law.outcome(i)});
         // One that is lost takes none along that a spring joins to it.
-        const auto lost = [](const Landing& landing) { return !sound(landing.outcome); };
+        const auto lost = [](const Landing& landing) { return !holdable(landing.outcome); };
         if (bodies.size() == 1
             || std::none_of(landings.begin() + static_cast<std::ptrdiff_t>(first), landings.end(),
                             lost))
@@ -226,22 +221,11 @@ private:
         for (const std::uint32_t body : bodies) carry(alone, {&body, 1}, landings);
     }
 
-    // Whether a step can hold it.
-    static bool sound(const RigidMotion::Outcome& now)
-    {
-        return holdable(now.position, now.orientation, now.velocity, now.angular_velocity);
-    }
-
     // False, and the body as it was, where it would become what a step cannot hold.
     bool land(const Landing& landing)
     {
-        const RigidMotion::Outcome& now = landing.outcome;
-        if (!sound(now)) return false;
-        poses_.position[landing.body] = now.position;
-        poses_.orientation[landing.body] = now.orientation;
-        velocities_.linear[landing.body] = now.velocity;
-        velocities_.angular[landing.body] = now.angular_velocity;
-        flights_.memory[landing.body] = now.memory;
+        if (!give_motion(landing.outcome, landing.body, poses_, velocities_)) return false;
+        flights_.memory[landing.body] = landing.outcome.memory;
         return true;
     }
 

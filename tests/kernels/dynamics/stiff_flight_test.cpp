@@ -52,8 +52,8 @@ struct Hung {
         const RigidMotion::Outcome now = flight.law().outcome(0);
         poses.position[0] = now.position;
         poses.orientation[0] = now.orientation;
-        velocities.linear[0] = now.velocity;
-        velocities.angular[0] = now.angular_velocity;
+        velocities.linear[0] = now.linear;
+        velocities.angular[0] = now.angular;
         flights.memory[0] = now.memory;
     }
 
