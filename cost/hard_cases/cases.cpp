@@ -123,6 +123,8 @@ constexpr HardCase kCases[] = {
      case_crushed, Fault::haste},
     {"H89", "who bounces wins nothing, whatever acts besides gravity", case_forced_bounces,
      Fault::haste},
+    {"H90", "a column that falls on a floor and bounces off nothing stays there",
+     case_landing_columns, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -1,10 +1,12 @@
 #include "pipeline/solvers/solve_batch.hpp"
 
 #include "kernels/parallel/blocks.hpp"
+#include "kernels/solver/coloring.hpp"
 #include "kernels/solver/solve_kernels.hpp"
 #include "kernels/solver/solver_bodies.hpp"
-#include "pipeline/forces/spring_energy_limiter.hpp"
+#include "pipeline/forces/energy_limiter.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/solvers/split_impulse.hpp"
 
 #include <algorithm>
@@ -22,18 +24,6 @@ constexpr std::size_t kBodies = 512;  // a task
 // as much again before they stop coming to rest; to relax, one does as well.
 constexpr int kBiasedNormalIterations = 2, kRelaxNormalIterations = 1;
 
-constexpr int kInHeaps = 1, kInStructures = 2;  // see relax_iterations()
-
-// With finer substeps: contacts for each relaxing iteration, and iterations at most. With two
-// iterations columns of 50 to 100 boxes or balls that are dropped, each a little above the last,
-// won up to 0.9 of their energy of motion as they were escalated; with four, of 80 boxes still a
-// tenth.
-constexpr std::uint32_t kContactsPerRelaxIteration = 12, kMostRelaxIterations = 8;
-
-// From where on a push is more than what a contact bears in a substep: friction that it made, left
-// behind by a single iteration, slows what rubs on its way down.
-constexpr int kManySubsteps = 16;
-
 // Where half of what springs and pivots do acts after bodies moved, it is for these iterations
 // alone to hold it up, through whatever a body lies on.
 constexpr int kInLateForces = 6;
@@ -48,11 +38,13 @@ constexpr std::size_t kSplitImpulseIterations = 12, kSplitImpulseContacts = 128;
 // are one or two; what still comes in after so many is stopped.
 constexpr int kImpactRounds = 16;
 
+// What contacts gave in a substep is a blow from so many times what gravity gives on. Half of that
+// disturbs towers that bear ten thousand times what their lowest box weighs.
+constexpr double kBlow = 16;
+
 // How often contacts and stiff springs take turns in a substep, at least: each sees what the other
 // gave the time before.
 constexpr int kSpringTurns = 4;
-
-bool lies_on_faces(const Batch& batch) { return 2 * batch.on_faces > batch.contacts; }
 
 // One pass over the contacts or the bodies of a slice.
 struct Pass {
@@ -111,6 +103,7 @@ public:
             iteration_.gravity_step[k] = static_cast<Real>(context.gravity[k] * context.substep());
         on_faces_ = lies_on_faces(batch);
         find_state_forces();
+        find_limiter();
     }
 
     void run()
@@ -131,11 +124,14 @@ public:
             const bool backward = on_faces_ && step % 2 == 1;
             const auto add = [&](Pass::Kind kind) { add_pass({kind, step == 0, backward}); };
             if (context_.has(Effect::restitution)) apply_restitution_to_all();
-            if (limiter_) begin_limiting();
+            if (limiter_) {
+                run_passes();
+                limiter_->open(constraints_);
+            }
             add(begin);
             begin_state_forces(step);
             if (step == 0) add(warm_start);
-            if (limiter_) take_share();
+            limit_warm_start();
             if (constraints_.surfaces_turn) add(update_surface_velocity);
             const int relax_count = relax_iterations(context_.settings, batch_);
             if (parts) {
@@ -163,7 +159,10 @@ public:
                     : pgs                   ? 0
                                             : relax_count;
                 for (int i = 0; i < iterations; ++i) add(relax);
-                if (limiter_) end_limiting();
+                if (limiter_) {
+                    run_passes();
+                    limiter_->close(constraints_);
+                }
             }
             if (on_faces_ || !window_fits()) run_passes();
         }
@@ -189,27 +188,37 @@ private:
         if (state_forces_->forced_bodies().empty()) return state_forces_.reset();
         for (const ForcedBody& forced : state_forces_->forced_bodies())
             if (forced.late) constraints_.bodies[layout_.solver_index[forced.body]].inertia[7] = 1;
-        if (state_forces_->stiff())
-            limiter_.emplace(layout_, batch_, facts_, *state_forces_,
+    }
+
+    // By pgs it is for a few iterations to take back what is too much of a warm start.
+    void find_limiter()
+    {
+        using Whose = typename EnergyLimiter<Real>::Whose;
+        const bool stiff = state_forces_ && state_forces_->stiff(),
+                   all = context_.settings.solver == Solver::pgs;
+        if (stiff || all)
+            limiter_.emplace(layout_, batch_, facts_, stiff ? &*state_forces_ : nullptr,
+                             all ? Whose::all : Whose::on_springs,
                              context_.gravity * context_.substep());
     }
 
-    void begin_limiting()
+    // Of soft_step what a warm start adds after a blow alone: a tower stands by what its contacts
+    // remember. Of who is carried along nobody here knows what drives him.
+    void limit_warm_start()
     {
-        run_passes();
-        limiter_->open(constraints_);
-    }
-
-    void take_share()
-    {
-        run_passes();
-        limiter_->take_share(constraints_);
-    }
-
-    void end_limiting()
-    {
-        run_passes();
-        limiter_->close(constraints_);
+        if (limiter_) {
+            run_passes();
+            return limiter_->take_share(constraints_);
+        }
+        const Slice& slice = layout_.slices[batch_.first_slice];
+        const double speed = kBlow * context_.gravity.norm() * context_.substep();
+        if (batch_.slices > 1 || slice.kinematic > 0 || !constraints_.prescribed.empty()) return;
+        const auto bodies = std::span(constraints_.bodies).subspan(slice.first_body, slice.dynamic);
+        if (!may_gain<Real>(bodies, batch_.contacts > kBatchContacts, speed)) return;
+        if (!blow_limiter_)
+            blow_limiter_.emplace(layout_, batch_, facts_, nullptr, EnergyLimiter<Real>::Whose::all,
+                                  Vec3::Zero());
+        blow_limiter_->take_share_of_blow(speed, constraints_);
     }
 
     // Followers as they are now, less what contacts gave in this substep if that is asked.
@@ -554,36 +563,11 @@ private:
     bool on_faces_ = false;
     SavedMotion<Real> saved_motion_;  // while bodies of the batch part
     std::optional<StateDependentForces> state_forces_;
-    std::optional<SpringEnergyLimiter<Real>> limiter_;  // where some of them are stiff
-    std::vector<Pass> passes_;                          // that wait to be run
+    std::optional<EnergyLimiter<Real>> limiter_, blow_limiter_;
+    std::vector<Pass> passes_;  // that wait to be run
 };
 
 }  // namespace
-
-int relax_iterations(const Settings& settings, const Batch& batch)
-{
-    if (settings.relax_iterations > 0) return settings.relax_iterations;
-    return lies_on_faces(batch) || settings.substeps > kManySubsteps ? kInStructures : kInHeaps;
-}
-
-int finer_relax_iterations(const Settings& settings, const Batch& batch)
-{
-    const int usual = relax_iterations(settings, batch);
-    if (settings.relax_iterations > 0) return usual;
-    return std::max(usual,
-                    static_cast<int>(std::min(kMostRelaxIterations,
-                                              batch.contacts / kContactsPerRelaxIteration)));
-}
-
-double mean_relax_iterations(const Settings& settings, const Layout& layout)
-{
-    double iterations = 0, contacts = 0;
-    for (const Batch& batch : layout.batches) {
-        iterations += double(batch.contacts) * relax_iterations(settings, batch);
-        contacts += batch.contacts;
-    }
-    return contacts > 0 ? iterations / contacts : 0;
-}
 
 template <class Real>
 void solve_batch(const StepContext& context,

@@ -13,16 +13,6 @@
 
 namespace throng {
 
-/// Relaxing iterations that a batch gets in a substep: one quietens a heap, and where most bodies
-/// lie on one another by their faces, as in towers and walls, a second one leaves a hundredth of
-/// the energy. Where there are many substeps it keeps pushes from braking what rubs.
-int relax_iterations(const Settings& settings, const Batch& batch);
-/// Those of an island with finer substeps, whose settings these are: what it gains by a push has a
-/// long way to go where many stand on one another.
-int finer_relax_iterations(const Settings& settings, const Batch& batch);
-/// The mean of that over all contacts; 0 where there are none.
-double mean_relax_iterations(const Settings& settings, const Layout& layout);
-
 /// Makes the constraints of a batch, solves them, moves its bodies, and gives the contacts their
 /// impulses. A wide batch uses all threads of the pool; of others, many may be solved at the same
 /// time.

@@ -4,6 +4,7 @@
 #include "kernels/solver/solver_bodies.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/solvers/escalation.hpp"
+#include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/solvers/solve_batch.hpp"
 #include "pipeline/solvers/solve_direct.hpp"
 #include "pipeline/solvers/split_impulse.hpp"

@@ -1,10 +1,11 @@
 #include "throng/world.hpp"
 
 #include "broadphase/margins.hpp"
+#include "kernels/dynamics/rigid_motion.hpp"
 #include "kernels/solver/contact_packing.hpp"
 #include "kernels/solver/direct/direct.hpp"
 #include "pipeline/solvers/escalation.hpp"
-#include "pipeline/solvers/solve_batch.hpp"
+#include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/step/step_table.hpp"
 #include "pipeline/world/force_builder.hpp"
 #include "pipeline/world/world_state.hpp"

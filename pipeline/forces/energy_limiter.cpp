@@ -1,4 +1,4 @@
-#include "pipeline/forces/spring_energy_limiter.hpp"
+#include "pipeline/forces/energy_limiter.hpp"
 
 #include "kernels/math/rotation.hpp"
 
@@ -13,6 +13,8 @@ namespace {
 constexpr double kLetBe = 1e-4;
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
+
+constexpr int kFewestInBlow = 3;
 
 template <class Real>
 Vec3 in_double(const Real* v)
@@ -38,12 +40,30 @@ bool is_fed(const Forces& forces, std::uint32_t body)
 
 }  // namespace
 
+template <class Real>
+bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed)
+{
+    if (!(speed > 0)) return false;
+    int gainers = 0;
+    double gained = 0;
+    for (const SolverBody<Real>& body : bodies) {
+        const double square = in_double(body.motion).squaredNorm()
+            - in_double(body.free).squaredNorm() - speed * speed;
+        gainers += square > 0 ? 1 : 0;
+        if (body.inertia[0] > 0) gained += square / double{body.inertia[0]};
+    }
+    return gainers >= kFewestInBlow && (!one_island || gained > 0);
+}
+
+template bool may_gain<float>(std::span<const SolverBody<float>>, bool, double);
+template bool may_gain<double>(std::span<const SolverBody<double>>, bool, double);
+
 // Bodies of a batch, by which of them touch or are joined.
 template <class Real>
-class SpringEnergyLimiter<Real>::Sets {
+class EnergyLimiter<Real>::Sets {
 public:
-    Sets(const Layout& layout, const Batch& batch, const StateDependentForces& forces)
-        : layout_(layout), forces_(forces)
+    Sets(const Layout& layout, const Batch& batch, const StateDependentForces* springs)
+        : layout_(layout), springs_(springs)
     {
         const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
         first_ = slices.front().first_body;
@@ -55,21 +75,21 @@ public:
             const std::int32_t a = layout.solver_index_a[lane], b = layout.solver_index_b[lane];
             if (layout.movable(a) && layout.movable(b)) sets_.join(place(a), place(b));
         }
-        for (const auto& joined : forces.joined())
-            for (const std::uint32_t other : joined) sets_.join(of(joined[0]), of(other));
+        if (springs != nullptr)
+            for (const auto& joined : springs->joined())
+                for (const std::uint32_t other : joined) sets_.join(of(joined[0]), of(other));
         group_of_.assign(bodies_, kNoGroup);
     }
 
     void list_springs(std::vector<Group>& groups)
     {
-        for (std::uint32_t i = 0; i < forces_.joined().size(); ++i) {
-            std::uint32_t& group = group_of_[sets_.find(of(forces_.joined()[i][0]))];
-            if (group == kNoGroup) {
-                group = static_cast<std::uint32_t>(groups.size());
-                groups.emplace_back();
-            }
-            groups[group].springs.push_back(i);
-        }
+        for (std::uint32_t i = 0; i < springs_->joined().size(); ++i)
+            group_with(of(springs_->joined()[i][0]), groups).springs.push_back(i);
+    }
+
+    void list_all(std::vector<Group>& groups)
+    {
+        for (std::uint32_t at = 0; at < bodies_; ++at) group_with(at, groups);
     }
 
     void list_members(const RigidFacts& facts, std::vector<Group>& groups)
@@ -106,17 +126,26 @@ public:
     }
 
 private:
+    Group& group_with(std::uint32_t at, std::vector<Group>& groups)
+    {
+        std::uint32_t& group = group_of_[sets_.find(at)];
+        if (group == kNoGroup) {
+            group = static_cast<std::uint32_t>(groups.size());
+            groups.emplace_back();
+        }
+        return groups[group];
+    }
     std::uint32_t place(std::int32_t solver_index) const
     {
         return static_cast<std::uint32_t>(solver_index) - first_;
     }
     std::uint32_t of(std::uint32_t forced) const
     {
-        return layout_.solver_index[forces_.forced_bodies()[forced].body] - first_;
+        return layout_.solver_index[springs_->forced_bodies()[forced].body] - first_;
     }
 
     const Layout& layout_;
-    const StateDependentForces& forces_;
+    const StateDependentForces* springs_;
     std::uint32_t first_ = 0, bodies_ = 0;  // among the solver bodies
     std::size_t from_ = 0, to_ = 0;         // lanes
     DisjointSets sets_;
@@ -124,23 +153,25 @@ private:
 };
 
 template <class Real>
-SpringEnergyLimiter<Real>::SpringEnergyLimiter(const Layout& layout,
-                                               const Batch& batch,
-                                               const RigidFacts& facts,
-                                               const StateDependentForces& forces,
-                                               const Vec3& fall)
-    : forces_(forces), fall_(fall)
+EnergyLimiter<Real>::EnergyLimiter(const Layout& layout,
+                                   const Batch& batch,
+                                   const RigidFacts& facts,
+                                   const StateDependentForces* springs,
+                                   Whose whose,
+                                   const Vec3& fall)
+    : springs_(springs), fall_(fall)
 {
-    Sets sets(layout, batch, forces);
-    sets.list_springs(groups_);
+    Sets sets(layout, batch, springs);
+    if (springs != nullptr) sets.list_springs(groups_);
+    if (whose == Whose::all) sets.list_all(groups_);
     sets.list_members(facts, groups_);
     sets.list_lanes(groups_);
     std::erase_if(groups_, [](const Group& group) { return group.driven; });
 }
 
 template <class Real>
-double SpringEnergyLimiter<Real>::kinetic_of(const Group& group,
-                                             const ContactConstraints<Real>& constraints)
+double EnergyLimiter<Real>::kinetic_of(const Group& group,
+                                       const ContactConstraints<Real>& constraints)
 {
     double twice = 0;
     for (const Member& member : group.members) {
@@ -153,9 +184,10 @@ double SpringEnergyLimiter<Real>::kinetic_of(const Group& group,
 }
 
 template <class Real>
-void SpringEnergyLimiter<Real>::open(const ContactConstraints<Real>& constraints)
+void EnergyLimiter<Real>::open(const ContactConstraints<Real>& constraints)
 {
     for (Group& group : groups_) {
+        if (group.springs.empty()) continue;
         group.kinetic = kinetic_of(group, constraints);
         for (Member& member : group.members)
             member.before = in_double(constraints.bodies[member.solver_index].motion);
@@ -164,8 +196,8 @@ void SpringEnergyLimiter<Real>::open(const ContactConstraints<Real>& constraints
 
 // Along the impulses the kinetic energy is what it is without them + along s + square s^2.
 template <class Real>
-double SpringEnergyLimiter<Real>::share_of(const Group& group,
-                                           const ContactConstraints<Real>& constraints)
+typename EnergyLimiter<Real>::WarmStart
+EnergyLimiter<Real>::warm_start_of(const Group& group, const ContactConstraints<Real>& constraints)
 {
     double along = 0, square = 0;
     for (const Member& member : group.members) {
@@ -177,13 +209,14 @@ double SpringEnergyLimiter<Real>::share_of(const Group& group,
         along += member.mass * given.dot(velocity) + momentum.dot(spin);
         square += (member.mass * given.squaredNorm() + momentum.dot(turned)) / 2;
     }
-    return 2 * square + along > 0 ? std::clamp(-along / (2 * square), 0.0, 1.0) : 1;
+    const bool less = 2 * square + along > 0;
+    return {less ? std::clamp(-along / (2 * square), 0.0, 1.0) : 1, along + square};
 }
 
 template <class Real>
-void SpringEnergyLimiter<Real>::scale(const Group& group,
-                                      Real share,
-                                      ContactConstraints<Real>& constraints)
+void EnergyLimiter<Real>::scale(const Group& group,
+                                Real share,
+                                ContactConstraints<Real>& constraints)
 {
     for (const Member& member : group.members) {
         SolverBody<Real>& body = constraints.bodies[member.solver_index];
@@ -209,31 +242,44 @@ void SpringEnergyLimiter<Real>::scale(const Group& group,
 }
 
 template <class Real>
-void SpringEnergyLimiter<Real>::take_share(ContactConstraints<Real>& constraints) const
+void EnergyLimiter<Real>::take_share(ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
-        const double share = share_of(group, constraints);
+        const double share = warm_start_of(group, constraints).share;
         if (share < 1) scale(group, static_cast<Real>(share), constraints);
     }
 }
 
 template <class Real>
-bool SpringEnergyLimiter<Real>::is_fed(const Group& group,
-                                       const ContactConstraints<Real>& constraints) const
+void EnergyLimiter<Real>::take_share_of_blow(double speed,
+                                             ContactConstraints<Real>& constraints) const
+{
+    for (const Group& group : groups_) {
+        const WarmStart start = warm_start_of(group, constraints);
+        double mass = 0;
+        for (const Member& member : group.members) mass += member.mass;
+        if (start.gained > mass * speed * speed / 2)
+            scale(group, static_cast<Real>(start.share), constraints);
+    }
+}
+
+template <class Real>
+bool EnergyLimiter<Real>::is_fed(const Group& group,
+                                 const ContactConstraints<Real>& constraints) const
 {
     return group.fed || !constraints.prescribed.empty()
         || std::any_of(group.springs.begin(), group.springs.end(),
-                       [&](std::uint32_t i) { return forces_.springs_of(i).are_drawn(); });
+                       [&](std::uint32_t i) { return springs_->springs_of(i).are_drawn(); });
 }
 
 // J, in motion and in springs, but for what gravity gave: half of the velocity before, half after.
 template <class Real>
-double SpringEnergyLimiter<Real>::gained(const Group& group,
-                                         double kinetic,
-                                         const ContactConstraints<Real>& constraints) const
+double EnergyLimiter<Real>::gained(const Group& group,
+                                   double kinetic,
+                                   const ContactConstraints<Real>& constraints) const
 {
     double gained = kinetic - group.kinetic;
-    for (const std::uint32_t i : group.springs) gained += forces_.springs_of(i).stored();
+    for (const std::uint32_t i : group.springs) gained += springs_->springs_of(i).stored();
     for (const Member& member : group.members)
         gained -= member.mass
             * fall_.dot(member.before + in_double(constraints.bodies[member.solver_index].motion))
@@ -243,12 +289,12 @@ double SpringEnergyLimiter<Real>::gained(const Group& group,
 
 // What nothing holds keeps its momentum.
 template <class Real>
-Vec3 SpringEnergyLimiter<Real>::common_velocity(const Group& group,
-                                                const ContactConstraints<Real>& constraints) const
+Vec3 EnergyLimiter<Real>::common_velocity(const Group& group,
+                                          const ContactConstraints<Real>& constraints) const
 {
     Vec3 momentum = Vec3::Zero();
     const bool tied = std::any_of(group.springs.begin(), group.springs.end(), [&](std::uint32_t i) {
-        return forces_.springs_of(i).are_tied();
+        return springs_->springs_of(i).are_tied();
     });
     if (tied || !group.floats) return momentum;
     double mass = 0;
@@ -261,9 +307,9 @@ Vec3 SpringEnergyLimiter<Real>::common_velocity(const Group& group,
 
 // With contacts and without, so that what contacts gave stays what it was.
 template <class Real>
-void SpringEnergyLimiter<Real>::slow_down(const Group& group,
-                                          double share,
-                                          ContactConstraints<Real>& constraints) const
+void EnergyLimiter<Real>::slow_down(const Group& group,
+                                    double share,
+                                    ContactConstraints<Real>& constraints) const
 {
     const Vec3 common = common_velocity(group, constraints);
     for (const Member& member : group.members) {
@@ -281,10 +327,10 @@ void SpringEnergyLimiter<Real>::slow_down(const Group& group,
 }
 
 template <class Real>
-void SpringEnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) const
+void EnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
-        if (is_fed(group, constraints)) continue;
+        if (group.springs.empty() || is_fed(group, constraints)) continue;
         const double kinetic = kinetic_of(group, constraints),
                      more = gained(group, kinetic, constraints);
         if (!(more > kLetBe * kinetic)) continue;
@@ -292,7 +338,7 @@ void SpringEnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) con
     }
 }
 
-template class SpringEnergyLimiter<float>;
-template class SpringEnergyLimiter<double>;
+template class EnergyLimiter<float>;
+template class EnergyLimiter<double>;
 
 }  // namespace throng

@@ -1,0 +1,98 @@
+// Energy limiter: bodies start a substep with no more than serves them of what contacts gave in the
+// last one; and those that stiff springs press on others end it with no more energy than they had.
+//
+// Contacts start with what they gave in the substep before, and few iterations do not take back
+// what is too much by then. Where a column has just landed they give the blow once more and throw
+// it apart: 30 slabs by pgs at twice the speed of their fall. Where a stiff spring turned a body
+// round meanwhile, a needle between a box and the floor spins at thousands of rad/s before a single
+// contact is looked at. So bodies start from that share of their impulses by which their kinetic
+// energy is least: all of them at rest, next to none after a blow. What friction and springs make
+// of one another in the iterations that follow is held against what was there, in motion and in
+// springs, and against the fall: what is too much is taken from the motion.
+//
+// Of soft_step only after a blow: one iteration follows, and a tower stands by what its contacts
+// remember.
+//
+// Source: the kinetic energy is what Gauss-Seidel sweeps over inelastic contacts bring down
+// (Moreau, Quadratic programming in mechanics: dynamics of one-sided constraints, 1966); along the
+// impulses it is a parabola.
+#pragma once
+
+#include "kernels/parallel/disjoint_sets.hpp"
+#include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/step/step_data.hpp"
+
+#include <span>
+
+namespace throng {
+
+/// Whether what contacts gave may take a group of these bodies to a speed, m/s, that it has not
+/// without: not where hardly anybody gains so much, as what lies alone takes a blow back by itself;
+/// nor, of a single island, where all together do not. False where the speed is 0.
+template <class Real>
+bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed);
+
+template <class Real>
+class EnergyLimiter {
+public:
+    /// Bodies of a batch that stiff springs pull and all that touch them, or all of the batch; but
+    /// for those that touch what moves by itself.
+    enum class Whose : std::uint8_t { on_springs, all };
+
+    ///   springs  of which some are stiff, to be kept as long as this; null: there are none
+    ///   fall     m/s, that gravity gives in a substep
+    EnergyLimiter(const Layout& layout,
+                  const Batch& batch,
+                  const RigidFacts& facts,
+                  const StateDependentForces* springs,
+                  Whose whose,
+                  const Vec3& fall);
+
+    /// Before anything acts in a substep.
+    void open(const ContactConstraints<Real>& constraints);
+    /// Before contacts are solved: takes motions and impulses to the share that serves best.
+    void take_share(ContactConstraints<Real>& constraints) const;
+    /// The same where all of them would make more of it than none, by what takes a group to a
+    /// speed, m/s: only after a blow.
+    void take_share_of_blow(double speed, ContactConstraints<Real>& constraints) const;
+    /// Once all has acted: slows down who gained on springs.
+    void close(ContactConstraints<Real>& constraints) const;
+
+private:
+    struct Member {
+        std::uint32_t solver_index = 0;  // among the solver bodies
+        double mass = 0;                 // kg; 0 of what cannot move along
+        Mat3 inertia;                    // kg m2, in the axes that its spin is in
+        Vec3 before = Vec3::Zero();      // m/s, as the substep began
+    };
+    // Bodies that touch or that springs join, the lanes of their contacts, and the springs.
+    struct Group {
+        std::vector<Member> members;
+        std::vector<std::uint32_t> lanes;
+        std::vector<std::uint32_t> springs;  // places among those of the forces
+        bool floats = true;                  // touches nothing that stands still
+        bool fed = false;                    // may be given energy by more than springs and gravity
+        bool driven = false;                 // touches what moves by itself
+        double kinetic = 0;                  // J, as the substep began
+    };
+    class Sets;
+    // What impulses of the last substep would do to a group.
+    struct WarmStart {
+        double share = 1;   // by which its kinetic energy is least
+        double gained = 0;  // J, by all of them over none
+    };
+    static double kinetic_of(const Group& group, const ContactConstraints<Real>& constraints);
+    static WarmStart warm_start_of(const Group& group, const ContactConstraints<Real>& constraints);
+    static void scale(const Group& group, Real share, ContactConstraints<Real>& constraints);
+    bool is_fed(const Group& group, const ContactConstraints<Real>& constraints) const;
+    double
+    gained(const Group& group, double kinetic, const ContactConstraints<Real>& constraints) const;
+    Vec3 common_velocity(const Group& group, const ContactConstraints<Real>& constraints) const;
+    void slow_down(const Group& group, double share, ContactConstraints<Real>& constraints) const;
+
+    const StateDependentForces* springs_;
+    Vec3 fall_;
+    std::vector<Group> groups_;
+};
+
+}  // namespace throng
