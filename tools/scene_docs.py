@@ -4,8 +4,8 @@
     tools/scene_docs.py            writes it
     tools/scene_docs.py --check    says whether it is what would be written, and leaves with 1 if not
 
-Keys come from scene/files/scene.schema.json, what dials trade from scene/dials.cpp, limits from
-scene/rules/scene_rules.hpp: nothing is typed a second time here.
+Keys and dials come from scene/files/scene.schema.json, limits from scene/limits.hpp: nothing is typed a
+second time here.
 """
 import json
 import pathlib
@@ -18,12 +18,12 @@ PAGE = ROOT / "docs/scene.md"
 HEAD = """\
 # The scene file
 
-<!-- Made by tools/scene_docs.py from the schema and the table of dials; do not edit. -->
+<!-- Made by tools/scene_docs.py from the schema; do not edit. -->
 
 A scene is one JSON object. Units are SI and angles radians; quaternions are `[w, x, y, z]` and turn body axes
 into world axes. Files that a scene names are found relative to it. Unknown and repeated keys, numbers beyond
 double and nesting deeper than 64 are errors; each reads `FILE:LINE:COLUMN: error: PATH: what was wanted`.
-`scene/files/scene.schema.json` says the same to programs, and `./throng scene pile 10 --out pile.json` writes
+`./throng scene --schema` says the same to programs, and `./throng scene pile 10 --out pile.json` writes
 a scene to look at. This one drops a crate; `./throng run crate.json --steps 60` runs it.
 
 ```json crate.json
@@ -71,12 +71,12 @@ SECTIONS = [
      "run; a dial that another makes meaningless is reported as unused. [methods.md](methods.md) says\n"
      "when which."),
     ("`materials.NAME`", "$defs/material", ""),
-    ("`pairs[]`", "properties/pairs/items", None),
+    ("`pairs[]`", "$defs/pair", None),
     ("`bodies[]`", "$defs/body", ""),
     ("`instances[]`", "$defs/instances",
      "The keys of a body but for `name`, `position`, `orientation`, `velocity` and `angular_velocity`, and:"),
     ("`springs[]`", "$defs/spring", None),
-    ("`attractors[]`", "properties/attractors/items", None),
+    ("`attractors[]`", "$defs/attractor", None),
 ]
 
 SCHEMA = json.loads((ROOT / "scene/files/scene.schema.json").read_text(encoding="utf-8"))
@@ -124,6 +124,8 @@ def type_of(node):
     node = resolved(node)
     if "const" in node:
         return f"`{json.dumps(node['const'])}`"
+    if "values" in node:
+        return node["values"]
     if "enum" in node:
         return ", ".join(f"`{value}`" for value in node["enum"])
     if "oneOf" in node:
@@ -167,37 +169,10 @@ def sentence(text):
     return text if not text or text.endswith((".", ":")) else text + "."
 
 
-# ---- dials ----
-
-def dials():
-    """Of each dial in the table of the sources: the names of its values, default first, its unit,
-    what its values are and what it trades."""
-    source = (ROOT / "scene/dials.cpp").read_text(encoding="utf-8")
-    choices = {name: re.findall(r'\{"([^"]+)"', body) for name, body in
-               re.findall(r"constexpr Choice (\w+)\[\] = \{(.*?)\};", source, re.DOTALL)}
-    table = source[source.index("make_dials()"):]
-    table = table[:table.index("};")]
-    rows = re.split(r"\n\s+(?=(?:choice|number|whole|named)_dial)", table)[1:]
-    found = {}
-    for row in rows:
-        texts = re.findall(r'"((?:[^"\\]|\\.)*)"', row)
-        named = re.search(r"\bk\w+\b", row.split('"')[0] + row.split('"')[2])
-        named = choices.get(named[0]) if named else None
-        if named:
-            found[texts[0]] = {"choices": named, "unit": "", "values": "", "trades": texts[-1]}
-        else:
-            found[texts[0]] = {"choices": [], "unit": texts[2], "values": texts[1],
-                               "trades": texts[-1]}
-    return found
-
-
 def dial_rows():
-    table = dials()
     for key, node in at("$defs/settings/properties").items():
-        dial = table[key]
-        values = ", ".join(f"`{one}`" for one in dial["choices"]) or dial["values"]
-        yield (f"`{key}`", values, dial["unit"] or "-", default_of(key, node, ()),
-               dial["trades"] + ".")
+        values = ", ".join(f"`{one}`" for one in node.get("enum", ())) or node["values"]
+        yield (f"`{key}`", values, plain_unit(node), default_of(key, node, ()), node["description"] + ".")
 
 
 # ---- tables ----
@@ -246,7 +221,7 @@ def shape_rows():
         full = resolved(node)
         yield (f"`{kind}`", "list of objects" if full.get("type") == "array" else "object", "-", "-",
                sentence(full.get("description", "")))
-        inner = full.get("items", full)
+        inner = resolved(full.get("items", full))
         for key, value in inner["properties"].items():
             dots = "[]." if "items" in full else "."
             yield (f"`{kind}{dots}{key}`", type_of(value), plain_unit(value),
@@ -255,7 +230,7 @@ def shape_rows():
 
 
 def limits():
-    text = (ROOT / "scene/rules/scene_rules.hpp").read_text(encoding="utf-8")
+    text = (ROOT / "scene/limits.hpp").read_text(encoding="utf-8")
     limit = dict(re.findall(r"\b(k\w+) = ([\d.e+-]+)", text))
     rows = [("length, place", "m", "kLeastLength", "kGreatestLength"),
             ("velocity, acceleration", "m/s, rad/s, m/s2", None, "kGreatestLength"),
@@ -273,8 +248,7 @@ def page():
         node = at(path)
         parts.append(f"## {title}\n")
         if words is None:
-            words = at(path.removesuffix("/items")).get("description", "") if "/items" in path \
-                else at("properties/" + title.strip("`[]")).get("description", "")
+            words = at("properties/" + title.strip("`[]")).get("description", "")
         if words:
             parts.append(words + "\n")
         if path == "$defs/settings":
@@ -296,7 +270,7 @@ def main():
         return 0
     if PAGE.exists() and PAGE.read_text(encoding="utf-8") == text:
         return 0
-    print("docs/scene.md is not what the schema and the dials say; run tools/scene_docs.py")
+    print("docs/scene.md is not what the schema says; run tools/scene_docs.py")
     return 1
 
 

@@ -6,7 +6,7 @@
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/output_file.hpp"
 #include "apps/throng/scene_argument.hpp"
-#include "scene/files/json.hpp"
+#include "scene/files/json_writer.hpp"
 #include "scene/names.hpp"
 #include "throng/dials.hpp"
 
@@ -135,15 +135,18 @@ private:
 
 std::string json_line(const CaseResult& result)
 {
-    std::string line = "{\"case\": " + json_string(result.name) + ", \"setting\": "
-        + json_string(result.setting) + ", \"quantity\": " + json_string(result.quantity)
-        + ", \"figure\": " + (std::isfinite(result.figure) ? number_text(result.figure) : "null")
-        + ", \"bound\": " + number_text(result.bound) + ", \"unit\": " + json_string(result.unit)
-        + ", \"status\": " + json_string(text_of(result.verdict))
-        + ", \"ms\": " + number_text(result.time_ms);
-    if (!result.method.empty()) line += ", \"method\": " + json_string(result.method);
-    if (!result.why.empty()) line += ", \"why\": " + json_string(result.why);
-    return line + "}";
+    JsonMembers line;
+    line.add_text("case", result.name)
+        .add_text("setting", result.setting)
+        .add_text("quantity", result.quantity)
+        .add("figure", result.figure)
+        .add("bound", result.bound)
+        .add_text("unit", result.unit)
+        .add_text("status", text_of(result.verdict))
+        .add("ms", result.time_ms);
+    if (!result.method.empty()) line.add_text("method", result.method);
+    if (!result.why.empty()) line.add_text("why", result.why);
+    return line.text();
 }
 
 int run_cases(const Options& options)

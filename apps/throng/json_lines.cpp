@@ -2,16 +2,9 @@
 #include "apps/throng/json_lines.hpp"
 
 #include "scene/files/json.hpp"
-#include "scene/names.hpp"
-
-#include <cmath>
+#include "scene/files/json_writer.hpp"
 
 namespace throng {
-
-std::string json_number(double number)
-{
-    return std::isfinite(number) ? number_text(number) : "null";
-}
 
 JsonLines::JsonLines(std::ostream& out) : out_(out) { out_ << '{'; }
 
@@ -21,7 +14,7 @@ void JsonLines::add(std::string_view key, const std::string& json)
     first_ = false;
 }
 
-void JsonLines::add(std::string_view key, double number) { add(key, json_number(number)); }
+void JsonLines::add(std::string_view key, double number) { add(key, json_text(number)); }
 
 void JsonLines::add(std::string_view key, std::uint64_t number)
 {

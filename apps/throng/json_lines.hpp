@@ -8,9 +8,6 @@
 
 namespace throng {
 
-/// A number as JSON has it; what is not finite has no number there and becomes null.
-std::string json_number(double number);
-
 /// Writes the members of an object, one a line.
 class JsonLines {
 public:

@@ -3,6 +3,7 @@
 
 #include "apps/throng/json_lines.hpp"
 #include "scene/files/json.hpp"
+#include "scene/files/json_writer.hpp"
 #include "scene/names.hpp"
 #include "throng/dials.hpp"
 #include "throng/version.hpp"
@@ -33,16 +34,14 @@ std::string stages_json(const StepTimes& times)
     return '['
         + joined(times.stages(), ",",
                  [](const StepTimes::OfStage& stage) {
-                     return "\n    {\"name\": " + json_string(stage.name)
-                         + ", \"ms_mean\": " + json_number(stage.times.mean())
-                         + ", \"ms_p99\": " + json_number(stage.times.percentile(0.99)) + '}';
+                     return "\n    "
+                         + JsonMembers()
+                               .add_text("name", stage.name)
+                               .add("ms_mean", stage.times.mean())
+                               .add("ms_p99", stage.times.percentile(0.99))
+                               .text();
                  })
         + ']';
-}
-
-std::string vector_json(const Vec3& v)
-{
-    return '[' + json_number(v.x()) + ", " + json_number(v.y()) + ", " + json_number(v.z()) + ']';
 }
 
 double peak_memory_mb()
@@ -102,10 +101,12 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("dials", dials_json(stats.settings));
     json.add("effects", '[' + joined(stats.effects, ", ", json_string) + ']');
     json.add("ms_per_step",
-             "{\"mean\": " + json_number(steps.mean())
-                 + ", \"median\": " + json_number(steps.percentile(0.5))
-                 + ", \"p99\": " + json_number(steps.percentile(0.99))
-                 + ", \"greatest\": " + json_number(steps.greatest()) + '}');
+             JsonMembers()
+                 .add("mean", steps.mean())
+                 .add("median", steps.percentile(0.5))
+                 .add("p99", steps.percentile(0.99))
+                 .add("greatest", steps.greatest())
+                 .text());
     json.add("stages", stages_json(stats.times));
     json.add("realtime_factor", stats.realtime_factor());
     json.add("pairs", std::uint64_t{stats.last.pairs});
@@ -126,8 +127,8 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
                  + std::to_string(stats.energy.to_step()) + ']');
     json.add("greatest_kinetic_energy_j", stats.energy.greatest_kinetic());
     json.add("warnings", '[' + joined(stats.warnings, ", ", json_string) + ']');
-    json.add("momentum", vector_json(stats.measures.momentum));
-    json.add("angular_momentum", vector_json(stats.measures.angular_momentum));
+    json.add("momentum", json_text(stats.measures.momentum));
+    json.add("angular_momentum", json_text(stats.measures.angular_momentum));
     json.add("bodies_awake", std::uint64_t{stats.last.bodies_awake});
     json.add("bodies_quarantined", std::uint64_t{stats.bodies_quarantined});
     json.add("contacts_dropped", stats.last.contacts_dropped);

@@ -2,6 +2,7 @@
 #include "apps/throng/commands.hpp"
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/scene_argument.hpp"
+#include "scene/files/scene_schema.hpp"
 #include "scene/names.hpp"
 #include "throng/catalog.hpp"
 #include "throng/scene_file.hpp"
@@ -23,6 +24,8 @@ constexpr Option kOptions[] = {
     {"--out", "FILE.json",
      "where it goes; many bodies go to FILE.0.bin beside it (default: the "
      "standard output, for scenes that need no other file)"},
+    {"--schema", "",
+     "the scene file format instead, as a JSON schema for editors and other programs"},
 };
 
 void list_catalog()
@@ -135,6 +138,13 @@ int write_to_file(const Scene& scene, const fs::path& out)
 
 int write_catalog_scene(const Options& options)
 {
+    if (options.has("--schema")) {
+        if (!options.words().empty() || options.has("--out") || options.has("--seed")
+            || options.has("--mesh"))
+            throw BadInput("--schema: wanted nothing beside it; it goes to the standard output");
+        std::cout << scene_schema();
+        return kDone;
+    }
     if (options.words().empty()) {
         if (options.has("--out") || options.has("--seed") || options.has("--mesh"))
             throw BadInput("scene: wanted the name of a scene to write (throng scene lists them)");

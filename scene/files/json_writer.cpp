@@ -1,10 +1,12 @@
 // JSON writer: values as text that reads back to the same bits.
 #include "scene/files/json_writer.hpp"
 
+#include "scene/fields.hpp"
 #include "scene/files/json.hpp"
 #include "scene/names.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 namespace throng {
@@ -19,17 +21,15 @@ bool same_bits(const Vec3& a, const Vec3& b)
     return same_bits(a.x(), b.x()) && same_bits(a.y(), b.y()) && same_bits(a.z(), b.z());
 }
 
-bool same_bits(const Quat& a, const Quat& b)
+std::string json_text(double number)
 {
-    return same_bits(a.w(), b.w()) && same_bits(a.vec(), b.vec());
+    return std::isfinite(number) ? number_text(number) : "null";
 }
-
-std::string json_text(double number) { return number_text(number); }
 
 std::string json_text(std::initializer_list<double> numbers)
 {
     std::string text;
-    for (const double number : numbers) text += (text.empty() ? "[" : ", ") + number_text(number);
+    for (const double number : numbers) text += (text.empty() ? "[" : ", ") + json_text(number);
     return text + ']';
 }
 
@@ -43,12 +43,48 @@ std::string json_text(const Quat& quaternion)
     return json_text({quaternion.w(), quaternion.x(), quaternion.y(), quaternion.z()});
 }
 
-void JsonMembers::add(std::string_view key, std::string_view value)
+std::string json_text(const Sym3& matrix)
+{
+    return json_text({matrix.xx, matrix.yy, matrix.zz, matrix.xy, matrix.xz, matrix.yz});
+}
+
+std::string json_text(const std::vector<Vec3>& vectors)
+{
+    std::string text;
+    for (const Vec3& vector : vectors) text += (text.empty() ? "[" : ", ") + json_text(vector);
+    return text.empty() ? "[]" : text + ']';
+}
+
+std::string json_text(const std::array<std::optional<double>, 3>& axes)
+{
+    const auto axis = [](const std::optional<double>& of) { return of ? json_text(*of) : "null"; };
+    return '[' + axis(axes[0]) + ", " + axis(axes[1]) + ", " + axis(axes[2]) + ']';
+}
+
+std::string json_text(const std::string& text) { return json_string(text); }
+
+std::string json_text(Motion motion)
+{
+    return json_string(kMotions[static_cast<std::size_t>(motion)]);
+}
+
+JsonMembers& JsonMembers::add(std::string_view key, std::string_view json)
 {
     text_ += text_.empty() ? "{" : ", ";
     text_ += json_string(key);
     text_ += ": ";
-    text_ += value;
+    text_ += json;
+    return *this;
+}
+
+JsonMembers& JsonMembers::add(std::string_view key, double number)
+{
+    return add(key, json_text(number));
+}
+
+JsonMembers& JsonMembers::add_text(std::string_view key, std::string_view text)
+{
+    return add(key, json_string(text));
 }
 
 std::string

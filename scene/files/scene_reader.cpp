@@ -4,12 +4,14 @@
 // scene_check.hpp to say, and its answer is then given the place it has in the text.
 #include "scene/files/scene_reader.hpp"
 
+#include "scene/fields.hpp"
 #include "scene/files/json_reader.hpp"
 #include "scene/files/mesh_file.hpp"
 #include "scene/names.hpp"
 #include "scene/shapes/level_set.hpp"
 #include "throng/dials.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -22,27 +24,17 @@ namespace {
 
 using Node = JsonDocument::Node;
 
-constexpr std::string_view kSceneKeys[] = {"throng",  "gravity",    "settings",  "materials",
-                                           "pairs",   "shapes",     "instances", "bodies",
-                                           "springs", "attractors", "wind"};
-constexpr std::string_view kMaterialKeys[] = {"density", "friction", "restitution",
-                                              "rolling_friction"};
-constexpr std::string_view kPairKeys[] = {"materials", "friction", "restitution"};
-constexpr std::string_view kShapeKinds[] = {"sphere", "capsule", "cylinder", "box",   "hull",
-                                            "plane",  "mesh",    "compound", "voxels"};
-constexpr std::string_view kMeshKeys[] = {
-    "file", "scale", "nonconvex", "voxel_size", "image_resolution", "sphere_levels", "max_parts"};
-constexpr std::string_view kBodyKeys[] = {"shape",         "material",       "motion",
-                                          "mass",          "inertia",        "center",
-                                          "force",         "torque",         "drag",
-                                          "pivot",         "drive_velocity", "lock_rotation",
-                                          "lock_position", "group",          "mask",
-                                          "fast",          "name",           "position",
-                                          "orientation",   "velocity",       "angular_velocity"};
-constexpr std::size_t kSharedBodyKeys = 16;  // the first of them, which instances have too
-constexpr std::string_view kInstanceKeys[] = {"count", "file", "sizes"};
-constexpr std::string_view kSpringKeys[] = {"a",         "b",       "at_a",  "at_b",
-                                            "stiffness", "damping", "length"};
+/// The keys of some tables together.
+template <const auto&... tables>
+constexpr auto kKeysOf = [] {
+    std::array<std::string_view, (std::size(tables) + ...)> keys;
+    std::size_t count = 0;
+    const auto take = [&](const auto& table) {
+        for (const auto& field : table) keys[count++] = field.key;
+    };
+    (take(tables), ...);
+    return keys;
+}();
 
 // Ids are 32 bits wide, and the last one means nobody.
 constexpr double kMostBodies = 4294967294.0;
@@ -57,14 +49,12 @@ public:
     Scene read()
     {
         const Node top = JsonDocument::kRoot;
-        need_keys(top, kSceneKeys);
-        constexpr std::string_view wanted = "1, the version of the format";
-        const Node version = required(top, "throng", wanted);
+        need_keys(top, kKeysOf<kSceneFields>);
+        read_fields(top, kSceneFields, scene_);
+        const Node version = find(top, "throng");
         if (kind(version) != JsonKind::number || number(version) != 1)
-            refuse_value(version, wanted);
+            refuse_value(version, kSceneFields[0].required);
 
-        if (const Node at = find(top, "gravity")) scene_.gravity = vector(at);
-        if (const Node at = find(top, "wind")) scene_.wind = vector(at);
         if (const Node at = find(top, "settings")) read_settings(at);
         if (const Node at = find(top, "materials")) read_materials(at);
         if (const Node at = find(top, "pairs")) each(at, [&](Node pair) { read_pair(pair); });
@@ -106,13 +96,118 @@ private:
     {
         return find_name(node, material_names_, "the name of a material", scene_.materials);
     }
-    /// null is the world.
-    std::uint32_t find_end(Node node) const
+    std::uint32_t find_named(Node node, Named kind) const
     {
-        if (kind(node) == JsonKind::null) return kNone;
-        if (kind(node) != JsonKind::string)
-            refuse_value(node, "the name of a body, or null for the world");
-        return find_name(node, body_names_, "the name of a body", scene_.bodies);
+        switch (kind) {
+        case Named::shape:
+            return find_shape(node);
+        case Named::material:
+            return find_material(node);
+        case Named::body:
+            return find_name(node, body_names_, "the name of a body", scene_.bodies);
+        }
+        return kNone;
+    }
+
+    // Members of an object by their fields.
+
+    template <class Object>
+    void read_fields(Node node, Fields<Object> fields, Object& object) const
+    {
+        for (const Field<Object>& field : fields) {
+            const Node at = field.required.empty() ? find(node, field.key)
+                                                   : required(node, field.key, field.required);
+            if (!at) continue;
+            std::visit([&](const auto& member) { read_member(at, field, member, object); },
+                       field.member);
+        }
+    }
+    template <class Object, class Value>
+    void read_member(Node at, const Field<Object>&, Value Object::*member, Object& object) const
+    {
+        read_value(at, object.*member);
+    }
+    template <class Object>
+    void read_member(Node at,
+                     const Field<Object>& field,
+                     const NameOf<Object>& name,
+                     Object& object) const
+    {
+        if (name.or_null && kind(at) == JsonKind::null) return;
+        if (name.or_null && kind(at) != JsonKind::string) refuse_value(at, field.required);
+        object.*name.place = find_named(at, name.kind);
+    }
+    template <class Object>
+    void read_member(Node at, const Field<Object>&, const Bits<Object>& bits, Object& object) const
+    {
+        object.*bits.bits = static_cast<std::uint32_t>(whole(at, 4294967295.0));
+    }
+    template <class Object>
+    void read_member(Node at,
+                     const Field<Object>& field,
+                     const OfDial<Object>& dial,
+                     Object& object) const
+    {
+        Settings own;
+        const std::string trouble = find_dial(field.key)->set(own, text_or_number(at));
+        if (!trouble.empty()) refuse(at, trouble);
+        const std::string value = dial_value(own, field.key);
+        const double number = parse_number(value);  // of auto none: it stays 0
+        std::visit(
+            [&](auto member) {
+                using Value = std::remove_reference_t<decltype(object.*member)>;
+                if constexpr (std::is_same_v<Value, std::string>)
+                    object.*member = value;
+                else if (!std::isnan(number))
+                    object.*member = static_cast<Value>(number);
+            },
+            dial.value);
+    }
+    template <class Object>
+    void
+    read_member(Node at, const Field<Object>&, const Group<Object>& group, Object& object) const
+    {
+        std::vector<std::string_view> keys;
+        for (const Field<Object>& field : group.fields) keys.push_back(field.key);
+        need_keys(at, keys);
+        read_fields(at, group.fields, object);
+    }
+    template <class Object>
+    void read_member(Node, const Field<Object>&, ByHand, Object&) const
+    { }
+
+    void read_value(Node at, double& value) const { value = number(at); }
+    void read_value(Node at, Vec3& value) const { value = vector(at); }
+    void read_value(Node at, Quat& value) const { value = quaternion(at); }
+    void read_value(Node at, Sym3& value) const { value = symmetric(at); }
+    void read_value(Node at, bool& value) const { value = boolean(at); }
+    void read_value(Node at, std::string& value) const { value = text(at); }
+    template <class Value>
+    void read_value(Node at, std::optional<Value>& value) const
+    {
+        read_value(at, value.emplace());
+    }
+    void read_value(Node at, std::vector<Vec3>& places) const
+    {
+        each(at, [&](Node place) { places.push_back(vector(place)); });
+    }
+    void read_value(Node at, std::array<std::optional<double>, 3>& axes) const
+    {
+        if (kind(at) != JsonKind::array || json_.size(at) != 3)
+            refuse_value(at, "three numbers or nulls [x, y, z]");
+        std::size_t axis = 0;
+        each(at, [&](Node one) {
+            std::optional<double>& value = axes[axis++];
+            if (kind(one) == JsonKind::null) return;
+            value = json_.number(need(one, JsonKind::number, "a number or null"));
+        });
+    }
+    void read_value(Node at, Motion& motion) const
+    {
+        const std::string_view name = kind(at) == JsonKind::string ? text(at) : "";
+        const auto* const found = std::find(std::begin(kMotions), std::end(kMotions), name);
+        if (found == std::end(kMotions)) refuse_value(at, "static, kinematic or dynamic");
+        motion = static_cast<Motion>(found - std::begin(kMotions));
     }
 
     // The parts of a scene, in the order in which they need one another.
@@ -133,15 +228,11 @@ private:
     void read_materials(Node materials)
     {
         each_member(materials, [&](Node key, Node value) {
-            need_keys(value, kMaterialKeys);
+            need_keys(value, kKeysOf<kMaterialFields>);
             need_name(key);
             Material material;
             material.name = text(key);
-            if (const Node at = find(value, "density")) material.density = number(at);
-            if (const Node at = find(value, "friction")) material.friction = number(at);
-            if (const Node at = find(value, "restitution")) material.restitution = number(at);
-            if (const Node at = find(value, "rolling_friction"))
-                material.rolling_friction = number(at);
+            read_fields(value, kMaterialFields, material);
             material_names_.emplace(material.name, scene_.materials.size());
             scene_.materials.push_back(std::move(material));
         });
@@ -154,15 +245,14 @@ private:
 
     void read_pair(Node node)
     {
-        need_keys(node, kPairKeys);
-        constexpr std::string_view wanted = "a list of two names of materials";
-        const Node names = required(node, "materials", wanted);
-        if (kind(names) != JsonKind::array || json_.size(names) != 2) refuse_value(names, wanted);
+        need_keys(node, kKeysOf<kPairFields>);
         MaterialPairDescription pair;
+        read_fields(node, kPairFields, pair);
+        const Node names = find(node, "materials");
+        if (kind(names) != JsonKind::array || json_.size(names) != 2)
+            refuse_value(names, kPairFields[0].required);
         pair.a = find_material(json_.first(names));
         pair.b = find_material(json_.next(json_.first(names)));
-        if (const Node at = find(node, "friction")) pair.friction = number(at);
-        if (const Node at = find(node, "restitution")) pair.restitution = number(at);
         scene_.pairs.push_back(pair);
     }
 
@@ -180,197 +270,92 @@ private:
 
     void read_shape(Node node, ShapeDescription& out)
     {
-        need_keys(node, kShapeKinds);
+        std::vector<std::string_view> kinds;
+        for (const ShapeName& kind : kShapeNames) kinds.push_back(kind.name);
+        need_keys(node, kinds);
         if (json_.size(node) != 1)
-            refuse(node, "wanted one kind of shape, one of " + either_of(kShapeKinds));
-        const std::string_view name = text(json_.first(node));
+            refuse(node, "wanted one kind of shape, one of " + either_of(kinds));
+        const auto kind = std::find(kinds.begin(), kinds.end(), text(json_.first(node)));
+        set_kind(static_cast<std::size_t>(kind - kinds.begin()), out.shape);
         const Node at = json_.first(node) + 1;
-        if (name == "sphere") {
-            out.shape = SphereShape{length_of(at, kRadius, 0)};
-        } else if (name == "capsule") {
-            out.shape = CapsuleShape{length_of(at, kRound, 0), length_of(at, kRound, 1)};
-        } else if (name == "cylinder") {
-            out.shape = CylinderShape{length_of(at, kRound, 0), length_of(at, kRound, 1)};
-        } else if (name == "box") {
-            constexpr std::string_view keys[] = {"half_extents"};
-            need_keys(at, keys);
-            out.shape = BoxShape{vector(required(at, keys[0], "three lengths [x, y, z]"))};
-        } else if (name == "hull") {
-            constexpr std::string_view keys[] = {"points"};
-            need_keys(at, keys);
-            HullShape hull;
-            each(required(at, keys[0], "a list of points"),
-                 [&](Node point) { hull.points.push_back(vector(point)); });
-            out.shape = std::move(hull);
-        } else if (name == "plane") {
-            constexpr std::string_view keys[] = {"normal", "offset"};
-            need_keys(at, keys);
-            PlaneShape plane;
-            plane.normal = vector(required(at, keys[0], "a direction [x, y, z]"));
-            if (const Node offset = find(at, keys[1])) plane.offset = number(offset);
-            out.shape = plane;
-        } else if (name == "mesh") {
-            out.shape = read_mesh(at);
-        } else if (name == "compound") {
-            out.shape = read_compound(at);
-        } else {
-            out.shape = read_voxels(at);
-        }
+        std::visit([&](auto& shape) { read_stated(at, shape); }, out.shape);
     }
 
-    static constexpr std::string_view kRadius[] = {"radius"};
-    static constexpr std::string_view kRound[] = {"radius", "half_length"};
-
-    double length_of(Node object, Keys keys, std::size_t key) const
+    /// The default of the kind of shape at a place of the list of kinds.
+    template <class... Shapes>
+    static void set_kind(std::size_t place, std::variant<Shapes...>& out)
     {
-        need_keys(object, keys);
-        return number(required(object, keys[key], "a length in m"));
+        const std::variant<Shapes...> kinds[] = {Shapes{}...};
+        out = kinds[place];
     }
 
-    MeshShape read_mesh(Node node)
+    template <class Shape>
+    void read_stated(Node node, Shape& shape) const
     {
-        need_keys(node, kMeshKeys);
-        const Node file = required(node, "file", "the name of an OBJ or STL file");
-        MeshShape mesh;
-        mesh.file = text(file);
-        if (const Node at = find(node, "scale")) mesh.scale = number(at);
-        // The dials of one shape take what the dials of the scene take.
-        Settings own;
-        for (const std::string_view dial : Keys(kMeshKeys).subspan(2)) {
-            const Node at = find(node, dial);
-            if (!at) continue;
-            const std::string trouble = find_dial(dial)->set(own, text_or_number(at));
-            if (!trouble.empty()) refuse(at, trouble);
-            if (dial == "nonconvex") mesh.nonconvex = text(at);
-        }
-        mesh.voxel_size = own.voxel_size;
-        mesh.image_resolution = own.image_resolution;
-        mesh.sphere_levels = own.sphere_levels;
-        mesh.max_parts = own.max_parts;
+        std::vector<std::string_view> keys;
+        for (const auto& field : fields_of(shape)) keys.push_back(field.key);
+        need_keys(node, keys);
+        read_fields(node, fields_of(shape), shape);
+        read_file_of(node, shape);
+    }
+    template <class Shape>
+    void read_file_of(Node, Shape&) const
+    { }
+
+    void read_file_of(Node node, MeshShape& mesh) const
+    {
+        const Node file = find(node, "file");
         const FileContent content = read_named(file, kGreatestMeshFile);
         if (content.size > kGreatestMeshFile) refuse(file, "wanted a mesh file of at most 4 GiB");
         MeshFile read = read_mesh_file(content.bytes, mesh.file);
         for (Vec3& vertex : read.vertices) vertex *= mesh.scale;
         mesh.vertices = std::move(read.vertices);
         mesh.triangles = std::move(read.triangles);
-        return mesh;
     }
 
-    VoxelsShape read_voxels(Node node)
+    void read_file_of(Node node, VoxelsShape& voxels) const
     {
-        constexpr std::string_view keys[] = {"file"};
-        need_keys(node, keys);
-        const Node file = required(node, keys[0], "the name of a .vdb file");
-        VoxelsShape voxels;
-        voxels.file = text(file);
+        const Node file = find(node, "file");
         FileContent content = read_named(file, kGreatestMeshFile);
         if (content.size > kGreatestMeshFile) refuse(file, "wanted a .vdb file of at most 4 GiB");
         LevelSetResult read = read_level_set(std::move(content.bytes));
         if (!read.trouble.empty())
             refuse(file, "wanted a level set; " + in_quotes(voxels.file) + ' ' + read.trouble);
         voxels.level_set = std::move(read.level_set);
-        return voxels;
     }
 
-    CompoundShape read_compound(Node node)
+    void read_stated(Node node, CompoundShape& compound) const
     {
-        constexpr std::string_view keys[] = {"shape", "position", "orientation"};
-        CompoundShape compound;
         each(node, [&](Node at) {
-            need_keys(at, keys);
-            CompoundShape::Part part;
-            part.shape = find_shape(required(at, keys[0], "the name of a shape"));
-            if (const Node place = find(at, keys[1])) part.pose.position = vector(place);
-            if (const Node turn = find(at, keys[2])) part.pose.orientation = quaternion(turn);
-            compound.parts.push_back(part);
+            need_keys(at, kKeysOf<kPartFields, kPoseFields>);
+            CompoundShape::Part& part = compound.parts.emplace_back();
+            read_fields(at, kPartFields, part);
+            read_fields(at, kPoseFields, part.pose);
         });
-        return compound;
     }
 
     void read_body(Node node)
     {
-        need_keys(node, kBodyKeys);
-        BodyDescription body = read_shared(node);
-        if (const Node at = find(node, "name")) body.name = text(at);
-        if (const Node at = find(node, "position")) body.position = vector(at);
-        if (const Node at = find(node, "orientation")) body.orientation = quaternion(at);
-        if (const Node at = find(node, "velocity")) body.velocity = vector(at);
-        if (const Node at = find(node, "angular_velocity")) body.angular_velocity = vector(at);
+        need_keys(node, kKeysOf<kBodyFields, kOwnBodyFields>);
+        BodyDescription body;
+        read_fields(node, kBodyFields, body);
+        read_fields(node, kOwnBodyFields, body);
         if (!body.name.empty()) body_names_.emplace(body.name, scene_.bodies.size());
         scene_.bodies.push_back(std::move(body));
     }
 
-    /// What bodies and instances have in common.
-    BodyDescription read_shared(Node node)
-    {
-        BodyDescription body;
-        const Node shape = required(node, "shape", "the name of a shape, or null");
-        if (kind(shape) != JsonKind::null) body.shape = find_shape(shape);
-        if (const Node at = find(node, "material")) body.material = find_material(at);
-        if (const Node at = find(node, "motion")) body.motion = motion(at);
-        if (const Node at = find(node, "mass")) body.mass = number(at);
-        if (const Node at = find(node, "inertia")) body.inertia = symmetric(at);
-        if (const Node at = find(node, "center")) body.center = vector(at);
-        if (const Node at = find(node, "force")) body.force = vector(at);
-        if (const Node at = find(node, "torque")) body.torque = vector(at);
-        if (const Node at = find(node, "drag")) read_drag(at, body);
-        if (const Node at = find(node, "pivot")) body.pivot = vector(at);
-        if (const Node at = find(node, "drive_velocity")) read_drive(at, body);
-        if (const Node at = find(node, "lock_rotation")) body.lock_rotation = boolean(at);
-        if (const Node at = find(node, "lock_position")) body.lock_position = boolean(at);
-        if (const Node at = find(node, "group")) body.group = mask(at);
-        if (const Node at = find(node, "mask")) body.mask = mask(at);
-        if (const Node at = find(node, "fast")) body.fast = boolean(at);
-        return body;
-    }
-
-    std::uint32_t mask(Node node) const
-    {
-        return static_cast<std::uint32_t>(whole(node, 4294967295.0));
-    }
-
-    Motion motion(Node node) const
-    {
-        const std::string_view name = kind(node) == JsonKind::string ? text(node) : "";
-        if (name == "static") return Motion::static_;
-        if (name == "kinematic") return Motion::kinematic;
-        if (name != "dynamic") refuse_value(node, "static, kinematic or dynamic");
-        return Motion::dynamic;
-    }
-
-    void read_drag(Node node, BodyDescription& body) const
-    {
-        constexpr std::string_view keys[] = {"linear", "angular"};
-        need_keys(node, keys);
-        if (const Node at = find(node, keys[0])) body.linear_drag = number(at);
-        if (const Node at = find(node, keys[1])) body.angular_drag = number(at);
-    }
-
-    void read_drive(Node node, BodyDescription& body) const
-    {
-        if (kind(node) != JsonKind::array || json_.size(node) != 3)
-            refuse_value(node, "three numbers or nulls [x, y, z]");
-        std::size_t axis = 0;
-        each(node, [&](Node at) {
-            std::optional<double>& speed = body.drive_velocity[axis++];
-            if (kind(at) == JsonKind::null) return;
-            speed = json_.number(need(at, JsonKind::number, "a number or null"));
-        });
-    }
-
     void read_instances(Node node)
     {
-        need_keys(node, Keys(kBodyKeys).first(kSharedBodyKeys), kInstanceKeys);
+        need_keys(node, kKeysOf<kBodyFields, kInstancesFields>);
         Instances group;
-        group.common = read_shared(node);
+        read_fields(node, kBodyFields, group.common);
+        read_fields(node, kInstancesFields, group);
         if (const Node at = find(node, "sizes")) {
             if (kind(at) != JsonKind::string || json_.text(at) != "file")
                 refuse_value(at, "\"file\"");
             group.own_sizes = true;
         }
-        const Node file = required(node, "file", "the name of a file of records");
-        group.file = text(file);
-
+        const Node file = find(node, "file");
         const std::uint64_t record = group.stride() * sizeof(double);
         const Node count = find(node, "count");
         const double most = kMostBodies - static_cast<double>(scene_.body_count());
@@ -409,27 +394,14 @@ private:
 
     void read_spring(Node node)
     {
-        need_keys(node, kSpringKeys);
-        constexpr std::string_view end = "the name of a body, or null for the world";
-        Spring spring;
-        spring.a = find_end(required(node, "a", end));
-        spring.b = find_end(required(node, "b", end));
-        if (const Node at = find(node, "at_a")) spring.at_a = vector(at);
-        if (const Node at = find(node, "at_b")) spring.at_b = vector(at);
-        spring.stiffness = number(required(node, "stiffness", "a stiffness in N/m"));
-        if (const Node at = find(node, "damping")) spring.damping = number(at);
-        if (const Node at = find(node, "length")) spring.length = number(at);
-        scene_.springs.push_back(spring);
+        need_keys(node, kKeysOf<kSpringFields>);
+        read_fields(node, kSpringFields, scene_.springs.emplace_back());
     }
 
     void read_attractor(Node node)
     {
-        constexpr std::string_view keys[] = {"position", "strength"};
-        need_keys(node, keys);
-        Attractor attractor;
-        if (const Node at = find(node, keys[0])) attractor.position = vector(at);
-        attractor.strength = number(required(node, keys[1], "a strength"));
-        scene_.attractors.push_back(attractor);
+        need_keys(node, kKeysOf<kAttractorFields>);
+        read_fields(node, kAttractorFields, scene_.attractors.emplace_back());
     }
 
     const std::string& folder_;

@@ -2,6 +2,7 @@
 //
 // What is at its default is left out. "At its default" is asked of the bits, so that even a zero
 // keeps its sign on the way through a file.
+#include "scene/fields.hpp"
 #include "scene/files/json.hpp"
 #include "scene/files/json_writer.hpp"
 #include "scene/files/mesh_file.hpp"
@@ -69,12 +70,10 @@ public:
 
     void write()
     {
-        const Scene standard;
         std::string text = "{\n  \"throng\": 1";
-        if (!same_bits(scene_.gravity, standard.gravity))
-            text += ",\n  \"gravity\": " + json_text(scene_.gravity);
-        if (!same_bits(scene_.wind, standard.wind))
-            text += ",\n  \"wind\": " + json_text(scene_.wind);
+        for_stated(scene_, kSceneFields, [&](std::string_view key, const std::string& value) {
+            text += ",\n  " + json_string(key) + ": " + value;
+        });
         const std::string settings = settings_text();
         if (settings != "{}") text += ",\n  \"settings\": " + settings;
         text += json_lines("materials", material_lines(), "{}");
@@ -82,8 +81,8 @@ public:
         text += json_lines("shapes", shape_lines(), "{}");
         text += json_lines("bodies", body_lines(), "[]");
         text += json_lines("instances", instance_lines(), "[]");
-        text += json_lines("springs", spring_lines(), "[]");
-        text += json_lines("attractors", attractor_lines(), "[]");
+        text += json_lines("springs", lines_of(scene_.springs, kSpringFields), "[]");
+        text += json_lines("attractors", lines_of(scene_.attractors, kAttractorFields), "[]");
         write_file(path_, text + "\n}\n");
     }
 
@@ -114,6 +113,83 @@ private:
         return name;
     }
 
+    // Members of an object by their fields. A text is empty where there is nothing to state.
+
+    template <class Object, class Add>
+    void for_stated(const Object& object, Fields<Object> fields, const Add& add) const
+    {
+        const Object standard;
+        for (const Field<Object>& field : fields)
+            std::visit(
+                [&](const auto& member) {
+                    const std::string text = member_text(object, member);
+                    if (text.empty()) return;
+                    if (!field.required.empty() || text != member_text(standard, member))
+                        add(field.key, text);
+                },
+                field.member);
+    }
+    template <class Object>
+    void add_stated(const Object& object, Fields<Object> fields, JsonMembers& members) const
+    {
+        for_stated(object, fields, [&](std::string_view key, const std::string& value) {
+            members.add(key, value);
+        });
+    }
+
+    template <class Object, class Value>
+    std::string member_text(const Object& object, Value Object::*member) const
+    {
+        return json_text(object.*member);
+    }
+    template <class Object, class Value>
+    std::string member_text(const Object& object, std::optional<Value> Object::*member) const
+    {
+        return object.*member ? json_text(*(object.*member)) : std::string();
+    }
+    template <class Object>
+    std::string member_text(const Object& object, const NameOf<Object>& name) const
+    {
+        const std::uint32_t place = object.*name.place;
+        if (place == kNone) return name.or_null ? "null" : "";
+        switch (name.kind) {
+        case Named::shape:
+            return json_string(shape_names_[place]);
+        case Named::material:
+            return json_string(material_names_[place]);
+        case Named::body:
+            return json_string(body_names_[place]);
+        }
+        return {};
+    }
+    template <class Object>
+    std::string member_text(const Object& object, const Bits<Object>& bits) const
+    {
+        return std::to_string(object.*bits.bits);
+    }
+    template <class Object>
+    std::string member_text(const Object& object, const OfDial<Object>& dial) const
+    {
+        return std::visit([&](auto member) { return own_text(object.*member); }, dial.value);
+    }
+    static std::string own_text(double number) { return number == 0 ? "" : json_text(number); }
+    static std::string own_text(const std::string& text)
+    {
+        return text.empty() ? "" : json_string(text);
+    }
+    template <class Object>
+    std::string member_text(const Object& object, const Group<Object>& group) const
+    {
+        JsonMembers members;
+        add_stated(object, group.fields, members);
+        return members.empty() ? "" : members.text();
+    }
+    template <class Object>
+    std::string member_text(const Object&, ByHand) const
+    {
+        return {};
+    }
+
     std::string settings_text() const
     {
         JsonMembers members;
@@ -135,14 +211,9 @@ private:
     std::vector<std::string> material_lines() const
     {
         std::vector<std::string> all;
-        const Material standard;
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
-            const Material& material = scene_.materials[i];
             JsonMembers members;
-            members.add("density", material.density, standard.density);
-            members.add("friction", material.friction, standard.friction);
-            members.add("restitution", material.restitution, standard.restitution);
-            members.add("rolling_friction", material.rolling_friction, standard.rolling_friction);
+            add_stated(scene_.materials[i], kMaterialFields, members);
             all.push_back(json_string(material_names_[i]) + ": " + members.text());
         }
         return all;
@@ -156,8 +227,7 @@ private:
             members.add("materials",
                         '[' + json_string(material_names_[pair.a]) + ", "
                             + json_string(material_names_[pair.b]) + ']');
-            if (pair.friction) members.add("friction", json_text(*pair.friction));
-            if (pair.restitution) members.add("restitution", json_text(*pair.restitution));
+            add_stated(pair, kPairFields, members);
             all.push_back(members.text());
         }
         return all;
@@ -169,54 +239,33 @@ private:
     {
         std::vector<std::string> all;
         for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
-            const std::string text = std::visit(
-                [&](const auto& shape) { return shape_text(shape, i); }, scene_.shapes[i].shape);
-            all.push_back(json_string(shape_names_[i]) + ": {" + text + '}');
+            const ShapeDescription& shape = scene_.shapes[i];
+            const std::string text =
+                std::visit([&](const auto& stated) { return shape_text(stated, i); }, shape.shape);
+            JsonMembers members;
+            members.add(kShapeNames[shape.shape.index()].name, text);
+            all.push_back(json_string(shape_names_[i]) + ": " + members.text());
         }
         return all;
     }
 
-    static std::string shape_text(const SphereShape& sphere, std::size_t)
+    template <class Shape>
+    std::string shape_text(const Shape& shape, std::size_t) const
     {
-        return "\"sphere\": {\"radius\": " + json_text(sphere.radius) + '}';
-    }
-    static std::string shape_text(const CapsuleShape& capsule, std::size_t)
-    {
-        return "\"capsule\": {\"radius\": " + json_text(capsule.radius)
-            + ", \"half_length\": " + json_text(capsule.half_length) + '}';
-    }
-    static std::string shape_text(const CylinderShape& cylinder, std::size_t)
-    {
-        return "\"cylinder\": {\"radius\": " + json_text(cylinder.radius)
-            + ", \"half_length\": " + json_text(cylinder.half_length) + '}';
-    }
-    static std::string shape_text(const BoxShape& box, std::size_t)
-    {
-        return "\"box\": {\"half_extents\": " + json_text(box.half_extents) + '}';
-    }
-    static std::string shape_text(const HullShape& hull, std::size_t)
-    {
-        std::string points;
-        for (const Vec3& point : hull.points)
-            points += (points.empty() ? "" : ", ") + json_text(point);
-        return "\"hull\": {\"points\": [" + points + "]}";
-    }
-    static std::string shape_text(const PlaneShape& plane, std::size_t)
-    {
-        return "\"plane\": {\"normal\": " + json_text(plane.normal)
-            + ", \"offset\": " + json_text(plane.offset) + '}';
+        JsonMembers members;
+        add_stated(shape, fields_of(shape), members);
+        return members.text();
     }
     std::string shape_text(const CompoundShape& compound, std::size_t) const
     {
         std::string parts;
         for (const CompoundShape::Part& part : compound.parts) {
             JsonMembers members;
-            members.add("shape", json_string(shape_names_[part.shape]));
-            members.add("position", part.pose.position, Pose{}.position);
-            members.add("orientation", part.pose.orientation, Pose{}.orientation);
+            add_stated(part, kPartFields, members);
+            add_stated(part.pose, kPoseFields, members);
             parts += (parts.empty() ? "" : ", ") + members.text();
         }
-        return "\"compound\": [" + parts + ']';
+        return '[' + parts + ']';
     }
 
     std::string shape_text(const MeshShape& mesh, std::size_t place)
@@ -230,15 +279,8 @@ private:
             const std::string tail = '.' + std::to_string(place) + ".obj";
             members.add("file", json_string(write_beside(tail, mesh.file, text)));
         }
-        if (!mesh.nonconvex.empty()) members.add("nonconvex", json_string(mesh.nonconvex));
-        const auto add_dial = [&](std::string_view dial, double number) {
-            members.add(dial, number, 0.0);
-        };
-        add_dial("voxel_size", mesh.voxel_size);
-        add_dial("image_resolution", mesh.image_resolution);
-        add_dial("sphere_levels", mesh.sphere_levels);
-        add_dial("max_parts", mesh.max_parts);
-        return "\"mesh\": " + members.text();
+        add_stated(mesh, std::span(kMeshFields).subspan(2), members);  // its dials
+        return members.text();
     }
 
     /// Whether the mesh's own file, seen from where the scene is written, says what it holds.
@@ -271,7 +313,7 @@ private:
         }
         JsonMembers members;
         members.add("file", json_string(name));
-        return "\"voxels\": " + members.text();
+        return members.text();
     }
 
     bool holds(const VoxelsShape& voxels) const
@@ -306,14 +348,10 @@ private:
 
     std::string body_text(const BodyDescription& body, const std::string& name) const
     {
-        const BodyDescription standard;
         JsonMembers members;
         if (!name.empty()) members.add("name", json_string(name));
-        add_shared(body, members);
-        members.add("position", body.position, standard.position);
-        members.add("orientation", body.orientation, standard.orientation);
-        members.add("velocity", body.velocity, standard.velocity);
-        members.add("angular_velocity", body.angular_velocity, standard.angular_velocity);
+        add_stated(body, kBodyFields, members);
+        add_stated(body, std::span(kOwnBodyFields).subspan(1), members);  // but for the name
         return members.text();
     }
 
@@ -328,38 +366,6 @@ private:
         return body_text(body, "");
     }
 
-    void add_shared(const BodyDescription& body, JsonMembers& members) const
-    {
-        const BodyDescription standard;
-        members.add("shape", body.shape == kNone ? "null" : json_string(shape_names_[body.shape]));
-        if (body.material != kNone)
-            members.add("material", json_string(material_names_[body.material]));
-        if (body.motion == Motion::static_) members.add("motion", "\"static\"");
-        if (body.motion == Motion::kinematic) members.add("motion", "\"kinematic\"");
-        if (body.mass) members.add("mass", json_text(*body.mass));
-        if (body.inertia) {
-            const Sym3& i = *body.inertia;
-            members.add("inertia", json_text({i.xx, i.yy, i.zz, i.xy, i.xz, i.yz}));
-        }
-        if (body.center) members.add("center", json_text(*body.center));
-        members.add("force", body.force, standard.force);
-        members.add("torque", body.torque, standard.torque);
-        JsonMembers drag;
-        drag.add("linear", body.linear_drag, standard.linear_drag);
-        drag.add("angular", body.angular_drag, standard.angular_drag);
-        if (!drag.empty()) members.add("drag", drag.text());
-        if (body.pivot) members.add("pivot", json_text(*body.pivot));
-        const auto& drive = body.drive_velocity;
-        const auto axis = [&](std::size_t i) { return drive[i] ? json_text(*drive[i]) : "null"; };
-        if (drive[0] || drive[1] || drive[2])
-            members.add("drive_velocity", '[' + axis(0) + ", " + axis(1) + ", " + axis(2) + ']');
-        if (body.lock_rotation) members.add("lock_rotation", "true");
-        if (body.lock_position) members.add("lock_position", "true");
-        if (body.group != standard.group) members.add("group", std::to_string(body.group));
-        if (body.mask != standard.mask) members.add("mask", std::to_string(body.mask));
-        if (body.fast) members.add("fast", "true");
-    }
-
     std::vector<std::string> instance_lines()
     {
         std::vector<std::string> all;
@@ -368,7 +374,7 @@ private:
             const std::string_view bytes(reinterpret_cast<const char*>(group.records.data()),
                                          group.records.size() * sizeof(double));
             JsonMembers members;
-            add_shared(group.common, members);
+            add_stated(group.common, kBodyFields, members);
             members.add("count", std::to_string(group.count()));
             if (group.own_sizes) members.add("sizes", "\"file\"");
             const std::string tail = '.' + std::to_string(i) + ".bin";
@@ -389,34 +395,14 @@ private:
         return content.trouble.empty() && content.bytes == bytes;
     }
 
-    std::vector<std::string> spring_lines() const
-    {
-        const auto end = [&](std::uint32_t body) {
-            return body == kNone ? "null" : json_string(body_names_[body]);
-        };
-        std::vector<std::string> all;
-        const Spring standard;
-        for (const Spring& spring : scene_.springs) {
-            JsonMembers members;
-            members.add("a", end(spring.a));
-            members.add("b", end(spring.b));
-            members.add("at_a", spring.at_a, standard.at_a);
-            members.add("at_b", spring.at_b, standard.at_b);
-            members.add("stiffness", json_text(spring.stiffness));
-            members.add("damping", spring.damping, standard.damping);
-            members.add("length", spring.length, standard.length);
-            all.push_back(members.text());
-        }
-        return all;
-    }
-
-    std::vector<std::string> attractor_lines() const
+    template <class Object>
+    std::vector<std::string> lines_of(const std::vector<Object>& objects,
+                                      Fields<Object> fields) const
     {
         std::vector<std::string> all;
-        for (const Attractor& attractor : scene_.attractors) {
+        for (const Object& object : objects) {
             JsonMembers members;
-            members.add("position", attractor.position, Attractor{}.position);
-            members.add("strength", json_text(attractor.strength));
+            add_stated(object, fields, members);
             all.push_back(members.text());
         }
         return all;

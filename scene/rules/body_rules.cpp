@@ -11,29 +11,6 @@
 namespace throng {
 namespace {
 
-/// All quantities that are given are of a size that a step can hold.
-void check_numbers(const BodyDescription& body, const SceneChecker& checker)
-{
-    const auto mass_range = [](const SceneChecker& here, double mass) {
-        here.need_range(mass, kLeastMass, kGreatestMass, "a mass above 0 kg");
-    };
-    if (body.mass) mass_range(checker.at("mass"), *body.mass);
-    if (body.center) checker.at("center").need_place(*body.center);
-    if (body.pivot) checker.at("pivot").need_place(*body.pivot);
-    checker.at("force").need_range(body.force, -kGreatestNumber, kGreatestNumber, "a force in N");
-    checker.at("torque").need_range(body.torque, -kGreatestNumber, kGreatestNumber,
-                                    "a torque in N m");
-    const SceneChecker drag = checker.at("drag");
-    drag.at("linear").need_range(body.linear_drag, 0, kGreatestNumber, "a drag of at least 0 kg/s");
-    drag.at("angular").need_range(body.angular_drag, 0, kGreatestNumber,
-                                  "a drag of at least 0 kg m2/s");
-    const SceneChecker drive = checker.at("drive_velocity");
-    for (std::size_t i = 0; i < 3; ++i)
-        if (body.drive_velocity[i])
-            drive.at(i).need_range(*body.drive_velocity[i], -kGreatestLength, kGreatestLength,
-                                   "a velocity in m/s");
-}
-
 /// An inertia that some distribution of mass can have.
 void check_inertia(const Sym3& inertia, const SceneChecker& checker)
 {
@@ -132,20 +109,14 @@ void check_body(const Scene& scene,
                 const BodyDescription& body,
                 const SceneChecker& checker)
 {
-    check_numbers(body, checker);
+    checker.need_fields(body, kBodyFields);
     check_contradictions(body, checker);
     check_shape_and_mass(scene, masses, body, checker);
 }
 
 void check_motion(const BodyDescription& body, const SceneChecker& checker)
 {
-    checker.at("position").need_place(body.position);
-    checker.at("orientation").need_unit(body.orientation);
-    checker.at("velocity")
-        .need_range(body.velocity, -kGreatestLength, kGreatestLength, "a velocity in m/s");
-    checker.at("angular_velocity")
-        .need_range(body.angular_velocity, -kGreatestLength, kGreatestLength,
-                    "a velocity in rad/s");
+    checker.need_fields(body, kOwnBodyFields);
     checker.at("velocity")
         .need(may_move(body) || body.velocity.isZero(0),
               body.pivot ? "wanted [0, 0, 0] with a pivot: angular_velocity says how it swings"

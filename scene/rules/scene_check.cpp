@@ -26,18 +26,6 @@ void check_settings(const Settings& settings)
     part.need(clash.empty(), clash);
 }
 
-void check_material(const Material& material, const SceneChecker& checker)
-{
-    checker.at("density").need_range(material.density, kLeastMass, kGreatestMass,
-                                     "a density above 0 kg/m3");
-    checker.at("friction")
-        .need_range(material.friction, 0, kGreatestNumber, "a friction of at least 0");
-    checker.at("restitution").need_range(material.restitution, 0, 1, "a restitution from 0 to 1");
-    checker.at("rolling_friction")
-        .need_range(material.rolling_friction, 0, kGreatestLength,
-                    "a rolling friction of at least 0 m");
-}
-
 void check_materials(const Scene& scene)
 {
     const SceneChecker whole, materials = whole.at("materials"), pairs = whole.at("pairs");
@@ -47,7 +35,7 @@ void check_materials(const Scene& scene)
         const SceneChecker checker = materials.at(material.name, i);
         checker.need(material.name.empty() || names.insert(material.name).second,
                      "wanted a name of its own for each material");
-        check_material(material, checker);
+        checker.need_fields(material, kMaterialFields);
     }
 
     std::set<std::pair<std::uint32_t, std::uint32_t>> met;
@@ -60,10 +48,7 @@ void check_materials(const Scene& scene)
         checker.at("materials")
             .need(met.insert(std::minmax(pair.a, pair.b)).second,
                   "wanted each pair of materials once");
-        checker.at("friction")
-            .need_range(pair.friction.value_or(0), 0, kGreatestNumber, "a friction of at least 0");
-        checker.at("restitution")
-            .need_range(pair.restitution.value_or(0), 0, 1, "a restitution from 0 to 1");
+        checker.need_fields(pair, kPairFields);
     }
 }
 
@@ -77,29 +62,16 @@ void check_springs(const Scene& scene)
         checker.at("a").need(spring.a == kNone || spring.a < bodies, "wanted a body of the scene");
         checker.at("b").need(spring.b == kNone || spring.b < bodies, "wanted a body of the scene");
         checker.at("b").need(spring.a != spring.b, "wanted another end than a");
-        checker.at("at_a").need_place(spring.at_a);
-        checker.at("at_b").need_place(spring.at_b);
-        checker.at("stiffness")
-            .need_range(spring.stiffness, 0, kGreatestNumber, "a stiffness of at least 0 N/m");
-        checker.at("damping").need_range(spring.damping, 0, kGreatestNumber,
-                                         "a damping of at least 0 N s/m");
-        checker.at("length").need_range(spring.length, 0, kGreatestLength,
-                                        "a length of at least 0 m");
+        checker.need_fields(spring, kSpringFields);
     }
 }
 
-void check_fields(const Scene& scene)
+void check_attractors(const Scene& scene)
 {
     const SceneChecker whole, attractors = whole.at("attractors");
-    whole.at("gravity").need_range(scene.gravity, -kGreatestLength, kGreatestLength,
-                                   "an acceleration in m/s2");
-    whole.at("wind").need_range(scene.wind, -kGreatestLength, kGreatestLength, "a velocity in m/s");
     for (std::size_t i = 0; i < scene.attractors.size(); ++i) {
         const SceneChecker checker = attractors.at(i);
-        checker.at("position").need_place(scene.attractors[i].position);
-        checker.at("strength")
-            .need_range(scene.attractors[i].strength, -kGreatestNumber, kGreatestNumber,
-                        "a strength");
+        checker.need_fields(scene.attractors[i], kAttractorFields);
     }
 }
 
@@ -121,34 +93,22 @@ void SceneChecker::refuse(std::string_view wanted) const
     throw SceneTrouble{path(), std::string(wanted)};
 }
 
-void SceneChecker::need_range(double number,
-                              double least,
-                              double greatest,
-                              std::string_view what) const
+void SceneChecker::need_range(double number, const Range& range) const
 {
-    if (number >= least && number <= greatest) return;
+    if (number >= range.least && number <= range.greatest) return;
     // A limit of the step, not of nature, is said to be one.
-    const bool beyond = (std::abs(number) > greatest && greatest >= kGreatestLength)
-        || (number > 0 && number < least);
-    refuse("wanted " + std::string(what) + (beyond ? ", of a size that a step can hold" : "")
-           + ", not " + number_text(number));
+    const bool beyond = (std::abs(number) > range.greatest && range.greatest >= kGreatestLength)
+        || (number > 0 && number < range.least);
+    refuse("wanted " + std::string(range.wanted)
+           + (beyond ? ", of a size that a step can hold" : "") + ", not " + number_text(number));
 }
 
-void SceneChecker::need_range(const Vec3& numbers,
-                              double least,
-                              double greatest,
-                              std::string_view what) const
+void SceneChecker::need_range(const Vec3& numbers, const Range& range) const
 {
     for (std::size_t i = 0; i < 3; ++i) {
         const double number = numbers[static_cast<Eigen::Index>(i)];
-        if (!(number >= least && number <= greatest))
-            at(i).need_range(number, least, greatest, what);
+        if (!(number >= range.least && number <= range.greatest)) at(i).need_range(number, range);
     }
-}
-
-void SceneChecker::need_place(const Vec3& place) const
-{
-    need_range(place, -kGreatestLength, kGreatestLength, "a place in m");
 }
 
 bool is_unit(const Quat& orientation) { return std::abs(orientation.norm() - 1) <= kUnitTolerance; }
@@ -160,11 +120,30 @@ void SceneChecker::need_unit(const Quat& orientation) const
            + number_text(orientation.norm()));
 }
 
+void SceneChecker::need_dial(std::string_view dial, const std::string& value) const
+{
+    Settings unread;
+    if (value.empty()) return;
+    const std::string trouble = find_dial(dial)->set(unread, value);
+    need(trouble.empty(), trouble);
+}
+
+void SceneChecker::need_dial(std::string_view dial, double value) const
+{
+    if (value != 0) need_dial(dial, number_text(value));
+}
+
+void SceneChecker::need_dial(std::string_view dial, int value) const
+{
+    if (value != 0) need_dial(dial, std::to_string(value));
+}
+
 std::optional<SceneTrouble> find_trouble(const Scene& scene)
 {
     try {
         check_settings(scene.settings);
-        check_fields(scene);
+        SceneChecker().need_fields(scene, kSceneFields);
+        check_attractors(scene);
         const std::vector<MassProperties> masses = check_shapes(scene);
         check_materials(scene);
         check_bodies(scene, masses);

@@ -1,10 +1,8 @@
-// Scene rules: the parts of the scene check, and the limits they hold numbers to.
-//
-// Limits leave room for what a step makes of a number: masses and moments stay inside float, with
-// their inverses, and distances inside what squares and cubes of them can hold.
+// Scene rules: the parts of the scene check, and what refuses a part of a scene.
 #pragma once
 
 #include "kernels/geometry/mass.hpp"
+#include "scene/fields.hpp"
 #include "scene/rules/scene_check.hpp"
 
 #include <span>
@@ -12,13 +10,6 @@
 #include <vector>
 
 namespace throng {
-
-inline constexpr double kGreatestLength = 1e15;  // m, of places and sizes; m/s and rad/s too
-inline constexpr double kLeastLength = 1e-12;
-inline constexpr double kGreatestMass = 1e30, kLeastMass = 1e-30;      // kg
-inline constexpr double kGreatestMoment = 1e37, kLeastMoment = 1e-37;  // kg m2
-inline constexpr double kGreatestNumber = 1e30;  // forces, stiffnesses and other factors
-inline constexpr double kUnitTolerance = 1e-6;   // a direction may be off by this much
 
 /// A part of a scene, and a way to refuse it: throws SceneTrouble.
 ///
@@ -40,16 +31,79 @@ public:
     {
         if (!good) refuse(wanted);
     }
-    /// The number lies between limits, or trouble says `wanted WHAT, not NUMBER`.
-    void need_range(double number, double least, double greatest, std::string_view what) const;
+    /// The number lies in the range, or trouble says `wanted WHAT, not NUMBER`.
+    void need_range(double number, const Range& range) const;
     /// Each of the numbers, with its place.
-    void
-    need_range(const Vec3& numbers, double least, double greatest, std::string_view what) const;
-    /// A place, in m.
-    void need_place(const Vec3& place) const;
+    void need_range(const Vec3& numbers, const Range& range) const;
     void need_unit(const Quat& orientation) const;
 
+    /// What the fields of an object say of its members, each by itself.
+    template <class Object>
+    void need_fields(const Object& object, Fields<Object> fields) const
+    {
+        for (const Field<Object>& field : fields) {
+            const SceneChecker here = at(field.key);
+            std::visit([&](const auto& member) { here.need_member(object, field, member); },
+                       field.member);
+        }
+    }
+
 private:
+    template <class Object, class Value>
+    void need_member(const Object& object, const Field<Object>& field, Value Object::*member) const
+    {
+        if (field.range.wanted.empty() && !std::is_same_v<Value, Quat>) return;
+        need_value(object.*member, field.range);
+    }
+    template <class Object>
+    void need_member(const Object& object, const Field<Object>&, const Group<Object>& group) const
+    {
+        need_fields(object, group.fields);
+    }
+    template <class Object>
+    void
+    need_member(const Object& object, const Field<Object>& field, const OfDial<Object>& dial) const
+    {
+        std::visit([&](auto member) { need_dial(field.key, object.*member); }, dial.value);
+    }
+    // Whoever refers to a name says whether it is there.
+    template <class Object, class Other>
+    void need_member(const Object&, const Field<Object>&, const Other&) const
+    { }
+
+    void need_value(double number, const Range& range) const { need_range(number, range); }
+    void need_value(const Vec3& vector, const Range& range) const { need_range(vector, range); }
+    void need_value(const Quat& quaternion, const Range&) const { need_unit(quaternion); }
+    template <class Value>
+    void need_value(const std::optional<Value>& value, const Range& range) const
+    {
+        if (value) need_value(*value, range);
+    }
+    void need_value(const std::vector<Vec3>& list, const Range& range) const
+    {
+        need_each(list, range);
+    }
+    void need_value(const std::array<std::optional<double>, 3>& list, const Range& range) const
+    {
+        need_each(list, range);
+    }
+    template <class List>
+    void need_each(const List& list, const Range& range) const
+    {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const SceneChecker here = at(i);
+            here.need_value(list[i], range);
+        }
+    }
+    template <class Unranged>
+    void need_value(const Unranged&, const Range&) const
+    { }
+
+    // 0 or empty: not stated.
+    void need_dial(std::string_view dial, double value) const;
+    void need_dial(std::string_view dial, int value) const;
+    void need_dial(std::string_view dial, const std::string& value) const;
+
     SceneChecker(const SceneChecker* whole, std::string_view key, std::size_t index)
         : whole_(whole), key_(key), index_(index)
     { }

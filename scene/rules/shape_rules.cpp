@@ -29,12 +29,6 @@ struct ShapeChecker {
     bool moves;        // a body with it is dynamic
     Shapes scratch{};  // for mass_of()
 
-    void need_size(std::string_view kind, std::string_view key, double size) const
-    {
-        const SceneChecker here = checker.at(kind);
-        here.at(key).need_range(size, kLeastLength, kGreatestLength, "a length above 0 m");
-    }
-
     template <class Shape>
     MassProperties weigh(std::vector<Shape>& kind, ShapeKind name, Shape shape)
     {
@@ -42,53 +36,26 @@ struct ShapeChecker {
         return mass_of(scratch, {name, 0});
     }
 
-    // What a shape states for itself is held to what the scene's dial takes.
-    void need_dial(const SceneChecker& mesh, std::string_view dial, std::string_view value) const
-    {
-        Settings unread;
-        const std::string trouble = find_dial(dial)->set(unread, value);
-        mesh.at(dial).need(trouble.empty(), trouble);
-    }
-    void need_own_dials(const SceneChecker& here, const MeshShape& mesh) const
-    {
-        if (!mesh.nonconvex.empty()) need_dial(here, "nonconvex", mesh.nonconvex);
-        if (mesh.voxel_size != 0) need_dial(here, "voxel_size", number_text(mesh.voxel_size));
-        for (const auto& [dial, value] : {std::pair("image_resolution", mesh.image_resolution),
-                                          std::pair("sphere_levels", mesh.sphere_levels),
-                                          std::pair("max_parts", mesh.max_parts)})
-            if (value != 0) need_dial(here, dial, std::to_string(value));
-    }
-
     MassProperties operator()(const SphereShape& sphere)
     {
-        need_size("sphere", "radius", sphere.radius);
         return weigh(scratch.spheres, ShapeKind::sphere, {sphere.radius});
     }
     MassProperties operator()(const CapsuleShape& capsule)
     {
-        need_size("capsule", "radius", capsule.radius);
-        need_size("capsule", "half_length", capsule.half_length);
         return weigh(scratch.capsules, ShapeKind::capsule, {capsule.radius, capsule.half_length});
     }
     MassProperties operator()(const CylinderShape& cylinder)
     {
-        need_size("cylinder", "radius", cylinder.radius);
-        need_size("cylinder", "half_length", cylinder.half_length);
         return weigh(scratch.cylinders, ShapeKind::cylinder,
                      {cylinder.radius, cylinder.half_length});
     }
     MassProperties operator()(const BoxShape& box)
     {
-        const SceneChecker here = checker.at("box");
-        here.at("half_extents")
-            .need_range(box.half_extents, kLeastLength, kGreatestLength, "a length above 0 m");
         return weigh(scratch.boxes, ShapeKind::box, {box.half_extents});
     }
     MassProperties operator()(const HullShape& hull)
     {
         const SceneChecker here = checker.at("hull"), points = here.at("points");
-        for (std::size_t i = 0; i < hull.points.size(); ++i)
-            points.at(i).need_place(hull.points[i]);
         const std::shared_ptr<const HullResult> built = stated_hull(hull);
         points.need(built->trouble.empty(), "wanted a hull; " + built->trouble);
         return mass_of(built->hull);
@@ -98,15 +65,11 @@ struct ShapeChecker {
         const SceneChecker here = checker.at("plane");
         here.at("normal").need(std::abs(plane.normal.norm() - 1) <= kUnitTolerance,
                                "wanted a direction of unit length");
-        here.at("offset").need_range(plane.offset, -kGreatestLength, kGreatestLength,
-                                     "an offset in m");
         return {};
     }
     MassProperties operator()(const MeshShape& mesh)
     {
         const SceneChecker here = checker.at("mesh");
-        here.at("scale").need_range(mesh.scale, kLeastLength, kGreatestLength, "a factor above 0");
-        need_own_dials(here, mesh);
         const SceneChecker file = here.at("file");
         file.need(!mesh.triangles.empty(), "wanted a mesh with triangles, not an empty one");
         for (const Vec3& vertex : mesh.vertices)
@@ -134,10 +97,10 @@ struct ShapeChecker {
                       && !voxels.level_set->surface.tree.empty(),
                   "wanted a level set with a surface, not an empty one");
         const LevelSet& level_set = *voxels.level_set;
-        file.need_range(level_set.field.voxel, kLeastLength, kGreatestLength, "voxels above 0 m");
+        file.need_range(level_set.field.voxel, {kLeastLength, kGreatestLength, "voxels above 0 m"});
         const Box3 box = box_of(level_set.surface);
-        file.need_place(box.lower);
-        file.need_place(box.upper);
+        file.need_range(box.lower, kPlaces);
+        file.need_range(box.upper, kPlaces);
         if (!moves) return {};
         file.need(level_set.whole,
                   "wanted a level set whose surface is closed, for a body that moves; this one is "
@@ -154,8 +117,7 @@ struct ShapeChecker {
         for (std::size_t i = 0; i < compound.parts.size(); ++i) {
             const CompoundShape::Part& part = compound.parts[i];
             const SceneChecker here = parts.at(i);
-            here.at("position").need_place(part.pose.position);
-            here.at("orientation").need_unit(part.pose.orientation);
+            here.need_fields(part.pose, kPoseFields);
             here.at("shape").need(part.shape < scene.shapes.size(), "wanted a shape of the scene");
             const auto& shape = scene.shapes[part.shape].shape;
             const bool good = !std::holds_alternative<CompoundShape>(shape)
@@ -195,6 +157,9 @@ std::vector<MassProperties> check_shapes(const Scene& scene)
         const SceneChecker checker = shapes.at(shape.name, i);
         checker.need(shape.name.empty() || names.insert(shape.name).second,
                      "wanted a name of its own for each shape");
+        const SceneChecker kind = checker.at(kShapeNames[shape.shape.index()].name);
+        std::visit([&](const auto& stated) { kind.need_fields(stated, fields_of(stated)); },
+                   shape.shape);
         masses.push_back(std::visit(ShapeChecker{scene, checker, moving[i]}, shape.shape));
     }
 

@@ -4,6 +4,7 @@
 #include "apps/throng/bench/budget.hpp"
 #include "apps/throng/bench/report.hpp"
 #include "apps/throng/json_lines.hpp"
+#include "scene/files/json_writer.hpp"
 #include "throng/version.hpp"
 
 #include <fstream>
@@ -11,25 +12,6 @@
 
 namespace throng::bench {
 namespace {
-
-/// An object on one line.
-class Members {
-public:
-    Members& add(std::string_view key, const std::string& json)
-    {
-        text_ += (text_.empty() ? "{" : ", ") + json_string(key) + ": " + json;
-        return *this;
-    }
-    Members& add(std::string_view key, double number) { return add(key, json_number(number)); }
-    Members& add_text(std::string_view key, std::string_view text)
-    {
-        return add(key, json_string(text));
-    }
-    std::string text() const { return text_.empty() ? "{}" : text_ + '}'; }
-
-private:
-    std::string text_;
-};
 
 double number(std::size_t count) { return static_cast<double>(count); }
 
@@ -39,11 +21,14 @@ std::string array(const List& list, const Text& text, std::string_view between =
     return '[' + joined(list, between, text) + ']';
 }
 
-std::string numbers(const std::vector<double>& list) { return array(list, json_number); }
+std::string numbers(const std::vector<double>& list)
+{
+    return array(list, [](double number) { return json_text(number); });
+}
 
 std::string json_of(const Spread& spread)
 {
-    return Members()
+    return JsonMembers()
         .add("median", spread.median)
         .add("least", spread.least)
         .add("most", spread.most)
@@ -52,7 +37,7 @@ std::string json_of(const Spread& spread)
 
 std::string json_of(const Quality& quality)
 {
-    return Members()
+    return JsonMembers()
         .add("mean_overlap_m", quality.mean_overlap)
         .add("max_overlap_m", quality.greatest_overlap)
         .add("overlapping_pairs", number(quality.overlapping_pairs))
@@ -64,7 +49,7 @@ std::string json_of(const Quality& quality)
 
 std::string json_of(const Comparison& other)
 {
-    return Members()
+    return JsonMembers()
         .add_text("engine", other.engine)
         .add_text("setting", other.setting)
         .add("threads", other.threads)
@@ -76,7 +61,7 @@ std::string json_of(const Comparison& other)
 
 std::string json_of(const Figure& figure)
 {
-    Members made;
+    JsonMembers made;
     made.add_text("engine", figure.engine)
         .add_text("setting", figure.setting)
         .add_text("settings", figure.settings)
@@ -100,7 +85,7 @@ std::string json_of(const Figure& figure)
         .add("against", array(figure.against, [](const Comparison& c) { return json_of(c); }));
     if (!figure.stages.empty())
         made.add("stages", array(figure.stages, [](const StageFigure& stage) {
-                     return Members()
+                     return JsonMembers()
                          .add_text("name", stage.name)
                          .add_text("part",
                                    perf::kBudgetPartNames[static_cast<std::size_t>(
@@ -114,7 +99,7 @@ std::string json_of(const Figure& figure)
 
 std::string json_of(const Run& run)
 {
-    Members made;
+    JsonMembers made;
     made.add_text("engine", run.engine)
         .add_text("setting", run.setting)
         .add("threads", run.threads)
@@ -129,7 +114,7 @@ std::string json_of(const Run& run)
 
 std::string json_of(const Case& made)
 {
-    Members all;
+    JsonMembers all;
     all.add_text("scene", made.scene->name)
         .add("size", made.size)
         .add("bodies", number(made.bodies))
@@ -138,7 +123,7 @@ std::string json_of(const Case& made)
         .add("hashes_agree", std::string(hashes_agree(made) ? "true" : "false"));
     const perf::Budget* const budget = perf::find_budget(made.scene->name);
     if (budget != nullptr && made.size == perf::kBudgetSize) {
-        Members parts;
+        JsonMembers parts;
         for (std::size_t i = 0; i < budget->ms.size(); ++i)
             parts.add(perf::kBudgetPartNames[i], budget->ms[i]);
         all.add("budget_ms", parts.add("sum", budget->sum_ms).text());
@@ -154,7 +139,7 @@ std::string json_of(const Case& made)
 
 std::string json_of(const Growth& growth)
 {
-    return Members()
+    return JsonMembers()
         .add_text("scene", growth.scene)
         .add_text("setting", growth.setting)
         .add("threads", growth.threads)
@@ -165,7 +150,7 @@ std::string json_of(const Growth& growth)
         .add("equal_state",
              array(growth.steps_up,
                    [](const Growth::EqualState& step) {
-                       return Members()
+                       return JsonMembers()
                            .add("bodies_from", number(step.small))
                            .add("bodies_to", number(step.large))
                            .add_text("per", step.by_contact ? "contact" : "body")
@@ -197,7 +182,7 @@ void write_json(const Plan& plan, const std::vector<Case>& cases, bool complete,
     JsonLines json(out);
     json.add("throng", json_string(version()));
     json.add("machine",
-             Members()
+             JsonMembers()
                  .add_text("processor", processor_name())
                  .add("cores", number(std::thread::hardware_concurrency()))
                  .add_text("lanes", lane_width())

@@ -32,6 +32,14 @@ TEST(Usage, RunHelpListsTheDials)
         EXPECT_NE(help.out.find(name), std::string::npos) << name;
 }
 
+TEST(Usage, SceneTellsItsFormat)
+{
+    const Outcome schema = run_throng({"scene", "--schema"});
+    EXPECT_EQ(schema.code, 0);
+    EXPECT_EQ(schema.out.find("{\n  \"$schema\""), 0u);
+    EXPECT_NE(schema.out.find("\"drive_velocity\""), std::string::npos);
+}
+
 TEST(Usage, HelpIsACommandToo)
 {
     EXPECT_EQ(run_throng({"help"}).out, run_throng({"--help"}).out);
@@ -123,6 +131,7 @@ TEST(Usage, WrongWordsAreRefusedWithWhatWasWanted)
         {{"scene", "pile", "many"}, "give a whole number"},
         {{"scene", "--seed", "3"}, "wanted the name of a scene"},
         {{"scene", "pile:3", "4"}, "given twice"},
+        {{"scene", "pile", "--schema"}, "--schema: wanted nothing beside it"},
         {{"scene", "--mesh", ball}, "wanted the name of a scene"},
         {{"scene", "pile", "--mesh", ball}, "--mesh: pile has no mesh that another could replace"},
         {{"scene", "chain", "--mesh", ball}, "these have: knots, terrain"},

@@ -341,7 +341,7 @@ TEST(SceneFile, RefusesBadBodies)
         {kTop, "\"bodies\": [@{}]", "bodies[0].shape: wanted the name of a shape, or null"},
         {kBody, "\"shape\": @\"bxo\"",
          "bodies[1].shape: wanted the name of a shape, not \"bxo\"; perhaps box"},
-        {kBody, "\"shape\": @3", "bodies[1].shape: wanted text, not 3"},
+        {kBody, "\"shape\": @3", "bodies[1].shape: wanted the name of a shape, or null, not 3"},
         {kBody, box + "\"material\": @\"wod\"",
          "bodies[1].material: wanted the name of a material, not \"wod\"; perhaps wood"},
         {kBody, box + "\"motion\": @\"Static\"",

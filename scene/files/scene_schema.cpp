@@ -1,0 +1,292 @@
+#include "scene/files/scene_schema.hpp"
+
+#include "scene/fields.hpp"
+#include "scene/files/json.hpp"
+#include "scene/files/json_writer.hpp"
+#include "scene/names.hpp"
+#include "throng/dials.hpp"
+
+#include <cmath>
+
+namespace throng {
+namespace {
+
+constexpr std::string_view kAbout =
+    "A scene of rigid bodies. SI units, radians, quaternions [w, x, y, z] that turn body axes into "
+    "world axes. Files named in a scene are found relative to it. Beyond this schema: keys are "
+    "given once, numbers fit a double, names refer to what exists, hulls enclose a volume, moments "
+    "of inertia belong to some body, and nesting is at most 64 levels. Of each key `unit` says in "
+    "what it is counted, `default` what it is where it is left out, and `leftOut` the same in "
+    "words; of a dial `values` says what may be set.";
+
+// Types, each as members of an object.
+
+std::string reference(std::string_view name)
+{
+    return "\"$ref\": \"#/$defs/" + std::string(name) + '"';
+}
+
+std::string type(std::string_view name) { return "\"type\": \"" + std::string(name) + '"'; }
+
+std::string list_of(const std::string& items, std::size_t count)
+{
+    const std::string number = std::to_string(count);
+    return type("array") + ", \"items\": {" + items + "}, \"minItems\": " + number
+        + ", \"maxItems\": " + number;
+}
+
+/// Limits of nature; those of the step are not told.
+std::string number_type(const Range& range)
+{
+    std::string text = type("number");
+    if (range.wanted.empty()) return text;
+    if (range.least == 0) text += ", \"minimum\": 0";
+    if (range.least > 0) text += ", \"exclusiveMinimum\": 0";
+    if (range.greatest < kGreatestLength) text += ", \"maximum\": " + number_text(range.greatest);
+    return text;
+}
+
+/// The type of what a member of a scene holds.
+template <class Object>
+struct TypeOf {
+    const Field<Object>& field;
+
+    std::string operator()(double Object::*) const { return number_type(field.range); }
+    std::string operator()(std::optional<double> Object::*) const
+    {
+        return number_type(field.range);
+    }
+    std::string operator()(Vec3 Object::*) const
+    {
+        return field.range.least > 0 ? list_of(number_type(field.range), 3) : reference("vector");
+    }
+    std::string operator()(std::optional<Vec3> Object::*) const { return reference("vector"); }
+    std::string operator()(std::vector<Vec3> Object::*) const
+    {
+        return type("array") + ", \"items\": {" + reference("vector") + "}, \"minItems\": 4";
+    }
+    std::string operator()(std::optional<Sym3> Object::*) const
+    {
+        return list_of(type("number"), 6);
+    }
+    std::string operator()(Quat Object::*) const { return reference("quaternion"); }
+    std::string operator()(bool Object::*) const { return type("boolean"); }
+    std::string operator()(std::string Object::*) const
+    {
+        return type("string") + (field.required.empty() ? "" : ", \"minLength\": 1");
+    }
+    std::string operator()(Motion Object::*) const
+    {
+        std::string names;
+        for (const std::string_view motion : kMotions)
+            names += (names.empty() ? "" : ", ") + json_string(motion);
+        return "\"enum\": [" + names + ']';
+    }
+    std::string operator()(std::array<std::optional<double>, 3> Object::*) const
+    {
+        return list_of(R"("type": ["number", "null"])", 3);
+    }
+    std::string operator()(const NameOf<Object>& name) const
+    {
+        return name.or_null ? R"("type": ["string", "null"])" : type("string");
+    }
+    std::string operator()(const Bits<Object>&) const { return reference("bits"); }
+    std::string operator()(const OfDial<Object>&) const
+    {
+        return reference("settings/properties/" + std::string(field.key));
+    }
+    std::string operator()(const Group<Object>& group) const
+    {
+        std::string properties;
+        for (const Field<Object>& one : group.fields)
+            properties += (properties.empty() ? "" : ", ") + member_of(one);
+        return type("object") + ", \"additionalProperties\": false, \"properties\": {" + properties
+            + '}';
+    }
+    std::string operator()(ByHand by_hand) const { return std::string(by_hand.schema); }
+
+    /// The key and all that is to be said of it.
+    static std::string member_of(const Field<Object>& field)
+    {
+        std::string text = json_string(field.key) + ": {" + std::visit(TypeOf{field}, field.member)
+            + ", \"description\": " + json_string(field.meaning);
+        if (!field.unit.empty()) text += ", \"unit\": " + json_string(field.unit);
+        if (!field.left_out.empty()) text += ", \"leftOut\": " + json_string(field.left_out);
+        const std::string standard = std::visit(DefaultOf{}, field.member);
+        if (field.required.empty() && field.left_out.empty() && !standard.empty())
+            text += ", \"default\": " + standard;
+        return text + '}';
+    }
+
+    /// What a member is where the file does not say, as JSON; empty where that is no value.
+    struct DefaultOf {
+        template <class Value>
+        std::string operator()(Value Object::*member) const
+        {
+            static const Object standard{};
+            return json_text(standard.*member);
+        }
+        template <class Value>
+        std::string operator()(std::optional<Value> Object::*) const
+        {
+            return {};
+        }
+        std::string operator()(const Bits<Object>& bits) const
+        {
+            static const Object standard{};
+            return std::to_string(standard.*bits.bits);
+        }
+        template <class Other>
+        std::string operator()(const Other&) const
+        {
+            return {};
+        }
+    };
+};
+
+/// Members of an object type, put together a line at a time.
+class ObjectType {
+public:
+    ObjectType(std::string_view description, const std::string& indent) : indent_(indent)
+    {
+        if (!description.empty()) say("\"description\": " + json_string(description));
+    }
+    ObjectType& say(const std::string& member)
+    {
+        if (!text_.empty()) text_ += ",\n";
+        text_ += indent_ + "  " + member;
+        return *this;
+    }
+    template <class Object>
+    ObjectType& has(std::span<const Field<Object>> fields)
+    {
+        for (const Field<Object>& field : fields) {
+            property(TypeOf<Object>::member_of(field));
+            if (!field.required.empty())
+                required_ += (required_.empty() ? "" : ", ") + json_string(field.key);
+        }
+        return *this;
+    }
+    ObjectType& property(const std::string& member)
+    {
+        properties_ += (properties_.empty() ? "" : ",\n") + indent_ + "    " + member;
+        return *this;
+    }
+    /// `closed`: other keys are refused here, and not by what refers to it.
+    std::string text(bool closed = true)
+    {
+        if (!required_.empty()) say("\"required\": [" + required_ + ']');
+        if (closed) say("\"additionalProperties\": false");
+        say("\"properties\": {\n" + properties_ + '\n' + indent_ + "  }");
+        return "{\n" + text_ + '\n' + indent_ + '}';
+    }
+
+private:
+    std::string indent_, text_, required_, properties_;
+};
+
+template <class Object, std::size_t count>
+std::string object_of(const Field<Object> (&fields)[count], const std::string& indent)
+{
+    return ObjectType("", indent)
+        .say(type("object"))
+        .has(std::span<const Field<Object>>(fields))
+        .text();
+}
+
+template <class... Shapes>
+std::string shape_types(const std::variant<Shapes...>&, const std::string& indent)
+{
+    ObjectType shape("", indent);
+    shape.say(type("object")).say("\"minProperties\": 1").say("\"maxProperties\": 1");
+    std::size_t place = 0;
+    const auto add = [&](const auto& stated) {
+        const ShapeName& kind = kShapeNames[place++];
+        std::string text;
+        if constexpr (std::is_same_v<decltype(stated), const CompoundShape&>)
+            text = "{\"description\": " + json_string(kind.meaning) + ", " + type("array")
+                + ", \"minItems\": 1, \"items\": {" + reference("part") + "}}";
+        else
+            text = ObjectType(kind.meaning, indent + "    ")
+                       .say(type("object"))
+                       .has(fields_of(stated))
+                       .text();
+        shape.property(json_string(kind.name) + ": " + text);
+    };
+    (add(Shapes{}), ...);
+    return shape.text();
+}
+
+std::string dial_types(const std::string& indent)
+{
+    ObjectType settings("Dials: what trades accuracy for time. Values that a build does not offer "
+                        "are refused by name.",
+                        indent);
+    settings.say(type("object"));
+    for (const Dial& dial : dials()) {
+        std::string choices;
+        for (const Choice& choice : dial.choices)
+            choices += (choices.empty() ? "" : ", ") + json_string(choice.text);
+        std::string text = json_string(dial.name) + ": {";
+        text += choices.empty() ? R"("type": ["number", "string"])" : "\"enum\": [" + choices + ']';
+        text += ", \"description\": " + json_string(dial.trades);
+        if (choices.empty()) text += ", \"values\": " + json_string(dial.values);
+        if (!dial.unit.empty()) text += ", \"unit\": " + json_string(dial.unit);
+        const bool number = choices.empty() && !std::isnan(parse_number(dial.default_value));
+        text += ", \"default\": " + (number ? dial.default_value : json_string(dial.default_value));
+        settings.property(text + '}');
+    }
+    return settings.text();
+}
+
+}  // namespace
+
+std::string scene_schema()
+{
+    ObjectType scene("", "");
+    scene.say(R"("$schema": "https://json-schema.org/draft/2020-12/schema")")
+        .say("\"title\": \"throng scene\"")
+        .say("\"description\": " + json_string(kAbout))
+        .say(type("object"))
+        .has(std::span<const Field<Scene>>(kSceneFields));
+
+    const std::string in = "    ";
+    ObjectType body("", in), instances("", in), part("", in),
+        shared("What a body states, and what all of a group of instances share.", in);
+    shared.say(type("object")).has(std::span<const Field<BodyDescription>>(kBodyFields));
+    body.say(reference("shared"))
+        .has(std::span<const Field<BodyDescription>>(kOwnBodyFields))
+        .say("\"unevaluatedProperties\": false");
+    instances.say(reference("shared"))
+        .has(std::span<const Field<Instances>>(kInstancesFields))
+        .say("\"unevaluatedProperties\": false");
+    part.say(type("object"))
+        .has(std::span<const Field<CompoundShape::Part>>(kPartFields))
+        .has(std::span<const Field<Pose>>(kPoseFields));
+
+    std::string types;
+    const auto define = [&](std::string_view name, const std::string& text) {
+        types += (types.empty() ? "" : ",\n") + in + json_string(name) + ": " + text;
+    };
+    define("vector", "{\"description\": \"[x, y, z]\", " + list_of(type("number"), 3) + '}');
+    define("quaternion",
+           "{\"description\": \"[w, x, y, z], within 1e-6 of unit length\", "
+               + list_of(type("number"), 4) + '}');
+    define(
+        "bits",
+        R"({"description": "32 bits as a whole number", "type": "integer", "minimum": 0, "maximum": 4294967295})");
+    define("material", object_of(kMaterialFields, in));
+    define("pair", object_of(kPairFields, in));
+    define("shape", shape_types(ShapeDescription{}.shape, in));
+    define("part", part.text());
+    define("shared", shared.text(false));
+    define("body", body.text(false));
+    define("instances", instances.text(false));
+    define("spring", object_of(kSpringFields, in));
+    define("attractor", object_of(kAttractorFields, in));
+    define("settings", dial_types(in));
+    scene.say("\"$defs\": {\n" + types + "\n  }");
+    return scene.text() + '\n';
+}
+
+}  // namespace throng
