@@ -58,12 +58,11 @@ void print_effects(const Effects& effects)
     for (int i = 0; i < kEffects; ++i) {
         const auto effect = static_cast<Effect>(i);
         const bool on = effects.on.has(effect);
-        const std::string_view state = !on ? "off" : acted_on(effect) ? "on" : "on, no effect yet";
         std::cout << "  " << padded(name_of(effect), 18);
         if (on)
-            std::cout << padded(state, 19) << effects.cause_of(effect) << '\n';
+            std::cout << padded("on", 19) << effects.cause_of(effect) << '\n';
         else
-            std::cout << state << '\n';
+            std::cout << "off\n";
     }
 }
 

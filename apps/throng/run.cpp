@@ -50,17 +50,10 @@ std::int64_t standard_every(std::int64_t steps, std::size_t bodies)
         1, static_cast<std::int64_t>(std::ceil(static_cast<double>(steps) / frames)));
 }
 
-void warn(const SceneArgument& argument, World& world)
+void warn(const SceneArgument& argument, const World& world)
 {
     for (const std::string& sentence : unused_dials(argument.scene))
         std::cerr << "warning: " << sentence << '\n';
-    const Effects& effects = world.effects();
-    for (int i = 0; i < kEffects; ++i) {
-        const auto effect = static_cast<Effect>(i);
-        if (effects.on.has(effect) && !acted_on(effect))
-            std::cerr << "warning: " << name_of(effect) << ": has no effect yet in this build; "
-                      << effects.cause_of(effect) << " calls for it\n";
-    }
     if (world.threads_met() < world.threads())
         std::cerr << "warning: --threads: only " << world.threads_met() << " of " << world.threads()
                   << " threads run\n";

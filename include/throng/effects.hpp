@@ -57,13 +57,8 @@ enum class Effect : std::uint8_t {
     wind,
     drag,
     pivot,
-    joints,
-    motors,
     sleeping,
     escalation,
-    sensors,
-    events,
-    agents,
 };
 /// What calls for contacts of solids, each by its way.
 inline constexpr Set<Effect> kSolidContact = {Effect::voxel_contact, Effect::sphere_contact,
@@ -73,12 +68,9 @@ inline constexpr Set<Effect> kEventDriven = {Effect::no_overlap, Effect::little_
 /// What acts on bodies besides gravity and contacts.
 inline constexpr Set<Effect> kForces = {Effect::forces, Effect::springs, Effect::attractors,
                                         Effect::wind,   Effect::drag,    Effect::pivot};
-inline constexpr int kEffects = static_cast<int>(Effect::agents) + 1;
+inline constexpr int kEffects = static_cast<int>(Effect::escalation) + 1;
 
 std::string_view name_of(Effect effect);
-
-/// False for an effect that scenes may call for and this build does not act on yet.
-bool acted_on(Effect effect);
 
 /// The effects of a scene, each with the first that calls for it.
 struct Effects {

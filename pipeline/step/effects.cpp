@@ -15,45 +15,35 @@ namespace throng {
 
 namespace {
 
-struct Known {
-    std::string_view name;
-    bool acted_on;
-};
-
 // In the order of the enumeration.
-constexpr Known kKnown[] = {
-    {"motion", true},
-    {"gravity", true},
-    {"forces", true},
-    {"drive", true},
-    {"rotation", true},
-    {"gyroscopic", true},
-    {"contact", true},
-    {"no overlap", true},
-    {"little overlap", true},
-    {"friction", true},
-    {"rolling friction", true},
-    {"restitution", true},
-    {"fast motion", true},
-    {"mesh contact", true},
-    {"voxel contact", true},
-    {"sphere contact", true},
-    {"image contact", true},
-    {"seams", true},
-    {"springs", true},
-    {"attractors", true},
-    {"wind", true},
-    {"drag", true},
-    {"pivot", true},
-    {"joints", false},
-    {"motors", false},
-    {"sleeping", true},
-    {"escalation", true},
-    {"sensors", false},
-    {"events", false},
-    {"agents", false},
+constexpr std::string_view kNames[] = {
+    "motion",
+    "gravity",
+    "forces",
+    "drive",
+    "rotation",
+    "gyroscopic",
+    "contact",
+    "no overlap",
+    "little overlap",
+    "friction",
+    "rolling friction",
+    "restitution",
+    "fast motion",
+    "mesh contact",
+    "voxel contact",
+    "sphere contact",
+    "image contact",
+    "seams",
+    "springs",
+    "attractors",
+    "wind",
+    "drag",
+    "pivot",
+    "sleeping",
+    "escalation",
 };
-static_assert(std::size(kKnown) == kEffects);
+static_assert(std::size(kNames) == kEffects);
 
 class Search {
 public:
@@ -330,9 +320,7 @@ private:
 
 }  // namespace
 
-std::string_view name_of(Effect effect) { return kKnown[static_cast<std::size_t>(effect)].name; }
-
-bool acted_on(Effect effect) { return kKnown[static_cast<std::size_t>(effect)].acted_on; }
+std::string_view name_of(Effect effect) { return kNames[static_cast<std::size_t>(effect)]; }
 
 Effects find_effects(const EffectFacts& facts) { return Search(facts).run(); }
 
