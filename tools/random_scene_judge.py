@@ -164,10 +164,10 @@ def energy_made(made, run):
         return None
     total = [s["kinetic_energy_j"] + s["potential_energy_j"] for s in (run.before, stats)]
     net = total[1] - total[0]
-    bound += lag_energy(made, run)
-    if not net <= bound:
+    lag = lag_energy(made, run)
+    if not net <= bound + lag:
         return f"energy net: {net:.3g} J more at the end, of {greatest:.3g} J at most in motion"
-    if made.kept and not -net <= KEPT_SHARE * greatest + lag_energy(made, run):
+    if made.kept and not -net <= KEPT_SHARE * greatest + lag:
         return f"energy kept: {-net:.3g} J of {greatest:.3g} J lost where nothing takes any"
     return None
 

@@ -9,7 +9,6 @@
 #include "throng/version.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <sys/resource.h>
 
@@ -19,14 +18,9 @@ namespace {
 /// Dials as a scene file states them: numbers as numbers, all else as text.
 std::string dials_json(const Settings& settings)
 {
-    return '{'
-        + joined(dials(), ", ",
-                 [&](const Dial& dial) {
-                     const std::string value = dial.get(settings);
-                     const bool number = !std::isnan(parse_number(value));
-                     return json_string(dial.name) + ": " + (number ? value : json_string(value));
-                 })
-        + '}';
+    JsonMembers members;
+    for (const Dial& dial : dials()) members.add(dial.name, json_dial_value(dial.get(settings)));
+    return members.text();
 }
 
 std::string stages_json(const StepTimes& times)

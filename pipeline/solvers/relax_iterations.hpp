@@ -9,6 +9,7 @@ namespace throng {
 /// Whether most contacts of a batch have three points or more, as in towers and walls.
 bool lies_on_faces(const Batch& batch);
 
+/// Relaxing iterations of those.
 inline constexpr int kInStructures = 2;
 
 /// Relaxing iterations that a batch gets in a substep: one quietens a heap, and where most bodies

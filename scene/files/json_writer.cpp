@@ -5,21 +5,9 @@
 #include "scene/files/json.hpp"
 #include "scene/names.hpp"
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace throng {
-
-bool same_bits(double a, double b)
-{
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-bool same_bits(const Vec3& a, const Vec3& b)
-{
-    return same_bits(a.x(), b.x()) && same_bits(a.y(), b.y()) && same_bits(a.z(), b.z());
-}
 
 std::string json_text(double number)
 {
@@ -66,6 +54,11 @@ std::string json_text(const std::string& text) { return json_string(text); }
 std::string json_text(Motion motion)
 {
     return json_string(kMotions[static_cast<std::size_t>(motion)]);
+}
+
+std::string json_dial_value(const std::string& value)
+{
+    return std::isnan(parse_number(value)) ? json_string(value) : value;
 }
 
 JsonMembers& JsonMembers::add(std::string_view key, std::string_view json)

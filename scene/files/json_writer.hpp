@@ -13,10 +13,6 @@
 
 namespace throng {
 
-/// Whether two values are the same to the last bit, the sign of a zero included.
-bool same_bits(double a, double b);
-bool same_bits(const Vec3& a, const Vec3& b);
-
 /// What is not finite has no number in JSON: null.
 std::string json_text(double number);
 std::string json_text(std::initializer_list<double> numbers);
@@ -29,6 +25,8 @@ json_text(const std::array<std::optional<double>, 3>& axes);  // null where ther
 std::string json_text(const std::string& text);
 std::string json_text(Motion motion);
 std::string json_text(std::same_as<bool> auto value) { return value ? "true" : "false"; }
+/// A dial's value as scene files have it: a number, or text for a fraction or a word.
+std::string json_dial_value(const std::string& value);
 
 /// The members of an object, one after another.
 class JsonMembers {
@@ -37,12 +35,6 @@ public:
     JsonMembers& add(std::string_view key, std::string_view json);
     JsonMembers& add(std::string_view key, double number);
     JsonMembers& add_text(std::string_view key, std::string_view text);
-    /// Only where it differs from its default.
-    template <class Value>
-    void add(std::string_view key, const Value& value, const Value& standard)
-    {
-        if (!same_bits(value, standard)) add(key, json_text(value));
-    }
     bool empty() const { return text_.empty(); }
     std::string text() const { return text_.empty() ? "{}" : text_ + '}'; }
 

@@ -50,11 +50,13 @@ public:
     {
         const Node top = JsonDocument::kRoot;
         need_keys(top, kKeysOf<kSceneFields>);
-        read_fields(top, kSceneFields, scene_);
-        const Node version = find(top, "throng");
+        // First: of another version nothing else is known.
+        const std::string_view wanted = kSceneFields[0].required;
+        const Node version = required(top, kSceneFields[0].key, wanted);
         if (kind(version) != JsonKind::number || number(version) != 1)
-            refuse_value(version, kSceneFields[0].required);
+            refuse_value(version, wanted);
 
+        read_fields(top, kSceneFields, scene_);
         if (const Node at = find(top, "settings")) read_settings(at);
         if (const Node at = find(top, "materials")) read_materials(at);
         if (const Node at = find(top, "pairs")) each(at, [&](Node pair) { read_pair(pair); });
@@ -66,43 +68,39 @@ public:
         if (const Node at = find(top, "instances"))
             each(at, [&](Node group) { read_instances(group); });
         if (const Node at = find(top, "springs"))
-            each(at, [&](Node spring) { read_spring(spring); });
+            each(at, [&](Node spring) {
+                read_object(spring, kSpringFields, scene_.springs.emplace_back());
+            });
         if (const Node at = find(top, "attractors"))
-            each(at, [&](Node attractor) { read_attractor(attractor); });
+            each(at, [&](Node attractor) {
+                read_object(attractor, kAttractorFields, scene_.attractors.emplace_back());
+            });
         return std::move(scene_);
     }
 
 private:
     using Names = std::unordered_map<std::string, std::uint32_t>;  // looked up, never walked
 
-    template <class Named>
+    template <class Listed>
     std::uint32_t find_name(Node node,
                             const Names& names,
                             std::string_view what,
-                            const std::vector<Named>& all) const
+                            const std::vector<Listed>& all) const
     {
         if (const auto found = names.find(std::string(text(node))); found != names.end())
             return found->second;
         std::vector<std::string_view> known;
-        for (const Named& one : all)
+        for (const Listed& one : all)
             if (!one.name.empty()) known.push_back(one.name);
         refuse_name(node, what, known);
-    }
-    std::uint32_t find_shape(Node node) const
-    {
-        return find_name(node, shape_names_, "the name of a shape", scene_.shapes);
-    }
-    std::uint32_t find_material(Node node) const
-    {
-        return find_name(node, material_names_, "the name of a material", scene_.materials);
     }
     std::uint32_t find_named(Node node, Named kind) const
     {
         switch (kind) {
         case Named::shape:
-            return find_shape(node);
+            return find_name(node, shape_names_, "the name of a shape", scene_.shapes);
         case Named::material:
-            return find_material(node);
+            return find_name(node, material_names_, "the name of a material", scene_.materials);
         case Named::body:
             return find_name(node, body_names_, "the name of a body", scene_.bodies);
         }
@@ -122,6 +120,16 @@ private:
                        field.member);
         }
     }
+    /// The same where no other key may be there.
+    template <class Object>
+    void read_object(Node node, Fields<Object> fields, Object& object) const
+    {
+        std::vector<std::string_view> keys;
+        for (const Field<Object>& field : fields) keys.push_back(field.key);
+        need_keys(node, keys);
+        read_fields(node, fields, object);
+    }
+
     template <class Object, class Value>
     void read_member(Node at, const Field<Object>&, Value Object::*member, Object& object) const
     {
@@ -167,10 +175,7 @@ private:
     void
     read_member(Node at, const Field<Object>&, const Group<Object>& group, Object& object) const
     {
-        std::vector<std::string_view> keys;
-        for (const Field<Object>& field : group.fields) keys.push_back(field.key);
-        need_keys(at, keys);
-        read_fields(at, group.fields, object);
+        read_object(at, group.fields, object);
     }
     template <class Object>
     void read_member(Node, const Field<Object>&, ByHand, Object&) const
@@ -206,7 +211,7 @@ private:
     {
         const std::string_view name = kind(at) == JsonKind::string ? text(at) : "";
         const auto* const found = std::find(std::begin(kMotions), std::end(kMotions), name);
-        if (found == std::end(kMotions)) refuse_value(at, "static, kinematic or dynamic");
+        if (found == std::end(kMotions)) refuse_value(at, either_of(kMotions));
         motion = static_cast<Motion>(found - std::begin(kMotions));
     }
 
@@ -228,11 +233,10 @@ private:
     void read_materials(Node materials)
     {
         each_member(materials, [&](Node key, Node value) {
-            need_keys(value, kKeysOf<kMaterialFields>);
             need_name(key);
             Material material;
             material.name = text(key);
-            read_fields(value, kMaterialFields, material);
+            read_object(value, kMaterialFields, material);
             material_names_.emplace(material.name, scene_.materials.size());
             scene_.materials.push_back(std::move(material));
         });
@@ -245,14 +249,13 @@ private:
 
     void read_pair(Node node)
     {
-        need_keys(node, kKeysOf<kPairFields>);
         MaterialPairDescription pair;
-        read_fields(node, kPairFields, pair);
+        read_object(node, kPairFields, pair);
         const Node names = find(node, "materials");
         if (kind(names) != JsonKind::array || json_.size(names) != 2)
             refuse_value(names, kPairFields[0].required);
-        pair.a = find_material(json_.first(names));
-        pair.b = find_material(json_.next(json_.first(names)));
+        pair.a = find_named(json_.first(names), Named::material);
+        pair.b = find_named(json_.next(json_.first(names)), Named::material);
         scene_.pairs.push_back(pair);
     }
 
@@ -292,10 +295,7 @@ private:
     template <class Shape>
     void read_stated(Node node, Shape& shape) const
     {
-        std::vector<std::string_view> keys;
-        for (const auto& field : fields_of(shape)) keys.push_back(field.key);
-        need_keys(node, keys);
-        read_fields(node, fields_of(shape), shape);
+        read_object(node, fields_of(shape), shape);
         read_file_of(node, shape);
     }
     template <class Shape>
@@ -390,18 +390,6 @@ private:
                    "wanted a file that can be read, not " + in_quotes(name) + " (" + content.trouble
                        + ")");
         return content;
-    }
-
-    void read_spring(Node node)
-    {
-        need_keys(node, kKeysOf<kSpringFields>);
-        read_fields(node, kSpringFields, scene_.springs.emplace_back());
-    }
-
-    void read_attractor(Node node)
-    {
-        need_keys(node, kKeysOf<kAttractorFields>);
-        read_fields(node, kAttractorFields, scene_.attractors.emplace_back());
     }
 
     const std::string& folder_;

@@ -6,8 +6,6 @@
 #include "scene/names.hpp"
 #include "throng/dials.hpp"
 
-#include <cmath>
-
 namespace throng {
 namespace {
 
@@ -33,6 +31,13 @@ std::string list_of(const std::string& items, std::size_t count)
     const std::string number = std::to_string(count);
     return type("array") + ", \"items\": {" + items + "}, \"minItems\": " + number
         + ", \"maxItems\": " + number;
+}
+
+/// One item more.
+void add(std::string& list, const std::string& item, const std::string& between = ", ")
+{
+    if (!list.empty()) list += between;
+    list += item;
 }
 
 /// Limits of nature; those of the step are not told.
@@ -78,8 +83,7 @@ struct TypeOf {
     std::string operator()(Motion Object::*) const
     {
         std::string names;
-        for (const std::string_view motion : kMotions)
-            names += (names.empty() ? "" : ", ") + json_string(motion);
+        for (const std::string_view motion : kMotions) add(names, json_string(motion));
         return "\"enum\": [" + names + ']';
     }
     std::string operator()(std::array<std::optional<double>, 3> Object::*) const
@@ -98,8 +102,7 @@ struct TypeOf {
     std::string operator()(const Group<Object>& group) const
     {
         std::string properties;
-        for (const Field<Object>& one : group.fields)
-            properties += (properties.empty() ? "" : ", ") + member_of(one);
+        for (const Field<Object>& one : group.fields) add(properties, member_of(one));
         return type("object") + ", \"additionalProperties\": false, \"properties\": {" + properties
             + '}';
     }
@@ -153,23 +156,26 @@ public:
     }
     ObjectType& say(const std::string& member)
     {
-        if (!text_.empty()) text_ += ",\n";
-        text_ += indent_ + "  " + member;
+        add(text_, indent_ + "  " + member, ",\n");
         return *this;
+    }
+    template <class Object, std::size_t count>
+    ObjectType& has(const Field<Object> (&fields)[count])
+    {
+        return has(std::span<const Field<Object>>(fields));
     }
     template <class Object>
     ObjectType& has(std::span<const Field<Object>> fields)
     {
         for (const Field<Object>& field : fields) {
             property(TypeOf<Object>::member_of(field));
-            if (!field.required.empty())
-                required_ += (required_.empty() ? "" : ", ") + json_string(field.key);
+            if (!field.required.empty()) add(required_, json_string(field.key));
         }
         return *this;
     }
     ObjectType& property(const std::string& member)
     {
-        properties_ += (properties_.empty() ? "" : ",\n") + indent_ + "    " + member;
+        add(properties_, indent_ + "    " + member, ",\n");
         return *this;
     }
     /// `closed`: other keys are refused here, and not by what refers to it.
@@ -188,10 +194,7 @@ private:
 template <class Object, std::size_t count>
 std::string object_of(const Field<Object> (&fields)[count], const std::string& indent)
 {
-    return ObjectType("", indent)
-        .say(type("object"))
-        .has(std::span<const Field<Object>>(fields))
-        .text();
+    return ObjectType("", indent).say(type("object")).has(fields).text();
 }
 
 template <class... Shapes>
@@ -200,7 +203,7 @@ std::string shape_types(const std::variant<Shapes...>&, const std::string& inden
     ObjectType shape("", indent);
     shape.say(type("object")).say("\"minProperties\": 1").say("\"maxProperties\": 1");
     std::size_t place = 0;
-    const auto add = [&](const auto& stated) {
+    const auto add_kind = [&](const auto& stated) {
         const ShapeName& kind = kShapeNames[place++];
         std::string text;
         if constexpr (std::is_same_v<decltype(stated), const CompoundShape&>)
@@ -213,7 +216,7 @@ std::string shape_types(const std::variant<Shapes...>&, const std::string& inden
                        .text();
         shape.property(json_string(kind.name) + ": " + text);
     };
-    (add(Shapes{}), ...);
+    (add_kind(Shapes{}), ...);
     return shape.text();
 }
 
@@ -225,15 +228,13 @@ std::string dial_types(const std::string& indent)
     settings.say(type("object"));
     for (const Dial& dial : dials()) {
         std::string choices;
-        for (const Choice& choice : dial.choices)
-            choices += (choices.empty() ? "" : ", ") + json_string(choice.text);
+        for (const Choice& choice : dial.choices) add(choices, json_string(choice.text));
         std::string text = json_string(dial.name) + ": {";
         text += choices.empty() ? R"("type": ["number", "string"])" : "\"enum\": [" + choices + ']';
         text += ", \"description\": " + json_string(dial.trades);
         if (choices.empty()) text += ", \"values\": " + json_string(dial.values);
         if (!dial.unit.empty()) text += ", \"unit\": " + json_string(dial.unit);
-        const bool number = choices.empty() && !std::isnan(parse_number(dial.default_value));
-        text += ", \"default\": " + (number ? dial.default_value : json_string(dial.default_value));
+        text += ", \"default\": " + json_dial_value(dial.default_value);
         settings.property(text + '}');
     }
     return settings.text();
@@ -248,25 +249,21 @@ std::string scene_schema()
         .say("\"title\": \"throng scene\"")
         .say("\"description\": " + json_string(kAbout))
         .say(type("object"))
-        .has(std::span<const Field<Scene>>(kSceneFields));
+        .has(kSceneFields);
 
     const std::string in = "    ";
     ObjectType body("", in), instances("", in), part("", in),
         shared("What a body states, and what all of a group of instances share.", in);
-    shared.say(type("object")).has(std::span<const Field<BodyDescription>>(kBodyFields));
-    body.say(reference("shared"))
-        .has(std::span<const Field<BodyDescription>>(kOwnBodyFields))
-        .say("\"unevaluatedProperties\": false");
+    shared.say(type("object")).has(kBodyFields);
+    body.say(reference("shared")).has(kOwnBodyFields).say("\"unevaluatedProperties\": false");
     instances.say(reference("shared"))
-        .has(std::span<const Field<Instances>>(kInstancesFields))
+        .has(kInstancesFields)
         .say("\"unevaluatedProperties\": false");
-    part.say(type("object"))
-        .has(std::span<const Field<CompoundShape::Part>>(kPartFields))
-        .has(std::span<const Field<Pose>>(kPoseFields));
+    part.say(type("object")).has(kPartFields).has(kPoseFields);
 
     std::string types;
     const auto define = [&](std::string_view name, const std::string& text) {
-        types += (types.empty() ? "" : ",\n") + in + json_string(name) + ": " + text;
+        add(types, in + json_string(name) + ": " + text, ",\n");
     };
     define("vector", "{\"description\": \"[x, y, z]\", " + list_of(type("number"), 3) + '}');
     define("quaternion",

@@ -13,7 +13,7 @@
 #include "throng/scene_file.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -26,11 +26,11 @@ namespace {
 constexpr std::size_t kMostInline = 1000;
 
 /// Names for those that have none, unlike those that have: others refer to them by name.
-template <class Named>
-std::vector<std::string> names_of(const std::vector<Named>& all, std::string_view kind)
+template <class Listed>
+std::vector<std::string> names_of(const std::vector<Listed>& all, std::string_view kind)
 {
     std::set<std::string_view> taken;
-    for (const Named& one : all) taken.insert(one.name);
+    for (const Listed& one : all) taken.insert(one.name);
     std::vector<std::string> names;
     for (std::size_t i = 0; i < all.size(); ++i) {
         std::string name = all[i].name;
@@ -41,6 +41,16 @@ std::vector<std::string> names_of(const std::vector<Named>& all, std::string_vie
         names.push_back(std::move(name));
     }
     return names;
+}
+
+/// The same to the last bit, the sign of a zero included.
+bool same_bits(double a, double b)
+{
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+bool same_bits(const Vec3& a, const Vec3& b)
+{
+    return same_bits(a.x(), b.x()) && same_bits(a.y(), b.y()) && same_bits(a.z(), b.z());
 }
 
 class SceneWriter {
@@ -194,9 +204,7 @@ private:
     {
         JsonMembers members;
         const auto add = [&](std::string_view name) {
-            const std::string value = dial_value(scene_.settings, name);
-            // A fraction or a word goes in quotes.
-            members.add(name, std::isnan(parse_number(value)) ? json_string(value) : value);
+            members.add(name, json_dial_value(dial_value(scene_.settings, name)));
         };
         for (const std::string& name : scene_.dials_set)
             if (find_dial(name)) add(name);
@@ -270,15 +278,11 @@ private:
 
     std::string shape_text(const MeshShape& mesh, std::size_t place)
     {
+        if (holds(mesh)) return shape_text<MeshShape>(mesh, place);
+        const std::string text = mesh_text({mesh.vertices, mesh.triangles});
+        const std::string tail = '.' + std::to_string(place) + ".obj";
         JsonMembers members;
-        if (holds(mesh)) {
-            members.add("file", json_string(mesh.file));
-            members.add("scale", mesh.scale, MeshShape{}.scale);
-        } else {
-            const std::string text = mesh_text({mesh.vertices, mesh.triangles});
-            const std::string tail = '.' + std::to_string(place) + ".obj";
-            members.add("file", json_string(write_beside(tail, mesh.file, text)));
-        }
+        members.add_text("file", write_beside(tail, mesh.file, text));
         add_stated(mesh, std::span(kMeshFields).subspan(2), members);  // its dials
         return members.text();
     }
