@@ -89,6 +89,8 @@ void case_landing_columns(CaseBench& bench)
     const Vec3 cube = Vec3::Constant(0.25);
     const Column all[] = {
         {.setting = "default"},
+        {.setting = "default, 2 slabs", .count = 2},
+        {.setting = "default, 3 slabs", .count = 3},
         {.setting = "default, 10 slabs", .count = 10},
         {.setting = "default, 60 slabs", .count = 60, .met_by = "solver=direct"},
         {.setting = "default, cubes", .half = cube},
@@ -107,6 +109,7 @@ void case_landing_columns(CaseBench& bench)
         {.setting = "default, 16 substeps", .choose = more},
         {.setting = "double", .choose = finely},
         {.setting = "pgs", .choose = plainly},
+        {.setting = "pgs, 3 slabs", .count = 3, .choose = plainly},
         {.setting = "pgs, 10 slabs", .count = 10, .choose = plainly},
         {.setting = "pgs, cubes", .half = cube, .choose = plainly},
         {.setting = "pgs, balls", .count = 10, .half = cube, .balls = true, .choose = plainly},

@@ -14,7 +14,8 @@ constexpr double kLetBe = 1e-4;
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
 
-constexpr int kFewestInBlow = 3;
+// Bodies that a blow goes through.
+constexpr std::size_t kFewestInBlow = 3;
 
 template <class Real>
 Vec3 in_double(const Real* v)
@@ -44,13 +45,13 @@ template <class Real>
 bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed)
 {
     if (!(speed > 0)) return false;
-    int gainers = 0;
+    std::size_t gainers = 0;
     double gained = 0;
     for (const SolverBody<Real>& body : bodies) {
         const double square = in_double(body.motion).squaredNorm()
             - in_double(body.free).squaredNorm() - speed * speed;
         gainers += square > 0 ? 1 : 0;
-        if (body.inertia[0] > 0) gained += square / double{body.inertia[0]};
+        if (one_island && body.inertia[0] > 0) gained += square / double{body.inertia[0]};
     }
     return gainers >= kFewestInBlow && (!one_island || gained > 0);
 }
@@ -87,9 +88,12 @@ public:
             group_with(of(springs_->joined()[i][0]), groups).springs.push_back(i);
     }
 
-    void list_all(std::vector<Group>& groups)
+    // Of at least so many bodies.
+    void list_touching(std::size_t fewest, std::vector<Group>& groups)
     {
-        for (std::uint32_t at = 0; at < bodies_; ++at) group_with(at, groups);
+        std::vector<std::uint32_t> sizes(bodies_);
+        for (std::uint32_t at = 0; at < bodies_; ++at)
+            if (++sizes[sets_.find(at)] == fewest) group_with(at, groups);
     }
 
     void list_members(const RigidFacts& facts, std::vector<Group>& groups)
@@ -163,7 +167,8 @@ EnergyLimiter<Real>::EnergyLimiter(const Layout& layout,
 {
     Sets sets(layout, batch, springs);
     if (springs != nullptr) sets.list_springs(groups_);
-    if (whose == Whose::all) sets.list_all(groups_);
+    if (whose != Whose::on_springs)
+        sets.list_touching(whose == Whose::all ? 1 : kFewestInBlow, groups_);
     sets.list_members(facts, groups_);
     sets.list_lanes(groups_);
     std::erase_if(groups_, [](const Group& group) { return group.driven; });

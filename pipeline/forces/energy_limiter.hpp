@@ -35,9 +35,10 @@ bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double 
 template <class Real>
 class EnergyLimiter {
 public:
-    /// Bodies of a batch that stiff springs pull and all that touch them, or all of the batch; but
-    /// for those that touch what moves by itself.
-    enum class Whose : std::uint8_t { on_springs, all };
+    /// Of a batch those that stiff springs pull and all that touch them, besides those that touch
+    /// in such numbers that a blow goes through, or all; but for those that touch what moves by
+    /// itself.
+    enum class Whose : std::uint8_t { on_springs, stacked, all };
 
     ///   springs  of which some are stiff, to be kept as long as this; null: there are none
     ///   fall     m/s, that gravity gives in a substep

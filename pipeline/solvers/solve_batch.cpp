@@ -216,8 +216,8 @@ private:
         const auto bodies = std::span(constraints_.bodies).subspan(slice.first_body, slice.dynamic);
         if (!may_gain<Real>(bodies, batch_.contacts > kBatchContacts, speed)) return;
         if (!blow_limiter_)
-            blow_limiter_.emplace(layout_, batch_, facts_, nullptr, EnergyLimiter<Real>::Whose::all,
-                                  Vec3::Zero());
+            blow_limiter_.emplace(layout_, batch_, facts_, nullptr,
+                                  EnergyLimiter<Real>::Whose::stacked, Vec3::Zero());
         blow_limiter_->take_share_of_blow(speed, constraints_);
     }
 
