@@ -23,8 +23,9 @@ struct Column {
     double scale = 1;
     Vec3 off = Vec3::Zero();
     bool top_first = false;
-    double turn = 0;     // rad, about what is upright
-    double heavier = 1;  // each than the one below
+    bool weightless = false;  // has the speed of its fall from the start, and no gravity
+    double turn = 0;          // rad, about what is upright
+    double heavier = 1;       // each than the one below
     void (*choose)(Settings&) = [](Settings&) {};
     const char* met_by = nullptr;  // setting that meets a bound which the default misses
 };
@@ -36,16 +37,16 @@ void drop(CaseBench& bench, const Column& column)
     column.choose(parts.scene().settings);
     parts.plane(parts.material(0.5), Vec3::UnitZ(), column.off.z());
     const Vec3 half = column.half * column.scale;
-    const double fall = column.drop * column.scale;
+    const double fall = column.drop * column.scale, speed = std::sqrt(2 * kGravity * fall);
+    if (column.weightless) parts.scene().gravity = Vec3::Zero();
     const Quat turn(std::cos(column.turn / 2), 0, 0, std::sin(column.turn / 2));
     for (int i = 0; i < column.count; ++i) {
         const int place = column.top_first ? column.count - 1 - i : i;
         const Vec3 at = column.off + Vec3(0, 0, fall + half.z() * (2 * place + 1));
         const double mass = std::pow(column.heavier, place);
-        if (column.balls)
-            parts.ball(0, mass, half.z(), at);
-        else
-            parts.box(0, mass, half, {at, turn});
+        const std::uint32_t body =
+            column.balls ? parts.ball(0, mass, half.z(), at) : parts.box(0, mass, half, {at, turn});
+        if (column.weightless) parts.body(body).velocity = Vec3(0, 0, -speed);
     }
 
     EnergyLedger ledger;
@@ -54,8 +55,7 @@ void drop(CaseBench& bench, const Column& column)
         for (const BodyId id : world.bodies()) thrown = std::max(thrown, world.velocity(id).z());
         return true;
     };
-    const double speed = std::sqrt(2 * kGravity * fall), way_down = speed / kGravity;
-    bench.run(parts.scene(), way_down + (bench.brief() ? 0.3 : 2), watch, &ledger);
+    bench.run(parts.scene(), speed / kGravity + (bench.brief() ? 0.3 : 2), watch, &ledger);
     const char* const upward = "greatest speed upward, of that of the fall";
     bench.report(column.setting, upward, thrown / speed, 0.5, "1");
     const char* const gained = "energy gained over the greatest kinetic energy";
@@ -107,6 +107,8 @@ void case_landing_columns(CaseBench& bench)
          .count = 10,
          .heavier = 1.5},
         {.setting = "default, 16 substeps", .choose = more},
+        {.setting = "default, no gravity", .weightless = true},
+        {.setting = "default, no gravity, 10 slabs", .count = 10, .weightless = true},
         {.setting = "double", .choose = finely},
         {.setting = "pgs", .choose = plainly},
         {.setting = "pgs, 3 slabs", .count = 3, .choose = plainly},
@@ -123,6 +125,7 @@ void case_landing_columns(CaseBench& bench)
          .count = 10,
          .heavier = 1.5,
          .choose = plainly},
+        {.setting = "pgs, no gravity", .weightless = true, .choose = plainly},
         {.setting = "pgs, 16 substeps", .choose = plainly_in_more},
         {.setting = "pgs, friction at points", .choose = plainly_at_points},
         {.setting = "pgs, double", .choose = plainly_finely},

@@ -44,7 +44,6 @@ bool is_fed(const Forces& forces, std::uint32_t body)
 template <class Real>
 bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed)
 {
-    if (!(speed > 0)) return false;
     std::size_t gainers = 0;
     double gained = 0;
     for (const SolverBody<Real>& body : bodies) {

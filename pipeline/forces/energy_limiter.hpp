@@ -28,7 +28,7 @@ namespace throng {
 
 /// Whether what contacts gave may take a group of these bodies to a speed, m/s, that it has not
 /// without: not where hardly anybody gains so much, as what lies alone takes a blow back by itself;
-/// nor, of a single island, where all together do not. False where the speed is 0.
+/// nor, of a single island, where all together do not.
 template <class Real>
 bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed);
 

@@ -203,7 +203,8 @@ private:
     }
 
     // Of soft_step what a warm start adds after a blow alone: a tower stands by what its contacts
-    // remember. Of who is carried along nobody here knows what drives him.
+    // remember. Of who is carried along nobody here knows what drives him, nor without gravity of
+    // whom forces press together what he bears; where nothing does, all is a blow.
     void limit_warm_start()
     {
         if (limiter_) {
@@ -213,6 +214,7 @@ private:
         const Slice& slice = layout_.slices[batch_.first_slice];
         const double speed = kBlow * context_.gravity.norm() * context_.substep();
         if (batch_.slices > 1 || slice.kinematic > 0 || !constraints_.prescribed.empty()) return;
+        if (!(speed > 0) && (context_.effects.meets(kForces) || facts_.forces.field)) return;
         const auto bodies = std::span(constraints_.bodies).subspan(slice.first_body, slice.dynamic);
         if (!may_gain<Real>(bodies, batch_.contacts > kBatchContacts, speed)) return;
         if (!blow_limiter_)
