@@ -14,6 +14,9 @@ constexpr double kLetBe = 1e-4;
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
 
+// Bodies that a blow goes through.
+constexpr std::size_t kFewestInBlow = 3;
+
 template <class Real>
 Vec3 in_double(const Real* v)
 {
@@ -39,10 +42,7 @@ bool is_fed(const Forces& forces, std::uint32_t body)
 }  // namespace
 
 template <class Real>
-bool may_gain(std::span<const SolverBody<Real>> bodies,
-              std::size_t fewest,
-              bool one_island,
-              double speed)
+bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed)
 {
     std::size_t gainers = 0;
     double gained = 0;
@@ -52,11 +52,11 @@ bool may_gain(std::span<const SolverBody<Real>> bodies,
         gainers += square > 0 ? 1 : 0;
         if (one_island && body.inertia[0] > 0) gained += square / double{body.inertia[0]};
     }
-    return gainers >= fewest && (!one_island || gained > 0);
+    return gainers >= kFewestInBlow && (!one_island || gained > 0);
 }
 
-template bool may_gain<float>(std::span<const SolverBody<float>>, std::size_t, bool, double);
-template bool may_gain<double>(std::span<const SolverBody<double>>, std::size_t, bool, double);
+template bool may_gain<float>(std::span<const SolverBody<float>>, bool, double);
+template bool may_gain<double>(std::span<const SolverBody<double>>, bool, double);
 
 // Bodies of a batch, by which of them touch or are joined.
 template <class Real>

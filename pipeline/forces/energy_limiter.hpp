@@ -26,17 +26,11 @@
 
 namespace throng {
 
-/// Bodies that a blow goes through, at least: what lies alone takes one back by itself.
-inline constexpr std::size_t kFewestInBlow = 3;
-
 /// Whether what contacts gave may take a group of these bodies to a speed, m/s, that it has not
-/// without: not where fewer than so many gain so much; nor, of a single island, where all together
-/// do not.
+/// without: not where hardly anybody gains so much, as what lies alone takes a blow back by itself;
+/// nor, of a single island, where all together do not.
 template <class Real>
-bool may_gain(std::span<const SolverBody<Real>> bodies,
-              std::size_t fewest,
-              bool one_island,
-              double speed);
+bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed);
 
 template <class Real>
 class EnergyLimiter {

@@ -216,18 +216,10 @@ private:
         if (batch_.slices > 1 || slice.kinematic > 0 || !constraints_.prescribed.empty()) return;
         if (!(speed > 0) && (context_.effects.meets(kForces) || facts_.forces.field)) return;
         const auto bodies = std::span(constraints_.bodies).subspan(slice.first_body, slice.dynamic);
-        // With finer substeps two alone win as well: a ball beside which a capsule falls by ten
-        // times its length in a step was thrown off at 179 m/s, as the arms of their contact turned
-        // and what it gave was given again in each of sixteen substeps.
-        const bool finer = batch_.times > 1;
-        if (!may_gain<Real>(bodies, finer ? 1 : kFewestInBlow, batch_.contacts > kBatchContacts,
-                            speed))
-            return;
+        if (!may_gain<Real>(bodies, batch_.contacts > kBatchContacts, speed)) return;
         if (!blow_limiter_)
             blow_limiter_.emplace(layout_, batch_, facts_, nullptr,
-                                  finer ? EnergyLimiter<Real>::Whose::all
-                                        : EnergyLimiter<Real>::Whose::stacked,
-                                  Vec3::Zero());
+                                  EnergyLimiter<Real>::Whose::stacked, Vec3::Zero());
         blow_limiter_->take_share_of_blow(speed, constraints_);
     }
 
