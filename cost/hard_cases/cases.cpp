@@ -125,6 +125,8 @@ constexpr HardCase kCases[] = {
      Fault::haste},
     {"H90", "a column that falls on a floor and bounces off nothing stays there",
      case_landing_columns, Fault::haste},
+    {"H91", "small bodies of unlike weight that fall as a column make no energy",
+     case_small_columns, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -98,6 +98,7 @@ void case_wedged_solids(CaseBench& bench);    // H87, wedged_solids.cpp
 void case_crushed(CaseBench& bench);          // H88, crushed.cpp
 void case_forced_bounces(CaseBench& bench);   // H89, forced_bounces.cpp
 void case_landing_columns(CaseBench& bench);  // H90, landing_columns.cpp
+void case_small_columns(CaseBench& bench);    // H91, small_columns.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

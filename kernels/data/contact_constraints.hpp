@@ -147,12 +147,15 @@ struct PointFrictionWide {
 ///
 ///   by_a, by_b  whose material the place of the contact goes with, as shares; zeros where nothing
 ///               that turns carries anything
+///   range_a, _b m2, see range_of(); past there nothing is carried any more: from twice its arm on
+///               friction makes more of a slip than it takes
 ///   speed       m/s, along tangent, other tangent: of b against a where the contact is in the
 ///               middle of the substep, less what the arms as the step began have it; of who walks
 ///               the opposite of its walk
 template <class Real>
 struct SurfaceVelocityWide {
     Lane16<Real> by_a, by_b;
+    Lane16<Real> range_a, range_b;
     Lane16<Real> speed[2];
 };
 

@@ -24,14 +24,18 @@ CarriedSide carried_side(
     const Vec3& moved, const Quat& turned, const DirectBody& body, const Vec3& core, double half)
 {
     const Vec3 center = moved + body.velocity * half;
-    return {center, center + turned_on(turned * core, body.spin, half) - core};
+    return {center, center + turned_on(turned * core, body.spin, half) - core,
+            inverse_mass_of(body).angular > 0};
 }
 
 void carry_arms(const CarriedSide& a, const CarriedSide& b, double share_of_b, DirectPoint& point)
 {
     const Vec3 goes = a.material * (1 - share_of_b) + b.material * share_of_b;
-    point.arm_a += goes - a.center;
-    point.arm_b += goes - b.center;
+    const Vec3 from_a = goes - a.center, from_b = goes - b.center;
+    if (from_a.squaredNorm() > range_of(point.arm_a.squaredNorm(), a.turns)) return;
+    if (from_b.squaredNorm() > range_of(point.arm_b.squaredNorm(), b.turns)) return;
+    point.arm_a += from_a;
+    point.arm_b += from_b;
 }
 
 }  // namespace throng

@@ -8,6 +8,8 @@
 
 #include "kernels/solver/direct/direct_points.hpp"
 
+#include <limits>
+
 namespace throng {
 
 /// How easily a body is moved: inverse mass, 1/kg, and the trace of the inverse inertia, 1/(kg m2).
@@ -50,8 +52,11 @@ double goes_with_b(double round_a, double round_b, bool carried_by_a);
 
 /// How far one side goes by the middle of the time ahead, m, since its arm was taken: its center of
 /// mass, and what of its material was at the point.
+///
+///   turns  something turns it but itself
 struct CarriedSide {
     Vec3 center = Vec3::Zero(), material = Vec3::Zero();
+    bool turns = false;
 };
 
 /// Of a body that has moved and turned since then.
@@ -61,7 +66,18 @@ struct CarriedSide {
 CarriedSide carried_side(
     const Vec3& moved, const Quat& turned, const DirectBody& body, const Vec3& core, double half);
 
-/// Moves the arms of a point, as they were taken, to there.
+/// The square of how far the place of a contact may get from where it was of a side, m2: its arm,
+/// or without end where nothing turns the side. Who has left what took him along would have arms
+/// that grow without end.
+///
+///   arm_squared  m2, of the arm as it was taken
+template <class Real>
+Real range_of(Real arm_squared, bool turns)
+{
+    return turns ? arm_squared : std::numeric_limits<Real>::infinity();
+}
+
+/// Moves the arms of a point, as they were taken, to there, unless that is out of range of a side.
 void carry_arms(const CarriedSide& a, const CarriedSide& b, double share_of_b, DirectPoint& point);
 
 }  // namespace throng

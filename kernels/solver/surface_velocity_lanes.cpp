@@ -49,10 +49,15 @@ template <class L>
     const Side<L> b(constraints.bodies, block.b + at, core_b, half);
     const L by_a = lane<L>(carried.by_a, at), by_b = lane<L>(carried.by_b, at);
     const V3<L> contact = a.material * by_a + b.material * by_b;
-    const V3<L> slip = cross(b.spin, contact - b.center) - cross(a.spin, contact - a.center);
+    const V3<L> from_a = contact - a.center, from_b = contact - b.center;
+    const V3<L> slip = cross(b.spin, from_b) - cross(a.spin, from_a);
+    // Out of range of a side nothing is carried.
+    const L past = max(dot(from_a, from_a) - lane<L>(carried.range_a, at),
+                       dot(from_b, from_b) - lane<L>(carried.range_b, at));
+    const L zero = typename L::Number(0), carried_at_first = by_a + by_b;
+    const L acts = select(past > zero, zero, carried_at_first);
     // Where nothing is carried the speed is what it was: of who walks, or none.
-    const L acts = by_a + by_b;
-    const auto carries = acts > L(typename L::Number(0));
+    const auto carries = carried_at_first > zero;
     const auto tell = [&](const V3<L>& along, Lane16<typename L::Number>& speed) {
         select(carries, dot(along, slip) * acts, lane<L>(speed, at)).store(speed.at + at);
     };

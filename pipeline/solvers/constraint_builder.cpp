@@ -186,6 +186,17 @@ void ConstraintBuilder<Real>::settle_separation(const Contact<Real>& contact,
     }
 }
 
+namespace {
+
+template <class Real>
+Real arm_squared(const Lane16<Real> (&arm)[3], std::size_t lane)
+{
+    const Real x = arm[0].at[lane], y = arm[1].at[lane], z = arm[2].at[lane];
+    return x * x + y * y + z * z;
+}
+
+}  // namespace
+
 template <class Real>
 void ConstraintBuilder<Real>::find_carried(std::size_t at) const
 {
@@ -194,12 +205,15 @@ void ConstraintBuilder<Real>::find_carried(std::size_t at) const
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
         const auto& a = constraints_.bodies[static_cast<std::size_t>(block.a[lane])];
         const auto& b = constraints_.bodies[static_cast<std::size_t>(block.b[lane])];
-        const bool by_a = carries(a, inverse_mass_of(b), dt_);
-        if (!by_a && !carries(b, inverse_mass_of(a), dt_)) continue;
+        const InverseMass of_a = inverse_mass_of(a), of_b = inverse_mass_of(b);
+        const bool by_a = carries(a, of_b, dt_);
+        if (!by_a && !carries(b, of_a, dt_)) continue;
         const Real round_a = block.round_a.at[lane], round_b = block.round_b.at[lane];
         const double share = goes_with_b(double{round_a}, double{round_b}, by_a);
         carried.by_a.at[lane] = static_cast<Real>(1 - share);
         carried.by_b.at[lane] = static_cast<Real>(share);
+        carried.range_a.at[lane] = range_of(arm_squared(block.center_a, lane), of_a.angular > 0);
+        carried.range_b.at[lane] = range_of(arm_squared(block.center_b, lane), of_b.angular > 0);
     }
 }
 

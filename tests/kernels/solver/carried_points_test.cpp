@@ -1,6 +1,7 @@
 // Carried points: the law of one point, and the wide kernel against it.
 #include "kernels/solver/carried_points.hpp"
 
+#include "kernels/solver/solver_bodies.hpp"
 #include "tests/kernels/solver/random_contacts.hpp"
 
 #include <gtest/gtest.h>
@@ -102,6 +103,10 @@ struct PlainSide {
     {
         body.velocity = vector_of(from.motion);
         body.spin = vector_of(from.motion + 4);
+        const Real* const inertia = from.inertia;
+        body.inverse_inertia.xx = double{inertia[1]};
+        body.inverse_inertia.yy = double{inertia[2]};
+        body.inverse_inertia.zz = double{inertia[3]};
         const Quat turn(double{from.delta_pose[7]}, double{from.delta_pose[4]},
                         double{from.delta_pose[5]}, double{from.delta_pose[6]});
         goes = carried_side(vector_of(from.delta_pose), turn, body, core, half);
@@ -128,6 +133,19 @@ Vec3 plain_slip(BlockCase<Real>& made, std::size_t lane, double half)
     return relative_velocity(point, bodies) - before;
 }
 
+// Of who turns as freely as the kernel is told, and of who is the surface that nothing turns.
+template <class Real>
+void carry(BlockCase<Real>& made, std::size_t lane, double share)
+{
+    SurfaceVelocityWide<Real>& carried = made.constraints.surface_velocities[given::kPlace];
+    carried.by_a.at[lane] = static_cast<Real>(1 - share);
+    carried.by_b.at[lane] = static_cast<Real>(share);
+    const Real arm_a = static_cast<Real>(vector_of(made.block().center_a, lane).squaredNorm());
+    const Real arm_b = static_cast<Real>(vector_of(made.block().center_b, lane).squaredNorm());
+    carried.range_a.at[lane] = range_of(arm_a, inverse_mass_of(made.body_a(lane)).angular > 0);
+    carried.range_b.at[lane] = range_of(arm_b, inverse_mass_of(made.body_b(lane)).angular > 0);
+}
+
 template <class Real>
 void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
 {
@@ -139,9 +157,9 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
         SurfaceVelocityWide<Real>& carried = made.constraints.surface_velocities[given::kPlace];
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const double share = given::random_number(random, 0, 1);
-            if (lane % 3 == 0) continue;
-            carried.by_a.at[lane] = static_cast<Real>(1 - share);
-            carried.by_b.at[lane] = static_cast<Real>(share);
+            if (lane % 3 != 0) carry(made, lane, share);
+            // Some have left.
+            if (lane % 4 == 0) made.body_b(lane).delta_pose[0] += Real(3);
         }
         BlockCase<Real> narrow = made;
         kernels.update_surface_velocity(made.view(), given::kPlace, given::kPlace + 1,
@@ -168,6 +186,26 @@ TEST(CarriedPoints, OfBlocksFollowTheSameLawOnEveryWidth)
         if (const auto* kernels = solve_kernels_of<float>(width)) check_kernel(*kernels, 3e-6);
         if (const auto* kernels = solve_kernels_of<double>(width)) check_kernel(*kernels, 1e-13);
     }
+}
+
+TEST(CarriedPoints, LetGoOfWhoHasLeft)
+{
+    DirectBody wheel, driven, ball;
+    wheel.spin = driven.spin = Vec3(0, 0, 20);
+    wheel.inverse_inertia.zz = 1;
+    const Vec3 arm(1, 0, 0), off(-0.1, 0, 0);
+    // What of a wheel's two arms is told for a ball that has gone some way since.
+    const auto told = [&](const DirectBody& carrier, double way) {
+        DirectPoint point;
+        point.arm_a = arm, point.arm_b = off;
+        carry_arms(carried_side(Vec3::Zero(), Quat::Identity(), carrier, arm, 0),
+                   carried_side(Vec3(way, 0, 0), Quat::Identity(), ball, off, 0), 1, point);
+        return Vec3(point.arm_a - arm).norm();
+    };
+    EXPECT_DOUBLE_EQ(told(wheel, 0.5), 0.5);
+    EXPECT_EQ(told(wheel, 1.5), 0);
+    // What nothing turns is slowed by nothing that it does.
+    EXPECT_DOUBLE_EQ(told(driven, 1.5), 1.5);
 }
 
 // What slides by the carried speed and no other is brought to rest against it.
