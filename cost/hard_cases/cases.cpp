@@ -206,13 +206,29 @@ void round_poses(World& world) { place_anew(world, rounded); }
 
 constexpr double kHaste = 1.05;
 
-void hasten(World& world)
+// Of who moves by itself.
+template <class Change>
+void change_velocities(World& world, const Change& change)
 {
     for (const BodyId body : world.bodies()) {
         if (world.motion(body) != Motion::dynamic) continue;
-        world.set_velocity(body, kHaste * world.velocity(body),
-                           kHaste * world.angular_velocity(body));
+        Vec3 velocity = world.velocity(body), spin = world.angular_velocity(body);
+        change(velocity, spin);
+        world.set_velocity(body, velocity, spin);
     }
+}
+
+void hasten(World& world)
+{
+    change_velocities(world, [](Vec3& velocity, Vec3& spin) {
+        velocity *= kHaste;
+        spin *= kHaste;
+    });
+}
+
+void whirl(World& world)
+{
+    change_velocities(world, [](Vec3&, Vec3& spin) { spin += Vec3::UnitZ(); });
 }
 
 void shift_poses(World& world, double by)
@@ -233,12 +249,8 @@ void skew(World& world)
     double by = 0;
     place_anew(world, [&](const Vec3& at) -> Vec3 { return at + Vec3::Constant(by += kSkew); });
     by = 0;
-    for (const BodyId body : world.bodies()) {
-        if (world.motion(body) != Motion::dynamic) continue;
-        by += kSkew;
-        world.set_velocity(body, world.velocity(body) + Vec3::Constant(by),
-                           world.angular_velocity(body));
-    }
+    change_velocities(world,
+                      [&](Vec3& velocity, Vec3&) { velocity += Vec3::Constant(by += kSkew); });
 }
 
 // Aslant, so that no face of a pair lets it pass.
@@ -358,6 +370,7 @@ void CaseBench::run(const Scene& scene,
         if (fault_ == Fault::unsteady) shift_poses(world, 1e-8 * runs_);
         if (fault_ == Fault::sink) sink(world);
         if (fault_ == Fault::skew) skew(world);
+        if (fault_ == Fault::whirl) whirl(world);
         if (ledger != nullptr) ledger->after_step(world);
         stop_where_enough();
         if (!watch(world, step * dt)) break;

@@ -58,6 +58,7 @@ enum class Fault : std::uint8_t {
     grip,         // coefficients of friction 10 % too great
     sink,         // bodies moved down by a millimeter after every step
     skew,         // bodies moved and pushed aslant after every step, each by more than the last
+    whirl,        // bodies that turn faster by a radian a second after every step
 };
 
 /// How much of a case is run: all of it, or what a test has time for.

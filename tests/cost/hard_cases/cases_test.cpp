@@ -118,6 +118,7 @@ constexpr OtherFault kOtherFaults[] = {
     {"H23", Fault::haste, "error of the wedge's acceleration"},
     {"H24", Fault::grip, "stays: wrong outcomes"},
     {"H24", Fault::skew, "off its straight way"},
+    {"H76", Fault::whirl, "fastest spin"},
 };
 // clang-format on
 
