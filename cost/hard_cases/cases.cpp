@@ -127,6 +127,8 @@ constexpr HardCase kCases[] = {
      case_landing_columns, Fault::haste},
     {"H91", "small bodies of unlike weight that fall as a column make no energy",
      case_small_columns, Fault::haste},
+    {"H92", "stacks near attractors and on springs come to rest, and swings stay",
+     case_rest_under_forces, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

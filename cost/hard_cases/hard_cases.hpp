@@ -92,13 +92,14 @@ void case_round_rims(CaseBench& bench);     // H80, round_rims.cpp
 void case_carried_round(CaseBench& bench);  // H84, carried_round.cpp
 void case_walkers(CaseBench& bench);        // H86, walkers.cpp
 // Bodies on floors of many pieces, and on meshes from either side.
-void case_tiles(CaseBench& bench);            // H81, tiles.cpp
-void case_both_sides(CaseBench& bench);       // H82, both_sides.cpp
-void case_wedged_solids(CaseBench& bench);    // H87, wedged_solids.cpp
-void case_crushed(CaseBench& bench);          // H88, crushed.cpp
-void case_forced_bounces(CaseBench& bench);   // H89, forced_bounces.cpp
-void case_landing_columns(CaseBench& bench);  // H90, landing_columns.cpp
-void case_small_columns(CaseBench& bench);    // H91, small_columns.cpp
+void case_tiles(CaseBench& bench);              // H81, tiles.cpp
+void case_both_sides(CaseBench& bench);         // H82, both_sides.cpp
+void case_wedged_solids(CaseBench& bench);      // H87, wedged_solids.cpp
+void case_crushed(CaseBench& bench);            // H88, crushed.cpp
+void case_forced_bounces(CaseBench& bench);     // H89, forced_bounces.cpp
+void case_landing_columns(CaseBench& bench);    // H90, landing_columns.cpp
+void case_small_columns(CaseBench& bench);      // H91, small_columns.cpp
+void case_rest_under_forces(CaseBench& bench);  // H92, rest_under_forces.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

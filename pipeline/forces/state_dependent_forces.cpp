@@ -22,6 +22,10 @@ constexpr double kWithin = 0.1;
 // that what its spring gives there and takes here need not be the same.
 constexpr double kTurn = 0.3;
 
+// Of a body that contacts hold against its springs: its speed, of what those give it in a substep,
+// and what contacts leave of that.
+constexpr double kStill = 0.5, kHeld = 0.25;
+
 // J, of a body in motion, and of its springs.
 double energy_at_hand(const RigidFacts& facts, std::uint32_t body)
 {
@@ -96,7 +100,7 @@ StateDependentForces::StateDependentForces(const StepContext& context,
         auto& law = forced.stiff ? stiff : soft;
         forced.place = static_cast<std::uint32_t>(law.size());
         law.push_back(forced.body);
-        forced.late = forced.stiff || halves;
+        forced.late = forced.falls_late = forced.stiff || halves;
         late_ = late_ || forced.late;
     }
     stiff_law_.leave_springs();
@@ -160,6 +164,38 @@ Vec3 StateDependentForces::fall_of(const ForcedBody& forced) const
     return falls ? Vec3(span_ * context_.gravity) : Vec3(Vec3::Zero());
 }
 
+void StateDependentForces::find_changes(double span)
+{
+    span_ = span;
+    find_accelerations(0, false);
+    for (ForcedBody& forced : forced_bodies_) {
+        RigidMotion& law = forced.stiff ? stiff_law_ : soft_law_;
+        forced.change = span * law.acceleration_of(forced.place, span).linear + fall_of(forced);
+    }
+}
+
+// Whether contacts hold a body against its springs, too.
+bool StateDependentForces::is_held(const ForcedBody& forced) const
+{
+    const double pull = Vec3(forced.change - fall_of(forced)).norm();
+    const double speed = kStill * pull;
+    return forced.grips && forced.left <= kHeld * pull
+        && kinetic_energy_of(forced.body, facts_.masses, facts_.poses, facts_.velocities)
+        <= facts_.masses.mass[forced.body] * speed * speed / 2;
+}
+
+void StateDependentForces::bear()
+{
+    late_ = false;
+    for (ForcedBody& forced : forced_bodies_) {
+        if (forced.borne && !forced.stiff) {
+            forced.falls_late = false;
+            forced.late = forced.late && facts_.forces.has_springs(forced.body) && !is_held(forced);
+        }
+        late_ = late_ || forced.late;
+    }
+}
+
 void StateDependentForces::begin(double time, double span)
 {
     time_ = time;
@@ -170,7 +206,7 @@ void StateDependentForces::begin(double time, double span)
         const auto pull =
             (forced.stiff ? stiff_law_ : soft_law_).acceleration_of(forced.place, share);
         forced.gained = share * pull.linear;
-        if (forced.late) forced.gained -= 0.5 * fall_of(forced);
+        if (forced.falls_late) forced.gained -= 0.5 * fall_of(forced);
         forced.gained_spin = share * pull.angular;
     }
     look_stiff();
@@ -192,7 +228,8 @@ void StateDependentForces::end()
         if (!forced.late) continue;
         const auto pull =
             (forced.stiff ? stiff_law_ : soft_law_).acceleration_of(forced.place, 0.5 * span_);
-        forced.gained = 0.5 * (span_ * pull.linear + fall_of(forced));
+        forced.gained = 0.5 * span_ * pull.linear;
+        if (forced.falls_late) forced.gained += 0.5 * fall_of(forced);
         forced.gained_spin = 0.5 * span_ * pull.angular;
     }
     look_stiff_speeds();

@@ -8,6 +8,10 @@
 // in flight; with any other integrator it acts half before they move and half after it, as of then
 // (Verlet's rule, of second order).
 //
+// Who is borne by contacts has all of it before it moves, as gravity comes to all others:
+// iterations would have to find half of each load and then the whole of it, substep by substep, and
+// a stack would never come to rest. Springs and pivots alone give half after it there.
+//
 // Springs that a substep is too long for go by a rule of their own (stiff_springs.hpp), and what
 // they pull is moved half before and half after likewise.
 //
@@ -44,8 +48,14 @@ struct ForcedBody {
     Vec3 axis = Vec3::UnitZ();
     double carries = 1;
     Vec3 gained = Vec3::Zero(), gained_spin = Vec3::Zero();
+    // m/s, by find_changes(): what all that acts does, gravity too; and by who knows contacts, what
+    // they leave of it, whether they bear the body, and by friction on what does not roll
+    Vec3 change = Vec3::Zero();
+    double left = 0;
+    bool borne = false, grips = false;
     Vec3 carried_spin = Vec3::Zero();  // kept by who asks: as of after it moved
-    bool late = false;                 // half of what acts on it, gravity too, acts after it moved
+    bool late = false;                 // half of what forces give acts after it moved
+    bool falls_late = false;           // and half of gravity
     bool stiff = false;
     std::uint32_t place = 0;  // in its law
 };
@@ -72,6 +82,12 @@ public:
     /// s, the longest step that their springs bear where none is stiff by itself.
     double longest_step() const { return longest_; }
 
+    /// Finds what acts on each does in a span as the step begins. Poses and velocities are those of
+    /// then.
+    void find_changes(double span);
+    /// On those that are borne all acts before they move but for what springs give, and that too
+    /// where contacts hold against it.
+    void bear();
     /// Before bodies move: from velocities to which gravity was added and contacts have done
     /// nothing yet. A substep begins at a time, s since the step began.
     void begin(double time, double span);
@@ -88,6 +104,7 @@ private:
     void give_stiff(std::size_t group, std::span<const StiffSprings::Six> change);
     void clear();
     Vec3 fall_of(const ForcedBody& forced) const;
+    bool is_held(const ForcedBody& forced) const;
 
     const StepContext& context_;
     RigidRule rule_;

@@ -117,7 +117,8 @@ bool IslandSolver::bounce(const StepContext& context)
     // after.
     if (state_forces_)
         for (const ForcedBody& forced : state_forces_->forced_bodies())
-            if (forced.late && context.has(Effect::gravity) && struck_[forced.at].inverse_mass > 0)
+            if (forced.falls_late && context.has(Effect::gravity)
+                && struck_[forced.at].inverse_mass > 0)
                 struck_[forced.at].velocity -= 0.5 * context.substep() * context.gravity;
     for (std::size_t i = 0; i < struck_.size(); ++i)
         struck_[i].inverse_inertia = free_[i].inverse_inertia;

@@ -6,11 +6,14 @@
 #include "kernels/solver/solver_bodies.hpp"
 #include "pipeline/forces/energy_limiter.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/solvers/borne_bodies.hpp"
+#include "pipeline/solvers/pass.hpp"
 #include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/solvers/split_impulse.hpp"
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <optional>
 
 namespace throng {
@@ -45,26 +48,6 @@ constexpr double kBlow = 16;
 // How often contacts and stiff springs take turns in a substep, at least: each sees what the other
 // gave the time before.
 constexpr int kSpringTurns = 4;
-
-// One pass over the contacts or the bodies of a slice.
-struct Pass {
-    enum class Kind : std::uint8_t {
-        prepare,
-        begin,
-        warm_start,
-        update_surface_velocity,
-        solve_biased,
-        advance,
-        relax,
-        apply_restitution,
-        store,
-        save,
-        solve_split_impulse,
-        restore
-    } kind;
-    bool first = false;     // of the step
-    bool backward = false;  // from the last slice and color to the first
-};
 
 template <class Real>
 class Task {
@@ -116,6 +99,7 @@ public:
         const int wanted = left ? 0 : context_.settings.iterations;
         const int biased_count = wanted > 0 ? wanted : pgs ? 20 : 1;
         add_pass({prepare});
+        if (state_forces_) find_borne();
         const bool parts = split_impulse_.some && find_split_impulse();
         for (int step = 0; step < context_.settings.substeps; ++step) {
             // In towers and structures there in one substep and back in the next: who comes first
@@ -185,9 +169,27 @@ private:
                 bodies.push_back(layout_.body_of_solver_index[slice.first_body + k]);
         }
         state_forces_.emplace(context_, facts_, bodies);
-        if (state_forces_->forced_bodies().empty()) return state_forces_.reset();
-        for (const ForcedBody& forced : state_forces_->forced_bodies())
-            if (forced.late) constraints_.bodies[layout_.solver_index[forced.body]].inertia[7] = 1;
+        if (state_forces_->forced_bodies().empty()) state_forces_.reset();
+    }
+
+    // Once constraints are there. Slower than what all that acts gives in two steps is resting, not
+    // bouncing, where that is not gravity alone.
+    void find_borne()
+    {
+        update_forced_bodies(false);
+        state_forces_->find_changes(context_.substep());
+        throng::find_borne(layout_, batch_, constraints_, facts_.masses, context_.substep(),
+                           std::span(state_forces_->forced_bodies()));
+        state_forces_->bear();
+        double least = std::numeric_limits<double>::infinity();
+        for (const ForcedBody& forced : state_forces_->forced_bodies()) {
+            least = std::min(least, forced.change.norm());
+            if (forced.falls_late)
+                constraints_.bodies[layout_.solver_index[forced.body]].inertia[7] = 1;
+        }
+        iteration_.restitution_threshold =
+            std::max(iteration_.restitution_threshold,
+                     static_cast<Real>(2 * least * context_.settings.substeps));
     }
 
     // By pgs it is for a few iterations to take back what is too much of a warm start.

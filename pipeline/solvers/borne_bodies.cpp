@@ -1,0 +1,152 @@
+#include "pipeline/solvers/borne_bodies.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace throng {
+
+namespace {
+
+// Of what acts on a body, the share that contacts may leave of it, or give too much.
+constexpr double kLeft = 0.5;
+
+constexpr std::size_t kNotForced = ~std::size_t{0};
+
+template <class Real>
+Vec3 vector_at(const Lane16<Real> (&of)[3], std::size_t lane)
+{
+    return {double{of[0].at[lane]}, double{of[1].at[lane]}, double{of[2].at[lane]}};
+}
+
+template <class Real>
+class BorneBodies {
+public:
+    BorneBodies(const ContactConstraints<Real>& constraints,
+                std::span<const ForcedBody> forced,
+                double substep)
+        : constraints_(constraints), forced_(forced), substep_(substep),
+          given_(forced.size(), Vec3::Zero()), stands_(forced.size(), 0), slips_(forced.size(), 0)
+    { }
+
+    // A contact of two bodies, by their places among the forced ones.
+    void
+    add(const ContactConstraintWide<Real>& block, std::size_t lane, std::size_t a, std::size_t b)
+    {
+        double pressed = 0, nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
+            const ContactPointWide<Real>& point = constraints_.points[block.first_point + k];
+            if (!(point.mass.at[lane] > 0)) continue;
+            pressed += double{point.impulse.at[lane]};
+            nearest = std::min(nearest, double{point.separation.at[lane]});
+        }
+        const Vec3 normal = vector_at(block.normal, lane);
+        if (pressed > 0) {
+            const Vec3 impulse = normal * pressed + friction_of(block, lane, normal);
+            const bool rubs = block.friction.at[lane] > 0;
+            if (a != kNotForced) press(a, -impulse, rubs && !(block.round_a.at[lane] > 0));
+            if (b != kNotForced) press(b, impulse, rubs && !(block.round_b.at[lane] > 0));
+            return;
+        }
+        const double speed = std::abs(normal_speed(block, lane, normal));
+        if (a != kNotForced) stand(a, -normal, speed, nearest);
+        if (b != kNotForced) stand(b, normal, speed, nearest);
+    }
+
+    void judge(std::size_t i, double inverse_mass, ForcedBody& forced) const
+    {
+        forced.left = (forced.change + inverse_mass * given_[i]).norm();
+        forced.grips = slips_[i] == 0;
+        forced.borne =
+            given_[i].isZero(0) ? stands_[i] != 0 : forced.left <= kLeft * forced.change.norm();
+    }
+
+private:
+    void press(std::size_t i, const Vec3& impulse, bool grips)
+    {
+        given_[i] += impulse;
+        if (!grips) slips_[i] = 1;
+    }
+
+    // Friction at points is left out.
+    Vec3 friction_of(const ContactConstraintWide<Real>& block,
+                     std::size_t lane,
+                     const Vec3& normal) const
+    {
+        if (!constraints_.point_frictions.empty()) return Vec3::Zero();
+        const Vec3 tangent = vector_at(block.tangent, lane);
+        return tangent * double{block.friction_impulse[0].at[lane]}
+        + normal.cross(tangent) * double{block.friction_impulse[1].at[lane]};
+    }
+
+    double normal_speed(const ContactConstraintWide<Real>& block,
+                        std::size_t lane,
+                        const Vec3& normal) const
+    {
+        const auto at = [&](std::int32_t place, const Vec3& arm) -> Vec3 {
+            const Real* const motion = constraints_.bodies[static_cast<std::size_t>(place)].motion;
+            const Vec3 spin(double{motion[4]}, double{motion[5]}, double{motion[6]});
+            return Vec3(double{motion[0]}, double{motion[1]}, double{motion[2]}) + spin.cross(arm);
+        };
+        return normal.dot(at(block.b[lane], vector_at(block.center_b, lane))
+                          - at(block.a[lane], vector_at(block.center_a, lane)));
+    }
+
+    // In touch, no faster than what acts on it gives in a substep, with that against the contact.
+    void stand(std::size_t i, const Vec3& away, double speed, double separation)
+    {
+        const double gives = forced_[i].change.norm();
+        if (speed <= gives && separation <= gives * substep_
+            && forced_[i].change.dot(away) <= -kLeft * gives && gives > 0)
+            stands_[i] = 1;
+    }
+
+    const ContactConstraints<Real>& constraints_;
+    std::span<const ForcedBody> forced_;
+    double substep_;
+    std::vector<Vec3> given_;           // N s
+    std::vector<std::uint8_t> stands_;  // on a contact that has no impulse yet
+    std::vector<std::uint8_t> presses_,
+        slips_;  // on one that friction holds, on one that gives way
+};
+
+}  // namespace
+
+template <class Real>
+void find_borne(const Layout& layout,
+                const Batch& batch,
+                const ContactConstraints<Real>& constraints,
+                const Masses& masses,
+                double substep,
+                std::span<ForcedBody> forced)
+{
+    const Slice& first = layout.slices[batch.first_slice];
+    const Slice& last = layout.slices[batch.first_slice + batch.slices - 1];
+    std::vector<std::size_t> place(last.first_body + last.dynamic - first.first_body, kNotForced);
+    for (std::size_t i = 0; i < forced.size(); ++i)
+        place[layout.solver_index[forced[i].body] - first.first_body] = i;
+    const auto place_of = [&](std::int32_t body) {
+        const std::size_t at = static_cast<std::size_t>(body) - first.first_body;
+        return at < place.size() ? place[at] : kNotForced;
+    };
+    BorneBodies<Real> bodies(constraints, forced, substep);
+    for (std::uint32_t i = 0; i < batch.slices; ++i) {
+        const auto [begin, end] = layout.blocks_of(layout.slices[batch.first_slice + i]);
+        for (std::size_t at = begin; at < end; ++at)
+            for (std::size_t lane = 0; lane < kBlock; ++lane) {
+                if (layout.lanes[at * kBlock + lane].entry == LaneSource{}.entry) continue;
+                const ContactConstraintWide<Real>& block = constraints.blocks[at];
+                bodies.add(block, lane, place_of(block.a[lane]), place_of(block.b[lane]));
+            }
+    }
+    for (std::size_t i = 0; i < forced.size(); ++i)
+        bodies.judge(i, masses.inverse_mass[forced[i].body], forced[i]);
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void find_borne<Real>(const Layout&, const Batch&, const ContactConstraints<Real>&,   \
+                                   const Masses&, double, std::span<ForcedBody>);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng
