@@ -22,9 +22,9 @@ constexpr double kWithin = 0.1;
 // that what its spring gives there and takes here need not be the same.
 constexpr double kTurn = 0.3;
 
-// Of a body that contacts hold against its springs: its speed, of what those give it in a substep,
-// and what contacts leave of that.
-constexpr double kStill = 0.5, kHeld = 0.25;
+// Of a body that contacts hold against its springs: its speed, of what those give it in a step, and
+// what contacts leave of what they give it in a substep.
+constexpr double kStill = 0.125, kHeld = 0.5;
 
 // J, of a body in motion, and of its springs.
 double energy_at_hand(const RigidFacts& facts, std::uint32_t body)
@@ -178,7 +178,7 @@ void StateDependentForces::find_changes(double span)
 bool StateDependentForces::is_held(const ForcedBody& forced) const
 {
     const double pull = Vec3(forced.change - fall_of(forced)).norm();
-    const double speed = kStill * pull;
+    const double speed = kStill * pull * context_.settings.dt / span_;
     return forced.grips && forced.left <= kHeld * pull
         && kinetic_energy_of(forced.body, facts_.masses, facts_.poses, facts_.velocities)
         <= facts_.masses.mass[forced.body] * speed * speed / 2;
