@@ -56,6 +56,8 @@ public:
     {
         forced.left = (forced.change + inverse_mass * given_[i]).norm();
         forced.grips = slips_[i] == 0;
+        // A pivot bears whoever it holds, and what swings on it keeps its two halves.
+        if (!(inverse_mass > 0)) return;
         forced.borne =
             given_[i].isZero(0) ? stands_[i] != 0 : forced.left <= kLeft * forced.change.norm();
     }
