@@ -176,7 +176,7 @@ void swing(CaseBench& bench, double amplitude, double stiffness, double pressed)
     char setting[80];
     std::snprintf(setting, sizeof setting, "default, swing of %g m, %g N/m, pressed by %g N",
                   amplitude, stiffness, pressed);
-    bench.report(setting, "amplitude after a minute, off what it was",
+    bench.report(setting, "amplitude at the end, off what it was",
                  std::abs(furthest / amplitude - 1), 0.01, "1");
 }
 

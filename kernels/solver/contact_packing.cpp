@@ -4,16 +4,6 @@
 
 namespace throng {
 
-namespace {
-
-template <class Real>
-Vec3T<Real> get3(const Lane16<Real> (&from)[3], std::size_t lane)
-{
-    return {from[0].at[lane], from[1].at[lane], from[2].at[lane]};
-}
-
-}  // namespace
-
 template <class Real>
 Softness<Real> softness(double rate, double damping_ratio, double substep)
 {
@@ -74,7 +64,7 @@ void pack_unclamped_friction(const Contact<Real>& contact,
                              ContactConstraintWide<Real>& block)
 {
     const auto lane = static_cast<std::size_t>(lane_at);
-    const Vec3T<Real> tangent = get3(block.tangent, lane);
+    const Vec3T<Real> tangent = vector_at(block.tangent, lane);
     const Vec3T<Real> other = contact.normal.cross(tangent);
     block.friction_impulse[0].at[lane] = tangent.dot(contact.friction);
     block.friction_impulse[1].at[lane] = other.dot(contact.friction);
@@ -91,13 +81,13 @@ void store_impulses(const ContactConstraintsView<Real>& constraints,
     for (int k = 0; k < contact.count; ++k)
         contact.points[static_cast<std::size_t>(k)].impulse =
             constraints.points[block.first_point + static_cast<std::uint32_t>(k)].impulse.at[lane];
-    const Vec3T<Real> tangent = get3(block.tangent, lane);
+    const Vec3T<Real> tangent = vector_at(block.tangent, lane);
     const Vec3T<Real> other = contact.normal.cross(tangent);
     contact.friction =
         tangent * block.friction_impulse[0].at[lane] + other * block.friction_impulse[1].at[lane];
     contact.torsional_impulse = block.torsional_impulse.at[lane];
     if (constraints.rolling_frictions == nullptr) return;
-    const Vec3T<Real> rolling = get3(constraints.rolling_frictions[place].impulse, lane);
+    const Vec3T<Real> rolling = vector_at(constraints.rolling_frictions[place].impulse, lane);
     contact.rolling = tangent * rolling.x() + other * rolling.y() + contact.normal * rolling.z();
 }
 
@@ -107,8 +97,9 @@ impact_impulse(const ContactConstraints<Real>& constraints, std::size_t place, i
 {
     const auto lane = static_cast<std::size_t>(lane_at);
     const ContactConstraintWide<Real>& block = constraints.blocks[place];
-    const Vec3T<Real> normal = get3(block.normal, lane), tangent = get3(block.tangent, lane);
-    const Vec3T<Real> given = get3(constraints.restitutions[place].impulse, lane);
+    const Vec3T<Real> normal = vector_at(block.normal, lane),
+                      tangent = vector_at(block.tangent, lane);
+    const Vec3T<Real> given = vector_at(constraints.restitutions[place].impulse, lane);
     return normal * given.x() + tangent * given.y() + normal.cross(tangent) * given.z();
 }
 

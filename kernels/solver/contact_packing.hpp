@@ -7,6 +7,13 @@
 
 namespace throng {
 
+/// What a lane holds of a vector.
+template <class Real>
+Vec3T<Real> vector_at(const Lane16<Real> (&from)[3], std::size_t lane)
+{
+    return {from[0].at[lane], from[1].at[lane], from[2].at[lane]};
+}
+
 /// How a contact gives way: a damped spring, integrated implicitly, seen as three numbers.
 ///
 ///   bias_rate      1/s, share of the overlap that is pushed apart

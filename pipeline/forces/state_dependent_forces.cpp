@@ -164,13 +164,13 @@ Vec3 StateDependentForces::fall_of(const ForcedBody& forced) const
     return falls ? Vec3(span_ * context_.gravity) : Vec3(Vec3::Zero());
 }
 
-void StateDependentForces::find_changes(double span)
+void StateDependentForces::find_changes()
 {
-    span_ = span;
+    span_ = context_.substep();
     find_accelerations(0, false);
     for (ForcedBody& forced : forced_bodies_) {
         RigidMotion& law = forced.stiff ? stiff_law_ : soft_law_;
-        forced.change = span * law.acceleration_of(forced.place, span).linear + fall_of(forced);
+        forced.change = span_ * law.acceleration_of(forced.place, span_).linear + fall_of(forced);
     }
 }
 

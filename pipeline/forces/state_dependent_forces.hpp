@@ -10,7 +10,9 @@
 //
 // Who is borne by contacts has all of it before it moves, as gravity comes to all others:
 // iterations would have to find half of each load and then the whole of it, substep by substep, and
-// a stack would never come to rest. Springs and pivots alone give half after it there.
+// a stack would never come to rest. Springs give half after it even there, unless friction holds
+// against them, and pivots always: by the two rules velocities are half a substep apart, and who
+// swings would lose by each change from one to the other.
 //
 // Springs that a substep is too long for go by a rule of their own (stiff_springs.hpp), and what
 // they pull is moved half before and half after likewise.
@@ -82,9 +84,9 @@ public:
     /// s, the longest step that their springs bear where none is stiff by itself.
     double longest_step() const { return longest_; }
 
-    /// Finds what acts on each does in a span as the step begins. Poses and velocities are those of
-    /// then.
-    void find_changes(double span);
+    /// Finds what acts on each does in a substep, as the step begins. Poses and velocities are
+    /// those of then.
+    void find_changes();
     /// On those that are borne all acts before they move but for what springs give, and that too
     /// where contacts hold against it.
     void bear();

@@ -1,5 +1,7 @@
 #include "pipeline/solvers/borne_bodies.hpp"
 
+#include "kernels/solver/contact_packing.hpp"
+
 #include <algorithm>
 #include <limits>
 
@@ -13,9 +15,9 @@ constexpr double kLeft = 0.5;
 constexpr std::size_t kNotForced = ~std::size_t{0};
 
 template <class Real>
-Vec3 vector_at(const Lane16<Real> (&of)[3], std::size_t lane)
+Vec3 in_double(const Lane16<Real> (&from)[3], std::size_t lane)
 {
-    return {double{of[0].at[lane]}, double{of[1].at[lane]}, double{of[2].at[lane]}};
+    return vector_at(from, lane).template cast<double>();
 }
 
 template <class Real>
@@ -39,7 +41,7 @@ public:
             pressed += double{point.impulse.at[lane]};
             nearest = std::min(nearest, double{point.separation.at[lane]});
         }
-        const Vec3 normal = vector_at(block.normal, lane);
+        const Vec3 normal = in_double(block.normal, lane);
         if (pressed > 0) {
             const Vec3 impulse = normal * pressed + friction_of(block, lane, normal);
             const bool rubs = block.friction.at[lane] > 0;
@@ -75,7 +77,7 @@ private:
                      const Vec3& normal) const
     {
         if (!constraints_.point_frictions.empty()) return Vec3::Zero();
-        const Vec3 tangent = vector_at(block.tangent, lane);
+        const Vec3 tangent = in_double(block.tangent, lane);
         return tangent * double{block.friction_impulse[0].at[lane]}
         + normal.cross(tangent) * double{block.friction_impulse[1].at[lane]};
     }
@@ -89,8 +91,8 @@ private:
             const Vec3 spin(double{motion[4]}, double{motion[5]}, double{motion[6]});
             return Vec3(double{motion[0]}, double{motion[1]}, double{motion[2]}) + spin.cross(arm);
         };
-        return normal.dot(at(block.b[lane], vector_at(block.center_b, lane))
-                          - at(block.a[lane], vector_at(block.center_a, lane)));
+        return normal.dot(at(block.b[lane], in_double(block.center_b, lane))
+                          - at(block.a[lane], in_double(block.center_a, lane)));
     }
 
     // In touch, no faster than what acts on it gives in a substep, with that against the contact.
@@ -107,8 +109,7 @@ private:
     double substep_;
     std::vector<Vec3> given_;           // N s
     std::vector<std::uint8_t> stands_;  // on a contact that has no impulse yet
-    std::vector<std::uint8_t> presses_,
-        slips_;  // on one that friction holds, on one that gives way
+    std::vector<std::uint8_t> slips_;   // on one that gives way, or rolls
 };
 
 }  // namespace

@@ -186,17 +186,6 @@ void ConstraintBuilder<Real>::settle_separation(const Contact<Real>& contact,
     }
 }
 
-namespace {
-
-template <class Real>
-Real arm_squared(const Lane16<Real> (&arm)[3], std::size_t lane)
-{
-    const Real x = arm[0].at[lane], y = arm[1].at[lane], z = arm[2].at[lane];
-    return x * x + y * y + z * z;
-}
-
-}  // namespace
-
 template <class Real>
 void ConstraintBuilder<Real>::find_carried(std::size_t at) const
 {
@@ -212,8 +201,10 @@ void ConstraintBuilder<Real>::find_carried(std::size_t at) const
         const double share = goes_with_b(double{round_a}, double{round_b}, by_a);
         carried.by_a.at[lane] = static_cast<Real>(1 - share);
         carried.by_b.at[lane] = static_cast<Real>(share);
-        carried.range_a.at[lane] = range_of(arm_squared(block.center_a, lane), of_a.angular > 0);
-        carried.range_b.at[lane] = range_of(arm_squared(block.center_b, lane), of_b.angular > 0);
+        const Real arm_a = vector_at(block.center_a, lane).squaredNorm();
+        const Real arm_b = vector_at(block.center_b, lane).squaredNorm();
+        carried.range_a.at[lane] = range_of(arm_a, of_a.angular > 0);
+        carried.range_b.at[lane] = range_of(arm_b, of_b.angular > 0);
     }
 }
 

@@ -177,7 +177,7 @@ private:
     void find_borne()
     {
         update_forced_bodies(false);
-        state_forces_->find_changes(context_.substep());
+        state_forces_->find_changes();
         throng::find_borne(layout_, batch_, constraints_, facts_.masses, context_.substep(),
                            std::span(state_forces_->forced_bodies()));
         state_forces_->bear();
