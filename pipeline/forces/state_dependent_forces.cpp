@@ -174,6 +174,13 @@ void StateDependentForces::find_changes()
     }
 }
 
+double StateDependentForces::least_change_of_step() const
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const ForcedBody& forced : forced_bodies_) least = std::min(least, forced.change.norm());
+    return least * context_.settings.substeps;
+}
+
 // Whether contacts hold a body against its springs, too.
 bool StateDependentForces::is_held(const ForcedBody& forced) const
 {

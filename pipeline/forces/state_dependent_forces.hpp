@@ -87,6 +87,9 @@ public:
     /// Finds what acts on each does in a substep, as the step begins. Poses and velocities are
     /// those of then.
     void find_changes();
+    /// m/s, of all bodies the least that acts in a step: slower than twice that is resting, not
+    /// bouncing. After find_changes().
+    double least_change_of_step() const;
     /// On those that are borne all acts before they move but for what springs give, and that too
     /// where contacts hold against it.
     void bear();

@@ -66,6 +66,8 @@ IslandSolver::IslandSolver(const DirectScene<Real>& scene, const Batch& batch)
     effort_ = scene.effort;
     left_ = effort_.steps * (2 + scene.context.settings.substeps);
     up_ = up_of(scene.context.gravity);
+    // Slower than what gravity gives in two steps is resting, not bouncing.
+    restitution_threshold_ = 2 * scene.context.gravity.norm() * scene.context.settings.dt;
     spins_ = scene.context.settings.response != Response::kinematic;
     take_bodies(scene, slice);
     take_forces(scene, slice);
@@ -126,7 +128,11 @@ void IslandSolver::take_forces(const DirectScene<Real>& scene, const Slice& slic
     std::vector<std::uint32_t> bodies;
     for (std::uint32_t i = 0; i < slice.dynamic; ++i) bodies.push_back(bodies_[i].body);
     state_forces_ = std::make_unique<StateDependentForces>(scene.context, scene.facts, bodies);
-    if (state_forces_->forced_bodies().empty()) state_forces_.reset();
+    if (state_forces_->forced_bodies().empty()) return state_forces_.reset();
+    update_forced_bodies();
+    state_forces_->find_changes();
+    restitution_threshold_ =
+        std::max(restitution_threshold_, 2 * state_forces_->least_change_of_step());
 }
 
 std::int32_t

@@ -13,7 +13,7 @@ namespace throng {
 
 // Those that were touching as the substep began, or came to touch within it. False if none of them
 // bounces.
-bool IslandSolver::list_touching(double threshold)
+bool IslandSolver::list_touching()
 {
     impacts_.points.clear();
     bool any = false;
@@ -22,7 +22,8 @@ bool IslandSolver::list_touching(double threshold)
             || points_[i].normal.dot(points_[i].impulse) > 0;
         if (!touches) continue;
         add_impact(i);
-        any = any || (contacts_[i].restitution > 0 && approach(i, struck_) < -threshold);
+        any =
+            any || (contacts_[i].restitution > 0 && approach(i, struck_) < -restitution_threshold_);
     }
     return any;
 }
@@ -110,8 +111,6 @@ void IslandSolver::settle_after_impacts()
 bool IslandSolver::bounce(const StepContext& context)
 {
     if (!context.has(Effect::restitution)) return false;
-    // Slower than what gravity gives in two steps is resting, not bouncing.
-    const double threshold = 2 * context.gravity.norm() * context.settings.dt;
     struck_ = before_;
     // Of others the half of gravity that is behind has not been added yet: with them it comes
     // after.
@@ -122,12 +121,12 @@ bool IslandSolver::bounce(const StepContext& context)
                 struck_[forced.at].velocity -= 0.5 * context.substep() * context.gravity;
     for (std::size_t i = 0; i < struck_.size(); ++i)
         struck_[i].inverse_inertia = free_[i].inverse_inertia;
-    if (!list_touching(threshold)) return false;
+    if (!list_touching()) return false;
     double greatest = 0;
     for (const ImpactPoint& point : impacts_.points)
         greatest = std::max(greatest, std::abs(approach(point.at, struck_)));
     reflect(context.settings.impact_law == ImpactLaw::sequential, Impacts::kMostPasses,
-            std::max(threshold, Impacts::kRounding * greatest));
+            std::max(restitution_threshold_, Impacts::kRounding * greatest));
     settle_after_impacts();
     return true;
 }

@@ -100,7 +100,7 @@ private:
     double ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     // Impacts: see island_impacts.cpp.
     bool bounce(const StepContext& context);
-    bool list_touching(double threshold);
+    bool list_touching();
     void add_impact(std::size_t at);
     void reflect(bool in_order, int most_passes, double least_speed);
     bool gains(double work) const;
@@ -145,6 +145,7 @@ private:
     std::vector<double> unearned_;                           // [touches] m, overlap without a push
     std::vector<Vec3> held_;                                 // [touches] N, by friction's springs
     std::unique_ptr<StateDependentForces> state_forces_;     // none: empty
+    double restitution_threshold_ = 0;                       // m/s
     Vec3 up_ = Vec3::Zero();                                 // see driven_contacts.hpp
     bool spins_ = true;                                      // contacts see how bodies spin
     double elapsed_ = 0;                                     // s, since the step began

@@ -169,12 +169,10 @@ void IslandSolver::throw_back(const StepContext& context, double time)
 {
     const Settings& settings = context.settings;
     if (settings.penalty_stiffness > 0 || settings.penalty_damping >= 0) return;
-    // Slower than what gravity gives in two steps is resting, not bouncing.
     double greatest = 0;
     for (std::size_t i = 0; i < contacts_.size(); ++i)
         greatest = std::max(greatest, -approach(i, after_));
-    const double least =
-        std::max(2 * context.gravity.norm() * settings.dt, Impacts::kRounding * greatest);
+    const double least = std::max(restitution_threshold_, Impacts::kRounding * greatest);
     if (!(greatest > least)) return;
     struck_ = after_;
     for (int round = 0; round < kImpactRounds; ++round) {

@@ -181,15 +181,12 @@ private:
         throng::find_borne(layout_, batch_, constraints_, facts_.masses, context_.substep(),
                            std::span(state_forces_->forced_bodies()));
         state_forces_->bear();
-        double least = std::numeric_limits<double>::infinity();
-        for (const ForcedBody& forced : state_forces_->forced_bodies()) {
-            least = std::min(least, forced.change.norm());
+        for (const ForcedBody& forced : state_forces_->forced_bodies())
             if (forced.falls_late)
                 constraints_.bodies[layout_.solver_index[forced.body]].inertia[7] = 1;
-        }
         iteration_.restitution_threshold =
             std::max(iteration_.restitution_threshold,
-                     static_cast<Real>(2 * least * context_.settings.substeps));
+                     static_cast<Real>(2 * state_forces_->least_change_of_step()));
     }
 
     // By pgs it is for a few iterations to take back what is too much of a warm start.
