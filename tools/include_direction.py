@@ -39,10 +39,9 @@ MAY_SEE = {
 }
 
 # What cost and apps see besides: records; what cooked meshes weigh and how deep two lie in one
-# another, for the cases; what runs within a stage, for explain.
+# another, for the cases.
 DOOR = [
     "kernels/geometry/mass.hpp", "pipeline/queries/mesh_overlap.hpp", "pipeline/records/*",
-    "pipeline/step/inner_rows.hpp",
 ]
 BEFORE_THE_DOOR = {"cost", "apps"}
 

@@ -5,7 +5,6 @@
 #include "apps/throng/progress.hpp"
 #include "apps/throng/scene_argument.hpp"
 #include "apps/throng/step_times.hpp"
-#include "pipeline/step/inner_rows.hpp"
 #include "throng/dials.hpp"
 #include "throng/world.hpp"
 
@@ -29,21 +28,6 @@ constexpr Option kOptions[] = {
 };
 
 using Stages = std::vector<World::StageInfo>;
-
-/// The inner tables of those stages that have one, by name.
-using InnerTables = std::map<std::string_view, std::vector<InnerRow>>;
-
-/// The rows of them that this scene has.
-InnerTables inner_tables(const Stages& stages, const Effects& effects, const Settings& settings)
-{
-    InnerTables tables;
-    for (const World::StageInfo& stage : stages) {
-        const bool solves = stage.name == "solve_impulses";
-        for (const InnerRow& row : solves ? solve_table(settings) : event_driven_table(stage.name))
-            if (row.called_for_by.meets(effects.on)) tables[stage.name].push_back(row);
-    }
-    return tables;
-}
 
 std::string padded(std::string_view text, std::size_t width)
 {
@@ -78,13 +62,14 @@ std::string time_column(const StageMs& times, std::string_view stage)
     return text;
 }
 
-void print_stages(const Stages& stages, const InnerTables& inner, const StageMs& times)
+void print_stages(const Stages& stages, const StageMs& times)
 {
     std::size_t width = 24;
-    for (const World::StageInfo& stage : stages) width = std::max(width, stage.name.size() + 2);
-    for (const auto& [stage, table] : inner)
-        for (const InnerRow& row : table)
-            width = std::max(width, row.name.size() + (row.within ? 10 : 6));
+    for (const World::StageInfo& stage : stages) {
+        width = std::max(width, stage.name.size() + 2);
+        for (const World::PassInfo& pass : stage.passes)
+            width = std::max(width, pass.name.size() + 6);
+    }
     std::cout << "\nstages\n";
     if (stages.empty()) std::cout << "  none: nothing in this scene can move\n";
     if (!times.empty()) std::cout << "  " << padded("", width) << "   ms/step  waits for\n";
@@ -96,13 +81,9 @@ void print_stages(const Stages& stages, const InnerTables& inner, const StageMs&
         if (stage.waits_for.empty()) waits += "nothing";
         std::cout << "  " << padded(stage.name, width) << time_column(times, stage.name) << waits
                   << '\n';
-        const auto table = inner.find(stage.name);
-        if (table == inner.end()) continue;
-        for (const InnerRow& row : table->second)
-            std::cout << "  "
-                      << padded((row.within ? "        " : "    ") + std::string(row.name), width)
-                      << (times.empty() ? "" : padded("", 12)) << row.when
-                      << (row.within ? ", in the same pass" : "") << '\n';
+        for (const World::PassInfo& pass : stage.passes)
+            std::cout << "  " << padded("    " + std::string(pass.name), width)
+                      << (times.empty() ? "" : padded("", 12)) << pass.when << '\n';
     }
 }
 
@@ -113,15 +94,15 @@ void print_solids(const std::vector<std::string>& solids)
     for (const std::string& solid : solids) std::cout << "  " << solid << '\n';
 }
 
-void write_dot(const Stages& stages, const InnerTables& inner, std::ostream& out)
+void write_dot(const Stages& stages, std::ostream& out)
 {
     out << "digraph step {\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n";
     for (const World::StageInfo& stage : stages) {
         out << "  " << stage.name;
-        if (const auto table = inner.find(stage.name); table != inner.end()) {
+        if (!stage.passes.empty()) {
             out << " [label=\"" << stage.name << "\\n";
-            for (const InnerRow& row : table->second)
-                out << (row.within ? "    " : "  ") << row.name << " (" << row.when << ")\\l";
+            for (const World::PassInfo& pass : stage.passes)
+                out << "  " << pass.name << " (" << pass.when << ")\\l";
             out << "\"]";
         }
         out << ";\n";
@@ -164,8 +145,7 @@ int explain(const Options& options)
     // What is printed is the step as it begins; bodies that fail on the way may change it.
     const Effects effects = world.effects();
     const Stages stages = world.step_stages();
-    const InnerTables inner = inner_tables(stages, effects, world.settings());
-    if (dot.asked_for()) write_dot(stages, inner, dot.stream());
+    if (dot.asked_for()) write_dot(stages, dot.stream());
     dot.keep();
 
     const StepTimes times = run_steps(world, steps);
@@ -187,7 +167,7 @@ int explain(const Options& options)
         }
     }
     print_effects(effects);
-    print_stages(stages, inner, stage_ms);
+    print_stages(stages, stage_ms);
     print_solids(world.solids());
     for (const std::string& sentence : unused_dials(argument.scene))
         std::cerr << "warning: " << sentence << '\n';

@@ -68,6 +68,9 @@ inline constexpr Set<Effect> kEventDriven = {Effect::no_overlap, Effect::little_
 /// What acts on bodies besides gravity and contacts.
 inline constexpr Set<Effect> kForces = {Effect::forces, Effect::springs, Effect::attractors,
                                         Effect::wind,   Effect::drag,    Effect::pivot};
+/// Of those, what changes as bodies go through a step.
+inline constexpr Set<Effect> kFollowBodies = {Effect::forces, Effect::springs, Effect::attractors,
+                                              Effect::pivot};
 inline constexpr int kEffects = static_cast<int>(Effect::escalation) + 1;
 
 std::string_view name_of(Effect effect);

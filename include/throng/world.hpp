@@ -99,10 +99,16 @@ public:
     std::string state_hash() const;
 
     const Effects& effects();
-    /// The stages of this world's step and what each waits for, in order.
+    /// What runs within a stage, and how often.
+    struct PassInfo {
+        std::string_view name, when;
+    };
+    /// The stages of this world's step, what each waits for, and what of it this scene calls for,
+    /// in order.
     struct StageInfo {
         std::string_view name;
         std::vector<std::size_t> waits_for;
+        std::vector<PassInfo> passes;
     };
     std::vector<StageInfo> step_stages();
 

@@ -86,4 +86,19 @@ void EventDrivenGroup::back_up()
     outcome_.held = time < dt * kWhole;
 }
 
+std::vector<PassRow> EventDrivenGroup::passes_of_back_up()
+{
+    using Group = EventDrivenGroup;
+    return {
+        {function_name<&Group::fly>(), kEventDriven, "each span that the step is cut into"},
+        {function_name<&Group::list_contacts>(), kEventDriven, "as a span begins"},
+        {function_name<&Group::resolve_impacts>(),
+         {Effect::restitution},
+         "as it begins, until none bounces"},
+        {function_name<&Group::solve_resting>(), kEventDriven, "each span, of those that touch"},
+        {function_name<&Group::look_ahead>(), kEventDriven,
+         "each span, and the next begins at the first touch"},
+    };
+}
+
 }  // namespace throng

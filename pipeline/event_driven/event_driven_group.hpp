@@ -11,6 +11,7 @@
 #include "narrowphase/ccd/first_impact.hpp"
 #include "narrowphase/convex/convex_pair.hpp"
 #include "narrowphase/dispatch.hpp"
+#include "pipeline/step/passes.hpp"
 #include "pipeline/step/step_data.hpp"
 
 #include <map>
@@ -78,6 +79,10 @@ public:
 
     /// Of the step that was taken.
     GroupOutcome outcome() const;
+
+    /// What runs within the two.
+    static std::vector<PassRow> passes_of_back_up();
+    static std::vector<PassRow> passes_of_subdivide();
 
 private:
     // Where a body is about to be.

@@ -1,6 +1,6 @@
 // Group solve: the points of a group solved together, and point by point where that fails.
 #include "pipeline/event_driven/event_driven_group.hpp"
-#include "pipeline/solvers/solve_direct.hpp"
+#include "pipeline/solvers/solve_island.hpp"
 
 #include <algorithm>
 

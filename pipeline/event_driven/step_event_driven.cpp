@@ -12,7 +12,6 @@
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/parallel/disjoint_sets.hpp"
 #include "pipeline/event_driven/event_driven_group.hpp"
-#include "pipeline/step/inner_rows.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
@@ -166,59 +165,41 @@ private:
     std::uint64_t work_left_ = 0, work_of_body_ = 0;
 };
 
-// clang-format off
-constexpr InnerRow kBackUpTable[] = {
-    {"fly",             {Effect::motion},      "each span, of those that a step is cut into"},
-    {"list_contacts",   kEventDriven,          "as it begins"},
-    {"resolve_impacts", {Effect::restitution}, "as it begins, until none bounces"},
-    {"solve_resting",   kEventDriven,          "each span, of those that touch"},
-    {"look_ahead",      kEventDriven,          "each span, and the next begins at the first touch"},
-};
-constexpr InnerRow kSubdivideTable[] = {
-    {"fly",             {Effect::motion},      "each piece, at first a substep"},
-    {"solve_resting",   kEventDriven,          "each piece, of those that touch"},
-    {"ends_well",       kEventDriven,          "each piece, done again as two halves if not"},
-    {"list_contacts",   kEventDriven,          "where it ends"},
-    {"resolve_impacts", {Effect::restitution}, "where it ends, until none bounces"},
-};
-// clang-format on
-
-}  // namespace
-
-std::span<const InnerRow> event_driven_table(std::string_view stage)
+void advance_all(const EventDrivenStep& step, AdvanceGroup way)
 {
-    if (stage == "back_up") return kBackUpTable;
-    if (stage == "subdivide") return kSubdivideTable;
-    return {};
-}
-
-void step_event_driven(const StepContext& context,
-                       const Shapes& shapes,
-                       const Surfaces& surfaces,
-                       const PairFilter& filter,
-                       const Colliders& colliders,
-                       const BodyStates& states,
-                       const Masses& masses,
-                       const Forces& forces,
-                       const PrescribedVelocities& prescribed,
-                       Poses& poses,
-                       Velocities& velocities,
-                       Flights& flights,
-                       Islands& islands,
-                       EventDrivenContacts& contacts,
-                       StepDiagnostics& diagnostics)
-{
+    StepDiagnostics& diagnostics = step.get<StepDiagnostics>();
     diagnostics.quarantined.clear();
     diagnostics.direct_left = diagnostics.held_groups = diagnostics.deep_pieces = 0;
     diagnostics.direct_residual = diagnostics.deepest = 0;
-    islands.lone.clear();  // none is left to fly alone
+    step.get<Islands>().lone.clear();  // none is left to fly alone
+    EventDrivenContacts& contacts = step.get<EventDrivenContacts>();
+    const BodyStates& states = step.get<const BodyStates>();
     contacts = {};
     contacts.force.assign(states.kind.size(), Vec3::Zero());
-    GroupScene scene{context, shapes,     surfaces, filter,     colliders, states, masses,
-                     forces,  prescribed, poses,    velocities, flights,   {},     {}};
-    const bool backs_up = context.has(Effect::no_overlap);
-    Carriage(scene, backs_up ? &EventDrivenGroup::back_up : &EventDrivenGroup::subdivide)
-        .run(contacts, diagnostics);
+    GroupScene scene{step.get<const StepContext>(),
+                     step.get<const Shapes>(),
+                     step.get<const Surfaces>(),
+                     step.get<const PairFilter>(),
+                     step.get<const Colliders>(),
+                     states,
+                     step.get<const Masses>(),
+                     step.get<const Forces>(),
+                     step.get<const PrescribedVelocities>(),
+                     step.get<Poses>(),
+                     step.get<Velocities>(),
+                     step.get<Flights>(),
+                     {},
+                     {}};
+    Carriage(scene, way).run(contacts, diagnostics);
 }
+
+}  // namespace
+
+std::vector<PassRow> back_up_passes() { return EventDrivenGroup::passes_of_back_up(); }
+std::vector<PassRow> subdivide_passes() { return EventDrivenGroup::passes_of_subdivide(); }
+
+void back_up(const EventDrivenStep& step) { advance_all(step, &EventDrivenGroup::back_up); }
+
+void subdivide(const EventDrivenStep& step) { advance_all(step, &EventDrivenGroup::subdivide); }
 
 }  // namespace throng

@@ -242,4 +242,19 @@ void EventDrivenGroup::subdivide()
     }
 }
 
+std::vector<PassRow> EventDrivenGroup::passes_of_subdivide()
+{
+    using Group = EventDrivenGroup;
+    return {
+        {function_name<&Group::fly>(), kEventDriven, "each piece, at first a substep"},
+        {function_name<&Group::solve_resting>(), kEventDriven, "each piece, of those that touch"},
+        {function_name<&Group::ends_well>(), kEventDriven,
+         "each piece, done again as two halves if not"},
+        {function_name<&Group::list_contacts>(), kEventDriven, "where a piece ends"},
+        {function_name<&Group::resolve_impacts>(),
+         {Effect::restitution},
+         "where it ends, until none bounces"},
+    };
+}
+
 }  // namespace throng

@@ -95,20 +95,6 @@ ConstraintBuilder<Real>::ConstraintBuilder(const StepContext& context,
 }
 
 template <class Real>
-Contact<Real>& ConstraintBuilder<Real>::contact_of(const ActiveContacts::Entry& source) const
-{
-    switch (source.list) {
-    case ContactList::mesh:
-        return meshes_.entries[source.list_index].contact;
-    case ContactList::solid:
-        return solids_.entries[source.list_index].contact;
-    case ContactList::convex:
-        break;
-    }
-    return convex_.contacts[source.list_index];
-}
-
-template <class Real>
 void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed) const
 {
     ContactConstraintWide<Real>& block = constraints_.blocks[at];

@@ -20,6 +20,21 @@ double push_rate(const StepContext& context, int points);
 ///   extent  m, the lesser of the smallest half extents of the two shapes
 double rigid_overlap(double extent, int points);
 
+/// The contact that an entry stands for, as const as the lists are.
+template <class Convex, class Meshes, class Solids>
+auto& contact_of(Convex& convex, Meshes& meshes, Solids& solids, const ActiveContacts::Entry& entry)
+{
+    switch (entry.list) {
+    case ContactList::mesh:
+        return meshes.entries[entry.list_index].contact;
+    case ContactList::solid:
+        return solids.entries[entry.list_index].contact;
+    case ContactList::convex:
+        break;
+    }
+    return convex.contacts[entry.list_index];
+}
+
 template <class Real>
 class ConstraintBuilder {
 public:
@@ -42,7 +57,10 @@ public:
     /// Makes what the contacts of a slice hold this times as much, for substeps of another length.
     void scale_impulses(const Slice& slice, Real scale) const;
 
-    Contact<Real>& contact_of(const ActiveContacts::Entry& source) const;
+    Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const
+    {
+        return throng::contact_of(convex_, meshes_, solids_, entry);
+    }
 
 private:
     void fill(std::size_t block, PackedContacts<Real>& packed) const;

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "kernels/solver/direct/direct.hpp"
-#include "pipeline/solvers/constraint_builder.hpp"
+#include "pipeline/step/step_data.hpp"
 
 namespace throng {
 
@@ -29,26 +29,5 @@ Effort effort_for(double strain);
 inline constexpr std::size_t kExactContacts = 48;
 /// What is put into a solve of an island that is escalated: what float tells of its speeds.
 inline constexpr DirectEffort kExactEffort = {.steps = 24, .enough = 1e-7, .pivots = false};
-
-/// Tells who is stubborn after this step.
-///
-/// The strain of an island is the greatest, over its contacts, of how far their load presses them
-/// in over where they turn rigid; times the height of the island, in bodies above what stands
-/// still. Loads are those that the contacts bear now, so that it does not matter how the island was
-/// solved. A strain has to last, with the island at rest, before that counts as stubborn: until
-/// then what is told is how far it is on the way, from 0 to 1. It is told below 0 where the next
-/// step should be exact: where an island has only become stubborn, or is pressed in further than
-/// finer substeps would hold it, which would throw it off; or where a blow drives somebody light in
-/// before somebody heavy, and while he is as deep. Islands of more than a batch of contacts
-/// are not looked at: what is so great holds itself up sideways, or is beyond the budget.
-template <class Real>
-void note_strain(const StepContext& context,
-                 const Islands& islands,
-                 const Layout& layout,
-                 const ActiveContacts& active,
-                 const Masses& masses,
-                 const Velocities& velocities,
-                 const ConstraintBuilder<Real>& builder,
-                 OverloadedIslands& overloaded);
 
 }  // namespace throng

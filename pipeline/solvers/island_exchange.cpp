@@ -60,7 +60,7 @@ void guess(const Contact<Real>& contact, std::span<DirectPoint> points)
 }  // namespace
 
 template <class Real>
-IslandSolver::IslandSolver(const DirectScene<Real>& scene, const Batch& batch)
+IslandSolver::IslandSolver(const IslandScene<Real>& scene, const Batch& batch)
 {
     const Slice& slice = scene.layout.slices[batch.first_slice];
     effort_ = scene.effort;
@@ -77,7 +77,7 @@ IslandSolver::IslandSolver(const DirectScene<Real>& scene, const Batch& batch)
 }
 
 template <class Real>
-void IslandSolver::take_bodies(const DirectScene<Real>& scene, const Slice& slice)
+void IslandSolver::take_bodies(const IslandScene<Real>& scene, const Slice& slice)
 {
     const Layout& layout = scene.layout;
     const auto add = [&](std::uint32_t solver_index, bool dynamic, bool advances) {
@@ -121,10 +121,9 @@ void IslandSolver::take_bodies(const DirectScene<Real>& scene, const Slice& slic
 }
 
 template <class Real>
-void IslandSolver::take_forces(const DirectScene<Real>& scene, const Slice& slice)
+void IslandSolver::take_forces(const IslandScene<Real>& scene, const Slice& slice)
 {
-    const Set<Effect> follow = {Effect::forces, Effect::springs, Effect::attractors, Effect::pivot};
-    if (!scene.context.effects.meets(follow)) return;
+    if (!scene.context.effects.meets(kFollowBodies)) return;
     std::vector<std::uint32_t> bodies;
     for (std::uint32_t i = 0; i < slice.dynamic; ++i) bodies.push_back(bodies_[i].body);
     state_forces_ = std::make_unique<StateDependentForces>(scene.context, scene.facts, bodies);
@@ -146,7 +145,7 @@ IslandSolver::index_of(const Layout& layout, const Slice& slice, std::int32_t so
 }
 
 template <class Real>
-void IslandSolver::take_contact(const DirectScene<Real>& scene,
+void IslandSolver::take_contact(const IslandScene<Real>& scene,
                                 const Slice& slice,
                                 std::uint32_t place)
 {
@@ -199,7 +198,7 @@ void IslandSolver::take_contact(const DirectScene<Real>& scene,
 }
 
 template <class Real>
-void IslandSolver::give_states(const DirectScene<Real>& scene,
+void IslandSolver::give_states(const IslandScene<Real>& scene,
                                const Slice& slice,
                                ContactConstraints<Real>& constraints) const
 {
@@ -238,7 +237,7 @@ void IslandSolver::give_impulses(std::size_t first, Contact<Real>& contact) cons
 }
 
 template <class Real>
-void IslandSolver::finish(const DirectScene<Real>& scene,
+void IslandSolver::finish(const IslandScene<Real>& scene,
                           const Batch& batch,
                           ContactConstraints<Real>& constraints) const
 {
@@ -252,8 +251,8 @@ void IslandSolver::finish(const DirectScene<Real>& scene,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template IslandSolver::IslandSolver(const DirectScene<Real>&, const Batch&);                   \
-    template void IslandSolver::finish(const DirectScene<Real>&, const Batch&,                     \
+    template IslandSolver::IslandSolver(const IslandScene<Real>&, const Batch&);                   \
+    template void IslandSolver::finish(const IslandScene<Real>&, const Batch&,                     \
                                        ContactConstraints<Real>&) const;
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

@@ -108,9 +108,8 @@ void IslandSolver::settle_after_impacts()
     }
 }
 
-bool IslandSolver::bounce(const StepContext& context)
+void IslandSolver::apply_restitution(const StepContext& context, double time)
 {
-    if (!context.has(Effect::restitution)) return false;
     struck_ = before_;
     // Of others the half of gravity that is behind has not been added yet: with them it comes
     // after.
@@ -118,17 +117,17 @@ bool IslandSolver::bounce(const StepContext& context)
         for (const ForcedBody& forced : state_forces_->forced_bodies())
             if (forced.falls_late && context.has(Effect::gravity)
                 && struck_[forced.at].inverse_mass > 0)
-                struck_[forced.at].velocity -= 0.5 * context.substep() * context.gravity;
+                struck_[forced.at].velocity -= 0.5 * time * context.gravity;
     for (std::size_t i = 0; i < struck_.size(); ++i)
         struck_[i].inverse_inertia = free_[i].inverse_inertia;
-    if (!list_touching()) return false;
+    if (!list_touching()) return;
     double greatest = 0;
     for (const ImpactPoint& point : impacts_.points)
         greatest = std::max(greatest, std::abs(approach(point.at, struck_)));
     reflect(context.settings.impact_law == ImpactLaw::sequential, Impacts::kMostPasses,
             std::max(restitution_threshold_, Impacts::kRounding * greatest));
     settle_after_impacts();
-    return true;
+    points_ = others_;
 }
 
 }  // namespace throng

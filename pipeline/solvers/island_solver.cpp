@@ -178,7 +178,7 @@ bool IslandSolver::end_state_forces()
 }
 
 // Contacts, and stiff springs with them, which have the last word: see solve_batch.cpp.
-void IslandSolver::hold_contacts(double time)
+void IslandSolver::hold_contacts(const StepContext&, double time)
 {
     for (std::size_t i = 0; i < points_.size(); ++i)
         points_[i].least = -std::max(separations_[i], 0.0) / time;
@@ -195,13 +195,13 @@ void IslandSolver::hold_contacts(double time)
 }
 
 // What acts after bodies moved, contacts answer then.
-void IslandSolver::answer_late_forces(const StepContext& context)
+void IslandSolver::answer_late_forces(const StepContext&, double time)
 {
     if (!end_state_forces()) return;
     place_points();
     others_ = points_;
     for (std::size_t i = 0; i < others_.size(); ++i) {
-        others_[i].least = -std::max(separations_[i], 0.0) / context.substep();
+        others_[i].least = -std::max(separations_[i], 0.0) / time;
         others_[i].impulse = others_[i].torque = Vec3::Zero();
     }
     solve(after_, others_);
@@ -234,9 +234,10 @@ double IslandSolver::approach(std::size_t at, std::span<const DirectBody> bodies
 }
 
 // Who overlaps is moved apart in this substep, on top of what else it does.
-bool IslandSolver::push_out_of_overlap(const StepContext& context)
+void IslandSolver::push_out_of_overlap(const StepContext& context, double time)
 {
-    const double time = context.substep(), most = context.settings.push_limit;
+    const double most = context.settings.push_limit;
+    going_ = after_;
     bool any = false;
     others_ = points_;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -244,9 +245,7 @@ bool IslandSolver::push_out_of_overlap(const StepContext& context)
         any = true;
         others_[i].least = std::min(most, -separations_[i] * kPartShare / time);
     }
-    if (!any || !(most > 0)) return false;
-    push_as_far_as_goes();
-    return true;
+    if (any && most > 0) push_as_far_as_goes();
 }
 
 // Who is wedged between what does not move cannot part from all of it: each point is then asked
@@ -264,7 +263,7 @@ void IslandSolver::push_as_far_as_goes()
     }
 }
 
-void IslandSolver::advance(double time)
+void IslandSolver::advance_bodies(const StepContext&, double time)
 {
     elapsed_ += time;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -279,22 +278,80 @@ void IslandSolver::advance(double time)
     }
 }
 
+// Where contacts are now. Those of the direct solver turn with who is carried, to the middle of the
+// substep.
+void IslandSolver::place_contacts(const StepContext& context, double time)
+{
+    place_points();
+    if (context.settings.response == Response::impulse) carry_arms(time / 2, context.settings.dt);
+}
+
+// What a substep goes through, in order. Who bounces does so as it begins, and goes on as he
+// leaves: stopped where he touches, he would lose the rest of the substep's way, and with it
+// height.
+std::span<const IslandSolver::IslandPass> IslandSolver::passes_of(Response response)
+{
+    using enum Effect;
+    using enum When;
+    static constexpr IslandPass kDirect[] = {
+        pass<&IslandSolver::place_contacts>({contact}, each_substep),
+        pass<&IslandSolver::move_freely>({contact}, each_substep),
+        pass<&IslandSolver::hold_contacts>({contact}, each_substep),
+        pass<&IslandSolver::apply_restitution>({restitution}, each_substep),
+        pass<&IslandSolver::push_out_of_overlap>({contact}, each_substep),
+        pass<&IslandSolver::advance_bodies>({contact}, each_substep),
+        pass<&IslandSolver::answer_late_forces>(kFollowBodies, each_substep),
+    };
+    static constexpr IslandPass kPenalty[] = {
+        pass<&IslandSolver::cut_substep>({contact}, each_substep),
+        pass<&IslandSolver::throw_back>({contact}, each_part),
+        pass<&IslandSolver::move_freely>({contact}, each_part),
+        pass<&IslandSolver::apply_penalty_forces>({contact}, each_part),
+        pass<&IslandSolver::advance_bodies>({contact}, each_part),
+    };
+    static constexpr IslandPass kKinematic[] = {
+        pass<&IslandSolver::place_contacts>({contact}, each_substep),
+        pass<&IslandSolver::move_freely>({contact}, each_substep),
+        pass<&IslandSolver::stop_approaches>({contact}, each_iteration),
+        pass<&IslandSolver::advance_bodies>({contact}, each_substep),
+        pass<&IslandSolver::stop_late_approaches>(kFollowBodies, each_iteration),
+        pass<&IslandSolver::push_out>({contact}, each_iteration),
+    };
+    switch (response) {
+    case Response::penalty:
+        return kPenalty;
+    case Response::kinematic:
+        return kKinematic;
+    case Response::impulse:
+        break;
+    }
+    return kDirect;
+}
+
 void IslandSolver::substep(const StepContext& context)
 {
-    if (context.settings.response == Response::penalty) return penalise(context);
-    if (context.settings.response == Response::kinematic) return separate(context);
-    const double time = context.substep();
-    place_points();
-    carry_arms(time / 2, context.settings.dt);
-    move_freely(context, time);
-    hold_contacts(time);
-    // Who bounces does so as the substep begins, and goes on as he leaves: stopped where he
-    // touches, he would lose the rest of the substep's way, and with it height.
-    if (bounce(context)) points_ = others_;
-    going_ = after_;
-    push_out_of_overlap(context);
-    advance(time);
-    answer_late_forces(context);
+    const std::span<const IslandPass> passes = passes_of(context.settings.response);
+    const auto run = [&](bool parts, double time) {
+        for (const IslandPass& pass : passes)
+            if ((pass.when == When::each_part) == parts
+                && pass.called_for_by.meets(context.effects))
+                (this->*pass.run)(context, time);
+    };
+    cuts_ = 1;
+    run(false, context.substep());
+    const int cuts = cuts_;
+    most_cuts_ = std::max(most_cuts_, cuts);
+    for (int cut = 0; cut < cuts; ++cut) run(true, context.substep() / cuts);
+}
+
+std::vector<PassRow> direct_passes() { return rows_of(IslandSolver::passes_of(Response::impulse)); }
+std::vector<PassRow> penalty_passes()
+{
+    return rows_of(IslandSolver::passes_of(Response::penalty));
+}
+std::vector<PassRow> kinematic_passes()
+{
+    return rows_of(IslandSolver::passes_of(Response::kinematic));
 }
 
 }  // namespace throng

@@ -4,7 +4,8 @@
 
 #include "kernels/solver/direct/impacts.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
-#include "pipeline/solvers/solve_direct.hpp"
+#include "pipeline/solvers/solve_island.hpp"
+#include "pipeline/step/passes.hpp"
 
 #include <memory>
 
@@ -50,13 +51,13 @@ struct IslandWalk {
 class IslandSolver {
 public:
     template <class Real>
-    IslandSolver(const DirectScene<Real>& scene, const Batch& batch);
+    IslandSolver(const IslandScene<Real>& scene, const Batch& batch);
 
     /// Takes the island through one substep.
     void substep(const StepContext& context);
     /// Gives poses, velocities and impulses back.
     template <class Real>
-    void finish(const DirectScene<Real>& scene,
+    void finish(const IslandScene<Real>& scene,
                 const Batch& batch,
                 ContactConstraints<Real>& constraints) const;
 
@@ -64,17 +65,22 @@ public:
     /// cannot always be had, are none of them.
     double residual() const { return residual_; }
     /// The most parts that penalty forces cut a substep into.
-    int cuts() const { return cuts_; }
+    int cuts() const { return most_cuts_; }
+
+    using IslandPass = Pass<IslandSolver, const StepContext&, double>;
+    /// By a response; of impulses those of the direct solver. Each is given the length of the
+    /// substep, or of the part of it, s.
+    static std::span<const IslandPass> passes_of(Response response);
 
 private:
     template <class Real>
-    void take_bodies(const DirectScene<Real>& scene, const Slice& slice);
+    void take_bodies(const IslandScene<Real>& scene, const Slice& slice);
     template <class Real>
-    void take_forces(const DirectScene<Real>& scene, const Slice& slice);
+    void take_forces(const IslandScene<Real>& scene, const Slice& slice);
     template <class Real>
-    void take_contact(const DirectScene<Real>& scene, const Slice& slice, std::uint32_t place);
+    void take_contact(const IslandScene<Real>& scene, const Slice& slice, std::uint32_t place);
     template <class Real>
-    void give_states(const DirectScene<Real>& scene,
+    void give_states(const IslandScene<Real>& scene,
                      const Slice& slice,
                      ContactConstraints<Real>& constraints) const;
     template <class Real>
@@ -83,6 +89,7 @@ private:
     index_of(const Layout& layout, const Slice& slice, std::int32_t solver_index) const;
     Vec3 arm_now(const Vec3& arm, std::int32_t index, const Vec3& round) const;
     void place_points();
+    void place_contacts(const StepContext& context, double time);
     void carry_arms(double half, double dt);
     void find_walks();
     void turn_inertias();
@@ -94,12 +101,12 @@ private:
     void move_forced_bodies(std::vector<DirectBody>& bodies) const;
     void begin_state_forces(double time);
     bool end_state_forces();
-    void hold_contacts(double time);
-    void answer_late_forces(const StepContext& context);
+    void hold_contacts(const StepContext& context, double time);
+    void answer_late_forces(const StepContext& context, double time);
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     double ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     // Impacts: see island_impacts.cpp.
-    bool bounce(const StepContext& context);
+    void apply_restitution(const StepContext& context, double time);
     bool list_touching();
     void add_impact(std::size_t at);
     void reflect(bool in_order, int most_passes, double least_speed);
@@ -110,25 +117,28 @@ private:
 
     // Other responses: see penalty_forces.cpp and kinematic_pushes.cpp.
     struct Give;
-    void penalise(const StepContext& context);
+    void cut_substep(const StepContext& context, double time);
     bool presses(std::size_t at, const StepContext& context, double ahead) const;
     void count_touching(const StepContext& context, double ahead);
     Give give_of(std::size_t at, const Settings& settings, double time) const;
     void find_unearned(const StepContext& context);
     void throw_back(const StepContext& context, double time);
+    void bounce_off(const Settings& settings, double time);
     void apply_penalty_forces(const StepContext& context, double time);
     void find_held(double time);
     void resist_sliding(std::size_t at, double normal_force, double time, std::uint32_t share);
     void damp_turning(DirectPoint& point, double normal_force, std::uint32_t share);
-    void separate(const StepContext& context);
+    void stop_approaches(const StepContext& context, double time);
+    void stop_late_approaches(const StepContext& context, double time);
+    void push_out(const StepContext& context, double time);
     void stop_approach(std::size_t at);
-    void push_out(std::size_t at, double most);
+    void push_out_of(std::size_t at, double most);
     std::pair<double, double> shares_of(const DirectPoint& point) const;
     double mass_of(const DirectPoint& point) const;
 
-    bool push_out_of_overlap(const StepContext& context);
+    void push_out_of_overlap(const StepContext& context, double time);
     void push_as_far_as_goes();
-    void advance(double time);
+    void advance_bodies(const StepContext& context, double time);
 
     std::vector<IslandBody> bodies_;  // those that can be moved, then those that move by themselves
     std::vector<IslandContact> contacts_;
@@ -151,8 +161,8 @@ private:
     double elapsed_ = 0;                                     // s, since the step began
     DirectSolver solver_;
     DirectEffort effort_;
-    int left_ = 0;  // steps, of all solves
-    int cuts_ = 1;
+    int left_ = 0;                  // steps, of all solves
+    int cuts_ = 1, most_cuts_ = 1;  // parts of this substep, of any
     double residual_ = 0;
 };
 

@@ -13,7 +13,11 @@ namespace throng {
 
 namespace {
 
-constexpr int kSweeps = 8;
+int iterations_of(const Settings& settings)
+{
+    constexpr int kIterations = 8;
+    return settings.iterations > 0 ? settings.iterations : kIterations;
+}
 
 }  // namespace
 
@@ -63,7 +67,7 @@ void IslandSolver::stop_approach(std::size_t at)
 }
 
 // By so much at most from where place_points() found the two.
-void IslandSolver::push_out(std::size_t at, double most)
+void IslandSolver::push_out_of(std::size_t at, double most)
 {
     if (!(separations_[at] < -contacts_[at].tolerance)) return;
     const double way = std::min(0.0, separations_[at] + most) - separation_now(at);
@@ -74,23 +78,29 @@ void IslandSolver::push_out(std::size_t at, double most)
     if (b > 0) bodies_[static_cast<std::size_t>(point.b)].moved += b * way * point.normal;
 }
 
-void IslandSolver::separate(const StepContext& context)
+void IslandSolver::stop_approaches(const StepContext& context, double)
 {
-    const double time = context.substep(), most = context.settings.push_limit * time;
-    const int iterations = context.settings.iterations > 0 ? context.settings.iterations : kSweeps;
-    place_points();
-    move_freely(context, time);
     for (DirectPoint& point : points_) point.impulse = point.torque = Vec3::Zero();
-    for (int iteration = 0; iteration < iterations; ++iteration)
+    for (int iteration = 0; iteration < iterations_of(context.settings); ++iteration)
         for (std::size_t i = 0; i < contacts_.size(); ++i) stop_approach(i);
     going_ = after_;
-    advance(time);
+}
+
+// That forces make which act after bodies moved.
+void IslandSolver::stop_late_approaches(const StepContext& context, double)
+{
+    if (!end_state_forces()) return;
     place_points();
-    if (end_state_forces())
-        for (int iteration = 0; iteration < iterations; ++iteration)
-            for (std::size_t i = 0; i < contacts_.size(); ++i) stop_approach(i);
-    for (int iteration = 0; iteration < iterations; ++iteration)
-        for (std::size_t i = 0; i < contacts_.size(); ++i) push_out(i, most);
+    for (int iteration = 0; iteration < iterations_of(context.settings); ++iteration)
+        for (std::size_t i = 0; i < contacts_.size(); ++i) stop_approach(i);
+}
+
+void IslandSolver::push_out(const StepContext& context, double time)
+{
+    place_points();
+    const double most = context.settings.push_limit * time;
+    for (int iteration = 0; iteration < iterations_of(context.settings); ++iteration)
+        for (std::size_t i = 0; i < contacts_.size(); ++i) push_out_of(i, most);
 }
 
 }  // namespace throng

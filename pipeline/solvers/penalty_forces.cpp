@@ -165,9 +165,8 @@ void IslandSolver::damp_turning(DirectPoint& point, double normal_force, std::ui
 // What comes in faster than what rests may, and touches within that time, goes by the law of
 // impacts: a spring of auto, which a few parts of a substep turn round, gives back by its damper
 // and the step more or less than restitution has it. A spring that is asked for is what it is.
-void IslandSolver::throw_back(const StepContext& context, double time)
+void IslandSolver::bounce_off(const Settings& settings, double time)
 {
-    const Settings& settings = context.settings;
     if (settings.penalty_stiffness > 0 || settings.penalty_damping >= 0) return;
     double greatest = 0;
     for (std::size_t i = 0; i < contacts_.size(); ++i)
@@ -193,14 +192,17 @@ void IslandSolver::throw_back(const StepContext& context, double time)
     after_ = struck_;
 }
 
+void IslandSolver::throw_back(const StepContext& context, double time)
+{
+    place_points();
+    bounce_off(context.settings, time);
+    // The velocities before are those that took the bodies here: of the middle of the last part.
+    carry_arms(-time / 2, context.settings.dt);
+}
+
 // All forces are of the velocities before, so that no order of touches has a say.
 void IslandSolver::apply_penalty_forces(const StepContext& context, double time)
 {
-    place_points();
-    throw_back(context, time);
-    // The velocities before are those that took the bodies here: of the middle of the last part.
-    carry_arms(-time / 2, context.settings.dt);
-    move_freely(context, time);
     count_touching(context, 0);
     // What is too stiff for the cut, with those who came to press in the middle of a substep, gives
     // way as far as that bears.
@@ -226,12 +228,10 @@ void IslandSolver::apply_penalty_forces(const StepContext& context, double time)
         if (point.rolling > 0) damp_turning(point, force * time, give.share);
     }
     going_ = after_;
-    advance(time);
 }
 
-void IslandSolver::penalise(const StepContext& context)
+void IslandSolver::cut_substep(const StepContext& context, double time)
 {
-    const double time = context.substep();
     place_points();
     turn_inertias();
     count_touching(context, time);
@@ -245,10 +245,8 @@ void IslandSolver::penalise(const StepContext& context)
         const double bears = give_of(i, context.settings, time).longest;
         if (bears > 0 && bears < time) longest = std::min(longest, kWithin * bears);
     }
-    const int cuts = static_cast<int>(
+    cuts_ = static_cast<int>(
         std::min(std::ceil(time / longest), static_cast<double>(kMostPenaltyCuts)));
-    cuts_ = std::max(cuts_, cuts);
-    for (int cut = 0; cut < cuts; ++cut) apply_penalty_forces(context, time / cuts);
 }
 
 }  // namespace throng

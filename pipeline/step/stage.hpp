@@ -1,9 +1,11 @@
 // Stage: how a function becomes a row of the step table.
 //
 // What a stage reads and writes is read off its signature: a const parameter is read, any other is
-// written (and may be read). So the declaration cannot drift from what the stage can reach.
+// written (and may be read). So the declaration cannot drift from what the stage can reach. Its
+// name is that of the function.
 #pragma once
 
+#include "pipeline/step/passes.hpp"
 #include "pipeline/step/step_data.hpp"
 #include "throng/effects.hpp"
 
@@ -37,7 +39,23 @@ struct PlaceIn<T, std::tuple<First, SleepEvents...>>
 template <class Real, class T>
 constexpr DataSet data_set = {std::uint64_t{1} << detail::PlaceIn<T, StepData<Real>>::value};
 
+/// What several stages work on alike, as one parameter: read where it is const.
+template <class... Data>
+struct StageData {
+    std::tuple<Data&...> data;
+
+    /// By its type as it stands in the list.
+    template <class T>
+    T& get() const
+    {
+        return std::get<T&>(data);
+    }
+};
+
 /// A row of the step table.
+///
+///   chosen_by  settings by which it is there, besides the effects; null: any
+///   passes     what runs within it; null: nothing that repeats
 template <class Real>
 struct Stage {
     std::string_view name;
@@ -45,6 +63,8 @@ struct Stage {
     DataSet reads;
     DataSet writes;
     void (*run)(StepData<Real>&);
+    bool (*chosen_by)(const Settings&) = nullptr;
+    std::vector<PassRow> (*passes)() = nullptr;
 
     /// True when this stage has to wait for an earlier row of the table.
     constexpr bool waits_for(const Stage& earlier) const
@@ -55,34 +75,52 @@ struct Stage {
 
 namespace detail {
 
+// A parameter of a stage, out of the data of the step.
+template <class Real, class Parameter>
+struct Argument {
+    using Kind = std::remove_cvref_t<Parameter>;
+    static constexpr bool only_read = std::is_const_v<std::remove_reference_t<Parameter>>;
+    static constexpr DataSet reads = only_read ? data_set<Real, Kind> : DataSet{};
+    static constexpr DataSet writes = only_read ? DataSet{} : data_set<Real, Kind>;
+    static Parameter of(StepData<Real>& step) { return std::get<Kind>(step); }
+};
+
+template <class Real, class... Data>
+struct Argument<Real, const StageData<Data...>&> {
+    static constexpr DataSet reads = (DataSet{} | ... | Argument<Real, Data&>::reads);
+    static constexpr DataSet writes = (DataSet{} | ... | Argument<Real, Data&>::writes);
+    static StageData<Data...> of(StepData<Real>& step)
+    {
+        return {{Argument<Real, Data&>::of(step)...}};
+    }
+};
+
 template <class Real, auto function>
 struct Wired;
 
 template <class Real, class... Parameters, void (*function)(Parameters...)>
 struct Wired<Real, function> {
-    template <class Parameter>
-    static constexpr bool only_read = std::is_const_v<std::remove_reference_t<Parameter>>;
-    template <class Parameter>
-    static constexpr DataSet data = data_set<Real, std::remove_cvref_t<Parameter>>;
-
-    static constexpr DataSet reads =
-        (DataSet{} | ... | (only_read<Parameters> ? data<Parameters> : DataSet{}));
-    static constexpr DataSet writes =
-        (DataSet{} | ... | (only_read<Parameters> ? DataSet{} : data<Parameters>));
-    static void run(StepData<Real>& step)
-    {
-        function(std::get<std::remove_cvref_t<Parameters>>(step)...);
-    }
+    static constexpr DataSet reads = (DataSet{} | ... | Argument<Real, Parameters>::reads);
+    static constexpr DataSet writes = (DataSet{} | ... | Argument<Real, Parameters>::writes);
+    static void run(StepData<Real>& step) { function(Argument<Real, Parameters>::of(step)...); }
 };
 
 }  // namespace detail
 
 /// Wires a function into the step.
 template <class Real, auto function>
-constexpr Stage<Real> stage(std::string_view name, Set<Effect> called_for_by)
+constexpr Stage<Real> stage(Set<Effect> called_for_by,
+                            bool (*chosen_by)(const Settings&) = nullptr,
+                            std::vector<PassRow> (*passes)() = nullptr)
 {
     using Wired = detail::Wired<Real, function>;
-    return {name, called_for_by, Wired::reads, Wired::writes, Wired::run};
+    return {function_name<function>(),
+            called_for_by,
+            Wired::reads,
+            Wired::writes,
+            Wired::run,
+            chosen_by,
+            passes};
 }
 
 }  // namespace throng

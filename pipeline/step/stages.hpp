@@ -4,7 +4,7 @@
 // nothing else. step_table.cpp says which effects call for each.
 #pragma once
 
-#include "pipeline/step/step_data.hpp"
+#include "pipeline/step/stage.hpp"
 
 namespace throng {
 
@@ -134,46 +134,82 @@ void prepare_constraints(const StepContext&,
                          Velocities&,
                          ContactConstraints<Real>&);
 
-/// Contacts into constraints, constraints into impulses, velocities and poses. Substeps live here:
-/// see solve_table().
+/// What is solved: contacts into constraints, constraints into impulses and motion.
 template <class Real>
-void solve_impulses(const StepContext&,
+using ContactProblem = StageData<const StepContext,
+                                 const Layout,
+                                 const ActiveContacts,
+                                 const Colliders,
+                                 const Masses,
+                                 const Forces,
+                                 const ExternalAcceleration,
+                                 const PrescribedVelocities,
+                                 ContactConstraints<Real>,
+                                 ConvexContacts<Real>,
+                                 MeshContacts<Real>,
+                                 SolidContacts<Real>,
+                                 Poses,
+                                 Velocities,
+                                 SplitImpulse,
+                                 StepDiagnostics>;
+
+/// Soft constraints, an iteration a substep. Islands that are escalated get more substeps or the
+/// direct solver.
+template <class Real>
+void solve_soft_step(const ContactProblem<Real>&);
+/// Projected Gauss-Seidel, many iterations a substep, with escalation likewise.
+template <class Real>
+void solve_pgs(const ContactProblem<Real>&);
+/// Exactly, island by island; those beyond direct_limit by the soft step.
+template <class Real>
+void solve_direct(const ContactProblem<Real>&);
+/// Springs and dampers in place of impulses, in as many parts of a substep as these bear.
+template <class Real>
+void solve_penalty(const ContactProblem<Real>&);
+/// Bodies that meet are stopped and put side by side.
+template <class Real>
+void solve_kinematic(const ContactProblem<Real>&);
+
+/// How much too great the loads are that islands bear now: who is stubborn from the next step on.
+template <class Real>
+void measure_strain(const StepContext&,
                     const Islands&,
                     const Layout&,
                     const ActiveContacts&,
-                    const Colliders&,
                     const Masses&,
-                    const Forces&,
-                    const ExternalAcceleration&,
-                    const PrescribedVelocities&,
-                    ContactConstraints<Real>&,
-                    ConvexContacts<Real>&,
-                    MeshContacts<Real>&,
-                    SolidContacts<Real>&,
-                    Poses&,
-                    Velocities&,
-                    SplitImpulse&,
-                    OverloadedIslands&,
-                    StepDiagnostics&);
+                    const Velocities&,
+                    const ConvexContacts<Real>&,
+                    const MeshContacts<Real>&,
+                    const SolidContacts<Real>&,
+                    OverloadedIslands&);
 
-/// Dynamic bodies in place of all stages of contact, each with those that it may meet in this step:
-/// carried from touch to touch, so that none ever overlap (back_up), or by halves, where what would
-/// end in overlap is done again as two pieces, down to the least (subdivide).
-void step_event_driven(const StepContext&,
-                       const Shapes&,
-                       const Surfaces&,
-                       const PairFilter&,
-                       const Colliders&,
-                       const BodyStates&,
-                       const Masses&,
-                       const Forces&,
-                       const PrescribedVelocities&,
-                       Poses&,
-                       Velocities&,
-                       Flights&,
-                       Islands&,
-                       EventDrivenContacts&,
-                       StepDiagnostics&);
+/// What solver bodies came to since the step began, onto poses and velocities.
+template <class Real>
+void store_solution(
+    const Layout&, const ContactConstraints<Real>&, Poses&, Velocities&, StepDiagnostics&);
+
+/// What is carried from touch to touch, in place of all stages of contact: dynamic bodies, each
+/// with those that it may meet in this step.
+using EventDrivenStep = StageData<const StepContext,
+                                  const Shapes,
+                                  const Surfaces,
+                                  const PairFilter,
+                                  const Colliders,
+                                  const BodyStates,
+                                  const Masses,
+                                  const Forces,
+                                  const PrescribedVelocities,
+                                  Poses,
+                                  Velocities,
+                                  Flights,
+                                  Islands,
+                                  EventDrivenContacts,
+                                  StepDiagnostics>;
+
+/// To the first moment of each touch, so that none ever overlap.
+void back_up(const EventDrivenStep&);
+/// By halves: what would end in overlap is done again as two pieces, down to the least.
+void subdivide(const EventDrivenStep&);
 
 /// Bodies that touch nothing: velocities into poses.
 void integrate_poses(const StepContext&,

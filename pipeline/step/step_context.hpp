@@ -7,6 +7,14 @@
 
 namespace throng {
 
+/// Whether islands whose loads are too much get more than others. The direct solver needs no help,
+/// and penalty forces and kinematic pushes go island by island.
+inline bool may_escalate(const Settings& settings)
+{
+    return settings.escalation == Escalation::auto_ && settings.response == Response::impulse
+        && settings.solver != Solver::direct;
+}
+
 struct StepContext {
     Settings settings;
     Vec3 gravity = Vec3(0, 0, -9.81);

@@ -78,6 +78,11 @@ struct OverloadedIslands {
     {
         if (body < strain.size()) strain[body] = 0;
     }
+    void forget_all()
+    {
+        for (const std::uint32_t body : strained) forget(body);
+        strained.clear();
+    }
 };
 
 /// Who awoke and who fell asleep in this step.

@@ -8,30 +8,51 @@ namespace {
 
 using enum Effect;
 
+bool by_soft_step(const Settings& settings)
+{
+    return settings.response == Response::impulse && settings.solver == Solver::soft_step;
+}
+bool by_pgs(const Settings& settings)
+{
+    return settings.response == Response::impulse && settings.solver == Solver::pgs;
+}
+bool by_direct(const Settings& settings)
+{
+    return settings.response == Response::impulse && settings.solver == Solver::direct;
+}
+bool by_penalty(const Settings& settings) { return settings.response == Response::penalty; }
+bool by_kinematic(const Settings& settings) { return settings.response == Response::kinematic; }
+
 // clang-format off
 template <class Real>
 constexpr Stage<Real> kStep[] = {
-    stage<Real, prescribe_velocities>        ("prescribe_velocities",  {drive}),
-    stage<Real, update_bounds>               ("update_bounds",         {contact}),
-    stage<Real, find_pairs>                  ("find_pairs",            {contact}),
-    stage<Real, collide_convex<Real>>        ("collide_convex",        {contact}),
-    stage<Real, collide_solids<Real>>        ("collide_solids",        kSolidContact),
-    stage<Real, wake_islands<Real>>          ("wake_islands",          {sleeping}),
-    stage<Real, collide_meshes<Real>>        ("collide_meshes",        {mesh_contact}),
-    stage<Real, remove_ghost_contacts<Real>> ("remove_ghost_contacts", {seams}),
-    stage<Real, gather_contacts<Real>>       ("gather_contacts",       {contact}),
-    stage<Real, split_islands>               ("split_islands",         {contact}),
-    stage<Real, escalate_islands>            ("escalate_islands",      {escalation}),
-    stage<Real, color_constraints>           ("color_constraints",     {contact}),
-    stage<Real, apply_forces>                ("apply_forces",          kForces),
-    stage<Real, prepare_constraints<Real>>   ("prepare_constraints",   {contact}),
-    stage<Real, solve_impulses<Real>>        ("solve_impulses",        {contact}),
-    stage<Real, step_event_driven>           ("back_up",               {no_overlap}),
-    stage<Real, step_event_driven>           ("subdivide",             {little_overlap}),
-    stage<Real, integrate_poses>             ("integrate_poses",       {motion}),
-    stage<Real, quarantine_bodies>           ("quarantine_bodies",     {motion}),
-    stage<Real, continuous_collision<Real>>  ("continuous_collision",  {fast_motion}),
-    stage<Real, sleep_islands>               ("sleep_islands",         {sleeping}),
+    stage<Real, prescribe_velocities>        ({drive}),
+    stage<Real, update_bounds>               ({contact}),
+    stage<Real, find_pairs>                  ({contact}),
+    stage<Real, collide_convex<Real>>        ({contact}),
+    stage<Real, collide_solids<Real>>        (kSolidContact),
+    stage<Real, wake_islands<Real>>          ({sleeping}),
+    stage<Real, collide_meshes<Real>>        ({mesh_contact}),
+    stage<Real, remove_ghost_contacts<Real>> ({seams}),
+    stage<Real, gather_contacts<Real>>       ({contact}),
+    stage<Real, split_islands>               ({contact}),
+    stage<Real, escalate_islands>            ({escalation}),
+    stage<Real, color_constraints>           ({contact}),
+    stage<Real, apply_forces>                (kForces),
+    stage<Real, prepare_constraints<Real>>   ({contact}),
+    stage<Real, solve_soft_step<Real>>       ({contact}, by_soft_step, soft_step_passes),
+    stage<Real, solve_pgs<Real>>             ({contact}, by_pgs,       pgs_passes),
+    stage<Real, solve_direct<Real>>          ({contact}, by_direct,    direct_passes),
+    stage<Real, solve_penalty<Real>>         ({contact}, by_penalty,   penalty_passes),
+    stage<Real, solve_kinematic<Real>>       ({contact}, by_kinematic, kinematic_passes),
+    stage<Real, measure_strain<Real>>        ({contact}, may_escalate),
+    stage<Real, store_solution<Real>>        ({contact}),
+    stage<Real, back_up>                     ({no_overlap},     nullptr, back_up_passes),
+    stage<Real, subdivide>                   ({little_overlap}, nullptr, subdivide_passes),
+    stage<Real, integrate_poses>             ({motion}),
+    stage<Real, quarantine_bodies>           ({motion}),
+    stage<Real, continuous_collision<Real>>  ({fast_motion}),
+    stage<Real, sleep_islands>               ({sleeping}),
 };
 // clang-format on
 
@@ -67,17 +88,19 @@ std::span<const Stage<Real>> step_table()
 }
 
 template <class Real>
-std::vector<Stage<Real>> stages_for(Set<Effect> effects)
+std::vector<Stage<Real>> stages_for(Set<Effect> effects, const Settings& settings)
 {
     std::vector<Stage<Real>> rows;
     for (const Stage<Real>& row : kStep<Real>)
-        if (row.called_for_by.meets(effects)) rows.push_back(row);
+        if (row.called_for_by.meets(effects)
+            && (row.chosen_by == nullptr || row.chosen_by(settings)))
+            rows.push_back(row);
     return rows;
 }
 
 template std::span<const Stage<float>> step_table<float>();
 template std::span<const Stage<double>> step_table<double>();
-template std::vector<Stage<float>> stages_for<float>(Set<Effect>);
-template std::vector<Stage<double>> stages_for<double>(Set<Effect>);
+template std::vector<Stage<float>> stages_for<float>(Set<Effect>, const Settings&);
+template std::vector<Stage<double>> stages_for<double>(Set<Effect>, const Settings&);
 
 }  // namespace throng

@@ -12,8 +12,9 @@ namespace throng {
 template <class Real>
 std::span<const Stage<Real>> step_table();
 
-/// The rows that a set of effects calls for, in the same order.
+/// The rows that a set of effects calls for, by the solver and response that are chosen, in the
+/// same order.
 template <class Real>
-std::vector<Stage<Real>> stages_for(Set<Effect> effects);
+std::vector<Stage<Real>> stages_for(Set<Effect> effects, const Settings& settings);
 
 }  // namespace throng

@@ -252,7 +252,6 @@ void WorldState::refresh_effects()
     effects_stale = false;
     active_bodies_stale = true;
     StepContext& context = get<StepContext>();
-    const Set<Effect> before = context.effects;
     effects =
         find_effects({context, get<BodyStates>(), get<Poses>(), get<Velocities>(), get<Masses>(),
                       get<PrescribedVelocities>(), get<Forces>(), get<Shapes>(), get<Colliders>(),
@@ -263,10 +262,14 @@ void WorldState::refresh_effects()
     std::visit(
         [&](auto& chosen) {
             using Graph = typename std::remove_reference_t<decltype(chosen.graph)>::element_type;
-            if (chosen.graph && before == effects.on) return;
             using Real = std::conditional_t<std::is_same_v<Graph, StepGraph<float>>, float, double>;
+            std::vector<Stage<Real>> stages = stages_for<Real>(effects.on, context.settings);
+            const auto same = [](const Stage<Real>& a, const Stage<Real>& b) {
+                return a.name == b.name;
+            };
+            if (chosen.graph && std::ranges::equal(chosen.graph->stages(), stages, same)) return;
             pool.run([&](std::size_t, std::size_t, std::size_t) {
-                chosen.graph = std::make_unique<Graph>(stages_for<Real>(effects.on), chosen.data);
+                chosen.graph = std::make_unique<Graph>(std::move(stages), chosen.data);
             });
         },
         step);
@@ -519,7 +522,13 @@ std::vector<World::StageInfo> World::step_stages()
     std::vector<StageInfo> infos;
     std::visit(
         [&](const auto& chosen) {
-            for (const auto& stage : chosen.graph->stages()) infos.push_back({stage.name, {}});
+            for (const auto& stage : chosen.graph->stages()) {
+                infos.push_back({stage.name, {}, {}});
+                if (stage.passes == nullptr) continue;
+                for (const PassRow& row : stage.passes())
+                    if (row.called_for_by.meets(state_->effects.on))
+                        infos.back().passes.push_back({row.name, row.when});
+            }
             for (const auto& [earlier, later] : waits(chosen.graph->stages()))
                 infos[later].waits_for.push_back(earlier);
         },

@@ -46,7 +46,8 @@ inline constexpr StagePart kStageParts[] = {
     {"collide_convex", 2}, {"collide_meshes", 2},
     {"gather_contacts", 3}, {"split_islands", 3}, {"color_constraints", 3},
     {"prepare_constraints", 3},
-    {"solve_impulses", 4},
+    {"solve_soft_step", 4}, {"solve_pgs", 4}, {"solve_direct", 4}, {"solve_penalty", 4},
+    {"solve_kinematic", 4}, {"measure_strain", 4}, {"store_solution", 4},
 };
 // clang-format on
 

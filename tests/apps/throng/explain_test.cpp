@@ -47,7 +47,7 @@ TEST(Explain, SmoothBallsInSpaceHaveNoFrictionRotationOrGravity)
     for (const char* effect : {"gravity", "rotation", "friction", "gyroscopic", "restitution"})
         EXPECT_NE(effect_line(said.out, effect).find("  off"), std::string::npos) << effect;
     const std::string stages = part_of(said.out, "stages");
-    EXPECT_NE(stages.find("solve_biased"), std::string::npos);
+    EXPECT_NE(stages.find("solve_velocities"), std::string::npos);
     for (const char* word : {"friction", "turn", "gravity", "restitution", "roll"})
         EXPECT_EQ(stages.find(word), std::string::npos) << word << " is in " << stages;
 }
@@ -60,8 +60,8 @@ TEST(Explain, APileHasWhatAPileNeeds)
          {"gravity", "rotation", "gyroscopic", "contact", "friction", "sleeping"})
         EXPECT_TRUE(is_on(said.out, effect)) << effect;
     const std::string stages = part_of(said.out, "stages");
-    for (const char* word : {"\n  find_pairs ", "waits for update_bounds", "\n      add_gravity ",
-                             "\n          solve_friction ", "turn_bodies"})
+    for (const char* word : {"\n  find_pairs ", "waits for update_bounds", "\n  solve_soft_step ",
+                             "\n      integrate_velocities ", "each iteration of a substep"})
         EXPECT_NE(stages.find(word), std::string::npos) << word;
 }
 
@@ -74,7 +74,8 @@ TEST(Explain, TheSubstepIsThatOfTheResponseAndTheSolver)
     };
     const std::vector<std::pair<std::string, std::string>> wanted = {
         {"solver=soft_step", "relax "},
-        {"solver=direct", "solve_exactly"},
+        {"solver=pgs", "solve_pgs"},
+        {"solver=direct", "hold_contacts"},
         {"response=penalty", "apply_penalty_forces"},
         {"response=kinematic", "push_out"}};
     for (const auto& [dial, row] : wanted) {
@@ -126,7 +127,7 @@ TEST(Explain, TheGraphHasEveryStage)
     const std::string dot = folder.read("step.dot");
     EXPECT_EQ(dot.find("digraph"), 0u);
     EXPECT_NE(dot.find("find_pairs -> collide_convex;"), std::string::npos);
-    EXPECT_NE(dot.find("add_gravity"), std::string::npos);
+    EXPECT_NE(dot.find("integrate_velocities"), std::string::npos);
     EXPECT_EQ(folder.files(), std::vector<std::string>{"step.dot"});
 }
 

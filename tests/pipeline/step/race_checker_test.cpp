@@ -29,8 +29,7 @@ void run_stages(std::vector<Stage<float>> stages)
 TEST(RaceChecker, IsContentWithAStepGraphInWhichTheyWait)
 {
     shared = 0;
-    run_stages({stage<float, change_poses>("change_poses", {}),
-                stage<float, read_poses>("read_poses", {})});
+    run_stages({stage<float, change_poses>({}), stage<float, read_poses>({})});
     EXPECT_EQ(shared, 2);
 }
 
@@ -52,8 +51,7 @@ void change_bounds(Bounds&)
 
 void race_of_stages()
 {
-    run_stages({stage<float, change_pairs>("change_pairs", {}),
-                stage<float, change_bounds>("change_bounds", {})});
+    run_stages({stage<float, change_pairs>({}), stage<float, change_bounds>({})});
     std::exit(0);
 }
 

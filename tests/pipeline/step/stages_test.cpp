@@ -1,8 +1,6 @@
 // Stages: each called with a few arrays, no world needed.
 #include "pipeline/step/stages.hpp"
 
-#include "pipeline/step/inner_rows.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -305,31 +303,6 @@ TEST(WakeIslands, WhatMovesByItselfWakesOnlyWhileItMoves)
     wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
                  sleep_events);
     EXPECT_EQ(sleep_events.woke, (std::vector<std::uint32_t>{1}));
-}
-
-TEST(SolveTable, ListsWhatASubstepDoes)
-{
-    Settings direct, penalty, kinematic;
-    direct.solver = Solver::direct;
-    penalty.response = Response::penalty;
-    kinematic.response = Response::kinematic;
-    for (const Settings& settings : {Settings{}, direct, penalty, kinematic}) {
-        EXPECT_FALSE(solve_table(settings).empty());
-        for (const InnerRow& row : solve_table(settings))
-            EXPECT_FALSE(row.when.empty()) << row.name;
-    }
-    EXPECT_NE(solve_table(direct).data(), solve_table(penalty).data());
-    EXPECT_NE(solve_table(kinematic).data(), solve_table(penalty).data());
-}
-
-TEST(EventDrivenTable, ListsWhatASpanOrAPieceDoes)
-{
-    for (const char* stage : {"back_up", "subdivide"}) {
-        EXPECT_FALSE(event_driven_table(stage).empty()) << stage;
-        for (const InnerRow& row : event_driven_table(stage))
-            EXPECT_FALSE(row.when.empty()) << row.name;
-    }
-    EXPECT_TRUE(event_driven_table("solve_impulses").empty());
 }
 
 }  // namespace

@@ -32,19 +32,42 @@ Set<Effect> subset(unsigned bits)
 }
 
 // The mixed scene after some steps with a set of effects forced on it.
-std::string run_with(Set<Effect> effects, bool in_order, int threads)
+std::string run_with(Set<Effect> effects, bool in_order, int threads, const Settings& dials = {})
 {
-    World world(given::mixed_scene(), threads);
+    Scene scene = given::mixed_scene();
+    scene.settings.solver = dials.solver;
+    scene.settings.response = dials.response;
+    World world(scene, threads);
     world.run_in_order(in_order);
     static_cast<void>(world.effects());
     auto& state = state_of(world);
     state.get<StepContext>().effects = effects;
     auto& step = std::get<Step<float>>(state.step);
     state.pool.run([&](std::size_t, std::size_t, std::size_t) {
-        step.graph = std::make_unique<StepGraph<float>>(stages_for<float>(effects), step.data);
+        step.graph = std::make_unique<StepGraph<float>>(stages_for<float>(effects, scene.settings),
+                                                        step.data);
     });
     world.step(8);
     return world.state_hash();
+}
+
+TEST(StepGraph, MatchesRunInOrderForEverySolverAndResponse)
+{
+    std::set<std::string> seen;
+    const auto check = [&](Solver solver, Response response) {
+        Settings dials;
+        dials.solver = solver;
+        dials.response = response;
+        const Set<Effect> effects = subset((1u << std::size(kSwitched)) - 1);
+        const std::string wanted = run_with(effects, true, 1, dials);
+        ASSERT_EQ(run_with(effects, false, 3, dials), wanted);
+        seen.insert(wanted);
+    };
+    for (const Solver solver : {Solver::soft_step, Solver::pgs, Solver::direct})
+        check(solver, Response::impulse);
+    check(Solver::soft_step, Response::penalty);
+    check(Solver::soft_step, Response::kinematic);
+    EXPECT_EQ(seen.size(), 5u);
 }
 
 TEST(StepGraph, MatchesRunInOrderForEverySetOfEffects)

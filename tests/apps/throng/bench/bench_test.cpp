@@ -48,7 +48,7 @@ TEST(Bench, TellsOfEveryEngineAndStage)
                     "--steps", "25", "--peers", "none", "--json", folder / "b.json"});
     ASSERT_EQ(done.code, 0) << done.err;
     EXPECT_EQ(done.err, "");
-    for (const char* word : {"\npile:20 ", "\nsparse:40 ", "ms/step", "speedup", "solve_impulses",
+    for (const char* word : {"\npile:20 ", "\nsparse:40 ", "ms/step", "speedup", "solve_soft_step",
                              "state_hash", "exponent"})
         EXPECT_NE(done.out.find(word), std::string::npos) << word << " is not in " << done.out;
 

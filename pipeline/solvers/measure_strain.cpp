@@ -1,7 +1,19 @@
-// Strain: how much too great the loads of islands are for their contacts.
+// Measure strain: how much too great the loads of islands are for their contacts.
+//
+// The strain of an island is the greatest, over its contacts, of how far their load presses them in
+// over where they turn rigid; times the height of the island, in bodies above what stands still.
+// Loads are those that the contacts bear now, so that it does not matter how the island was solved.
+// A strain has to last, with the island at rest, before that counts as stubborn: until then what is
+// told is how far it is on the way, from 0 to 1. It is told below 0 where the next step should be
+// exact: where an island has only become stubborn, or is pressed in further than finer substeps
+// would hold it, which would throw it off; or where a blow drives somebody light in before somebody
+// heavy, and while he is as deep. Islands of more than a batch of contacts are not looked at: what
+// is so great holds itself up sideways, or is beyond the budget.
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solver/coloring.hpp"
+#include "pipeline/solvers/constraint_builder.hpp"
 #include "pipeline/solvers/escalation.hpp"
+#include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,13 +41,6 @@ constexpr double kDeep = 0.5;
 constexpr double kHeavy = 8, kDriven = 0.1, kCrushed = 2 * kExactStrain;
 constexpr std::size_t kCrushedContacts = 16;
 constexpr double kAllBut = 0.999999;  // for the last digits of a product in another order
-
-// The direct solver needs no help, and pushes and forces go island by island.
-bool helps(const Settings& settings)
-{
-    return settings.escalation == Escalation::auto_ && settings.response == Response::impulse
-        && settings.solver != Solver::direct;
-}
 
 // How easily a body gives way, 1/kg. Who cannot be moved, only turned, gives way by lever arms
 // about as much as his mass would.
@@ -65,11 +70,14 @@ public:
           const ActiveContacts& active,
           const Masses& masses,
           const Velocities& velocities,
-          const ConstraintBuilder<Real>& builder,
+          const ConvexContacts<Real>& convex,
+          const MeshContacts<Real>& meshes,
+          const SolidContacts<Real>& solids,
           OverloadedIslands& overloaded)
         : islands_(islands), layout_(layout), active_(active), masses_(masses),
-          velocities_(velocities), builder_(builder), overloaded_(overloaded),
-          resting_(kResting * context.gravity.norm()), step_(context.settings.dt)
+          velocities_(velocities), convex_(convex), meshes_(meshes), solids_(solids),
+          overloaded_(overloaded), resting_(kResting * context.gravity.norm()),
+          step_(context.settings.dt)
     {
         for (int points = 1; points <= 4; ++points) {
             const double omega = contact_frequency(context, points);
@@ -106,6 +114,11 @@ public:
     }
 
 private:
+    const Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const
+    {
+        return throng::contact_of(convex_, meshes_, solids_, entry);
+    }
+
     // A heap that settles trembles.
     static double begun(double strain, double before)
     {
@@ -131,8 +144,8 @@ private:
     {
         const ActiveContacts::Entry& entry = active_.entries[place];
         if (!(entry.extent > 0)) return 0;
-        return speed_borne(entry, builder_.contact_of(entry), masses_)
-            * per_speed_[entry.points - 1u] / double{entry.extent};
+        return speed_borne(entry, contact_of(entry), masses_) * per_speed_[entry.points - 1u]
+            / double{entry.extent};
     }
 
     // Whether any contact does; give_of() without its division.
@@ -140,8 +153,8 @@ private:
     {
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            const double held = speed_borne(entry, builder_.contact_of(entry), masses_)
-                * per_speed_[entry.points - 1u];
+            const double held =
+                speed_borne(entry, contact_of(entry), masses_) * per_speed_[entry.points - 1u];
             return held > kAllBut * least * double{entry.extent};
         });
     }
@@ -162,7 +175,7 @@ private:
     {
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            const double overlap{builder_.contact_of(entry).overlap(entry.points)};
+            const double overlap{contact_of(entry).overlap(entry.points)};
             const double held = give_of(place) * rigid_overlap(double{entry.extent}, entry.points);
             return overlap > kDeep * held;
         });
@@ -203,7 +216,7 @@ private:
     // m/s, of the middles of two bodies.
     double approach(const ActiveContacts::Entry& entry) const
     {
-        const Vec3T<Real>& normal = builder_.contact_of(entry).normal;
+        const Vec3T<Real>& normal = contact_of(entry).normal;
         return (velocities_.linear[entry.body_a] - velocities_.linear[entry.body_b])
             .dot(normal.template cast<double>());
     }
@@ -214,7 +227,7 @@ private:
         if (contacts.size() > kExactContacts) return false;
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            const double overlap{builder_.contact_of(entry).overlap(entry.points)};
+            const double overlap{contact_of(entry).overlap(entry.points)};
             return overlap > share * double{entry.extent};
         });
     }
@@ -262,7 +275,9 @@ private:
     const ActiveContacts& active_;
     const Masses& masses_;
     const Velocities& velocities_;
-    const ConstraintBuilder<Real>& builder_;
+    const ConvexContacts<Real>& convex_;
+    const MeshContacts<Real>& meshes_;
+    const SolidContacts<Real>& solids_;
     OverloadedIslands& overloaded_;
     double resting_;       // m/s
     double step_;          // s
@@ -272,27 +287,28 @@ private:
 }  // namespace
 
 template <class Real>
-void note_strain(const StepContext& context,
-                 const Islands& islands,
-                 const Layout& layout,
-                 const ActiveContacts& active,
-                 const Masses& masses,
-                 const Velocities& velocities,
-                 const ConstraintBuilder<Real>& builder,
-                 OverloadedIslands& overloaded)
+void measure_strain(const StepContext& context,
+                    const Islands& islands,
+                    const Layout& layout,
+                    const ActiveContacts& active,
+                    const Masses& masses,
+                    const Velocities& velocities,
+                    const ConvexContacts<Real>& convex,
+                    const MeshContacts<Real>& meshes,
+                    const SolidContacts<Real>& solids,
+                    OverloadedIslands& overloaded)
 {
-    const std::size_t count = helps(context.settings) ? islands.size() : 0;
+    const std::size_t count = islands.size();
     overloaded.of_island.resize(count);
     overloaded.height.resize(layout.body_of_solver_index.size());
-    const Gauge<Real> gauge(context, islands, layout, active, masses, velocities, builder,
-                            overloaded);
+    const Gauge<Real> gauge(context, islands, layout, active, masses, velocities, convex, meshes,
+                            solids, overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i)
             overloaded.of_island[i] = float(gauge.strain_of(i));
     });
 
-    for (const std::uint32_t body : overloaded.strained) overloaded.forget(body);
-    overloaded.strained.clear();
+    overloaded.forget_all();
     for (std::size_t i = 0; i < count; ++i) {
         if (overloaded.of_island[i] == 0) continue;
         overloaded.strain.resize(layout.solver_index.size(), 0);
@@ -304,9 +320,10 @@ void note_strain(const StepContext& context,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void note_strain<Real>(const StepContext&, const Islands&, const Layout&,             \
-                                    const ActiveContacts&, const Masses&, const Velocities&,       \
-                                    const ConstraintBuilder<Real>&, OverloadedIslands&);
+    template void measure_strain<Real>(const StepContext&, const Islands&, const Layout&,          \
+                                       const ActiveContacts&, const Masses&, const Velocities&,    \
+                                       const ConvexContacts<Real>&, const MeshContacts<Real>&,     \
+                                       const SolidContacts<Real>&, OverloadedIslands&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

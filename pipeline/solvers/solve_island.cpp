@@ -1,4 +1,4 @@
-#include "pipeline/solvers/solve_direct.hpp"
+#include "pipeline/solvers/solve_island.hpp"
 
 #include "pipeline/solvers/island_solver.hpp"
 
@@ -7,9 +7,9 @@
 namespace throng {
 
 template <class Real>
-void start_direct(const Layout& layout,
-                  ContactConstraints<Real>& constraints,
-                  StepDiagnostics& diagnostics)
+void start_islands(const Layout& layout,
+                   ContactConstraints<Real>& constraints,
+                   StepDiagnostics& diagnostics)
 {
     const bool any = std::any_of(layout.batches.begin(), layout.batches.end(),
                                  [](const Batch& batch) { return batch.direct; });
@@ -20,7 +20,7 @@ void start_direct(const Layout& layout,
 }
 
 template <class Real>
-void solve_direct(const DirectScene<Real>& scene,
+void solve_island(const IslandScene<Real>& scene,
                   const Batch& batch,
                   ContactConstraints<Real>& constraints,
                   StepDiagnostics& diagnostics)
@@ -34,7 +34,7 @@ void solve_direct(const DirectScene<Real>& scene,
     diagnostics.cuts_of[place] = island.cuts();
 }
 
-void finish_direct(const StepContext& context, const Layout& layout, StepDiagnostics& diagnostics)
+void finish_islands(const StepContext& context, const Layout& layout, StepDiagnostics& diagnostics)
 {
     diagnostics.direct_residual = 0;
     diagnostics.direct_left = 0;
@@ -50,8 +50,8 @@ void finish_direct(const StepContext& context, const Layout& layout, StepDiagnos
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void start_direct<Real>(const Layout&, ContactConstraints<Real>&, StepDiagnostics&);  \
-    template void solve_direct<Real>(const DirectScene<Real>&, const Batch&,                       \
+    template void start_islands<Real>(const Layout&, ContactConstraints<Real>&, StepDiagnostics&); \
+    template void solve_island<Real>(const IslandScene<Real>&, const Batch&,                       \
                                      ContactConstraints<Real>&, StepDiagnostics&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

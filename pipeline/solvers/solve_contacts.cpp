@@ -1,0 +1,199 @@
+// Solve contacts: the five solvers, each batch by batch.
+#include "kernels/parallel/blocks.hpp"
+#include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/solvers/escalation.hpp"
+#include "pipeline/solvers/relax_iterations.hpp"
+#include "pipeline/solvers/solve_batch.hpp"
+#include "pipeline/solvers/solve_island.hpp"
+#include "pipeline/solvers/split_impulse.hpp"
+#include "pipeline/step/stages.hpp"
+
+#include <algorithm>
+
+namespace throng {
+
+namespace {
+
+bool any_compound(const Colliders& colliders)
+{
+    return std::any_of(colliders.count.begin(), colliders.count.end(),
+                       [](std::uint32_t count) { return count > 1; });
+}
+
+// Whether stiff springs pull at bodies of an island. Exact solves take turns with them, which over
+// long substeps does not come together.
+bool is_stiff(const StepContext& context,
+              const RigidFacts& facts,
+              const Layout& layout,
+              const Batch& batch)
+{
+    if (facts.forces.springs.empty()) return false;
+    const Slice& slice = layout.slices[batch.first_slice];
+    return StateDependentForces(
+               context, facts,
+               std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic))
+        .stiff();
+}
+
+// A contact problem, and how its batches are solved.
+template <class Real>
+class ContactSolve {
+public:
+    // Batches that are marked direct go to the island solver, with that effort.
+    ContactSolve(const ContactProblem<Real>& problem, const DirectEffort& effort)
+        : context_(problem.template get<const StepContext>()),
+          layout_(problem.template get<const Layout>()),
+          active_(problem.template get<const ActiveContacts>()),
+          convex_(problem.template get<ConvexContacts<Real>>()),
+          meshes_(problem.template get<MeshContacts<Real>>()),
+          solids_(problem.template get<SolidContacts<Real>>()),
+          constraints_(problem.template get<ContactConstraints<Real>>()),
+          split_impulse_(problem.template get<SplitImpulse>()),
+          diagnostics_(problem.template get<StepDiagnostics>()),
+          facts_{problem.template get<const Forces>(), problem.template get<const Masses>(),
+                 problem.template get<Poses>(), problem.template get<Velocities>()},
+          builder_(context_, layout_, active_, convex_, meshes_, solids_, constraints_),
+          effort_(effort), islands_{context_,
+                                    effort_,
+                                    layout_,
+                                    active_,
+                                    facts_,
+                                    problem.template get<const ExternalAcceleration>(),
+                                    problem.template get<const PrescribedVelocities>(),
+                                    builder_,
+                                    problem.template get<Poses>(),
+                                    problem.template get<Velocities>()}
+    {
+        start_islands(layout_, constraints_, diagnostics_);
+        start_split_impulse(layout_, split_impulse_);
+        const Colliders& colliders = problem.template get<const Colliders>();
+        if (!solids_.entries.empty() || any_compound(colliders))
+            split_wedged(active_, colliders, builder_, split_impulse_);
+    }
+
+    // Each batch by its own, or by what it is escalated to. No island is escalated while bodies of
+    // it part: what makes contacts stiffer would throw those apart that are deep in one another.
+    void by_iterations()
+    {
+        for_batches([&](const Batch& batch) {
+            const bool usual =
+                split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_);
+            if (batch.direct && !usual && !is_stiff(context_, facts_, layout_, batch))
+                solve_island(islands_, batch, constraints_, diagnostics_);
+            else if (batch.times > 1 && !usual)
+                solve_finer(batch);
+            else
+                solve_batch(context_, facts_, layout_, batch, builder_, constraints_,
+                            split_impulse_);
+        });
+    }
+
+    // Each island by the island solver, as far as it goes there.
+    void by_islands()
+    {
+        for_batches([&](const Batch& batch) {
+            if (batch.direct)
+                solve_island(islands_, batch, constraints_, diagnostics_);
+            else
+                solve_batch(context_, facts_, layout_, batch, builder_, constraints_,
+                            split_impulse_);
+        });
+    }
+
+private:
+    // Big islands use all threads themselves, so they go one after another.
+    template <class Solve>
+    void for_batches(Solve solve)
+    {
+        for (const Batch& batch : layout_.batches)
+            if (batch.wide) solve(batch);
+        for_each_block(layout_.batches.size(), 1,
+                       [&](std::size_t begin, std::size_t end, std::size_t) {
+                           for (std::size_t i = begin; i < end; ++i)
+                               if (!layout_.batches[i].wide) solve(layout_.batches[i]);
+                       });
+        finish_islands(context_, layout_, diagnostics_);
+        update_split_impulse(split_impulse_);
+    }
+
+    void solve_finer(const Batch& batch)
+    {
+        StepContext finer = context_;
+        finer.settings.substeps *= batch.times;
+        // Its overlap is that of the usual ones, which these would push apart as much faster.
+        finer.settings.push_limit /= batch.times;
+        finer.settings.relax_iterations = finer_relax_iterations(finer.settings, batch);
+        const ConstraintBuilder<Real> with(finer, layout_, active_, convex_, meshes_, solids_,
+                                           constraints_);
+        const Slice& slice = layout_.slices[batch.first_slice];
+        // Impulses are kept as of the substep that the settings say.
+        with.scale_impulses(slice, Real(1) / Real(batch.times));
+        solve_batch(finer, facts_, layout_, batch, with, constraints_, split_impulse_);
+        with.scale_impulses(slice, Real(batch.times));
+    }
+
+    const StepContext& context_;
+    const Layout& layout_;
+    const ActiveContacts& active_;
+    ConvexContacts<Real>& convex_;
+    MeshContacts<Real>& meshes_;
+    SolidContacts<Real>& solids_;
+    ContactConstraints<Real>& constraints_;
+    SplitImpulse& split_impulse_;
+    StepDiagnostics& diagnostics_;
+    const RigidFacts facts_;
+    const ConstraintBuilder<Real> builder_;
+    const DirectEffort effort_;
+    const IslandScene<Real> islands_;
+};
+
+template <class Real>
+void solve_islands(const ContactProblem<Real>& problem)
+{
+    const StepContext& context = problem.template get<const StepContext>();
+    ContactSolve<Real>(problem, asked_effort(context.settings)).by_islands();
+}
+
+}  // namespace
+
+template <class Real>
+void solve_soft_step(const ContactProblem<Real>& problem)
+{
+    ContactSolve<Real>(problem, kExactEffort).by_iterations();
+}
+
+template <class Real>
+void solve_pgs(const ContactProblem<Real>& problem)
+{
+    ContactSolve<Real>(problem, kExactEffort).by_iterations();
+}
+
+template <class Real>
+void solve_direct(const ContactProblem<Real>& problem)
+{
+    solve_islands(problem);
+}
+
+template <class Real>
+void solve_penalty(const ContactProblem<Real>& problem)
+{
+    solve_islands(problem);
+}
+
+template <class Real>
+void solve_kinematic(const ContactProblem<Real>& problem)
+{
+    solve_islands(problem);
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void solve_soft_step<Real>(const ContactProblem<Real>&);                              \
+    template void solve_pgs<Real>(const ContactProblem<Real>&);                                    \
+    template void solve_direct<Real>(const ContactProblem<Real>&);                                 \
+    template void solve_penalty<Real>(const ContactProblem<Real>&);                                \
+    template void solve_kinematic<Real>(const ContactProblem<Real>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng

@@ -1,0 +1,74 @@
+// Store solution: what solver bodies came to since the step began, onto poses and velocities.
+#include "kernels/parallel/blocks.hpp"
+#include "kernels/solver/solver_bodies.hpp"
+#include "pipeline/step/stages.hpp"
+
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kBodies = 512;  // a block
+
+// Gives one body its new state. False, and the body as it was, when that is not sound.
+template <class Real>
+bool take_back(const SolverBody<Real>& solver_body,
+               const GyroscopicInertia<Real>* inertia,
+               std::uint32_t body,
+               Poses& poses,
+               Velocities& velocities)
+{
+    const Vec3 moved(double{solver_body.delta_pose[0]}, double{solver_body.delta_pose[1]},
+                     double{solver_body.delta_pose[2]});
+    const Vec3 v(double{solver_body.motion[0]}, double{solver_body.motion[1]},
+                 double{solver_body.motion[2]});
+    const Vec3 spin(double{solver_body.motion[4]}, double{solver_body.motion[5]},
+                    double{solver_body.motion[6]});
+    const bool goes_along = inertia != nullptr && inertia->share[6] > 0;
+    const Vec3 w = goes_along ? spin_frame(solver_body, inertia) * spin : spin;
+    const Vec3 position = poses.position[body] + moved;
+    Quat orientation = turn_of(solver_body) * poses.orientation[body];
+    const double length = std::sqrt(orientation.squaredNorm());
+    orientation.coeffs() /= length;
+    return !ran_away(solver_body)
+        && give_motion({position, orientation, v, w}, body, poses, velocities);
+}
+
+}  // namespace
+
+template <class Real>
+void store_solution(const Layout& layout,
+                    const ContactConstraints<Real>& constraints,
+                    Poses& poses,
+                    Velocities& velocities,
+                    StepDiagnostics& diagnostics)
+{
+    diagnostics.quarantined.clear();
+    // In order of bodies, of which many arrays are written.
+    const std::size_t bodies = layout.solver_index.size();
+    diagnostics.of_block.start(block_count(bodies, kBodies));
+    for_each_block(bodies, kBodies, [&](std::size_t begin, std::size_t end, std::size_t block) {
+        for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body) {
+            const std::uint32_t solver_index = layout.solver_index[body];
+            if (solver_index == Layout::kNoSolverIndex) continue;
+            using Settled = typename ContactConstraints<Real>::Settled;
+            const Settled settled =
+                constraints.settled.empty() ? Settled::no : constraints.settled[solver_index];
+            if (settled == Settled::yes) continue;
+            const GyroscopicInertia<Real>* const inertia =
+                constraints.inertias.empty() ? nullptr : &constraints.inertias[solver_index];
+            if (settled == Settled::lost
+                || !take_back(constraints.bodies[solver_index], inertia, body, poses, velocities))
+                diagnostics.of_block[block].push_back(body);
+        }
+    });
+    diagnostics.of_block.append_to(diagnostics.quarantined);
+}
+
+template void store_solution<float>(
+    const Layout&, const ContactConstraints<float>&, Poses&, Velocities&, StepDiagnostics&);
+template void store_solution<double>(
+    const Layout&, const ContactConstraints<double>&, Poses&, Velocities&, StepDiagnostics&);
+
+}  // namespace throng
