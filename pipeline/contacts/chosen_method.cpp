@@ -46,7 +46,7 @@ int slabs_of(BoundsFilter dial)
 
 }  // namespace
 
-ChosenMethod::ChosenMethod(const StepContext& context,
+ChosenMethod::ChosenMethod(const NarrowPhaseParameters& parameters,
                            const Pairs& pairs,
                            const Shapes& shapes,
                            const Colliders& colliders,
@@ -54,8 +54,8 @@ ChosenMethod::ChosenMethod(const StepContext& context,
                            std::size_t blocks,
                            MethodPairs& memories)
     : shapes_(shapes), colliders_(colliders), bounds_(bounds), memories_(memories),
-      method_(method_of(context.settings.narrowphase)), start_(context.settings.method_start),
-      filter_(context.settings.bounds_filter), slabs_(slabs_of(filter_))
+      method_(method_of(parameters.method)), start_(parameters.start), filter_(parameters.filter),
+      slabs_(slabs_of(filter_))
 {
     memories_.fell_back = 0;
     memories_.fallbacks.assign(blocks, 0);

@@ -13,7 +13,7 @@ public:
     /// After the list of pairs has changed `memories` follows it; filters get the bounds of now.
     ///
     ///   blocks  of pairs, that collide() is told apart by
-    ChosenMethod(const StepContext& context,
+    ChosenMethod(const NarrowPhaseParameters& parameters,
                  const Pairs& pairs,
                  const Shapes& shapes,
                  const Colliders& colliders,

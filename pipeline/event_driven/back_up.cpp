@@ -47,7 +47,7 @@ bool EventDrivenGroup::stay_apart(double time)
 
 void EventDrivenGroup::back_up()
 {
-    const double dt = scene_.context.settings.dt, whole = scene_.context.substep();
+    const double dt = scene_.context.dt, whole = scene_.context.substep();
     double time = 0, span = whole;
     int calm = kCalm;
     while (time < dt * kWhole && may_go_on()) {

@@ -58,7 +58,7 @@ Pose EventDrivenGroup::end_of(std::uint32_t body, double time) const
 double EventDrivenGroup::tolerance_of(PairKey key) const
 {
     const auto& shape = scene_.colliders.shape;
-    return scene_.context.settings.toi_tolerance
+    return scene_.impacts.tolerance
         * impact_size(scene_.shapes, shape[first_of(key)], shape[second_of(key)]);
 }
 
@@ -76,7 +76,7 @@ bool EventDrivenGroup::fly(double begin, double span)
         return note_ends(flight.law());
     }
     law_.take(bodies_, scene_.flights);
-    law_.advance(integrator_of(scene_.context.settings, acted_on), begin, span, scratch_);
+    law_.advance(integrator_of(scene_.context, acted_on), begin, span, scratch_);
     law_.settle();
     return note_ends(law_);
 }
@@ -127,7 +127,7 @@ void EventDrivenGroup::find_pairs(double begin, double span)
             const std::uint32_t at = colliders.begin[body] + k;
             Box3 box = joined(box_of(at, scene_.poses.at(body)), box_of(at, ends_[i].pose));
             const double slack = angle * (colliders.outer_radius[at] + beyond_mesh(at))
-                + 2 * scene_.context.settings.toi_tolerance * colliders.inner_extent[at];
+                + 2 * scene_.impacts.tolerance * colliders.inner_extent[at];
             box.lower.array() -= slack;
             box.upper.array() += slack;
             scene_.ways[body] = joined(scene_.ways[body], box);
@@ -177,9 +177,8 @@ FirstImpact EventDrivenGroup::look_ahead(std::span<const PairKey> asked, double 
         const std::uint32_t a = add(first_of(key)), b = add(second_of(key));
         pairs.push_back({a, b});
     }
-    const Settings& settings = scene_.context.settings;
-    const FirstImpact first = first_impact(scene_.shapes, shapes, pairs, 0, 1, settings.toi_method,
-                                           settings.toi_tolerance);
+    const FirstImpact first = first_impact(scene_.shapes, shapes, pairs, 0, 1,
+                                           scene_.impacts.method, scene_.impacts.tolerance);
     spend(pairs.size() + static_cast<std::size_t>(first.impact.evaluations) / kEvaluations);
     return first;
 }

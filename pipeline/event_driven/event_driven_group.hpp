@@ -25,6 +25,8 @@ namespace throng {
 ///   ways       [bodies] a box round all of a body's way through the step
 struct GroupScene {
     const StepContext& context;
+    const SolverParameters& parameters;
+    const ImpactParameters& impacts;
     const Shapes& shapes;
     const Surfaces& surfaces;
     const PairFilter& filter;

@@ -226,7 +226,7 @@ bool EventDrivenGroup::resolve_impacts()
         impacts_.points.push_back(
             {contact.point, i, contact.key, restitution_of(contact), contact.least_speed, 0});
     }
-    const bool in_order = scene_.context.settings.impact_law == ImpactLaw::sequential;
+    const bool in_order = scene_.parameters.impact_law == ImpactLaw::sequential;
     const auto stop = [&](auto& stopped, auto& points) { solve(stopped, points); };
     int passes = 0;
     while (passes < Impacts::kMostPasses && may_go_on() && impacts_.pass(in_order, bodies, stop))
@@ -276,7 +276,7 @@ void EventDrivenGroup::carry(const GroupContact& contact,
     const DirectBody a = body(point.a), b = body(point.b);
     const auto carried_by = [&](const DirectBody& carrier, const DirectBody& carried) {
         return carries(carrier.spin, inverse_mass_of(carrier), inverse_mass_of(carried),
-                       scene_.context.settings.dt);
+                       scene_.context.dt);
     };
     const bool by_a = carried_by(a, b);
     if (!by_a && !carried_by(b, a)) return;
@@ -337,7 +337,7 @@ void EventDrivenGroup::part(double span, const Motions& solved)
         any = true;
         points.back().least =
             std::min((contact.rest_separation - contact.separation) * kPartShare / span,
-                     scene_.context.settings.push_limit);
+                     scene_.parameters.push_limit);
     }
     Motions ways = solved;
     if (any) solve(ways, points);

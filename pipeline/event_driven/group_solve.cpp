@@ -25,7 +25,7 @@ constexpr double kFaster = 100;
 void EventDrivenGroup::solve(Motions& bodies, std::vector<DirectPoint>& points)
 {
     const Motions before = bodies;
-    DirectEffort effort = asked_effort(scene_.context.settings);
+    DirectEffort effort = asked_effort(scene_.parameters);
     effort.pivots = points.size() <= kPivotPoints;
     const DirectAnswer answer = solver_.solve(bodies, points, effort);
     spend(points.size() * (1 + kPointWork * static_cast<std::size_t>(answer.steps)));

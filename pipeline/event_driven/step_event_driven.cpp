@@ -79,7 +79,7 @@ private:
 
     void add_contacts(const GroupOutcome& outcome, EventDrivenContacts& contacts) const
     {
-        const double dt = scene_.context.settings.dt;
+        const double dt = scene_.context.dt;
         for (const auto& [body, impulse] : outcome.pushes) contacts.force[body] += impulse / dt;
         contacts.pairs += outcome.pairs;
         contacts.touching += outcome.touching;
@@ -177,6 +177,8 @@ void advance_all(const EventDrivenStep& step, AdvanceGroup way)
     contacts = {};
     contacts.force.assign(states.kind.size(), Vec3::Zero());
     GroupScene scene{step.get<const StepContext>(),
+                     step.get<const SolverParameters>(),
+                     step.get<const ImpactParameters>(),
                      step.get<const Shapes>(),
                      step.get<const Surfaces>(),
                      step.get<const PairFilter>(),

@@ -214,15 +214,14 @@ bool EventDrivenGroup::go_to_touch(const std::map<PairKey, double>& touched, dou
 
 void EventDrivenGroup::subdivide()
 {
-    const Settings& settings = scene_.context.settings;
     const double substep = scene_.context.substep();
     const std::uint64_t whole = std::uint64_t{1}
-        << (settings.halvings > 0 ? settings.halvings : kHalvings);
+        << (scene_.parameters.halvings > 0 ? scene_.parameters.halvings : kHalvings);
     outcome_.held = !fly(0, substep);
     find_pairs(0, substep);
     list_contacts(0);
     settle_impacts();
-    for (int k = 0; k < settings.substeps && !outcome_.held; ++k) {
+    for (int k = 0; k < scene_.context.substeps && !outcome_.held; ++k) {
         too_deep_.clear();
         // After a piece comes the greatest that begins where it ends, as two halves follow one
         // another: of as many shortest pieces as the last bit that is set.

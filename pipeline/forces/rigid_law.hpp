@@ -8,11 +8,11 @@ namespace throng {
 
 /// By which integrator a body goes; see chosen(). An explicit gyroscopic torque is the first
 /// order's.
-inline const IntegratorRow& integrator_of(const Settings& settings, bool acted_on)
+inline const IntegratorRow& integrator_of(const StepContext& context, bool acted_on)
 {
-    const bool kicked = settings.integrator == Integrator::auto_ && !acted_on
-        && settings.gyroscopic == Gyroscopic::explicit_;
-    return chosen(kicked ? Integrator::semi_implicit : settings.integrator, acted_on);
+    const bool kicked = context.integrator == Integrator::auto_ && !acted_on
+        && context.gyroscopic == Gyroscopic::explicit_;
+    return chosen(kicked ? Integrator::semi_implicit : context.integrator, acted_on);
 }
 
 inline RigidRule rigid_rule(const StepContext& context)
@@ -23,14 +23,14 @@ inline RigidRule rigid_rule(const StepContext& context)
     rule.time = context.time;
     rule.substep = context.substep();
     rule.turns = context.has(Effect::rotation);
-    rule.rotation = context.settings.rotation;
-    rule.gyroscopic = !context.has(Effect::gyroscopic)        ? Law::off
-        : context.settings.gyroscopic == Gyroscopic::implicit ? Law::implicit
-                                                              : Law::direct;
+    rule.rotation = context.rotation;
+    rule.gyroscopic = !context.has(Effect::gyroscopic) ? Law::off
+        : context.gyroscopic == Gyroscopic::implicit   ? Law::implicit
+                                                       : Law::direct;
     // Methods of first order keep the damped gyroscopic torque, which never gains energy.
     constexpr bool kActedOn = true;  // by its pivot
-    rule.momentum_on_pivots = context.settings.gyroscopic != Gyroscopic::off
-        && chosen(context.settings.integrator, kActedOn).order > 1;
+    rule.momentum_on_pivots =
+        context.gyroscopic != Gyroscopic::off && chosen(context.integrator, kActedOn).order > 1;
     return rule;
 }
 

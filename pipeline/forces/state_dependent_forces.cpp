@@ -75,7 +75,7 @@ bool too_stiff(const StepContext& context,
                std::span<const std::uint32_t> group)
 {
     // Among penalty forces springs are taken as they are, in parts of a substep that bear them.
-    return context.settings.response != Response::penalty && too_long(context, facts, group);
+    return context.response != Response::penalty && too_long(context, facts, group);
 }
 
 // Whatever response contacts have: in flight nothing cuts a substep.
@@ -83,7 +83,7 @@ bool by_stiff_springs(const StepContext& context,
                       const RigidFacts& facts,
                       std::span<const std::uint32_t> group)
 {
-    return bears_stiff_springs(context.settings.integrator) && too_long(context, facts, group);
+    return bears_stiff_springs(context.integrator) && too_long(context, facts, group);
 }
 
 StateDependentForces::StateDependentForces(const StepContext& context,
@@ -93,8 +93,8 @@ StateDependentForces::StateDependentForces(const StepContext& context,
       stiff_law_(rule_, facts), longest_(std::numeric_limits<double>::infinity())
 {
     list(bodies);
-    const bool halves = chosen(context.settings.integrator, true).which != Integrator::semi_implicit
-        && context.settings.response != Response::penalty;
+    const bool halves = chosen(context.integrator, true).which != Integrator::semi_implicit
+        && context.response != Response::penalty;
     std::vector<std::uint32_t> soft, stiff;
     for (ForcedBody& forced : forced_bodies_) {
         auto& law = forced.stiff ? stiff : soft;
@@ -178,14 +178,14 @@ double StateDependentForces::least_change_of_step() const
 {
     double least = std::numeric_limits<double>::infinity();
     for (const ForcedBody& forced : forced_bodies_) least = std::min(least, forced.change.norm());
-    return least * context_.settings.substeps;
+    return least * context_.substeps;
 }
 
 // Whether contacts hold a body against its springs, too.
 bool StateDependentForces::is_held(const ForcedBody& forced) const
 {
     const double pull = Vec3(forced.change - fall_of(forced)).norm();
-    const double speed = kStill * pull * context_.settings.dt / span_;
+    const double speed = kStill * pull * context_.dt / span_;
     return forced.grips && forced.left <= kHeld * pull
         && kinetic_energy_of(forced.body, facts_.masses, facts_.poses, facts_.velocities)
         <= facts_.masses.mass[forced.body] * speed * speed / 2;

@@ -12,19 +12,18 @@ Vec3 half_fall(const StepContext& context) { return 0.5 * context.substep() * co
 // of what depends on its state, and of gravity with it, after it moved.
 bool differs(const StepContext& context, const Forces& forces, std::uint32_t body)
 {
-    const Settings& settings = context.settings;
     const bool acted_on = forces.act_on(body);
-    if (falls_by_kicks(settings.integrator)
-        && !(acted_on && settings.integrator == Integrator::auto_))
+    if (falls_by_kicks(context.integrator)
+        && !(acted_on && context.integrator == Integrator::auto_))
         return false;
-    return settings.response == Response::penalty || !forces.depends_on_state(body);
+    return context.response == Response::penalty || !forces.depends_on_state(body);
 }
 
 // Whether anybody can be such a one: most scenes have none, and nobody is looked at.
 bool anybody_differs(const StepContext& context)
 {
     return context.has(Effect::gravity)
-        && (!falls_by_kicks(context.settings.integrator) || context.effects.meets(kForces));
+        && (!falls_by_kicks(context.integrator) || context.effects.meets(kForces));
 }
 
 }  // namespace

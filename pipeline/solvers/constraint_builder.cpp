@@ -27,14 +27,14 @@ constexpr double kDigits = 4;
 constexpr double kLeastPress = 1e-5;
 
 template <class Real>
-std::array<Softness<Real>, 4> softness_of(const StepContext& context)
+std::array<Softness<Real>, 4> softness_of(const StepContext& context,
+                                          const SolverParameters& parameters)
 {
-    const Settings& settings = context.settings;
     const double h = context.substep();
     std::array<Softness<Real>, 4> terms;
     for (std::size_t points = 0; points < terms.size(); ++points) {
-        const double rate = contact_rate(context, static_cast<int>(points) + 1);
-        terms[points] = settings.solver == Solver::pgs
+        const double rate = contact_rate(context, parameters, static_cast<int>(points) + 1);
+        terms[points] = parameters.solver == Solver::pgs
             ? Softness<Real>{static_cast<Real>(kBaumgarte / h), Real(0)}
             : softness<Real>(rate, kDampingRatio, h);
     }
@@ -43,25 +43,24 @@ std::array<Softness<Real>, 4> softness_of(const StepContext& context)
 
 }  // namespace
 
-double contact_rate(const StepContext& context, int points)
+double contact_rate(const StepContext& context, const SolverParameters& parameters, int points)
 {
-    const Settings& settings = context.settings;
-    if (settings.contact_hertz > 0) return settings.contact_hertz;
+    if (parameters.contact_hertz > 0) return parameters.contact_hertz;
     const double share =
-        settings.contact_rate > 0 ? settings.contact_rate : kRate[std::size_t(points) - 1];
+        parameters.contact_rate > 0 ? parameters.contact_rate : kRate[std::size_t(points) - 1];
     return share / context.substep();
 }
 
-double contact_frequency(const StepContext& context, int points)
+double contact_frequency(const StepContext& context, const SolverParameters& parameters, int points)
 {
     constexpr double kTurn = 2 * 3.14159265358979323846;
-    return kTurn * contact_rate(context, points);
+    return kTurn * contact_rate(context, parameters, points);
 }
 
-double push_rate(const StepContext& context, int points)
+double push_rate(const StepContext& context, const SolverParameters& parameters, int points)
 {
     const double h = context.substep();
-    return softness<double>(contact_rate(context, points), kDampingRatio, h).bias_rate;
+    return softness<double>(contact_rate(context, parameters, points), kDampingRatio, h).bias_rate;
 }
 
 double rigid_overlap(double extent, int points)
@@ -71,6 +70,7 @@ double rigid_overlap(double extent, int points)
 
 template <class Real>
 ConstraintBuilder<Real>::ConstraintBuilder(const StepContext& context,
+                                           const SolverParameters& parameters,
                                            const Layout& layout,
                                            const ActiveContacts& active,
                                            ConvexContacts<Real>& convex,
@@ -80,13 +80,14 @@ ConstraintBuilder<Real>::ConstraintBuilder(const StepContext& context,
     : layout_(layout), active_(active), convex_(convex), meshes_(meshes), solids_(solids),
       constraints_(constraints), view_(ContactConstraintsView<Real>::of(constraints)),
       kernels_(solve_kernels<Real>()),
-      turns_(context.has(Effect::rotation) || context.friction_at_points_or_pyramid()),
-      uncut_(context.friction_at_points_or_pyramid()
-             && context.settings.friction_cone == FrictionCone::pyramid),
-      dt_(context.settings.dt), softness_(softness_of<Real>(context))
+      turns_(context.has(Effect::rotation)
+             || parameters.friction_at_points_or_pyramid(context.effects)),
+      uncut_(parameters.friction_at_points_or_pyramid(context.effects)
+             && parameters.friction_cone == FrictionCone::pyramid),
+      dt_(context.dt), softness_(softness_of<Real>(context, parameters))
 {
     for (std::size_t points = 0; points < pressed_.size(); ++points) {
-        const double omega = contact_frequency(context, static_cast<int>(points) + 1);
+        const double omega = contact_frequency(context, parameters, static_cast<int>(points) + 1);
         pressed_[points] = context.gravity.norm() / (omega * omega);
     }
     settles_ = pressed_[0] < kLeastPress;

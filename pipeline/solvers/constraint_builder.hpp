@@ -10,11 +10,12 @@
 namespace throng {
 
 /// Hz, of the spring that a contact of so many points is.
-double contact_rate(const StepContext& context, int points);
+double contact_rate(const StepContext& context, const SolverParameters& parameters, int points);
 /// The same as an angular frequency, rad/s.
-double contact_frequency(const StepContext& context, int points);
+double
+contact_frequency(const StepContext& context, const SolverParameters& parameters, int points);
 /// 1/s, the share of its overlap that it pushes apart.
-double push_rate(const StepContext& context, int points);
+double push_rate(const StepContext& context, const SolverParameters& parameters, int points);
 /// m, overlap under a load that so many points share, from which they begin to turn rigid.
 ///
 ///   extent  m, the lesser of the smallest half extents of the two shapes
@@ -40,6 +41,7 @@ class ConstraintBuilder {
 public:
     /// Of constraints that have their places (see prepare_constraints).
     ConstraintBuilder(const StepContext& context,
+                      const SolverParameters& parameters,
                       const Layout& layout,
                       const ActiveContacts& active,
                       ConvexContacts<Real>& convex,

@@ -33,7 +33,7 @@ void escalate_islands(const StepContext& context,
 {
     overloaded.efforts.assign(islands.size(), {});
     overloaded.escalated = overloaded.missed = 0;
-    const auto substeps = static_cast<std::size_t>(context.settings.substeps);
+    const auto substeps = static_cast<std::size_t>(context.substeps);
     std::size_t left = kBudget;
     for (std::size_t island = 0; island < islands.size(); ++island) {
         double strain = 0;

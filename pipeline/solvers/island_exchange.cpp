@@ -63,12 +63,13 @@ template <class Real>
 IslandSolver::IslandSolver(const IslandScene<Real>& scene, const Batch& batch)
 {
     const Slice& slice = scene.layout.slices[batch.first_slice];
+    parameters_ = scene.parameters;
     effort_ = scene.effort;
-    left_ = effort_.steps * (2 + scene.context.settings.substeps);
+    left_ = effort_.steps * (2 + scene.context.substeps);
     up_ = up_of(scene.context.gravity);
     // Slower than what gravity gives in two steps is resting, not bouncing.
-    restitution_threshold_ = 2 * scene.context.gravity.norm() * scene.context.settings.dt;
-    spins_ = scene.context.settings.response != Response::kinematic;
+    restitution_threshold_ = 2 * scene.context.gravity.norm() * scene.context.dt;
+    spins_ = scene.context.response != Response::kinematic;
     take_bodies(scene, slice);
     take_forces(scene, slice);
     for (std::uint32_t i = 0; i < slice.contacts; ++i)

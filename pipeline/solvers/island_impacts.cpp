@@ -124,7 +124,7 @@ void IslandSolver::apply_restitution(const StepContext& context, double time)
     double greatest = 0;
     for (const ImpactPoint& point : impacts_.points)
         greatest = std::max(greatest, std::abs(approach(point.at, struck_)));
-    reflect(context.settings.impact_law == ImpactLaw::sequential, Impacts::kMostPasses,
+    reflect(parameters_.impact_law == ImpactLaw::sequential, Impacts::kMostPasses,
             std::max(restitution_threshold_, Impacts::kRounding * greatest));
     settle_after_impacts();
     points_ = others_;

@@ -129,8 +129,8 @@ void IslandSolver::move_freely(const StepContext& context, double time)
             body.velocity += context.gravity * time;
         body.velocity += island_body.acceleration * time;
         body.spin += island_body.angular_acceleration * time;
-        if (!island_body.precesses || context.settings.gyroscopic == Gyroscopic::off) continue;
-        const auto torque = context.settings.gyroscopic == Gyroscopic::implicit
+        if (!island_body.precesses || context.gyroscopic == Gyroscopic::off) continue;
+        const auto torque = context.gyroscopic == Gyroscopic::implicit
             ? after_gyroscopic_torque
             : after_explicit_gyroscopic_torque;
         body.spin =
@@ -234,9 +234,9 @@ double IslandSolver::approach(std::size_t at, std::span<const DirectBody> bodies
 }
 
 // Who overlaps is moved apart in this substep, on top of what else it does.
-void IslandSolver::push_out_of_overlap(const StepContext& context, double time)
+void IslandSolver::push_out_of_overlap(const StepContext&, double time)
 {
-    const double most = context.settings.push_limit;
+    const double most = parameters_.push_limit;
     going_ = after_;
     bool any = false;
     others_ = points_;
@@ -283,7 +283,7 @@ void IslandSolver::advance_bodies(const StepContext&, double time)
 void IslandSolver::place_contacts(const StepContext& context, double time)
 {
     place_points();
-    if (context.settings.response == Response::impulse) carry_arms(time / 2, context.settings.dt);
+    if (context.response == Response::impulse) carry_arms(time / 2, context.dt);
 }
 
 // What a substep goes through, in order. Who bounces does so as it begins, and goes on as he
@@ -330,7 +330,7 @@ std::span<const IslandSolver::IslandPass> IslandSolver::passes_of(Response respo
 
 void IslandSolver::substep(const StepContext& context)
 {
-    const std::span<const IslandPass> passes = passes_of(context.settings.response);
+    const std::span<const IslandPass> passes = passes_of(context.response);
     const auto run = [&](bool parts, double time) {
         for (const IslandPass& pass : passes)
             if ((pass.when == When::each_part) == parts

@@ -120,10 +120,10 @@ private:
     void cut_substep(const StepContext& context, double time);
     bool presses(std::size_t at, const StepContext& context, double ahead) const;
     void count_touching(const StepContext& context, double ahead);
-    Give give_of(std::size_t at, const Settings& settings, double time) const;
+    Give give_of(std::size_t at, const SolverParameters& parameters, double time) const;
     void find_unearned(const StepContext& context);
     void throw_back(const StepContext& context, double time);
-    void bounce_off(const Settings& settings, double time);
+    void bounce_off(const SolverParameters& parameters, double time);
     void apply_penalty_forces(const StepContext& context, double time);
     void find_held(double time);
     void resist_sliding(std::size_t at, double normal_force, double time, std::uint32_t share);
@@ -160,6 +160,7 @@ private:
     bool spins_ = true;                                      // contacts see how bodies spin
     double elapsed_ = 0;                                     // s, since the step began
     DirectSolver solver_;
+    SolverParameters parameters_;
     DirectEffort effort_;
     int left_ = 0;                  // steps, of all solves
     int cuts_ = 1, most_cuts_ = 1;  // parts of this substep, of any

@@ -13,10 +13,10 @@ namespace throng {
 
 namespace {
 
-int iterations_of(const Settings& settings)
+int iterations_of(const SolverParameters& parameters)
 {
     constexpr int kIterations = 8;
-    return settings.iterations > 0 ? settings.iterations : kIterations;
+    return parameters.iterations > 0 ? parameters.iterations : kIterations;
 }
 
 }  // namespace
@@ -78,28 +78,28 @@ void IslandSolver::push_out_of(std::size_t at, double most)
     if (b > 0) bodies_[static_cast<std::size_t>(point.b)].moved += b * way * point.normal;
 }
 
-void IslandSolver::stop_approaches(const StepContext& context, double)
+void IslandSolver::stop_approaches(const StepContext&, double)
 {
     for (DirectPoint& point : points_) point.impulse = point.torque = Vec3::Zero();
-    for (int iteration = 0; iteration < iterations_of(context.settings); ++iteration)
+    for (int iteration = 0; iteration < iterations_of(parameters_); ++iteration)
         for (std::size_t i = 0; i < contacts_.size(); ++i) stop_approach(i);
     going_ = after_;
 }
 
 // That forces make which act after bodies moved.
-void IslandSolver::stop_late_approaches(const StepContext& context, double)
+void IslandSolver::stop_late_approaches(const StepContext&, double)
 {
     if (!end_state_forces()) return;
     place_points();
-    for (int iteration = 0; iteration < iterations_of(context.settings); ++iteration)
+    for (int iteration = 0; iteration < iterations_of(parameters_); ++iteration)
         for (std::size_t i = 0; i < contacts_.size(); ++i) stop_approach(i);
 }
 
-void IslandSolver::push_out(const StepContext& context, double time)
+void IslandSolver::push_out(const StepContext&, double time)
 {
     place_points();
-    const double most = context.settings.push_limit * time;
-    for (int iteration = 0; iteration < iterations_of(context.settings); ++iteration)
+    const double most = parameters_.push_limit * time;
+    for (int iteration = 0; iteration < iterations_of(parameters_); ++iteration)
         for (std::size_t i = 0; i < contacts_.size(); ++i) push_out_of(i, most);
 }
 

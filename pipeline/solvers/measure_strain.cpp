@@ -65,6 +65,7 @@ template <class Real>
 class Gauge {
 public:
     Gauge(const StepContext& context,
+          const SolverParameters& parameters,
           const Islands& islands,
           const Layout& layout,
           const ActiveContacts& active,
@@ -76,11 +77,10 @@ public:
           OverloadedIslands& overloaded)
         : islands_(islands), layout_(layout), active_(active), masses_(masses),
           velocities_(velocities), convex_(convex), meshes_(meshes), solids_(solids),
-          overloaded_(overloaded), resting_(kResting * context.gravity.norm()),
-          step_(context.settings.dt)
+          overloaded_(overloaded), resting_(kResting * context.gravity.norm()), step_(context.dt)
     {
         for (int points = 1; points <= 4; ++points) {
-            const double omega = contact_frequency(context, points);
+            const double omega = contact_frequency(context, parameters, points);
             per_speed_[points - 1] =
                 1 / (omega * omega * context.substep() * rigid_overlap(1, points));
         }
@@ -288,6 +288,7 @@ private:
 
 template <class Real>
 void measure_strain(const StepContext& context,
+                    const SolverParameters& parameters,
                     const Islands& islands,
                     const Layout& layout,
                     const ActiveContacts& active,
@@ -301,8 +302,8 @@ void measure_strain(const StepContext& context,
     const std::size_t count = islands.size();
     overloaded.of_island.resize(count);
     overloaded.height.resize(layout.body_of_solver_index.size());
-    const Gauge<Real> gauge(context, islands, layout, active, masses, velocities, convex, meshes,
-                            solids, overloaded);
+    const Gauge<Real> gauge(context, parameters, islands, layout, active, masses, velocities,
+                            convex, meshes, solids, overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i)
             overloaded.of_island[i] = float(gauge.strain_of(i));
@@ -320,10 +321,10 @@ void measure_strain(const StepContext& context,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void measure_strain<Real>(const StepContext&, const Islands&, const Layout&,          \
-                                       const ActiveContacts&, const Masses&, const Velocities&,    \
-                                       const ConvexContacts<Real>&, const MeshContacts<Real>&,     \
-                                       const SolidContacts<Real>&, OverloadedIslands&);
+    template void measure_strain<Real>(                                                            \
+        const StepContext&, const SolverParameters&, const Islands&, const Layout&,                \
+        const ActiveContacts&, const Masses&, const Velocities&, const ConvexContacts<Real>&,      \
+        const MeshContacts<Real>&, const SolidContacts<Real>&, OverloadedIslands&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

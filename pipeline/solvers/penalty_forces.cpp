@@ -66,7 +66,7 @@ void IslandSolver::count_touching(const StepContext& context, double ahead)
 
 // Points that share a body add up: each takes its part of what the step bears.
 IslandSolver::Give
-IslandSolver::give_of(std::size_t at, const Settings& settings, double time) const
+IslandSolver::give_of(std::size_t at, const SolverParameters& parameters, double time) const
 {
     const IslandContact& contact = contacts_[at];
     std::uint32_t share = 1;
@@ -76,13 +76,13 @@ IslandSolver::give_of(std::size_t at, const Settings& settings, double time) con
     const double inverse_mass = inverse_mass_along(points_[at], contact.normal, after_) * share;
     if (!(inverse_mass > 0)) return {};
     Give give;
-    give.stiffness = settings.penalty_stiffness > 0
-        ? settings.penalty_stiffness
+    give.stiffness = parameters.penalty_stiffness > 0
+        ? parameters.penalty_stiffness
         : kSwing * kSwing / (time * time * inverse_mass);
     const double frequency = std::sqrt(give.stiffness * inverse_mass);
     const double damped = kDamped * (1 - contact.restitution);
-    give.damping = settings.penalty_damping >= 0 ? settings.penalty_damping
-                                                 : 2 * damped * frequency / inverse_mass;
+    give.damping = parameters.penalty_damping >= 0 ? parameters.penalty_damping
+                                                   : 2 * damped * frequency / inverse_mass;
     const double ratio = 0.5 * give.damping * inverse_mass / frequency;
     give.longest = 2 * (std::sqrt(1 + ratio * ratio) - ratio) / frequency;
     give.share = share;
@@ -102,7 +102,7 @@ void IslandSolver::find_unearned(const StepContext& context)
     unearned_.assign(contacts_.size(), 0);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         if (!(separations_[i] < -kShallow * contacts_[i].extent)) continue;
-        const double stiffness = give_of(i, context.settings, time).stiffness;
+        const double stiffness = give_of(i, parameters_, time).stiffness;
         if (!(stiffness > 0)) continue;
         const Vec3& normal = points_[i].normal;
         const double borne = normal.dot(points_[i].impulse) / (time * stiffness);
@@ -165,9 +165,9 @@ void IslandSolver::damp_turning(DirectPoint& point, double normal_force, std::ui
 // What comes in faster than what rests may, and touches within that time, goes by the law of
 // impacts: a spring of auto, which a few parts of a substep turn round, gives back by its damper
 // and the step more or less than restitution has it. A spring that is asked for is what it is.
-void IslandSolver::bounce_off(const Settings& settings, double time)
+void IslandSolver::bounce_off(const SolverParameters& parameters, double time)
 {
-    if (settings.penalty_stiffness > 0 || settings.penalty_damping >= 0) return;
+    if (parameters.penalty_stiffness > 0 || parameters.penalty_damping >= 0) return;
     double greatest = 0;
     for (std::size_t i = 0; i < contacts_.size(); ++i)
         greatest = std::max(greatest, -approach(i, after_));
@@ -195,9 +195,9 @@ void IslandSolver::bounce_off(const Settings& settings, double time)
 void IslandSolver::throw_back(const StepContext& context, double time)
 {
     place_points();
-    bounce_off(context.settings, time);
+    bounce_off(parameters_, time);
     // The velocities before are those that took the bodies here: of the middle of the last part.
-    carry_arms(-time / 2, context.settings.dt);
+    carry_arms(-time / 2, context.dt);
 }
 
 // All forces are of the velocities before, so that no order of touches has a say.
@@ -206,18 +206,18 @@ void IslandSolver::apply_penalty_forces(const StepContext& context, double time)
     count_touching(context, 0);
     // What is too stiff for the cut, with those who came to press in the middle of a substep, gives
     // way as far as that bears.
-    Settings softened = context.settings;
+    SolverParameters softened = parameters_;
     softened.penalty_stiffness = softened.penalty_damping = -1;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const double pressed = -separations_[i] - unearned_[i];
-        const double let_go = unearned_[i] / (kStepsToPart * context.settings.dt);
-        unearned_[i] -= std::min(let_go, context.settings.push_limit) * time;
+        const double let_go = unearned_[i] / (kStepsToPart * context.dt);
+        unearned_[i] -= std::min(let_go, parameters_.push_limit) * time;
         if (!(pressed > 0)) {
             held_[i].setZero();
             continue;
         }
         DirectPoint& point = points_[i];
-        Give give = give_of(i, context.settings, time);
+        Give give = give_of(i, parameters_, time);
         if (give.longest < time) give = give_of(i, softened, time);
         const double force =
             std::max(0.0, give.stiffness * pressed - give.damping * approach(i, before_));
@@ -242,7 +242,7 @@ void IslandSolver::cut_substep(const StepContext& context, double time)
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         points_[i].impulse = points_[i].torque = Vec3::Zero();
         if (!presses(i, context, time)) continue;
-        const double bears = give_of(i, context.settings, time).longest;
+        const double bears = give_of(i, parameters_, time).longest;
         if (bears > 0 && bears < time) longest = std::min(longest, kWithin * bears);
     }
     cuts_ = static_cast<int>(

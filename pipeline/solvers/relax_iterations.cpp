@@ -22,26 +22,26 @@ constexpr int kManySubsteps = 16;
 
 bool lies_on_faces(const Batch& batch) { return 2 * batch.on_faces > batch.contacts; }
 
-int relax_iterations(const Settings& settings, const Batch& batch)
+int relax_iterations(const SolverParameters& parameters, int substeps, const Batch& batch)
 {
-    if (settings.relax_iterations > 0) return settings.relax_iterations;
-    return lies_on_faces(batch) || settings.substeps > kManySubsteps ? kInStructures : kInHeaps;
+    if (parameters.relax_iterations > 0) return parameters.relax_iterations;
+    return lies_on_faces(batch) || substeps > kManySubsteps ? kInStructures : kInHeaps;
 }
 
-int finer_relax_iterations(const Settings& settings, const Batch& batch)
+int finer_relax_iterations(const SolverParameters& parameters, int substeps, const Batch& batch)
 {
-    const int usual = relax_iterations(settings, batch);
-    if (settings.relax_iterations > 0) return usual;
+    const int usual = relax_iterations(parameters, substeps, batch);
+    if (parameters.relax_iterations > 0) return usual;
     return std::max(usual,
                     static_cast<int>(std::min(kMostRelaxIterations,
                                               batch.contacts / kContactsPerRelaxIteration)));
 }
 
-double mean_relax_iterations(const Settings& settings, const Layout& layout)
+double mean_relax_iterations(const SolverParameters& parameters, int substeps, const Layout& layout)
 {
     double iterations = 0, contacts = 0;
     for (const Batch& batch : layout.batches) {
-        iterations += double(batch.contacts) * relax_iterations(settings, batch);
+        iterations += double(batch.contacts) * relax_iterations(parameters, substeps, batch);
         contacts += batch.contacts;
     }
     return contacts > 0 ? iterations / contacts : 0;

@@ -15,11 +15,12 @@ inline constexpr int kInStructures = 2;
 /// Relaxing iterations that a batch gets in a substep: one quietens a heap, and where most bodies
 /// lie on one another by their faces, as in towers and walls, a second one leaves a hundredth of
 /// the energy. Where there are many substeps it keeps pushes from braking what rubs.
-int relax_iterations(const Settings& settings, const Batch& batch);
+int relax_iterations(const SolverParameters& parameters, int substeps, const Batch& batch);
 /// Those of an island with finer substeps, whose settings these are: what it gains by a push has a
 /// long way to go where many stand on one another.
-int finer_relax_iterations(const Settings& settings, const Batch& batch);
+int finer_relax_iterations(const SolverParameters& parameters, int substeps, const Batch& batch);
 /// The mean of that over all contacts; 0 where there are none.
-double mean_relax_iterations(const Settings& settings, const Layout& layout);
+double
+mean_relax_iterations(const SolverParameters& parameters, int substeps, const Layout& layout);
 
 }  // namespace throng

@@ -24,6 +24,7 @@ constexpr int kImpactRounds = 16;
 
 template <class Real>
 SlicePasses<Real>::SlicePasses(const StepContext& context,
+                               const SolverParameters& parameters,
                                const Layout& layout,
                                const Batch& batch,
                                const ConstraintBuilder<Real>& builder,
@@ -32,21 +33,20 @@ SlicePasses<Real>::SlicePasses(const StepContext& context,
       constraints_(constraints), view_(ContactConstraintsView<Real>::of(constraints)),
       kernels_(solve_kernels<Real>()), time_(static_cast<Real>(context.substep()))
 {
-    const bool otherwise = context.friction_at_points_or_pyramid();
+    const bool otherwise = parameters.friction_at_points_or_pyramid(context.effects);
     warm_start_kernel_ = otherwise ? kernels_.warm_start_point_friction : kernels_.warm_start;
     solve_kernel_ = otherwise ? kernels_.solve_point_friction : kernels_.solve;
     restitution_kernel_ =
         otherwise ? kernels_.apply_restitution_point_friction : kernels_.apply_restitution;
     iteration_.inverse_substep = static_cast<Real>(1 / context.substep());
-    iteration_.push_limit = static_cast<Real>(context.settings.push_limit);
+    iteration_.push_limit = static_cast<Real>(parameters.push_limit);
     iteration_.turns = context.has(Effect::rotation) || otherwise;
     iteration_.has_rolling_friction = context.has(Effect::rolling_friction);
     iteration_.has_friction = context.has(Effect::friction) || iteration_.has_rolling_friction;
-    iteration_.friction_at_points = context.settings.friction_at == FrictionAt::points;
-    iteration_.friction_pyramid = context.settings.friction_cone == FrictionCone::pyramid;
+    iteration_.friction_at_points = parameters.friction_at == FrictionAt::points;
+    iteration_.friction_pyramid = parameters.friction_cone == FrictionCone::pyramid;
     // Slower than what gravity gives in two steps is resting, not bouncing.
-    iteration_.restitution_threshold =
-        static_cast<Real>(2 * context.gravity.norm() * context.settings.dt);
+    iteration_.restitution_threshold = static_cast<Real>(2 * context.gravity.norm() * context.dt);
     for (int k = 0; k < 3; ++k)
         iteration_.gravity_step[k] = static_cast<Real>(context.gravity[k] * context.substep());
 }
@@ -206,7 +206,7 @@ void SlicePasses<Real>::begin_substep(const Slice& slice, bool shared, bool firs
         for (int k = 0; k < 3; ++k) substep.gravity[k] = static_cast<Real>(change[k]);
     }
     if (context_.has(Effect::gyroscopic))
-        substep.gyroscopic = context_.settings.gyroscopic == Gyroscopic::implicit
+        substep.gyroscopic = context_.gyroscopic == Gyroscopic::implicit
             ? Substep<Real>::Gyroscopic::implicit
             : Substep<Real>::Gyroscopic::direct;
     for_bodies(slice, shared, [&](std::size_t at, std::size_t count) {

@@ -37,6 +37,7 @@ template <class Real>
 class SlicePasses {
 public:
     SlicePasses(const StepContext& context,
+                const SolverParameters& parameters,
                 const Layout& layout,
                 const Batch& batch,
                 const ConstraintBuilder<Real>& builder,

@@ -36,15 +36,17 @@ template <class Real>
 class Task {
 public:
     Task(const StepContext& context,
+         const SolverParameters& parameters,
          const RigidFacts& facts,
          const Layout& layout,
          const Batch& batch,
          const ConstraintBuilder<Real>& builder,
          ContactConstraints<Real>& constraints,
          SplitImpulse& split_impulse)
-        : context_(context), facts_(facts), layout_(layout), batch_(batch),
+        : context_(context), parameters_(parameters), facts_(facts), layout_(layout), batch_(batch),
           constraints_(constraints), split_impulse_(split_impulse),
-          slices_(context, layout, batch, builder, constraints), on_faces_(lies_on_faces(batch))
+          slices_(context, parameters, layout, batch, builder, constraints),
+          on_faces_(lies_on_faces(batch))
     {
         find_state_forces();
         find_limiter();
@@ -108,7 +110,7 @@ public:
     {
         const auto passes = by_pgs() ? pgs() : soft_step();
         run_at(passes, When::before_substeps);
-        for (substep_ = 0; substep_ < context_.settings.substeps; ++substep_) {
+        for (substep_ = 0; substep_ < context_.substeps; ++substep_) {
             for (const Pass<Task>& pass : passes) {
                 const bool now = pass.when == When::each_substep
                     || pass.when == When::each_iteration
@@ -129,14 +131,13 @@ private:
                 (this->*pass.run)();
     }
 
-    bool by_pgs() const { return context_.settings.solver == Solver::pgs; }
+    bool by_pgs() const { return parameters_.solver == Solver::pgs; }
 
     // What is too great for the direct solver comes here, but its iterations are not meant for it.
     int iterations() const
     {
-        const Settings& settings = context_.settings;
-        if (settings.solver != Solver::direct && settings.iterations > 0)
-            return settings.iterations;
+        if (parameters_.solver != Solver::direct && parameters_.iterations > 0)
+            return parameters_.iterations;
         return by_pgs() ? kPgsIterations : 1;
     }
 
@@ -214,7 +215,8 @@ private:
     void relax()
     {
         if (late_) return answer_late_forces();
-        if (!parts_) add(SlicePass::Kind::relax, relax_iterations(context_.settings, batch_));
+        if (!parts_)
+            add(SlicePass::Kind::relax, relax_iterations(parameters_, context_.substeps, batch_));
     }
 
     // Where half of what springs and pivots do acts after bodies moved, these iterations alone are
@@ -223,7 +225,7 @@ private:
     {
         if (late_ && !parts_)
             add(SlicePass::Kind::relax,
-                std::max(relax_iterations(context_.settings, batch_), kInLateForces));
+                std::max(relax_iterations(parameters_, context_.substeps, batch_), kInLateForces));
     }
 
     void close_energy_limiter()
@@ -405,6 +407,7 @@ private:
     }
 
     const StepContext& context_;
+    const SolverParameters& parameters_;
     const RigidFacts& facts_;
     const Layout& layout_;
     const Batch& batch_;
@@ -426,6 +429,7 @@ std::vector<PassRow> pgs_passes() { return rows_of(Task<float>::pgs()); }
 
 template <class Real>
 void solve_batch(const StepContext& context,
+                 const SolverParameters& parameters,
                  const RigidFacts& facts,
                  const Layout& layout,
                  const Batch& batch,
@@ -433,13 +437,14 @@ void solve_batch(const StepContext& context,
                  ContactConstraints<Real>& constraints,
                  SplitImpulse& split_impulse)
 {
-    Task<Real>(context, facts, layout, batch, builder, constraints, split_impulse).run();
+    Task<Real>(context, parameters, facts, layout, batch, builder, constraints, split_impulse)
+        .run();
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void solve_batch<Real>(const StepContext&, const RigidFacts&, const Layout&,          \
-                                    const Batch&, const ConstraintBuilder<Real>&,                  \
-                                    ContactConstraints<Real>&, SplitImpulse&);
+    template void solve_batch<Real>(                                                               \
+        const StepContext&, const SolverParameters&, const RigidFacts&, const Layout&,             \
+        const Batch&, const ConstraintBuilder<Real>&, ContactConstraints<Real>&, SplitImpulse&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -20,6 +20,7 @@ namespace throng {
 ///   facts  as the step began
 template <class Real>
 void solve_batch(const StepContext& context,
+                 const SolverParameters& parameters,
                  const RigidFacts& facts,
                  const Layout& layout,
                  const Batch& batch,

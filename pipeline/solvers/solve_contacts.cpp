@@ -42,6 +42,7 @@ public:
     // Batches that are marked direct go to the island solver, with that effort.
     ContactSolve(const ContactProblem<Real>& problem, const DirectEffort& effort)
         : context_(problem.template get<const StepContext>()),
+          parameters_(problem.template get<const SolverParameters>()),
           layout_(problem.template get<const Layout>()),
           active_(problem.template get<const ActiveContacts>()),
           convex_(problem.template get<ConvexContacts<Real>>()),
@@ -52,8 +53,10 @@ public:
           diagnostics_(problem.template get<StepDiagnostics>()),
           facts_{problem.template get<const Forces>(), problem.template get<const Masses>(),
                  problem.template get<Poses>(), problem.template get<Velocities>()},
-          builder_(context_, layout_, active_, convex_, meshes_, solids_, constraints_),
+          builder_(
+              context_, parameters_, layout_, active_, convex_, meshes_, solids_, constraints_),
           effort_(effort), islands_{context_,
+                                    parameters_,
                                     effort_,
                                     layout_,
                                     active_,
@@ -83,7 +86,7 @@ public:
             else if (batch.times > 1 && !usual)
                 solve_finer(batch);
             else
-                solve_batch(context_, facts_, layout_, batch, builder_, constraints_,
+                solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
                             split_impulse_);
         });
     }
@@ -95,7 +98,7 @@ public:
             if (batch.direct)
                 solve_island(islands_, batch, constraints_, diagnostics_);
             else
-                solve_batch(context_, facts_, layout_, batch, builder_, constraints_,
+                solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
                             split_impulse_);
         });
     }
@@ -112,27 +115,29 @@ private:
                            for (std::size_t i = begin; i < end; ++i)
                                if (!layout_.batches[i].wide) solve(layout_.batches[i]);
                        });
-        finish_islands(context_, layout_, diagnostics_);
+        finish_islands(context_, parameters_, layout_, diagnostics_);
         update_split_impulse(split_impulse_);
     }
 
     void solve_finer(const Batch& batch)
     {
         StepContext finer = context_;
-        finer.settings.substeps *= batch.times;
+        SolverParameters parameters = parameters_;
+        finer.substeps *= batch.times;
         // Its overlap is that of the usual ones, which these would push apart as much faster.
-        finer.settings.push_limit /= batch.times;
-        finer.settings.relax_iterations = finer_relax_iterations(finer.settings, batch);
-        const ConstraintBuilder<Real> with(finer, layout_, active_, convex_, meshes_, solids_,
-                                           constraints_);
+        parameters.push_limit /= batch.times;
+        parameters.relax_iterations = finer_relax_iterations(parameters, finer.substeps, batch);
+        const ConstraintBuilder<Real> with(finer, parameters, layout_, active_, convex_, meshes_,
+                                           solids_, constraints_);
         const Slice& slice = layout_.slices[batch.first_slice];
         // Impulses are kept as of the substep that the settings say.
         with.scale_impulses(slice, Real(1) / Real(batch.times));
-        solve_batch(finer, facts_, layout_, batch, with, constraints_, split_impulse_);
+        solve_batch(finer, parameters, facts_, layout_, batch, with, constraints_, split_impulse_);
         with.scale_impulses(slice, Real(batch.times));
     }
 
     const StepContext& context_;
+    const SolverParameters& parameters_;
     const Layout& layout_;
     const ActiveContacts& active_;
     ConvexContacts<Real>& convex_;
@@ -150,8 +155,8 @@ private:
 template <class Real>
 void solve_islands(const ContactProblem<Real>& problem)
 {
-    const StepContext& context = problem.template get<const StepContext>();
-    ContactSolve<Real>(problem, asked_effort(context.settings)).by_islands();
+    const auto& parameters = problem.template get<const SolverParameters>();
+    ContactSolve<Real>(problem, asked_effort(parameters)).by_islands();
 }
 
 }  // namespace

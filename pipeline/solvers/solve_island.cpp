@@ -26,24 +26,25 @@ void solve_island(const IslandScene<Real>& scene,
                   StepDiagnostics& diagnostics)
 {
     IslandSolver island(scene, batch);
-    for (int step = 0; step < scene.context.settings.substeps; ++step)
-        island.substep(scene.context);
+    for (int step = 0; step < scene.context.substeps; ++step) island.substep(scene.context);
     island.finish(scene, batch, constraints);
     const auto place = static_cast<std::size_t>(&batch - scene.layout.batches.data());
     diagnostics.residual_of[place] = island.residual();
     diagnostics.cuts_of[place] = island.cuts();
 }
 
-void finish_islands(const StepContext& context, const Layout& layout, StepDiagnostics& diagnostics)
+void finish_islands(const StepContext& context,
+                    const SolverParameters& parameters,
+                    const Layout& layout,
+                    StepDiagnostics& diagnostics)
 {
     diagnostics.direct_residual = 0;
     diagnostics.direct_left = 0;
     diagnostics.penalty_cuts = 1;
     for (const int cuts : diagnostics.cuts_of)
         diagnostics.penalty_cuts = std::max(diagnostics.penalty_cuts, cuts);
-    const Settings& settings = context.settings;
     // Of islands that are escalated nothing is promised but that they stand.
-    if (settings.solver != Solver::direct || settings.response != Response::impulse) return;
+    if (parameters.solver != Solver::direct || context.response != Response::impulse) return;
     for (const double residual : diagnostics.residual_of)
         diagnostics.direct_residual = std::max(diagnostics.direct_residual, residual);
     for (const Batch& batch : layout.batches) diagnostics.direct_left += batch.direct ? 0 : 1;

@@ -14,9 +14,9 @@
 namespace throng {
 
 /// What the settings ask of a solve.
-inline DirectEffort asked_effort(const Settings& settings)
+inline DirectEffort asked_effort(const SolverParameters& parameters)
 {
-    if (settings.iterations > 0) return {.steps = settings.iterations};
+    if (parameters.iterations > 0) return {.steps = parameters.iterations};
     return {};
 }
 
@@ -24,6 +24,7 @@ inline DirectEffort asked_effort(const Settings& settings)
 template <class Real>
 struct IslandScene {
     const StepContext& context;
+    const SolverParameters& parameters;
     const DirectEffort& effort;  // a solve
     const Layout& layout;
     const ActiveContacts& active;
@@ -51,6 +52,9 @@ void solve_island(const IslandScene<Real>& scene,
                   StepDiagnostics& diagnostics);
 
 /// Sums up what direct batches told.
-void finish_islands(const StepContext& context, const Layout& layout, StepDiagnostics& diagnostics);
+void finish_islands(const StepContext& context,
+                    const SolverParameters& parameters,
+                    const Layout& layout,
+                    StepDiagnostics& diagnostics);
 
 }  // namespace throng

@@ -31,20 +31,19 @@ void apply_forces(const StepContext& context,
     if (context.has(Effect::sleeping))  // who awoke in this step is moved in it
         active_bodies.insert(active_bodies.end(), sleep_events.woke.begin(),
                              sleep_events.woke.end());
-    for_each_block(active_bodies.size(), kGrain,
-                   [&](std::size_t begin, std::size_t end, std::size_t) {
-                       RigidMotion law(rule, {forces, masses, poses, velocities});
-                       for (std::size_t i = begin; i < end; ++i) {
-                           const std::uint32_t body = active_bodies[i];
-                           accelerations.linear[body] = accelerations.angular[body] = Vec3::Zero();
-                           if (forces.depends_on_state(body)) continue;
-                           law.take({&body, 1}, none);
-                           const RigidMotion::Acceleration pull =
-                               law.mean_acceleration(0, context.settings.dt);
-                           accelerations.linear[body] = pull.linear;
-                           accelerations.angular[body] = pull.angular;
-                       }
-                   });
+    for_each_block(
+        active_bodies.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+            RigidMotion law(rule, {forces, masses, poses, velocities});
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::uint32_t body = active_bodies[i];
+                accelerations.linear[body] = accelerations.angular[body] = Vec3::Zero();
+                if (forces.depends_on_state(body)) continue;
+                law.take({&body, 1}, none);
+                const RigidMotion::Acceleration pull = law.mean_acceleration(0, context.dt);
+                accelerations.linear[body] = pull.linear;
+                accelerations.angular[body] = pull.angular;
+            }
+        });
 }
 
 }  // namespace throng

@@ -294,6 +294,7 @@ void forget_found(ConvexContacts<Real>& contacts)
 
 template <class Real>
 void collide_convex(const StepContext& context,
+                    const NarrowPhaseParameters& parameters,
                     const Pairs& pairs,
                     const Shapes& shapes,
                     const Colliders& colliders,
@@ -308,7 +309,7 @@ void collide_convex(const StepContext& context,
     contacts.begun.resize(blocks);
     contacts.parted.start(blocks);
     contacts.followed_of_block.start(bounds.fast.empty() ? 0 : blocks);
-    ChosenMethod chosen(context, pairs, shapes, colliders, bounds, blocks, method_pairs);
+    ChosenMethod chosen(parameters, pairs, shapes, colliders, bounds, blocks, method_pairs);
     const bool recycles = !shapes.hulls.empty() && !chosen.has_method();
     if (recycles && !contacts.recycles) forget_found(contacts);
     contacts.recycles = recycles;
@@ -331,9 +332,10 @@ void collide_convex(const StepContext& context,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void collide_convex<Real>(const StepContext&, const Pairs&, const Shapes&,            \
-                                       const Colliders&, const Bounds&, const Poses&,              \
-                                       const BodyStates&, ConvexContacts<Real>&, MethodPairs&);
+    template void collide_convex<Real>(const StepContext&, const NarrowPhaseParameters&,           \
+                                       const Pairs&, const Shapes&, const Colliders&,              \
+                                       const Bounds&, const Poses&, const BodyStates&,             \
+                                       ConvexContacts<Real>&, MethodPairs&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

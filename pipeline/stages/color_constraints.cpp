@@ -6,6 +6,7 @@
 namespace throng {
 
 void color_constraints(const StepContext& context,
+                       const SolverParameters& parameters,
                        const Islands& islands,
                        const OverloadedIslands& overloaded,
                        const ActiveContacts& contacts,
@@ -14,12 +15,11 @@ void color_constraints(const StepContext& context,
                        ConstraintGraph& graph,
                        Layout& layout)
 {
-    const Settings& settings = context.settings;
     // Forces and pushes go island by island, however great.
-    graph.direct_limit = settings.response != Response::impulse
+    graph.direct_limit = context.response != Response::impulse
         ? std::numeric_limits<std::size_t>::max()
-        : settings.solver == Solver::direct ? static_cast<std::size_t>(settings.direct_limit)
-                                            : 0;
+        : parameters.solver == Solver::direct ? static_cast<std::size_t>(parameters.direct_limit)
+                                              : 0;
     graph.efforts = overloaded.efforts;
     graph.lay_out(islands, contacts, states, poses.position, layout);
 }

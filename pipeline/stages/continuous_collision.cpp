@@ -70,6 +70,7 @@ struct Way {
 class ContinuousCollision {
 public:
     ContinuousCollision(const StepContext& context,
+                        const ImpactParameters& parameters,
                         const Shapes& shapes,
                         const Colliders& colliders,
                         const Surfaces& surfaces,
@@ -84,11 +85,11 @@ public:
                         Poses& poses,
                         Velocities& velocities,
                         FastBodies& fast)
-        : settings_(context.settings), gravity_(context.gravity), substep_(context.substep()),
-          shapes_(shapes), colliders_(colliders), surfaces_(surfaces), filter_(filter),
-          forces_(forces), masses_(masses), bounds_(bounds), pairs_(pairs), states_(states),
-          followed_(followed), on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
-          fast_(fast)
+        : context_(context), parameters_(parameters), gravity_(context.gravity),
+          substep_(context.substep()), shapes_(shapes), colliders_(colliders), surfaces_(surfaces),
+          filter_(filter), forces_(forces), masses_(masses), bounds_(bounds), pairs_(pairs),
+          states_(states), followed_(followed), on_meshes_(on_meshes), poses_(poses),
+          velocities_(velocities), fast_(fast)
     { }
 
     void run(const std::vector<std::uint32_t>& woke)
@@ -128,7 +129,7 @@ private:
     {
         if (colliders_.count[body] != 1) return false;
         const std::uint32_t at = colliders_.begin[body];
-        const double inner = colliders_.inner_extent[at], dt = settings_.dt;
+        const double inner = colliders_.inner_extent[at], dt = context_.dt;
         const double turned = velocities_.angular[body].squaredNorm() * dt * dt;
         return bounds_.speculative_margin[at] <= kFastCandidateMargin * inner
             && 4 * velocities_.linear[body].squaredNorm() * dt * dt <= inner * inner
@@ -144,9 +145,9 @@ private:
         const Pose ends = poses_.at(body) * colliders_.local[at];
         Box3 box = joined(before, shape_bounds(shapes_, colliders_.shape[at], ends));
         // Between the two it may reach further, by as much as its turning takes any point of it.
-        const double angle = velocities_.angular[body].norm() * settings_.dt;
+        const double angle = velocities_.angular[body].norm() * context_.dt;
         const double turning = angle > 0 ? std::min(angle, 2.0) * colliders_.outer_radius[at] : 0;
-        const double slack = turning + settings_.toi_tolerance * colliders_.inner_extent[at];
+        const double slack = turning + parameters_.tolerance * colliders_.inner_extent[at];
         box.lower.array() -= slack;
         box.upper.array() += slack;
         return box;
@@ -160,7 +161,7 @@ private:
         if (surely_slow(body)) return false;
         const Pose before = began(body);
         const double length = (poses_.position[body] - before.position).norm();
-        const double angle = velocities_.angular[body].norm() * settings_.dt;
+        const double angle = velocities_.angular[body].norm() * context_.dt;
         // What it turned by, where it has been stopped since.
         const Vec3 half_turn = (before.orientation.conjugate() * poses_.orientation[body]).vec();
         const double square = std::max(angle * angle, 4 * half_turn.squaredNorm());
@@ -206,7 +207,7 @@ private:
              {std::tuple(a, b, second_of(key)), std::tuple(b, a, first_of(key))})
             if (is_fast(fast) && states_.kind[fast] == BodyKind::kinematic && !is_fast(slow)) {
                 const double way = (poses_.position[fast] - began(fast).position).norm()
-                    + velocities_.angular[fast].norm() * settings_.dt * states_.radius[fast];
+                    + velocities_.angular[fast].norm() * context_.dt * states_.radius[fast];
                 return way > colliders_.inner_extent[at];
             }
         return true;
@@ -296,7 +297,7 @@ private:
             way.trajectory.begin = poses_.at(body);
         else
             way.trajectory = trajectory_between(began(body), poses_.at(body),
-                                                velocities_.angular[body] * settings_.dt);
+                                                velocities_.angular[body] * context_.dt);
         return way;
     }
 
@@ -333,7 +334,7 @@ private:
     {
         const double size =
             impact_size(shapes_, colliders_.shape[first_of(key)], colliders_.shape[second_of(key)]);
-        return impact_rule(settings_.toi_method, settings_.toi_tolerance * size);
+        return impact_rule(parameters_.method, parameters_.tolerance * size);
     }
 
     // When two meet next. Of those that touch already contact takes care.
@@ -573,7 +574,7 @@ private:
     void turn_back(std::uint32_t body, const Quat& held)
     {
         Quat& orientation = poses_.orientation[body];
-        if (masses_.gyroscopic_kind[body] != 0 && settings_.gyroscopic != Gyroscopic::off) {
+        if (masses_.gyroscopic_kind[body] != 0 && context_.gyroscopic != Gyroscopic::off) {
             Vec3& spin = velocities_.angular[body];
             spin = held * (orientation.conjugate() * spin);
         }
@@ -652,7 +653,8 @@ private:
             if (way.held) hold_at(way, pose_on(way, 1));
     }
 
-    const Settings& settings_;
+    const StepContext& context_;
+    const ImpactParameters& parameters_;
     const Vec3 gravity_;
     const double substep_;  // s
     const Shapes& shapes_;
@@ -683,6 +685,7 @@ private:
 
 template <class Real>
 void continuous_collision(const StepContext& context,
+                          const ImpactParameters& parameters,
                           const Shapes& shapes,
                           const Colliders& colliders,
                           const Surfaces& surfaces,
@@ -701,17 +704,18 @@ void continuous_collision(const StepContext& context,
 {
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
-    ContinuousCollision(context, shapes, colliders, surfaces, filter, forces, masses, bounds, pairs,
-                        states, contacts.followed, on_meshes.followed, poses, velocities, fast)
+    ContinuousCollision(context, parameters, shapes, colliders, surfaces, filter, forces, masses,
+                        bounds, pairs, states, contacts.followed, on_meshes.followed, poses,
+                        velocities, fast)
         .run(sleep_events.woke);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void continuous_collision<Real>(                                                      \
-        const StepContext&, const Shapes&, const Colliders&, const Surfaces&, const PairFilter&,   \
-        const Forces&, const Masses&, const Bounds&, const Pairs&, const BodyStates&,              \
-        const SleepEvents&, const ConvexContacts<Real>&, const MeshContacts<Real>&, Poses&,        \
-        Velocities&, FastBodies&);
+        const StepContext&, const ImpactParameters&, const Shapes&, const Colliders&,              \
+        const Surfaces&, const PairFilter&, const Forces&, const Masses&, const Bounds&,           \
+        const Pairs&, const BodyStates&, const SleepEvents&, const ConvexContacts<Real>&,          \
+        const MeshContacts<Real>&, Poses&, Velocities&, FastBodies&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

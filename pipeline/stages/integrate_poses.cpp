@@ -23,14 +23,14 @@ FlightRule rule_of(const StepContext& context)
 {
     FlightRule rule;
     rule.substep = context.substep();
-    rule.substeps = context.settings.substeps;
+    rule.substeps = context.substeps;
     for (int axis = 0; axis < 3; ++axis)
         rule.gravity[axis] = context.has(Effect::gravity) ? context.gravity[axis] : 0;
     rule.turns = context.has(Effect::rotation);
     using Precession = FlightRule::Precession;
-    if (context.has(Effect::gyroscopic) && context.settings.gyroscopic == Gyroscopic::implicit)
-        rule.precession = context.settings.integrator == Integrator::auto_ ? Precession::split
-                                                                           : Precession::implicit;
+    if (context.has(Effect::gyroscopic) && context.gyroscopic == Gyroscopic::implicit)
+        rule.precession =
+            context.integrator == Integrator::auto_ ? Precession::split : Precession::implicit;
     return rule;
 }
 
@@ -74,11 +74,11 @@ void turn_by_steps(const StepContext& context,
 {
     // In body axes: about them the angular velocity stays as it is while the body turns by it.
     const bool precesses = context.has(Effect::gyroscopic) && masses.gyroscopic_kind[body] != 0;
-    const auto torque = context.settings.gyroscopic == Gyroscopic::implicit
+    const auto torque = context.gyroscopic == Gyroscopic::implicit
         ? after_gyroscopic_torque_local
         : after_explicit_gyroscopic_torque_local;
     Vec3 w = orientation.conjugate() * angular;
-    for (int step = 0; step < context.settings.substeps; ++step) {
+    for (int step = 0; step < context.substeps; ++step) {
         if (precesses) w = torque(w, masses.inertia[body], context.substep());
         orientation = orientation * exponential(context.substep() * w);
     }
@@ -95,7 +95,7 @@ bool fly_one(const StepContext& context,
              Poses& poses,
              Velocities& velocities)
 {
-    const double h = context.substep(), n = context.settings.substeps;
+    const double h = context.substep(), n = context.substeps;
     const bool falls = context.has(Effect::gravity) && masses.inverse_mass[body] > 0;
     const Vec3 pull = falls ? context.gravity : Vec3(Vec3::Zero());
     const Vec3 linear = velocities.linear[body] + pull * (n * h);
@@ -174,9 +174,9 @@ private:
         law.take(bodies, flights_);
         // Of a group on whom springs act there is no other.
         const IntegratorRow& integrator =
-            integrator_of(context_.settings, facts_.forces.act_on(bodies.front()));
+            integrator_of(context_, facts_.forces.act_on(bodies.front()));
         IntegratorScratch scratch;
-        for (int step = 0; step < context_.settings.substeps; ++step) {
+        for (int step = 0; step < context_.substeps; ++step) {
             law.advance(integrator, step * span, span, scratch);
             law.settle();
         }
@@ -198,8 +198,7 @@ private:
     {
         const double span = context_.substep();
         StiffFlight flight(rule_, facts_, bodies, flights_);
-        for (int step = 0; step < context_.settings.substeps; ++step)
-            flight.carry(step * span, span);
+        for (int step = 0; step < context_.substeps; ++step) flight.carry(step * span, span);
         note(flight.law(), bodies, landings);
     }
 
@@ -239,9 +238,9 @@ private:
 
 // Whether the wide kernel, and what it leaves to fly_one(), is the law that is asked for where
 // nothing but gravity acts.
-bool falls_wide(const Settings& settings)
+bool falls_wide(const StepContext& context)
 {
-    return falls_by_kicks(settings.integrator) && settings.rotation == Rotation::quaternion;
+    return falls_by_kicks(context.integrator) && context.rotation == Rotation::quaternion;
 }
 
 }  // namespace
@@ -285,7 +284,7 @@ void integrate_poses(const StepContext& context,
         LawFlight(context, {forces, masses, poses, velocities}, poses, velocities, flights)
             .fly(bodies, states, diagnostics);
     };
-    if (!falls_wide(context.settings)) {
+    if (!falls_wide(context)) {
         by_law(free);
     } else if (!context.effects.meets(kForces)) {
         fly(free);

@@ -139,6 +139,7 @@ void prepare_prescribed_velocities(const PrescribedVelocities& prescribed,
 
 template <class Real>
 void prepare_constraints(const StepContext& context,
+                         const SolverParameters& parameters,
                          const Layout& layout,
                          const Forces& forces,
                          const Poses& poses,
@@ -187,22 +188,23 @@ void prepare_constraints(const StepContext& context,
     }
     constraints.points.resize(points);
     constraints.restitutions.resize(context.has(Effect::restitution) ? blocks : 0);
-    constraints.surfaces_turn = anybody_carries(constraints.bodies, context.settings.dt);
+    constraints.surfaces_turn = anybody_carries(constraints.bodies, context.dt);
     if (context.has(Effect::drive))
         prepare_prescribed_velocities(prescribed, layout, constraints);
     else
         constraints.prescribed.clear();
     constraints.surface_velocities.resize(
         constraints.surfaces_turn || !constraints.prescribed.empty() ? blocks : 0);
-    constraints.point_frictions.resize(context.friction_at_points_or_pyramid() ? points : 0);
+    constraints.point_frictions.resize(
+        parameters.friction_at_points_or_pyramid(context.effects) ? points : 0);
     constraints.rolling_frictions.resize(context.has(Effect::rolling_friction) ? blocks : 0);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void prepare_constraints<Real>(                                                       \
-        const StepContext&, const Layout&, const Forces&, const Poses&, const Masses&,             \
-        const BodyStates&, const ExternalAcceleration&, const PrescribedVelocities&, Flights&,     \
-        Velocities&, ContactConstraints<Real>&);
+        const StepContext&, const SolverParameters&, const Layout&, const Forces&, const Poses&,   \
+        const Masses&, const BodyStates&, const ExternalAcceleration&,                             \
+        const PrescribedVelocities&, Flights&, Velocities&, ContactConstraints<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -40,6 +40,7 @@ void sleep(std::span<const std::uint32_t> bodies,
 }  // namespace
 
 void sleep_islands(const StepContext& context,
+                   const SleepParameters& parameters,
                    const PrescribedVelocities& prescribed,
                    const Forces& forces,
                    const Islands& islands,
@@ -50,15 +51,14 @@ void sleep_islands(const StepContext& context,
                    SleepEvents& sleep_events)
 {
     sleep_events.fell_asleep.clear();
-    const Settings& settings = context.settings;
     const auto quiet_for = [&](std::uint32_t body) {
         // Who is driven wants to move, even where something holds it up; what a spring or a field
         // will do to it nobody here knows; and who is moved apart has no speed for it.
         const bool quiet = states.moves(body)  // not put to rest in this very step
-            && speed_of(velocities, states, body) < settings.sleep_speed
+            && speed_of(velocities, states, body) < parameters.speed
             && !std::binary_search(prescribed.body.begin(), prescribed.body.end(), body)
             && !forces.keeps_awake(body) && !split_impulse.parts(body);
-        states.sleep_time[body] = quiet ? states.sleep_time[body] + settings.dt : 0.0;
+        states.sleep_time[body] = quiet ? states.sleep_time[body] + context.dt : 0.0;
         return states.sleep_time[body];
     };
     for (std::size_t island = 0; island < islands.size(); ++island) {
@@ -68,12 +68,12 @@ void sleep_islands(const StepContext& context,
                          islands.body_begin[island + 1] - islands.body_begin[island]);
         double least = std::numeric_limits<double>::infinity();
         for (const std::uint32_t body : bodies) least = std::min(least, quiet_for(body));
-        if (least >= settings.sleep_time)
+        if (least >= parameters.time)
             sleep(bodies, states, sleeping_islands, velocities, sleep_events);
     }
     // What nothing holds is at rest only where it stands: a slow one drifts, or turns back to fall.
     for (const std::uint32_t body : islands.lone)
-        if (states.moves(body) && quiet_for(body) >= settings.sleep_time
+        if (states.moves(body) && quiet_for(body) >= parameters.time
             && speed_of(velocities, states, body) == 0)
             sleep({&body, 1}, states, sleeping_islands, velocities, sleep_events);
     std::sort(sleep_events.fell_asleep.begin(), sleep_events.fell_asleep.end());

@@ -118,15 +118,16 @@ void note_form(const Shapes& shapes, const Colliders& colliders, std::size_t at,
 class Update {
 public:
     Update(const StepContext& context,
+           const ImpactParameters& parameters,
            const Shapes& shapes,
            const Colliders& colliders,
            const Poses& poses,
            const Velocities& velocities,
            const BodyStates& states,
            Bounds& bounds)
-        : dt_(context.settings.dt), falls_(context.gravity.norm() * dt_ * dt_), shapes_(shapes),
+        : dt_(context.dt), falls_(context.gravity.norm() * dt_ * dt_), shapes_(shapes),
           colliders_(colliders), poses_(poses), velocities_(velocities), states_(states),
-          bounds_(bounds), tolerance_(context.settings.toi_tolerance),
+          bounds_(bounds), tolerance_(parameters.tolerance),
           sweeps_(context.has(Effect::fast_motion))
     { }
 
@@ -394,6 +395,7 @@ private:
 }  // namespace
 
 void update_bounds(const StepContext& context,
+                   const ImpactParameters& parameters,
                    const Shapes& shapes,
                    const Colliders& colliders,
                    const Poses& poses,
@@ -403,7 +405,7 @@ void update_bounds(const StepContext& context,
 {
     static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(Box3) == 6 * sizeof(double)
                   && sizeof(NearBox) == 8 * sizeof(float));
-    Update(context, shapes, colliders, poses, velocities, states, bounds).run();
+    Update(context, parameters, shapes, colliders, poses, velocities, states, bounds).run();
 }
 
 }  // namespace throng

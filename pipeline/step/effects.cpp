@@ -3,7 +3,6 @@
 #include "broadphase/pair_filter.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "pipeline/step/fast_bodies.hpp"
-#include "pipeline/step/step_context.hpp"
 
 #include <algorithm>
 #include <map>
@@ -60,7 +59,7 @@ public:
         find_contact();
         if (meets()) find_materials();
         find_rotation();
-        if (found_.on.has(Effect::contact) && facts_.context.settings.sleep)
+        if (found_.on.has(Effect::contact) && facts_.settings.sleep)
             if (const auto body =
                     first_body([&](std::size_t b) { return facts_.states.dynamic(b); });
                 body != kNoBody)
@@ -97,11 +96,11 @@ private:
     // How bodies meet: overlapping, or carried from touch to touch (see step_event_driven.cpp).
     Effect contact_effect() const
     {
-        const Settings& settings = facts_.context.settings;
+        const Settings& settings = facts_.settings;
         if (settings.overlap == Overlap::allow || !carries()) return Effect::contact;
         return settings.overlap == Overlap::back_up ? Effect::no_overlap : Effect::little_overlap;
     }
-    bool carries() const { return facts_.context.settings.response == Response::impulse; }
+    bool carries() const { return facts_.settings.response == Response::impulse; }
 
     // Who hangs on a pivot falls about it, unless it is held by its center.
     bool can_fall(std::size_t body) const
@@ -119,14 +118,14 @@ private:
         if (moving == kNoBody) return;
         call(Effect::motion, name(moving));
         const auto falls = first_body([&](std::size_t body) { return can_fall(body); });
-        if (!facts_.context.gravity.isZero(0) && falls != kNoBody)
+        if (!facts_.gravity.isZero(0) && falls != kNoBody)
             call(Effect::gravity, "gravity of the scene");
         if (!facts_.prescribed.body.empty())
             call(Effect::drive, name(facts_.prescribed.body.front()));
-        const double dt = facts_.context.settings.dt;
+        const double dt = facts_.settings.dt;
         const auto fast = first_body([&](std::size_t body) {
             if (!movable(body) || facts_.colliders.count[body] == 0) return false;
-            const Vec3& gravity = facts_.context.gravity;
+            const Vec3& gravity = facts_.gravity;
             const double fall = facts_.states.dynamic(body) ? gravity.norm() * dt * dt : 0;
             return is_fast_candidate(facts_.colliders, facts_.velocities, body, dt, fall);
         });
@@ -307,7 +306,7 @@ private:
         const auto turns = first_body([&](std::size_t body) { return can_be_turned(body); });
         if (turns == kNoBody) return;
         call(Effect::rotation, name(turns));
-        if (facts_.context.settings.gyroscopic == Gyroscopic::off) return;
+        if (facts_.settings.gyroscopic == Gyroscopic::off) return;
         const auto uneven = first_body([&](std::size_t body) {
             return facts_.masses.gyroscopic_kind[body] != 0 && can_be_turned(body);
         });

@@ -7,6 +7,7 @@
 #include "kernels/data/bodies.hpp"
 #include "kernels/data/forces.hpp"
 #include "throng/effects.hpp"
+#include "throng/settings.hpp"
 
 #include <array>
 #include <string>
@@ -24,12 +25,12 @@ struct Requests {
     }
 };
 
-struct StepContext;
 struct PairFilter;
 
 /// Everything that decides about effects.
 struct EffectFacts {
-    const StepContext& context;
+    const Settings& settings;
+    const Vec3& gravity;
     const BodyStates& states;
     const Poses& poses;
     const Velocities& velocities;

@@ -13,6 +13,7 @@ void prescribe_velocities(const PrescribedVelocities&, const BodyStates&, Veloci
 
 /// Boxes round the shapes of what moves: a body within its margin costs no more than a look.
 void update_bounds(const StepContext&,
+                   const ImpactParameters&,
                    const Shapes&,
                    const Colliders&,
                    const Poses&,
@@ -26,6 +27,7 @@ void find_pairs(const Bounds&, const Shapes&, const Colliders&, const PairFilter
 /// Pairs of convex shapes into contacts, impulses carried over.
 template <class Real>
 void collide_convex(const StepContext&,
+                    const NarrowPhaseParameters&,
                     const Pairs&,
                     const Shapes&,
                     const Colliders&,
@@ -100,6 +102,7 @@ void escalate_islands(const StepContext&, const Islands&, OverloadedIslands&);
 
 /// Islands into batches, slices, colors and blocks.
 void color_constraints(const StepContext&,
+                       const SolverParameters&,
                        const Islands&,
                        const OverloadedIslands&,
                        const ActiveContacts&,
@@ -123,6 +126,7 @@ void apply_forces(const StepContext&,
 /// Bodies into solver bodies, and room for the constraints of their contacts.
 template <class Real>
 void prepare_constraints(const StepContext&,
+                         const SolverParameters&,
                          const Layout&,
                          const Forces&,
                          const Poses&,
@@ -137,6 +141,7 @@ void prepare_constraints(const StepContext&,
 /// What is solved: contacts into constraints, constraints into impulses and motion.
 template <class Real>
 using ContactProblem = StageData<const StepContext,
+                                 const SolverParameters,
                                  const Layout,
                                  const ActiveContacts,
                                  const Colliders,
@@ -173,6 +178,7 @@ void solve_kinematic(const ContactProblem<Real>&);
 /// How much too great the loads are that islands bear now: who is stubborn from the next step on.
 template <class Real>
 void measure_strain(const StepContext&,
+                    const SolverParameters&,
                     const Islands&,
                     const Layout&,
                     const ActiveContacts&,
@@ -191,6 +197,8 @@ void store_solution(
 /// What is carried from touch to touch, in place of all stages of contact: dynamic bodies, each
 /// with those that it may meet in this step.
 using EventDrivenStep = StageData<const StepContext,
+                                  const SolverParameters,
+                                  const ImpactParameters,
                                   const Shapes,
                                   const Surfaces,
                                   const PairFilter,
@@ -229,6 +237,7 @@ void quarantine_bodies(StepDiagnostics&, BodyStates&, Masses&, Velocities&);
 /// meet it, for the contacts of the next step.
 template <class Real>
 void continuous_collision(const StepContext&,
+                          const ImpactParameters&,
                           const Shapes&,
                           const Colliders&,
                           const Surfaces&,
@@ -247,6 +256,7 @@ void continuous_collision(const StepContext&,
 
 /// Islands that have been quiet long enough fall asleep.
 void sleep_islands(const StepContext&,
+                   const SleepParameters&,
                    const PrescribedVelocities&,
                    const Forces&,
                    const Islands&,

@@ -1,4 +1,4 @@
-// Step context: what holds for a whole step, the same for every body.
+// Step context: what holds for a whole step, the same for every body: how time goes on.
 #pragma once
 
 #include "pipeline/step/effects.hpp"
@@ -7,31 +7,28 @@
 
 namespace throng {
 
-/// Whether islands whose loads are too much get more than others. The direct solver needs no help,
-/// and penalty forces and kinematic pushes go island by island.
-inline bool may_escalate(const Settings& settings)
-{
-    return settings.escalation == Escalation::auto_ && settings.response == Response::impulse
-        && settings.solver != Solver::direct;
-}
-
 struct StepContext {
-    Settings settings;
+    double dt = 1.0 / 60;  // s
+    int substeps = 4;
+    Integrator integrator = Integrator::auto_;
+    Rotation rotation = Rotation::quaternion;
+    Gyroscopic gyroscopic = Gyroscopic::implicit;
+    Response response = Response::impulse;
     Vec3 gravity = Vec3(0, 0, -9.81);
     Set<Effect> effects;
     double last_substep = 0;  // s, of the step before; 0 before the first
     double time = 0;          // s, since the world began
 
-    /// Whether constraints hold friction at every point or within a pyramid, by kernels of their
-    /// own. The direct solver has its own friction, and what is too great for it goes by the usual
-    /// one.
-    bool friction_at_points_or_pyramid() const
+    void set(const Settings& settings)
     {
-        const bool asked = settings.friction_at == FrictionAt::points
-            || settings.friction_cone == FrictionCone::pyramid;
-        return asked && settings.solver != Solver::direct && effects.has(Effect::friction);
+        dt = settings.dt;
+        substeps = settings.substeps;
+        integrator = settings.integrator;
+        rotation = settings.rotation;
+        gyroscopic = settings.gyroscopic;
+        response = settings.response;
     }
-    double substep() const { return settings.dt / settings.substeps; }
+    double substep() const { return dt / substeps; }
     bool has(Effect effect) const { return effects.has(effect); }
 };
 

@@ -13,6 +13,7 @@
 #include "kernels/solver/coloring.hpp"
 #include "kernels/solver/islands.hpp"
 #include "narrowphase/alternatives/method_contacts.hpp"
+#include "pipeline/step/parameters.hpp"
 #include "pipeline/step/step_context.hpp"
 
 #include <tuple>
@@ -117,6 +118,10 @@ struct Finder {
 
 template <class Real>
 using StepData = std::tuple<StepContext,
+                            NarrowPhaseParameters,
+                            ImpactParameters,
+                            SolverParameters,
+                            SleepParameters,
                             Shapes,
                             Surfaces,
                             PairFilter,

@@ -64,7 +64,8 @@ template <class Real>
 consteval bool reads_follow_writes()
 {
     DataSet ready =
-        data_sets<Real, StepContext, Shapes, Surfaces, PairFilter, PrescribedVelocities, Forces,
+        data_sets<Real, StepContext, NarrowPhaseParameters, ImpactParameters, SolverParameters,
+                  SleepParameters, Shapes, Surfaces, PairFilter, PrescribedVelocities, Forces,
                   Poses, Velocities, Masses, BodyStates, Colliders, SleepEvents, OverloadedIslands>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.

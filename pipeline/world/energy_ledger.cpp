@@ -41,7 +41,7 @@ double lag_of(const WorldState& state, std::uint32_t body)
 {
     const StepContext& context = state.get<StepContext>();
     if (context.effects.meets(kEventDriven)) return 0;
-    const Integrator integrator = context.settings.integrator;
+    const Integrator integrator = context.integrator;
     const bool kicked = integrator == Integrator::semi_implicit
         || (integrator == Integrator::auto_ && !state.get<Forces>().act_on(body));
     return kicked || state.get<Flights>().lags_of(body) ? context.substep() / 2 : 0;

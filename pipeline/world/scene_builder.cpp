@@ -195,7 +195,7 @@ SceneBuilder::add_solid(const Scene& scene, const std::string& name, const MeshS
 {
     MadeSolid made;
     state_.pool.run([&](std::size_t, std::size_t, std::size_t) {
-        made = make_solid(mesh, state_.get<StepContext>().settings, scene.cache_folder);
+        made = make_solid(mesh, state_.settings, scene.cache_folder);
     });
     return add_made(name, std::move(made));
 }
@@ -323,7 +323,7 @@ void SceneBuilder::weigh(std::uint32_t body,
     const Sym3& inertia = masses.inertia[body];
     if (inertia.has_products()) put(masses.principal, body, principal_inertia(inertia));
     if (stated.lock_rotation || inertia == Sym3{}) return;
-    const bool in_double = state_.get<StepContext>().settings.precision == Precision::double_;
+    const bool in_double = state_.settings.precision == Precision::double_;
     masses.inverse_inertia[body] = turning_inverse_mass(inertia, in_double ? 1e14 : 1e6);
     masses.gyroscopic_kind[body] = !uneven(inertia) ? 0 : inertia.has_products() ? 2 : 1;
     if (uneven(inertia)) masses.symmetry_axis[body] = symmetry_axis_of(masses.principal_of(body));

@@ -58,13 +58,23 @@ Vec3 impacts_on(std::uint32_t body,
 
 }  // namespace
 
-WorldState::WorldState(const Settings& settings, int thread_count) : pool(thread_count)
+WorldState::WorldState(const Settings& all, int thread_count) : pool(thread_count)
 {
-    check_settings(settings, "world");
+    check_settings(all, "world");
     // Throws here and not in a step where the environment asks for lanes that cannot be had.
     solve_kernels<float>();
-    if (settings.precision == Precision::double_) step.emplace<Step<double>>();
-    get<StepContext>().settings = settings;
+    if (all.precision == Precision::double_) step.emplace<Step<double>>();
+    set(all);
+}
+
+void WorldState::set(const Settings& all)
+{
+    settings = all;
+    get<StepContext>().set(all);
+    get<NarrowPhaseParameters>().set(all);
+    get<ImpactParameters>().set(all);
+    get<SolverParameters>().set(all);
+    get<SleepParameters>().set(all);
 }
 
 std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
@@ -78,7 +88,7 @@ std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
 
 void WorldState::choose_broad_phase()
 {
-    const BroadPhase asked = get<StepContext>().settings.broadphase;
+    const BroadPhase asked = settings.broadphase;
     const Colliders& colliders = get<Colliders>();
     const auto kind = [&] {
         switch (asked) {
@@ -179,10 +189,11 @@ void WorldState::report_state()
     report.colors = 0;
     for (const Slice& slice : get<Layout>().slices)
         report.colors = std::max<std::size_t>(report.colors, slice.colors);
-    const Settings& settings = get<StepContext>().settings;
     const bool relaxes =
         settings.solver == Solver::soft_step && settings.response == Response::impulse;
-    report.relax_iterations = relaxes ? mean_relax_iterations(settings, get<Layout>()) : 0;
+    report.relax_iterations = relaxes
+        ? mean_relax_iterations(get<SolverParameters>(), settings.substeps, get<Layout>())
+        : 0;
     report.bodies_awake = get<BodyStates>().active_bodies.dynamic.size();
     if (!effects.on.meets(kEventDriven)) return;
     const EventDrivenContacts& carried = get<EventDrivenContacts>();
@@ -203,7 +214,6 @@ void WorldState::warn_of_cuts(int cuts)
 {
     if (cuts <= most_cuts) return;
     most_cuts = cuts;
-    const Settings& settings = get<StepContext>().settings;
     warnings.push_back(
         "penalty_stiffness: " + dial_value(settings, "penalty_stiffness")
         + " N/m swings wider at a substep of " + number_text(settings.dt / settings.substeps)
@@ -233,7 +243,6 @@ Vec3 WorldState::velocity(std::uint32_t body) const
 
 void WorldState::warn_of_substeps()
 {
-    const Settings& settings = get<StepContext>().settings;
     std::vector<std::string> found = unstable_springs(get<Forces>(), get<Masses>(), settings);
     // What weight adds in one has few digits left beside a speed of some m/s.
     constexpr double kShortest = 1e-5;
@@ -252,10 +261,10 @@ void WorldState::refresh_effects()
     effects_stale = false;
     active_bodies_stale = true;
     StepContext& context = get<StepContext>();
-    effects =
-        find_effects({context, get<BodyStates>(), get<Poses>(), get<Velocities>(), get<Masses>(),
-                      get<PrescribedVelocities>(), get<Forces>(), get<Shapes>(), get<Colliders>(),
-                      get<Surfaces>(), get<PairFilter>(), requests, names, material_names});
+    effects = find_effects({settings, context.gravity, get<BodyStates>(), get<Poses>(),
+                            get<Velocities>(), get<Masses>(), get<PrescribedVelocities>(),
+                            get<Forces>(), get<Shapes>(), get<Colliders>(), get<Surfaces>(),
+                            get<PairFilter>(), requests, names, material_names});
     context.effects = effects.on;
     empty_unused();
     if (effects.on.has(Effect::contact)) choose_broad_phase();
@@ -263,7 +272,7 @@ void WorldState::refresh_effects()
         [&](auto& chosen) {
             using Graph = typename std::remove_reference_t<decltype(chosen.graph)>::element_type;
             using Real = std::conditional_t<std::is_same_v<Graph, StepGraph<float>>, float, double>;
-            std::vector<Stage<Real>> stages = stages_for<Real>(effects.on, context.settings);
+            std::vector<Stage<Real>> stages = stages_for<Real>(effects.on, settings);
             const auto same = [](const Stage<Real>& a, const Stage<Real>& b) {
                 return a.name == b.name;
             };
@@ -348,7 +357,7 @@ void World::step(int steps)
     state.report_state();
 }
 
-const Settings& World::settings() const { return state_->get<StepContext>().settings; }
+const Settings& World::settings() const { return state_->settings; }
 
 void World::set_settings(const Settings& settings)
 {
@@ -357,7 +366,7 @@ void World::set_settings(const Settings& settings)
             "set_settings: precision cannot change in a world; make another");
     check_settings(settings, "set_settings");
     state_->get<Flights>() = {};  // numbers of another rotation, or of another law
-    state_->get<StepContext>().settings = settings;
+    state_->set(settings);
     state_->effects_stale = true;
     state_->warn_of_substeps();
 }

@@ -136,7 +136,7 @@ void WorldState::empty_unused()
     const Set<Effect> on = effects.on;
     if (!on.has(Effect::sleeping)) wake_all();
     if (!on.has(Effect::escalation)) get<OverloadedIslands>().efforts.clear();
-    if (!may_escalate(get<StepContext>().settings)) get<OverloadedIslands>().forget_all();
+    if (!may_escalate(settings)) get<OverloadedIslands>().forget_all();
     if (!on.meets(kEventDriven)) {
         StepDiagnostics& diagnostics = get<StepDiagnostics>();
         diagnostics.held_groups = diagnostics.deep_pieces = 0;

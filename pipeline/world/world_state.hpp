@@ -28,8 +28,12 @@ struct PlacedShape {
 };
 
 struct WorldState {
-    explicit WorldState(const Settings& settings, int thread_count);
+    explicit WorldState(const Settings& all, int thread_count);
 
+    /// Those of the world, and what of them the stages have to do with.
+    void set(const Settings& all);
+
+    Settings settings;
     ThreadPool pool;
     WorkCount work;  // of all steps
     std::variant<Step<float>, Step<double>> step;

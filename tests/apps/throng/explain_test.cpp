@@ -77,7 +77,7 @@ TEST(Explain, TheSubstepIsThatOfTheResponseAndTheSolver)
         {"solver=pgs", "solve_pgs"},
         {"solver=direct", "hold_contacts"},
         {"response=penalty", "apply_penalty_forces"},
-        {"response=kinematic", "push_out"}};
+        {"response=kinematic", "stop_approaches"}};
     for (const auto& [dial, row] : wanted) {
         const std::string inner = inner_of(dial);
         for (const auto& [other, others] : wanted)

@@ -11,6 +11,8 @@ namespace {
 // Some dynamic bodies of unit mass and one ball each, awake, in a row along x.
 struct Bodies {
     StepContext context;
+    ImpactParameters impact;
+    SleepParameters sleep;
     Poses poses;
     Velocities velocities;
     Masses masses;
@@ -22,6 +24,8 @@ struct Bodies {
 
     explicit Bodies(std::uint32_t count, double apart = 1.0)
     {
+        impact.set({});
+        sleep.set({});
         context.effects = {Effect::motion, Effect::gravity, Effect::contact};
         shapes.spheres.push_back({0.5});
         for (std::uint32_t i = 0; i < count; ++i) {
@@ -53,7 +57,7 @@ struct Bodies {
             bounds.touched.push_back(i);
         }
     }
-    void update() { update_bounds(context, shapes, colliders, poses, velocities, states, bounds); }
+    void update() { update_bounds(context, impact, shapes, colliders, poses, velocities, states, bounds); }
 };
 
 TEST(UpdateBounds, AsksAboutWhatLeftItsMarginAlone)
@@ -89,7 +93,7 @@ TEST(UpdateBounds, ABoxHoldsAllThatTheBodyMayReachInTheStep)
     Bodies b(1);
     b.velocities.linear[0] = Vec3(30, -60, 0);
     b.update();
-    const double dt = b.context.settings.dt;
+    const double dt = b.context.dt;
     const Box3 there{Vec3(30 * dt - 0.5, -60 * dt - 0.5, -0.5),
                      Vec3(30 * dt + 0.5, -60 * dt + 0.5, 0.5)};
     EXPECT_TRUE(b.bounds.boxes[0].contains(there));
@@ -220,7 +224,7 @@ TEST(SleepIslands, PutsAnIslandToBedOnceAllOfItIsQuiet)
     b.velocities.linear[0] = Vec3(0.01, 0, 0);
     int steps = 0;
     while (b.states.awake[0] != 0 && ++steps < 100)
-        sleep_islands(b.context, {}, {}, islands, {}, b.states, sleeping_islands, b.velocities,
+        sleep_islands(b.context, b.sleep, {}, {}, islands, {}, b.states, sleeping_islands, b.velocities,
                       sleep_events);
     EXPECT_NEAR(steps, 30, 1);
     EXPECT_EQ(sleep_events.fell_asleep, (std::vector<std::uint32_t>{0, 1}));
