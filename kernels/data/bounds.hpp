@@ -36,6 +36,13 @@ struct NearBox {
     }
 };
 
+///   flags  [colliders] all 0 between stages
+struct BoundsScratch {
+    std::vector<std::uint8_t> flags;
+    std::vector<std::vector<std::uint32_t>> of_block, fast_of_block;
+    std::vector<std::uint32_t> fast_candidate_of_block;
+};
+
 /// What the broad phase works on.
 ///
 ///   boxes               [colliders] margin included
@@ -57,7 +64,6 @@ struct NearBox {
 ///                       have already are looked for; empty where nobody is ever stopped
 ///   fast_candidate      the first body that may go about half its smallest half extent in this
 ///                       step, or more
-///   flags               [colliders] scratch, all 0 between stages
 struct Bounds {
     std::vector<Box3> boxes;
     std::vector<double> speculative_margin;
@@ -73,10 +79,8 @@ struct Bounds {
     std::vector<double> kept;
     static constexpr std::uint32_t kNone = 0xffffffffu;
     std::uint32_t fast_candidate = kNone;
-    std::vector<std::uint8_t> flags;
     bool still_changed = true;
-    std::vector<std::vector<std::uint32_t>> of_block, fast_of_block;  // scratch
-    std::vector<std::uint32_t> fast_candidate_of_block;               // scratch
+    BoundsScratch scratch;
 };
 
 }  // namespace throng

@@ -263,7 +263,9 @@ struct ContactConstraints {
     std::vector<SolverAcceleration<Real>> accelerations;
     enum class Settled : std::uint8_t { no, yes, lost };
     std::vector<Settled> settled;
-    Wavefront wave;  // scratch
+    struct Scratch {
+        Wavefront wave;
+    } scratch;
 };
 
 }  // namespace throng

@@ -106,26 +106,33 @@ struct ConvexContacts {
         std::vector<Made> made;
         std::vector<Found> found;
     };
+    /// gathered, found_gathered  contacts and what was found of them, while they are put in order
+    /// order                     places that contacts come from
+    /// begun, parted             in this step; parted: pairs whose contacts ended
+    struct Scratch {
+        std::vector<Contact<Real>> gathered;
+        std::vector<CachedManifold<Real>> found_gathered;
+        std::vector<std::uint32_t> order;
+        std::vector<Begun> begun;
+        BlockLists<std::uint32_t> parted;
+        BlockLists<std::uint32_t> followed_of_block;
+    };
     std::vector<PairState> of_pair;  // in the order of the pairs
     std::vector<Contact<Real>> contacts;
-    std::vector<std::uint32_t> free;      // places
-    std::size_t strayed = 0;              // contacts that began since all were last put in order
-    std::vector<std::uint8_t> astray;     // [contacts] 1 for those
-    std::vector<Contact<Real>> gathered;  // scratch: those, while they are put in order
-    std::vector<std::uint32_t> order;     // scratch: places that contacts come from
-    std::vector<Begun> begun;             // scratch: in this step
-    BlockLists<std::uint32_t> parted;     // scratch: pairs whose contacts ended
+    std::vector<std::uint32_t> free;   // places
+    std::size_t strayed = 0;           // contacts that began since all were last put in order
+    std::vector<std::uint8_t> astray;  // [contacts] 1 for those
 
     // Empty in scenes where no kind of pair asks for it.
-    bool recycles = false;                             // some kind does
-    std::vector<CachedManifold<Real>> found;           // [contacts] of pairs of such a kind
-    std::vector<CachedManifold<Real>> found_gathered;  // scratch, like `gathered`
+    bool recycles = false;                    // some kind does
+    std::vector<CachedManifold<Real>> found;  // [contacts] of pairs of such a kind
     std::vector<float> apart_until;  // [pairs] m, no contact before their approaches come to this
     Travels travels;
 
     // Pairs that were looked at further than fast bodies are, as they touched already; ascending.
     std::vector<std::uint32_t> followed;
-    BlockLists<std::uint32_t> followed_of_block;  // scratch
+
+    Scratch scratch;
 
     /// The contact of a pair, or none.
     const Contact<Real>* at(std::size_t pair) const
@@ -145,9 +152,13 @@ struct ManyContacts {
         std::uint32_t part = 0;
         Contact<Real> contact;
     };
+    struct Scratch {
+        BlockLists<Entry> of_block;
+        BlockLists<std::uint32_t> followed_of_block;
+    };
     std::vector<Entry> entries;
     std::vector<Entry> before;
-    BlockLists<Entry> of_block;  // scratch
+    Scratch scratch;
 };
 
 /// Contacts of convex colliders with meshes; a part is a triangle.
@@ -155,7 +166,6 @@ template <class Real>
 struct MeshContacts : ManyContacts<Real> {
     // As of ConvexContacts.
     std::vector<std::uint32_t> followed;
-    BlockLists<std::uint32_t> followed_of_block;  // scratch
 };
 
 /// Contacts of solids with whatever there is; a part is a patch of the two surfaces.
@@ -175,9 +185,11 @@ struct SolidContacts : ManyContacts<Real> {
         std::vector<PatchManifold> patches;
     };
     Finds found, found_before;
-    std::uint64_t left_out = 0;                  // of all pairs
-    BlockLists<Found> found_of_block;            // scratch
-    BlockLists<PatchManifold> patches_of_block;  // scratch
+    std::uint64_t left_out = 0;  // of all pairs
+    struct FindsScratch {
+        BlockLists<Found> found_of_block;
+        BlockLists<PatchManifold> patches_of_block;
+    } finds_scratch;
 };
 
 /// Which list a contact is kept in.
@@ -195,7 +207,10 @@ struct ActiveContacts {
     };
     std::vector<Entry> entries;
     std::vector<Surfaces::MaterialPair> materials;  // [entries] in all digits; empty in float
-    std::vector<std::size_t> begin, end;  // scratch: of the entries of each block of pairs
+    /// Of the entries of each block of pairs.
+    struct Scratch {
+        std::vector<std::size_t> begin, end;
+    } scratch;
 };
 
 }  // namespace throng

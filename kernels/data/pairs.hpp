@@ -18,6 +18,10 @@ constexpr PairKey pair_key(std::uint32_t a, std::uint32_t b)
 constexpr std::uint32_t first_of(PairKey key) { return static_cast<std::uint32_t>(key >> 32); }
 constexpr std::uint32_t second_of(PairKey key) { return static_cast<std::uint32_t>(key); }
 
+struct PairsScratch {
+    std::vector<PairKey> found;
+};
+
 /// The pairs whose boxes overlap, margins included. They live on from step to step.
 ///
 ///   keys     ascending
@@ -30,8 +34,8 @@ struct Pairs {
     std::vector<std::uint32_t> from;
     std::vector<std::uint32_t> on_mesh, on_solid;
     bool changed = false;
-    std::vector<PairKey> found;       // scratch
     std::vector<std::uint8_t> asked;  // [colliders] all 0 between stages
+    PairsScratch scratch;
 };
 
 }  // namespace throng

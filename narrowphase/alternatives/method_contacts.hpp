@@ -31,12 +31,14 @@ bool collide_by(const ConvexMethod& method,
 ///
 ///   of_pair    [pairs]
 ///   bounds     [colliders] where a k-DOP filters, of where they are now
-///   fallbacks  scratch, [blocks of pairs]: pairs that another method had to answer
+///   fallbacks  [blocks of pairs] pairs that another method had to answer
 struct MethodPairs {
     std::vector<MethodMemory> of_pair;
     std::vector<KDop> bounds;
-    std::vector<std::uint32_t> fallbacks;
     std::uint64_t fell_back = 0;  // pairs, in this step
+    struct Scratch {
+        std::vector<std::uint32_t> fallbacks;
+    } scratch;
 };
 
 }  // namespace throng

@@ -58,7 +58,7 @@ ChosenMethod::ChosenMethod(const NarrowPhaseParameters& parameters,
       slabs_(slabs_of(filter_))
 {
     memories_.fell_back = 0;
-    memories_.fallbacks.assign(blocks, 0);
+    memories_.scratch.fallbacks.assign(blocks, 0);
     if (method_) {
         const auto fresh = [](std::size_t) { return MethodMemory{}; };
         if (pairs.changed && !memories_.of_pair.empty())
@@ -108,13 +108,14 @@ bool ChosenMethod::collide(std::size_t i,
     MethodMemory& memory = start_ == MethodStart::cached ? memories_.of_pair[i] : fresh;
     if (collide_by(*method_, start_, {shapes_, a, b, seen, pair.speculative_margin}, memory, out))
         return true;
-    ++memories_.fallbacks[block];
+    ++memories_.scratch.fallbacks[block];
     return false;
 }
 
 void ChosenMethod::count_fallbacks()
 {
-    for (const std::uint32_t of_block : memories_.fallbacks) memories_.fell_back += of_block;
+    for (const std::uint32_t of_block : memories_.scratch.fallbacks)
+        memories_.fell_back += of_block;
 }
 
 }  // namespace throng

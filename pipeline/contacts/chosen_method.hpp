@@ -38,7 +38,7 @@ public:
     /// Counts a pair whose method within `auto` came to its bound, as its cache tells.
     void note_fallback(const PairCache& cache, std::size_t block)
     {
-        if ((cache.kind & kFellBack) != 0) ++memories_.fallbacks[block];
+        if ((cache.kind & kFellBack) != 0) ++memories_.scratch.fallbacks[block];
     }
 
     /// How many pairs took their answer from another method, once all blocks are through.

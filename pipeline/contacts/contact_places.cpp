@@ -74,21 +74,21 @@ void follow_pairs(const Pairs& pairs, ConvexContacts<Real>& contacts)
 template <class Real>
 void move_in_and_out(ConvexContacts<Real>& contacts)
 {
-    const std::size_t blocks = contacts.begun.size();
+    const std::size_t blocks = contacts.scratch.begun.size();
     for (std::size_t block = 0; block < blocks; ++block)
-        for (const std::uint32_t pair : contacts.parted[block]) {
+        for (const std::uint32_t pair : contacts.scratch.parted[block]) {
             contacts.free.push_back(contacts.of_pair[pair].contact);
             contacts.of_pair[pair].contact = PairState::kApart;
         }
     std::size_t begun = 0;
-    for (const auto& of_block : contacts.begun) begun += of_block.made.size();
+    for (const auto& of_block : contacts.scratch.begun) begun += of_block.made.size();
     contacts.strayed += begun;
     std::uint32_t next = static_cast<std::uint32_t>(contacts.contacts.size());
     if (begun > contacts.free.size())
         resize_closely(contacts.contacts, next + begun - contacts.free.size());
     resize_closely(contacts.astray, contacts.contacts.size());
     if (contacts.recycles) resize_closely(contacts.found, contacts.contacts.size());
-    for (auto& of_block : contacts.begun) {
+    for (auto& of_block : contacts.scratch.begun) {
         for (const auto& made : of_block.made) {
             std::uint32_t place = next;
             if (contacts.free.empty()) {
@@ -122,9 +122,10 @@ void put_in_order(ConvexContacts<Real>& contacts)
     const bool in_order = sum_up(counts) && contacts.free.empty();
     if (!in_order) {
         // Those that stray are set aside; the others keep their order and make room for them.
-        resize_closely(contacts.gathered, counts.back().strays);
-        resize_closely(contacts.found_gathered, contacts.recycles ? counts.back().strays : 0);
-        resize_closely(contacts.order, used);
+        resize_closely(contacts.scratch.gathered, counts.back().strays);
+        resize_closely(contacts.scratch.found_gathered,
+                       contacts.recycles ? counts.back().strays : 0);
+        resize_closely(contacts.scratch.order, used);
         for_each_block(states.size(), kOrderGrain, [&](auto begin, auto end, auto block) {
             auto [next, strays, ascending, first, last] = counts[block];
             for (std::size_t i = begin; i < end; ++i) {
@@ -132,20 +133,22 @@ void put_in_order(ConvexContacts<Real>& contacts)
                 if (place == PairState::kApart) continue;
                 const bool stray = contacts.astray[place] != 0;
                 if (stray) {
-                    if (contacts.recycles) contacts.found_gathered[strays] = contacts.found[place];
-                    contacts.gathered[strays++] = contacts.contacts[place];
+                    if (contacts.recycles)
+                        contacts.scratch.found_gathered[strays] = contacts.found[place];
+                    contacts.scratch.gathered[strays++] = contacts.contacts[place];
                 }
-                contacts.order[next] = stray ? kNewItem : place;
+                contacts.scratch.order[next] = stray ? kNewItem : place;
                 states[i].contact = next++;
             }
         });
         follow(
-            contacts.order, contacts.contacts, [&](std::size_t n) { return contacts.gathered[n]; },
+            contacts.scratch.order, contacts.contacts,
+            [&](std::size_t n) { return contacts.scratch.gathered[n]; },
             [](const Contact<Real>&) {});
         if (contacts.recycles)
             follow(
-                contacts.order, contacts.found,
-                [&](std::size_t n) { return contacts.found_gathered[n]; },
+                contacts.scratch.order, contacts.found,
+                [&](std::size_t n) { return contacts.scratch.found_gathered[n]; },
                 [](const CachedManifold<Real>&) {});
         contacts.free.clear();
     }

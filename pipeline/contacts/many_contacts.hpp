@@ -49,10 +49,10 @@ void refresh_contacts(const StepContext& context,
     std::swap(contacts.entries, contacts.before);
     contacts.entries.clear();
     const Real scale = static_cast<Real>(impulse_scale(context));
-    contacts.of_block.start(block_count(listed.size(), grain));
+    contacts.scratch.of_block.start(block_count(listed.size(), grain));
     for_each_block(listed.size(), grain,
                    [&](std::size_t begin, std::size_t end, std::size_t block) {
-                       ContactEntries<Real>& out = contacts.of_block[block];
+                       ContactEntries<Real>& out = contacts.scratch.of_block[block];
                        for (std::size_t k = begin; k < end; ++k) {
                            const std::uint32_t i = listed[k];
                            const PairPlace pair = place_of(pairs.keys[i], colliders, bounds);
@@ -68,7 +68,7 @@ void refresh_contacts(const StepContext& context,
                            for (std::size_t n = first; n < out.size(); ++n) out[n].pair = i;
                        }
                    });
-    contacts.of_block.append_to(contacts.entries);
+    contacts.scratch.of_block.append_to(contacts.entries);
 }
 
 }  // namespace throng

@@ -238,15 +238,18 @@ private:
         constexpr int kUnreached = 0xffff;
         const auto height = [&](std::uint32_t body) -> int {
             const std::uint32_t solver_index = layout_.solver_index[body];
-            return solver_index == Layout::kNoSolverIndex ? 0 : overloaded_.height[solver_index];
+            return solver_index == Layout::kNoSolverIndex
+                ? 0
+                : overloaded_.scratch.height[solver_index];
         };
         const auto lower = [&](std::uint32_t body, int below) {
             if (height(body) <= below + 1) return false;
-            overloaded_.height[layout_.solver_index[body]] = static_cast<std::uint16_t>(below + 1);
+            overloaded_.scratch.height[layout_.solver_index[body]] =
+                static_cast<std::uint16_t>(below + 1);
             return true;
         };
         for (const std::uint32_t body : bodies_of(island))
-            overloaded_.height[layout_.solver_index[body]] = kUnreached;
+            overloaded_.scratch.height[layout_.solver_index[body]] = kUnreached;
         for (bool lowered = true; lowered;) {
             lowered = false;
             for (const std::uint32_t contact : contacts_of(island)) {
@@ -300,21 +303,21 @@ void measure_strain(const StepContext& context,
                     OverloadedIslands& overloaded)
 {
     const std::size_t count = islands.size();
-    overloaded.of_island.resize(count);
-    overloaded.height.resize(layout.body_of_solver_index.size());
+    overloaded.scratch.of_island.resize(count);
+    overloaded.scratch.height.resize(layout.body_of_solver_index.size());
     const Gauge<Real> gauge(context, parameters, islands, layout, active, masses, velocities,
                             convex, meshes, solids, overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i)
-            overloaded.of_island[i] = float(gauge.strain_of(i));
+            overloaded.scratch.of_island[i] = float(gauge.strain_of(i));
     });
 
     overloaded.forget_all();
     for (std::size_t i = 0; i < count; ++i) {
-        if (overloaded.of_island[i] == 0) continue;
+        if (overloaded.scratch.of_island[i] == 0) continue;
         overloaded.strain.resize(layout.solver_index.size(), 0);
         for (std::uint32_t k = islands.body_begin[i]; k < islands.body_begin[i + 1]; ++k) {
-            overloaded.strain[islands.bodies[k]] = overloaded.of_island[i];
+            overloaded.strain[islands.bodies[k]] = overloaded.scratch.of_island[i];
             overloaded.strained.push_back(islands.bodies[k]);
         }
     }

@@ -72,10 +72,11 @@ template <class Real>
 void SlicePasses<Real>::run()
 {
     if (passes_.empty()) return;
-    constraints_.wave.run(passes_.size(), batch_.slices, [&](std::size_t pass, std::size_t place) {
-        const std::size_t at = passes_[pass].backward ? batch_.slices - 1 - place : place;
-        run_pass(passes_[pass], layout_.slices[batch_.first_slice + at], false);
-    });
+    constraints_.scratch.wave.run(
+        passes_.size(), batch_.slices, [&](std::size_t pass, std::size_t place) {
+            const std::size_t at = passes_[pass].backward ? batch_.slices - 1 - place : place;
+            run_pass(passes_[pass], layout_.slices[batch_.first_slice + at], false);
+        });
     passes_.clear();
 }
 

@@ -15,8 +15,8 @@ void start_islands(const Layout& layout,
                                  [](const Batch& batch) { return batch.direct; });
     using Settled = typename ContactConstraints<Real>::Settled;
     constraints.settled.assign(any ? constraints.bodies.size() : 0, Settled::no);
-    diagnostics.residual_of.assign(any ? layout.batches.size() : 0, 0);
-    diagnostics.cuts_of.assign(diagnostics.residual_of.size(), 1);
+    diagnostics.scratch.residual_of.assign(any ? layout.batches.size() : 0, 0);
+    diagnostics.scratch.cuts_of.assign(diagnostics.scratch.residual_of.size(), 1);
 }
 
 template <class Real>
@@ -29,8 +29,8 @@ void solve_island(const IslandScene<Real>& scene,
     for (int step = 0; step < scene.context.substeps; ++step) island.substep(scene.context);
     island.finish(scene, batch, constraints);
     const auto place = static_cast<std::size_t>(&batch - scene.layout.batches.data());
-    diagnostics.residual_of[place] = island.residual();
-    diagnostics.cuts_of[place] = island.cuts();
+    diagnostics.scratch.residual_of[place] = island.residual();
+    diagnostics.scratch.cuts_of[place] = island.cuts();
 }
 
 void finish_islands(const StepContext& context,
@@ -41,11 +41,11 @@ void finish_islands(const StepContext& context,
     diagnostics.direct_residual = 0;
     diagnostics.direct_left = 0;
     diagnostics.penalty_cuts = 1;
-    for (const int cuts : diagnostics.cuts_of)
+    for (const int cuts : diagnostics.scratch.cuts_of)
         diagnostics.penalty_cuts = std::max(diagnostics.penalty_cuts, cuts);
     // Of islands that are escalated nothing is promised but that they stand.
     if (parameters.solver != Solver::direct || context.response != Response::impulse) return;
-    for (const double residual : diagnostics.residual_of)
+    for (const double residual : diagnostics.scratch.residual_of)
         diagnostics.direct_residual = std::max(diagnostics.direct_residual, residual);
     for (const Batch& batch : layout.batches) diagnostics.direct_left += batch.direct ? 0 : 1;
 }

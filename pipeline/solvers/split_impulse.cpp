@@ -105,7 +105,7 @@ std::uint16_t go_on(const Layout& layout,
 void start_split_impulse(const Layout& layout, SplitImpulse& split_impulse)
 {
     split_impulse.steps.resize(layout.solver_index.size(), 0);
-    split_impulse.batches.assign(layout.batches.size(), 0);
+    split_impulse.scratch.batches.assign(layout.batches.size(), 0);
 }
 
 template <class Real>
@@ -147,7 +147,8 @@ bool note_split_impulse(const Layout& layout,
     std::uint16_t most = 0;
     for (const ContactConstraintWide<Real>& block : blocks_of(layout, batch, constraints))
         most = std::max(most, go_on(layout, constraints, block, split_impulse.steps));
-    split_impulse.batches[static_cast<std::size_t>(&batch - layout.batches.data())] = most > 0;
+    split_impulse.scratch.batches[static_cast<std::size_t>(&batch - layout.batches.data())] =
+        most > 0;
     return most > 0;
 }
 
@@ -163,7 +164,7 @@ void update_split_impulse(SplitImpulse& split_impulse)
     if (!split_impulse.some) return;
     for (std::uint16_t& steps : split_impulse.steps)
         steps = (steps & kGoesOn) != 0 ? static_cast<std::uint16_t>(left_of(steps) - 1) : 0;
-    const auto& batches = split_impulse.batches;
+    const auto& batches = split_impulse.scratch.batches;
     split_impulse.some = std::find(batches.begin(), batches.end(), 1) != batches.end();
 }
 

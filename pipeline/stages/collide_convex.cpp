@@ -56,8 +56,8 @@ public:
         begun_.made.clear();
         begun_.found.clear();
         std::array<std::uint32_t, kGrain> near;
-        const std::size_t count =
-            find_near(pairs_, bounds_, begin, end, contacts_, contacts_.parted[block], near);
+        const std::size_t count = find_near(pairs_, bounds_, begin, end, contacts_,
+                                            contacts_.scratch.parted[block], near);
         for (std::size_t k = 0; k < count; ++k) {
             if (k + kFar < count) ask_for(pairs_.keys[near[k + kFar]]);
             const std::uint32_t i = near[k];
@@ -70,8 +70,8 @@ public:
                 scale_impulses(contacts_.contacts[place], scale_);
         }
         if (!boxes.pairs.empty()) collide_batch(boxes, block);
-        contacts_.begun[block].made.assign(begun_.made.begin(), begun_.made.end());
-        contacts_.begun[block].found.assign(begun_.found.begin(), begun_.found.end());
+        contacts_.scratch.begun[block].made.assign(begun_.made.begin(), begun_.made.end());
+        contacts_.scratch.begun[block].found.assign(begun_.found.begin(), begun_.found.end());
     }
 
 private:
@@ -99,13 +99,13 @@ private:
         const double kept = kept_speculative_margin(pair, bounds_);
         if (!(kept > pair.speculative_margin)) return;
         pair.speculative_margin = kept;
-        contacts_.followed_of_block[block].push_back(static_cast<std::uint32_t>(i));
+        contacts_.scratch.followed_of_block[block].push_back(static_cast<std::uint32_t>(i));
     }
 
     void part(std::size_t i, std::size_t block)
     {
         if (contacts_.of_pair[i].contact != PairState::kApart)
-            contacts_.parted[block].push_back(static_cast<std::uint32_t>(i));
+            contacts_.scratch.parted[block].push_back(static_cast<std::uint32_t>(i));
     }
 
     void collide_one(std::size_t i, const PairPlace& pair, BoxBatch& boxes, std::size_t block)
@@ -306,9 +306,9 @@ void collide_convex(const StepContext& context,
 {
     if (pairs.changed) follow_pairs(pairs, contacts);
     const std::size_t blocks = block_count(pairs.keys.size(), kGrain);
-    contacts.begun.resize(blocks);
-    contacts.parted.start(blocks);
-    contacts.followed_of_block.start(bounds.fast.empty() ? 0 : blocks);
+    contacts.scratch.begun.resize(blocks);
+    contacts.scratch.parted.start(blocks);
+    contacts.scratch.followed_of_block.start(bounds.fast.empty() ? 0 : blocks);
     ChosenMethod chosen(parameters, pairs, shapes, colliders, bounds, blocks, method_pairs);
     const bool recycles = !shapes.hulls.empty() && !chosen.has_method();
     if (recycles && !contacts.recycles) forget_found(contacts);
@@ -325,7 +325,7 @@ void collide_convex(const StepContext& context,
                            .process(begin, end, block);
                    });
     contacts.followed.clear();
-    contacts.followed_of_block.append_to(contacts.followed);
+    contacts.scratch.followed_of_block.append_to(contacts.followed);
     chosen.count_fallbacks();
     move_in_and_out(contacts);
     put_in_order(contacts);

@@ -22,7 +22,7 @@ void collide_meshes(const StepContext& context,
                     MeshContacts<Real>& contacts)
 {
     const Real scale = static_cast<Real>(impulse_scale(context));
-    contacts.followed_of_block.start(block_count(pairs.on_mesh.size(), kGrain));
+    contacts.scratch.followed_of_block.start(block_count(pairs.on_mesh.size(), kGrain));
     const auto find = [&](std::uint32_t i, const PairPlace& pair, const auto& old,
                           std::size_t block, ContactEntries<Real>& out) {
         static thread_local std::vector<TriangleManifold<Real>> found;
@@ -35,7 +35,7 @@ void collide_meshes(const StepContext& context,
         if (!bounds.fast.empty() && !old.empty()) {
             speculative_margin = kept_speculative_margin(pair, bounds);
             if (speculative_margin > pair.speculative_margin)
-                contacts.followed_of_block[block].push_back(i);
+                contacts.scratch.followed_of_block[block].push_back(i);
         }
         held.clear();
         for (const auto& before : old) held.push_back(before.part);
@@ -63,7 +63,7 @@ void collide_meshes(const StepContext& context,
     refresh_contacts<Real>(context, pairs, pairs.on_mesh, colliders, bounds, states, kGrain,
                            contacts, find);
     contacts.followed.clear();
-    contacts.followed_of_block.append_to(contacts.followed);
+    contacts.scratch.followed_of_block.append_to(contacts.followed);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \

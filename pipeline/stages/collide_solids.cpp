@@ -42,8 +42,8 @@ public:
     {
         std::swap(contacts_.found, contacts_.found_before);
         const std::size_t blocks = block_count(pairs_.on_solid.size(), kGrain);
-        contacts_.found_of_block.start(blocks);
-        contacts_.patches_of_block.start(blocks);
+        contacts_.finds_scratch.found_of_block.start(blocks);
+        contacts_.finds_scratch.patches_of_block.start(blocks);
         const auto find = [&](auto&&... all) { process(all...); };
         refresh_contacts<Real>(context_, pairs_, pairs_.on_solid, colliders_, bounds_, states_,
                                kGrain, contacts_, find);
@@ -80,7 +80,7 @@ private:
             || !recycle_all(kept.front(), sides, pose, pair.speculative_margin, block, found, out))
             find_anew(sides, pose, pair.speculative_margin, block, found, out);
         found.pair = i;
-        contacts_.found_of_block[block].push_back(found);
+        contacts_.finds_scratch.found_of_block[block].push_back(found);
         for (std::size_t n = first; n < out.size(); ++n)
             carry_over(old, out[n].contact, out[n].part);
     }
@@ -92,7 +92,7 @@ private:
                    Found& found,
                    ContactEntries<Real>& out)
     {
-        std::vector<PatchManifold>& patches = contacts_.patches_of_block[block];
+        std::vector<PatchManifold>& patches = contacts_.finds_scratch.patches_of_block[block];
         const std::size_t first = patches.size();
         const SolidAnswer answer =
             collide_solid({shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
@@ -131,7 +131,7 @@ private:
         for (auto patch = begin; patch != begin + kept.count; ++patch) {
             then.manifold = patch->manifold;
             move_manifold(then, pose, speculative_margin, now);
-            contacts_.patches_of_block[block].push_back(*patch);
+            contacts_.finds_scratch.patches_of_block[block].push_back(*patch);
             if (now.count > 0) add(sides, patch->patch, now, out);
         }
         found = kept;
@@ -199,8 +199,8 @@ private:
         auto& [pairs, patches] = contacts_.found;
         pairs.clear();
         patches.clear();
-        contacts_.found_of_block.append_to(pairs);
-        contacts_.patches_of_block.append_to(patches);
+        contacts_.finds_scratch.found_of_block.append_to(pairs);
+        contacts_.finds_scratch.patches_of_block.append_to(patches);
         contacts_.left_out = 0;
         std::uint32_t first = 0;
         for (Found& found : pairs) {

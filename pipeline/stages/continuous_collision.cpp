@@ -97,10 +97,10 @@ public:
         fast_.held.clear();
         find_fast(woke);
         if (found_.empty()) return;
-        fast_.flags.resize(states_.kind.size(), 0);
-        for (const std::uint32_t body : found_) fast_.flags[body] = 1;
+        fast_.scratch.flags.resize(states_.kind.size(), 0);
+        for (const std::uint32_t body : found_) fast_.scratch.flags[body] = 1;
         find_candidates();
-        for (const std::uint32_t body : found_) fast_.flags[body] = 0;
+        for (const std::uint32_t body : found_) fast_.scratch.flags[body] = 0;
         if (candidates_.empty()) return;
         find_ways();
         for_each_block(candidates_.size(), kPairs, [&](auto begin, auto end, std::size_t) {
@@ -193,7 +193,7 @@ private:
         found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
     }
 
-    bool is_fast(std::uint32_t body) const { return fast_.flags[body] != 0; }
+    bool is_fast(std::uint32_t body) const { return fast_.scratch.flags[body] != 0; }
 
     // Two of which one at least is dynamic and one fast. A thing that moves by itself has to go
     // further than the half extent of what it runs over.

@@ -55,11 +55,11 @@ public:
     {
         if (pairs_.keys.empty()) return begin_with_found();
         const std::size_t count = pairs_.keys.size();
-        resize_closely(pairs_.from, count + pairs_.found.size());
+        resize_closely(pairs_.from, count + pairs_.scratch.found.size());
         std::vector<Merged> parts(block_count(count, kMergeGrain) + 1);
         for (std::size_t i = 1; i + 1 < parts.size(); ++i)
             parts[i].found = first_found(pairs_.keys[i * kMergeGrain]);
-        parts.back().found = pairs_.found.size();
+        parts.back().found = pairs_.scratch.found.size();
         for_each_block(count, kMergeGrain, [&](auto begin, auto end, auto block) {
             merge(begin, end, parts[block + 1].found, parts[block]);
         });
@@ -69,13 +69,13 @@ public:
         std::size_t size = 0, fresh = 0;
         for (const Merged& part : parts) {
             move_down(pairs_.from, part.begin, part.size, size);
-            move_down(pairs_.found, part.found, part.fresh, fresh);
+            move_down(pairs_.scratch.found, part.found, part.fresh, fresh);
             size += part.size;
             fresh += part.fresh;
         }
         pairs_.from.resize(size);
         follow(
-            pairs_.from, pairs_.keys, [&](std::size_t n) { return pairs_.found[n]; },
+            pairs_.from, pairs_.keys, [&](std::size_t n) { return pairs_.scratch.found[n]; },
             [](PairKey) {});
         return true;
     }
@@ -83,7 +83,7 @@ public:
 private:
     bool begin_with_found()
     {
-        pairs_.keys.swap(pairs_.found);
+        pairs_.keys.swap(pairs_.scratch.found);
         pairs_.from.assign(pairs_.keys.size(), Pairs::kNewPair);
         return !pairs_.keys.empty();
     }
@@ -92,7 +92,7 @@ private:
     void merge(std::size_t begin, std::size_t end, std::size_t last, Merged& part)
     {
         const std::vector<PairKey>& old = pairs_.keys;
-        std::vector<PairKey>& found = pairs_.found;
+        std::vector<PairKey>& found = pairs_.scratch.found;
         std::size_t next = part.found;
         PairKey* fresh = found.data() + next;
         part.begin = begin + next;
@@ -121,7 +121,8 @@ private:
     std::size_t first_found(PairKey key) const
     {
         return static_cast<std::size_t>(
-            std::lower_bound(pairs_.found.begin(), pairs_.found.end(), key) - pairs_.found.begin());
+            std::lower_bound(pairs_.scratch.found.begin(), pairs_.scratch.found.end(), key)
+            - pairs_.scratch.found.begin());
     }
     bool asked(PairKey key) const
     {
@@ -166,11 +167,11 @@ void find_pairs(const Bounds& bounds,
 {
     pairs.changed = false;
     if (bounds.asked.empty()) return;
-    clear_closely(pairs.found);
+    clear_closely(pairs.scratch.found);
     find_overlaps({bounds.boxes, bounds.moving, bounds.asked, bounds.still_changed, &filter},
-                  finder.finder, pairs.found);
+                  finder.finder, pairs.scratch.found);
     if (!shapes.planes.empty())
-        std::erase_if(pairs.found,
+        std::erase_if(pairs.scratch.found,
                       [&](PairKey key) { return !may_touch(key, bounds, shapes, colliders); });
 
     pairs.asked.resize(colliders.size(), 0);

@@ -47,7 +47,7 @@ public:
         make_places(convex.of_pair);
         for_each_block(convex.of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
             PairMaterials pair_materials(surfaces_);
-            std::size_t at = active_.begin[block];
+            std::size_t at = active_.scratch.begin[block];
             Surfaces::MaterialPair materials;
             for (std::size_t i = begin; i < end; ++i)
                 if (const Contact<Real>* contact = convex.at(i); contact && contact->count > 0)
@@ -56,7 +56,7 @@ public:
                                kInAllDigits ? active_.materials[at] : materials)
                         ? 1
                         : 0;
-            active_.end[block] = at;
+            active_.scratch.end[block] = at;
         });
         join_places();
     }
@@ -83,16 +83,17 @@ private:
     void make_places(const std::vector<PairState>& of_pair)
     {
         const std::size_t blocks = block_count(of_pair.size(), kGrain);
-        active_.begin.assign(blocks + 1, 0);
-        active_.end.resize(blocks);
+        active_.scratch.begin.assign(blocks + 1, 0);
+        active_.scratch.end.resize(blocks);
         for_each_block(of_pair.size(), kGrain, [&](auto begin, auto end, auto block) {
             std::size_t touching = 0;
             for (std::size_t i = begin; i < end; ++i)
                 touching += of_pair[i].contact != PairState::kApart ? 1 : 0;
-            active_.begin[block + 1] = touching;
+            active_.scratch.begin[block + 1] = touching;
         });
-        std::partial_sum(active_.begin.begin(), active_.begin.end(), active_.begin.begin());
-        resize_closely(active_.entries, active_.begin.back());
+        std::partial_sum(active_.scratch.begin.begin(), active_.scratch.begin.end(),
+                         active_.scratch.begin.begin());
+        resize_closely(active_.entries, active_.scratch.begin.back());
         if (kInAllDigits) active_.materials.resize(active_.entries.size());
     }
 
@@ -106,8 +107,9 @@ private:
             std::copy(place(begin), place(end), place(to));
         };
         std::size_t size = 0;
-        for (std::size_t block = 0; block < active_.end.size(); ++block) {
-            const std::size_t begin = active_.begin[block], end = active_.end[block];
+        for (std::size_t block = 0; block < active_.scratch.end.size(); ++block) {
+            const std::size_t begin = active_.scratch.begin[block],
+                              end = active_.scratch.end[block];
             if (begin != size) join(active_.entries, begin, end, size);
             if (kInAllDigits && begin != size) join(active_.materials, begin, end, size);
             size += end - begin;

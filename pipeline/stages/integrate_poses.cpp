@@ -265,19 +265,19 @@ void integrate_poses(const StepContext& context,
     const bool wide =
         !context.has(Effect::gyroscopic) || rule.precession != FlightRule::Precession::none;
     const auto fly = [&](const std::vector<std::uint32_t>& bodies) {
-        diagnostics.of_block.start(block_count(bodies.size(), kGrain));
+        diagnostics.scratch.of_block.start(block_count(bodies.size(), kGrain));
         for_each_block(bodies.size(), kGrain, [&](auto begin, auto end, auto block) {
             std::array<std::uint32_t, kGrain> chosen, left;
             std::size_t count = 0;
             for (std::size_t i = begin; i < end; ++i)
                 if (states.moves(bodies[i])) chosen[count++] = bodies[i];
             if (wide) count = kernel(rule, arrays, chosen.data(), count, left.data());
-            auto& lost = diagnostics.of_block[block];
+            auto& lost = diagnostics.scratch.of_block[block];
             for (std::size_t i = 0; i < count; ++i)
                 if (!fly_one(context, rule, masses, wide ? left[i] : chosen[i], poses, velocities))
                     lost.push_back(wide ? left[i] : chosen[i]);
         });
-        diagnostics.of_block.append_to(diagnostics.quarantined);
+        diagnostics.scratch.of_block.append_to(diagnostics.quarantined);
     };
     const auto& free = alone ? states.active_bodies.dynamic : islands.lone;
     const auto by_law = [&](const std::vector<std::uint32_t>& bodies) {

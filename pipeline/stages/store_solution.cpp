@@ -47,7 +47,7 @@ void store_solution(const Layout& layout,
     diagnostics.quarantined.clear();
     // In order of bodies, of which many arrays are written.
     const std::size_t bodies = layout.solver_index.size();
-    diagnostics.of_block.start(block_count(bodies, kBodies));
+    diagnostics.scratch.of_block.start(block_count(bodies, kBodies));
     for_each_block(bodies, kBodies, [&](std::size_t begin, std::size_t end, std::size_t block) {
         for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body) {
             const std::uint32_t solver_index = layout.solver_index[body];
@@ -60,10 +60,10 @@ void store_solution(const Layout& layout,
                 constraints.inertias.empty() ? nullptr : &constraints.inertias[solver_index];
             if (settled == Settled::lost
                 || !take_back(constraints.bodies[solver_index], inertia, body, poses, velocities))
-                diagnostics.of_block[block].push_back(body);
+                diagnostics.scratch.of_block[block].push_back(body);
         }
     });
-    diagnostics.of_block.append_to(diagnostics.quarantined);
+    diagnostics.scratch.of_block.append_to(diagnostics.quarantined);
 }
 
 template void store_solution<float>(

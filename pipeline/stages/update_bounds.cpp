@@ -145,7 +145,7 @@ public:
         std::vector<std::uint32_t>& fast = bounds_.fast;
         if (!std::is_sorted(fast.begin(), fast.end())) std::sort(fast.begin(), fast.end());
         fast.erase(std::unique(fast.begin(), fast.end()), fast.end());
-        for (const std::uint32_t collider : touched) bounds_.flags[collider] = 0;
+        for (const std::uint32_t collider : touched) bounds_.scratch.flags[collider] = 0;
     }
 
 private:
@@ -153,7 +153,7 @@ private:
     {
         const std::size_t count = colliders_.size();
         if (sweeps_ && bounds_.kept.size() != count) bounds_.kept.resize(count, 0.0);
-        if (bounds_.boxes.size() == count && bounds_.flags.size() == count) return;
+        if (bounds_.boxes.size() == count && bounds_.scratch.flags.size() == count) return;
         bounds_.boxes.resize(count);
         bounds_.speculative_margin.resize(count, 0.0);
         bounds_.near.resize(count, nowhere());
@@ -162,7 +162,7 @@ private:
         for (std::vector<float>& half : bounds_.half) half.resize(count, 0.0f);
         bounds_.round.resize(count, 0.0f);
         bounds_.form.resize(count, 0);
-        bounds_.flags.resize(count, 0);
+        bounds_.scratch.flags.resize(count, 0);
     }
 
     // Ascending, none twice; their flags are up until the end.
@@ -174,7 +174,7 @@ private:
         if (!std::is_sorted(touched.begin(), touched.end()))
             std::sort(touched.begin(), touched.end());
         touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-        for (const std::uint32_t collider : touched) bounds_.flags[collider] = 1;
+        for (const std::uint32_t collider : touched) bounds_.scratch.flags[collider] = 1;
         return touched;
     }
 
@@ -186,13 +186,14 @@ private:
         const ActiveBoundsRule rule{dt_,          kRestingMargin, falls,       margin.base,
                                     margin.steps, margin.longest, margin.loose};
         const std::size_t blocks = block_count(bodies.size(), kGrain);
-        bounds_.fast_candidate_of_block.assign(blocks, Bounds::kNone);
-        if (bounds_.fast_of_block.size() < blocks) bounds_.fast_of_block.resize(blocks);
+        bounds_.scratch.fast_candidate_of_block.assign(blocks, Bounds::kNone);
+        if (bounds_.scratch.fast_of_block.size() < blocks)
+            bounds_.scratch.fast_of_block.resize(blocks);
         in_blocks(bodies.size(), [&](std::size_t begin, std::size_t end, auto& asked) {
             std::array<std::uint32_t, kGrain> colliders, owners, found;
             std::size_t count = 0;
             const std::size_t block = begin / kGrain;
-            bounds_.fast_of_block[block].clear();
+            bounds_.scratch.fast_of_block[block].clear();
             const auto flush = [&] {
                 const std::size_t left =
                     kernel_(rule, arrays, colliders.data(), owners.data(), count, found.data());
@@ -206,7 +207,7 @@ private:
                 const std::uint32_t body = bodies[i], first = colliders_.begin[body];
                 if (!states_.moves(body)) continue;
                 for (std::uint32_t at = first; at < first + colliders_.count[body]; ++at) {
-                    if (bounds_.flags[at] != 0
+                    if (bounds_.scratch.flags[at] != 0
                         || bounds_.form[at] == static_cast<std::uint8_t>(ActiveBoundsForm::other)) {
                         if (colliders_.body[at] != body) continue;
                         update(at, asked);
@@ -222,8 +223,8 @@ private:
         });
         for (std::size_t block = 0; block < blocks; ++block) {
             bounds_.fast_candidate =
-                std::min(bounds_.fast_candidate, bounds_.fast_candidate_of_block[block]);
-            const std::vector<std::uint32_t>& fast = bounds_.fast_of_block[block];
+                std::min(bounds_.fast_candidate, bounds_.scratch.fast_candidate_of_block[block]);
+            const std::vector<std::uint32_t>& fast = bounds_.scratch.fast_of_block[block];
             bounds_.fast.insert(bounds_.fast.end(), fast.begin(), fast.end());
         }
     }
@@ -241,8 +242,8 @@ private:
     {
         const std::uint32_t body = colliders_.body[collider];
         if (is_fast_candidate(colliders_, velocities_, body, dt_, falls))
-            bounds_.fast_candidate_of_block[block] =
-                std::min(bounds_.fast_candidate_of_block[block], body);
+            bounds_.scratch.fast_candidate_of_block[block] =
+                std::min(bounds_.scratch.fast_candidate_of_block[block], body);
         if (!sweeps_ || !states_.dynamic(body)) return;
         const double inner = colliders_.inner_extent[collider];
         const double turning =
@@ -262,7 +263,7 @@ private:
         bounds_.near[collider] =
             near_box(shape_bounds(shapes_, colliders_.shape[collider], bounds_.placed[collider]),
                      std::max(speculative_margin, bounds_.kept[collider]));
-        std::vector<std::uint32_t>& fast = bounds_.fast_of_block[block];
+        std::vector<std::uint32_t>& fast = bounds_.scratch.fast_of_block[block];
         if (fast.empty() || fast.back() != body) fast.push_back(body);
     }
 
@@ -293,9 +294,9 @@ private:
     {
         if (count == 0) return;
         const std::size_t blocks = block_count(count, kGrain);
-        if (bounds_.of_block.size() < blocks) bounds_.of_block.resize(blocks);
+        if (bounds_.scratch.of_block.size() < blocks) bounds_.scratch.of_block.resize(blocks);
         for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t block) {
-            std::vector<std::uint32_t>& asked = bounds_.of_block[block];
+            std::vector<std::uint32_t>& asked = bounds_.scratch.of_block[block];
             asked.clear();
             body(begin, end, asked);
             if (!std::is_sorted(asked.begin(), asked.end())) std::sort(asked.begin(), asked.end());
@@ -303,7 +304,7 @@ private:
         std::vector<std::uint32_t>& all = bounds_.asked;
         const auto middle = static_cast<std::ptrdiff_t>(all.size());
         for (std::size_t block = 0; block < blocks; ++block) {
-            const std::vector<std::uint32_t>& found = bounds_.of_block[block];
+            const std::vector<std::uint32_t>& found = bounds_.scratch.of_block[block];
             all.insert(all.end(), found.begin(), found.end());
         }
         // Places of removed bodies are taken again in any order.
@@ -333,7 +334,7 @@ private:
     // One collider, the long way.
     void update(std::uint32_t collider, std::vector<std::uint32_t>& asked)
     {
-        const bool touched = bounds_.flags[collider] != 0;
+        const bool touched = bounds_.scratch.flags[collider] != 0;
         const std::uint32_t body = colliders_.body[collider];
         if (body == kNoBody) {
             bounds_.boxes[collider] = {};

@@ -28,14 +28,17 @@ struct StepDiagnostics {
     std::vector<std::uint32_t>
         quarantined;             // bodies that turned non-finite in this step, ascending
     double direct_residual = 0;  // greatest of the islands that were solved directly in this step
-    std::uint64_t direct_left = 0;       // islands in it that were too great for that
-    std::vector<double> residual_of;     // scratch: [batches]
-    std::uint64_t held_groups = 0;       // in it that could not be carried on without overlap
-    std::uint64_t deep_pieces = 0;       // of it that ended too deep, with no halving left
-    double deepest = 0;                  // m, overlap at the end of any piece of it
-    int penalty_cuts = 1;                // most that penalty forces cut a substep into
-    std::vector<int> cuts_of;            // scratch: [batches]
-    BlockLists<std::uint32_t> of_block;  // scratch
+    std::uint64_t direct_left = 0;  // islands in it that were too great for that
+    std::uint64_t held_groups = 0;  // in it that could not be carried on without overlap
+    std::uint64_t deep_pieces = 0;  // of it that ended too deep, with no halving left
+    double deepest = 0;             // m, overlap at the end of any piece of it
+    int penalty_cuts = 1;           // most that penalty forces cut a substep into
+
+    struct Scratch {
+        std::vector<double> residual_of;  // [batches]
+        std::vector<int> cuts_of;         // [batches]
+        BlockLists<std::uint32_t> of_block;
+    } scratch;
 };
 
 /// Who is moved apart from what it was made deep in (see solvers/split_impulse.hpp), from step to
@@ -43,9 +46,11 @@ struct StepDiagnostics {
 struct SplitImpulse {
     static constexpr std::uint16_t kPlaced = 0x4000;
 
-    std::vector<std::uint16_t> steps;   // [bodies] for which it may go on, and kPlaced: see place()
-    std::vector<std::uint8_t> batches;  // scratch: [batches] 1: somebody in it is moved apart
-    bool some = false;                  // somebody is, or was placed
+    std::vector<std::uint16_t> steps;  // [bodies] for which it may go on, and kPlaced: see place()
+    bool some = false;                 // somebody is, or was placed
+    struct Scratch {
+        std::vector<std::uint8_t> batches;  // [batches] 1: somebody in it is moved apart
+    } scratch;
 
     /// Notes that a body was put where it is by the program, since the last step.
     void place(std::size_t body)
@@ -71,8 +76,10 @@ struct OverloadedIslands {
     std::vector<std::uint32_t> strained;
     std::vector<Effort> efforts;
     std::size_t escalated = 0, missed = 0;
-    std::vector<float> of_island;       // scratch: [islands] strain
-    std::vector<std::uint16_t> height;  // scratch: [solver bodies] above what stands still
+    struct Scratch {
+        std::vector<float> of_island;       // [islands] strain
+        std::vector<std::uint16_t> height;  // [solver bodies] above what stands still
+    } scratch;
 
     float of(std::uint32_t body) const { return body < strain.size() ? strain[body] : 0; }
     void forget(std::uint32_t body)
@@ -96,7 +103,9 @@ struct SleepEvents {
 ///   held  bodies, ascending
 struct FastBodies {
     std::vector<std::uint32_t> held;
-    std::vector<std::uint8_t> flags;  // [bodies] scratch, all 0 between stages
+    struct Scratch {
+        std::vector<std::uint8_t> flags;  // [bodies] all 0 between stages
+    } scratch;
 };
 
 /// What contacts of bodies that are carried from touch to touch came to in this step.

@@ -235,7 +235,7 @@ std::size_t World::memory_bytes() const
         bytes(p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass, m.inertia,
               m.inverse_inertia, s.kind, s.awake, s.sleep_time, s.sleeping_island, c.body, c.shape,
               c.local, c.material, c.inner_extent, c.outer_radius, b.boxes, b.speculative_margin,
-              b.placed, b.near, b.half[0], b.half[1], b.half[2], b.round, b.form, b.flags,
+              b.placed, b.near, b.half[0], b.half[1], b.half[2], b.round, b.form, b.scratch.flags,
               shapes.boxes, shapes.spheres, state_->center, state_->names, state_->generation);
     std::visit(
         [&](const auto& chosen) {
@@ -246,13 +246,13 @@ std::size_t World::memory_bytes() const
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             const auto& constraints = std::get<ContactConstraints<Real>>(chosen.data);
             const auto& methods = std::get<MethodPairs>(chosen.data);
-            sum += bytes(pairs.keys, pairs.from, pairs.found, pairs.asked, convex.of_pair,
-                         convex.contacts, convex.free, convex.astray, convex.gathered, convex.order,
-                         convex.found, convex.found_gathered, convex.apart_until,
-                         convex.travels.placed, convex.travels.traveled, convex.travels.approach,
-                         methods.of_pair, methods.bounds, methods.fallbacks,
-                         std::get<ActiveContacts>(chosen.data).entries, constraints.blocks,
-                         constraints.points, constraints.restitutions,
+            sum += bytes(pairs.keys, pairs.from, pairs.scratch.found, pairs.asked, convex.of_pair,
+                         convex.contacts, convex.free, convex.astray, convex.scratch.gathered,
+                         convex.scratch.order, convex.found, convex.scratch.found_gathered,
+                         convex.apart_until, convex.travels.placed, convex.travels.traveled,
+                         convex.travels.approach, methods.of_pair, methods.bounds,
+                         methods.scratch.fallbacks, std::get<ActiveContacts>(chosen.data).entries,
+                         constraints.blocks, constraints.points, constraints.restitutions,
                          constraints.rolling_frictions, constraints.surface_velocities,
                          constraints.prescribed, constraints.bodies, constraints.inertias);
         },

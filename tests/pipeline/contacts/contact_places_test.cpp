@@ -180,7 +180,7 @@ TEST(ContactPlaces, ScenesWithoutHullsKeepNothingOfWhatWasFound)
     for (int step = 0; step < 30; ++step) world.step();
     const auto& contacts = contacts_of<float>(world);
     EXPECT_GT(contacts.contacts.size(), 0u);
-    EXPECT_EQ(contacts.found.capacity() + contacts.found_gathered.capacity(), 0u);
+    EXPECT_EQ(contacts.found.capacity() + contacts.scratch.found_gathered.capacity(), 0u);
     EXPECT_EQ(contacts.apart_until.capacity() + contacts.travels.approach.capacity(), 0u);
 }
 

@@ -57,7 +57,10 @@ struct Bodies {
             bounds.touched.push_back(i);
         }
     }
-    void update() { update_bounds(context, impact, shapes, colliders, poses, velocities, states, bounds); }
+    void update()
+    {
+        update_bounds(context, impact, shapes, colliders, poses, velocities, states, bounds);
+    }
 };
 
 TEST(UpdateBounds, AsksAboutWhatLeftItsMarginAlone)
@@ -224,8 +227,8 @@ TEST(SleepIslands, PutsAnIslandToBedOnceAllOfItIsQuiet)
     b.velocities.linear[0] = Vec3(0.01, 0, 0);
     int steps = 0;
     while (b.states.awake[0] != 0 && ++steps < 100)
-        sleep_islands(b.context, b.sleep, {}, {}, islands, {}, b.states, sleeping_islands, b.velocities,
-                      sleep_events);
+        sleep_islands(b.context, b.sleep, {}, {}, islands, {}, b.states, sleeping_islands,
+                      b.velocities, sleep_events);
     EXPECT_NEAR(steps, 30, 1);
     EXPECT_EQ(sleep_events.fell_asleep, (std::vector<std::uint32_t>{0, 1}));
     EXPECT_EQ(b.states.sleeping_island[0], b.states.sleeping_island[1]);
