@@ -71,6 +71,7 @@ LIBRARIES = {
     r"embree\d*/": ["broadphase/embree_tree.cpp"],
     r"(hdf5|H5)": ["pipeline/records/run_file*.cpp", "tests/pipeline/records/run_file*.cpp"],
     r"(openvdb|nanovdb)/": ["cooking/fields/openvdb/*", "perf/cooking/tree_samples.cpp"],
+    r"xxhash\.h>": ["cooking/cache/file_checksum.cpp"],
     r"(gtest|gmock)/": ["tests/*"],
     r"benchmark/": ["perf/*"],
     r"(hwy/|\w*intrin\.h)": ["kernels/simd/lanes*"],
