@@ -125,6 +125,12 @@ void roll_by_short_steps(CaseBench& bench, const Disk& disk, bool exactly)
     bench.report(name, kMiddle, rolled.middle / disk.radius, 0.01, "1");
 }
 
+double energy_of(const World& world)
+{
+    const Measures measures = world.measure();
+    return measures.kinetic_energy + measures.potential_energy;
+}
+
 struct Settled {
     double risen = 0;   // rad, above the least so far
     double gained = 0;  // of the first energy, above the least so far
@@ -139,10 +145,6 @@ Settled settle_disk(CaseBench& bench, const Scene& scene, double time)
     double least = 1e30, lowest = 1e30, first_tilt = 0, first_energy = 0;
     const double resists =
         scene.materials.front().rolling_friction * *scene.bodies.back().mass * kGravity;
-    const auto energy_of = [](const World& world) {
-        const Measures measures = world.measure();
-        return measures.kinetic_energy + measures.potential_energy;
-    };
     bench.inspect(scene, [&](const World& world) {
         first_energy = energy_of(world);
         first_tilt = tilt_of(world.pose(world.bodies().back()).orientation * Vec3::UnitZ());
@@ -237,10 +239,6 @@ void roll_along(CaseBench& bench, double half_thickness, bool exactly)
     parts.body(wheel).velocity = Vec3(kSpeed, 0, 0);
     parts.body(wheel).angular_velocity = Vec3(0, kSpeed / kRadius, 0);
     if (exactly) parts.scene().settings.solver = Solver::direct;
-    const auto energy_of = [](const World& world) {
-        const Measures measures = world.measure();
-        return measures.kinetic_energy + measures.potential_energy;
-    };
     double first = 0, moving = 0, off = 0;
     bench.inspect(parts.scene(), [&](const World& world) {
         first = energy_of(world);

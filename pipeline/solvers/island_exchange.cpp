@@ -67,8 +67,7 @@ IslandSolver::IslandSolver(const IslandScene<Real>& scene, const Batch& batch)
     effort_ = scene.effort;
     left_ = effort_.steps * (2 + scene.context.substeps);
     up_ = up_of(scene.context.gravity);
-    // Slower than what gravity gives in two steps is resting, not bouncing.
-    restitution_threshold_ = 2 * scene.context.gravity.norm() * scene.context.dt;
+    restitution_threshold_ = scene.context.resting_speed();
     spins_ = scene.context.response != Response::kinematic;
     take_bodies(scene, slice);
     take_forces(scene, slice);

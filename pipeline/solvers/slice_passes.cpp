@@ -45,8 +45,7 @@ SlicePasses<Real>::SlicePasses(const StepContext& context,
     iteration_.has_friction = context.has(Effect::friction) || iteration_.has_rolling_friction;
     iteration_.friction_at_points = parameters.friction_at == FrictionAt::points;
     iteration_.friction_pyramid = parameters.friction_cone == FrictionCone::pyramid;
-    // Slower than what gravity gives in two steps is resting, not bouncing.
-    iteration_.restitution_threshold = static_cast<Real>(2 * context.gravity.norm() * context.dt);
+    iteration_.restitution_threshold = static_cast<Real>(context.resting_speed());
     for (int k = 0; k < 3; ++k)
         iteration_.gravity_step[k] = static_cast<Real>(context.gravity[k] * context.substep());
 }

@@ -10,12 +10,14 @@
 #include "pipeline/step/passes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 namespace throng {
 
 namespace {
 
+// See answer_late_forces(); and what pgs takes where the dial says auto.
 constexpr int kInLateForces = 6, kPgsIterations = 20;
 
 // Pushing iterations a substep while bodies part. Each substep starts from nothing, and what is
@@ -55,54 +57,18 @@ public:
     // What a batch goes through, in order.
     static std::span<const Pass<Task>> soft_step()
     {
-        using enum Effect;
-        using enum When;
-        static constexpr Pass<Task> kPasses[] = {
-            pass<&Task::make_constraints>({contact}, before_substeps),
-            pass<&Task::find_borne>(kFollowBodies, before_substeps),
-            pass<&Task::find_split_impulse>({contact}, before_substeps),
-            pass<&Task::apply_restitution>({restitution}, each_substep),
-            pass<&Task::open_energy_limiter>({springs, pivot}, each_substep),
-            pass<&Task::integrate_velocities>({contact}, each_substep),
-            pass<&Task::begin_state_forces>(kFollowBodies, each_substep),
-            pass<&Task::warm_start>({contact}, first_substep),
-            pass<&Task::limit_warm_start>({contact}, each_substep),
-            pass<&Task::update_surface_velocity>({contact}, each_substep),
-            pass<&Task::solve_velocities>({contact}, each_iteration),
-            pass<&Task::solve_split_impulse>({contact}, each_iteration),
-            pass<&Task::advance_bodies>({contact}, each_substep),
-            pass<&Task::end_state_forces>(kFollowBodies, each_substep),
-            pass<&Task::relax>({contact}, each_iteration),
-            pass<&Task::close_energy_limiter>({springs, pivot}, each_substep),
-            pass<&Task::store_impulses>({contact}, after_substeps),
-        };
+        static constexpr auto kPasses =
+            passes_with({Effect::springs, Effect::pivot},
+                        pass<&Task::relax>({Effect::contact}, When::each_iteration));
         return kPasses;
     }
 
-    // The same, but that iterations are many, and none relaxes.
+    // The same, but that every warm start is limited, and nothing relaxes but what comes late.
     static std::span<const Pass<Task>> pgs()
     {
-        using enum Effect;
-        using enum When;
-        static constexpr Pass<Task> kPasses[] = {
-            pass<&Task::make_constraints>({contact}, before_substeps),
-            pass<&Task::find_borne>(kFollowBodies, before_substeps),
-            pass<&Task::find_split_impulse>({contact}, before_substeps),
-            pass<&Task::apply_restitution>({restitution}, each_substep),
-            pass<&Task::open_energy_limiter>({contact}, each_substep),
-            pass<&Task::integrate_velocities>({contact}, each_substep),
-            pass<&Task::begin_state_forces>(kFollowBodies, each_substep),
-            pass<&Task::warm_start>({contact}, first_substep),
-            pass<&Task::limit_warm_start>({contact}, each_substep),
-            pass<&Task::update_surface_velocity>({contact}, each_substep),
-            pass<&Task::solve_velocities>({contact}, each_iteration),
-            pass<&Task::solve_split_impulse>({contact}, each_iteration),
-            pass<&Task::advance_bodies>({contact}, each_substep),
-            pass<&Task::end_state_forces>(kFollowBodies, each_substep),
-            pass<&Task::answer_late_forces>(kFollowBodies, each_iteration),
-            pass<&Task::close_energy_limiter>({contact}, each_substep),
-            pass<&Task::store_impulses>({contact}, after_substeps),
-        };
+        static constexpr auto kPasses =
+            passes_with({Effect::contact},
+                        pass<&Task::answer_late_forces>(kFollowBodies, When::each_iteration));
         return kPasses;
     }
 
@@ -124,6 +90,32 @@ public:
     }
 
 private:
+    static constexpr std::array<Pass<Task>, 17> passes_with(Set<Effect> limited,
+                                                            const Pass<Task>& after_moving)
+    {
+        using enum Effect;
+        using enum When;
+        return {{
+            pass<&Task::make_constraints>({contact}, before_substeps),
+            pass<&Task::find_borne>(kFollowBodies, before_substeps),
+            pass<&Task::find_split_impulse>({contact}, before_substeps),
+            pass<&Task::apply_restitution>({restitution}, each_substep),
+            pass<&Task::open_energy_limiter>(limited, each_substep),
+            pass<&Task::integrate_velocities>({contact}, each_substep),
+            pass<&Task::begin_state_forces>(kFollowBodies, each_substep),
+            pass<&Task::warm_start>({contact}, first_substep),
+            pass<&Task::limit_warm_start>({contact}, each_substep),
+            pass<&Task::update_surface_velocity>({contact}, each_substep),
+            pass<&Task::solve_velocities>({contact}, each_iteration),
+            pass<&Task::solve_split_impulse>({contact}, each_iteration),
+            pass<&Task::advance_bodies>({contact}, each_substep),
+            pass<&Task::end_state_forces>(kFollowBodies, each_substep),
+            after_moving,
+            pass<&Task::close_energy_limiter>(limited, each_substep),
+            pass<&Task::store_impulses>({contact}, after_substeps),
+        }};
+    }
+
     void run_at(std::span<const Pass<Task>> passes, When when)
     {
         for (const Pass<Task>& pass : passes)

@@ -74,20 +74,19 @@ public:
             split_wedged(active_, colliders, builder_, split_impulse_);
     }
 
-    // Each batch by its own, or by what it is escalated to. No island is escalated while bodies of
-    // it part: what makes contacts stiffer would throw those apart that are deep in one another.
+    // Each batch by iterations, or by what it is escalated to. No island is escalated while bodies
+    // of it part: what makes contacts stiffer would throw those apart that are deep in one another.
     void by_iterations()
     {
         for_batches([&](const Batch& batch) {
-            const bool usual =
-                split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_);
-            if (batch.direct && !usual && !is_stiff(context_, facts_, layout_, batch))
+            if (split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_))
+                iterate(batch);
+            else if (batch.direct && !is_stiff(context_, facts_, layout_, batch))
                 solve_island(islands_, batch, constraints_, diagnostics_);
-            else if (batch.times > 1 && !usual)
-                solve_finer(batch);
+            else if (batch.times > 1)
+                iterate_finer(batch);
             else
-                solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
-                            split_impulse_);
+                iterate(batch);
         });
     }
 
@@ -98,8 +97,7 @@ public:
             if (batch.direct)
                 solve_island(islands_, batch, constraints_, diagnostics_);
             else
-                solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
-                            split_impulse_);
+                iterate(batch);
         });
     }
 
@@ -119,7 +117,13 @@ private:
         update_split_impulse(split_impulse_);
     }
 
-    void solve_finer(const Batch& batch)
+    void iterate(const Batch& batch)
+    {
+        solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
+                    split_impulse_);
+    }
+
+    void iterate_finer(const Batch& batch)
     {
         StepContext finer = context_;
         SolverParameters parameters = parameters_;

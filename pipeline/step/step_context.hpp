@@ -29,6 +29,8 @@ struct StepContext {
         response = settings.response;
     }
     double substep() const { return dt / substeps; }
+    /// m/s: slower than what gravity gives in two steps is resting, not bouncing.
+    double resting_speed() const { return 2 * gravity.norm() * dt; }
     bool has(Effect effect) const { return effects.has(effect); }
 };
 
