@@ -95,6 +95,8 @@ struct ContactPointWide {
 /// velocity at the center of the points (vn, v1, v2) and the relative spin (w1, w2, wn). Friction
 /// acts once a contact, at that center.
 ///
+///   swings_a, _b  bit a lane: that side rolls below its axis, which turns enough to be seen, and
+///                 its spin with it (see spin_frame)
 ///   inverse_mass  what an impulse or angular impulse at the center does to the six, symmetric: nn,
 ///                 n1, n2, 11, 12, 22 among the velocities; then the three spins w1, w2, wn against
 ///                 n, 1, 2 each; then 11, 22, nn, 12, 1n, 2n among the spins
@@ -102,8 +104,9 @@ template <class Real>
 struct ContactConstraintWide {
     std::int32_t a[kBlock], b[kBlock];  // places among the solver bodies
     std::uint16_t writes_a, writes_b;   // bit a lane: that body may be changed
-    std::int32_t points;                // greatest number of points of a lane
-    std::uint32_t first_point;          // place of the first among ContactConstraints::points
+    std::uint16_t swings_a, swings_b;
+    std::int32_t points;        // greatest number of points of a lane
+    std::uint32_t first_point;  // place of the first among ContactConstraints::points
     Lane16<Real> normal[3];
     Lane16<Real> tangent[3];  // the other tangent is normal x tangent
     Lane16<Real> center_a[3], center_b[3];
@@ -142,21 +145,23 @@ struct PointFrictionWide {
 };
 
 /// What surfaces that go do to the sliding of 16 contacts within the step. Constraints see arms as
-/// the step began, by which a body that a plate carries leaves it along the tangent; and they do
-/// not know of who walks (see driven_contacts.hpp).
+/// the step began, by which a body that a plate carries leaves it along the tangent; spins in axes
+/// that go with a body (see spin_frame), by which a wheel that rolls round a curve slides; and they
+/// do not know of who walks (see driven_contacts.hpp).
 ///
 ///   by_a, by_b  whose material the place of the contact goes with, as shares; zeros where nothing
 ///               that turns carries anything
 ///   range_a, _b m2, see range_of(); past there nothing is carried any more: from twice its arm on
 ///               friction makes more of a slip than it takes
 ///   speed       m/s, along tangent, other tangent: of b against a where the contact is in the
-///               middle of the substep, less what the arms as the step began have it; of who walks
-///               the opposite of its walk
+///               middle of the substep, less what arms and spins have it; of who walks the
+///               opposite of its walk
 template <class Real>
 struct SurfaceVelocityWide {
     Lane16<Real> by_a, by_b;
     Lane16<Real> range_a, range_b;
     Lane16<Real> speed[2];
+    bool carries = false;  // some lane of it
 };
 
 /// Where a lane came from, to give its impulses back.
@@ -238,9 +243,10 @@ struct Layout {
 ///   first_point         [blocks] place of the first among the points
 ///   restitutions        [blocks] while restitution acts
 ///   rolling_frictions   [blocks] while rolling friction acts
-///   surface_velocities  [blocks] while something turns that carries what lies on it, or somebody
-///                       walks
-///   surfaces_turn       something turns: surface velocities change from substep to substep
+///   surface_velocities  [blocks] while something turns that carries what lies on it, a spin goes
+///                       along with an axis that turns, or somebody walks
+///   surfaces_turn       something turns that carries what lies on it
+///   spins_swing         somebody's spin goes along with an axis that turns enough to be seen
 ///   prescribed          [bodies] while bodies that contacts push are driven
 ///   point_frictions     [points] while friction acts at points or within a pyramid
 ///   inertias            [bodies] while the gyroscopic torque acts
@@ -255,7 +261,7 @@ struct ContactConstraints {
     std::vector<RestitutionWide<Real>> restitutions;
     std::vector<RollingFrictionWide<Real>> rolling_frictions;
     std::vector<SurfaceVelocityWide<Real>> surface_velocities;
-    bool surfaces_turn = false;
+    bool surfaces_turn = false, spins_swing = false;
     std::vector<SolverPrescribedVelocity<Real>> prescribed;
     std::vector<PointFrictionWide<Real>> point_frictions;
     std::vector<SolverBody<Real>> bodies;

@@ -252,6 +252,10 @@ void fill_rolling(RollingFrictionWide<typename L::Number>& rolling,
         rolling.impulse, at);
 }
 
+// Impulses whose sum is no more have no middle that could be told, N s.
+template <class Real>
+constexpr Real kLeastLoad = sizeof(Real) == 4 ? Real(1e-30) : Real(1e-300);
+
 template <class L, bool turns>
 [[gnu::flatten]] void prepare_lanes(const PackedContacts<typename L::Number>& from,
                                     std::size_t place,
@@ -280,21 +284,27 @@ template <class L, bool turns>
     packed.round_b.store(block.round_b.at + at);
     packed.torsional_impulse.store(block.torsional_impulse.at + at);
 
-    // The middle of the points, on either surface.
-    V3<L> middle{zero, zero, zero};
-    L mean_separation = zero, count = zero, load = zero;
+    // The middle of the points, on either surface. Of round sides it is that of the load: friction
+    // in the middle of a wheel that rolls on one rim would hold the other.
+    L count = zero, load = zero;
+    for (int k = 0; k < block.points; ++k) {
+        count += packed.point[k].there;
+        load += packed.point[k].impulse;
+    }
+    const L rolls = select(packed.round_a + packed.round_b > zero, load, zero);
+    const auto borne = rolls > L(kLeastLoad<Real>);
+    const L share = L(Real(1)) / select(borne, load, count);
+    V3<L> center_a{zero, zero, zero};
+    L mean_separation = zero;
     for (int k = 0; k < block.points; ++k) {
         const auto& point = packed.point[k];
-        middle = middle + point.anchor_a;
-        mean_separation += point.separation;
-        count += point.there;
-        load += point.impulse;
+        const L weight = select(borne, point.impulse, point.there) * share;
+        center_a = center_a + point.anchor_a * weight;
+        mean_separation += point.separation * weight;
     }
-    const L share = L(Real(1)) / count;
-    const V3<L> center_a = middle * share;
     const V3<L> between = packed.center_offset;
     store3(center_a, block.center_a, at);
-    store3(center_a + normal * (mean_separation * share) + between, block.center_b, at);
+    store3(center_a + normal * mean_separation + between, block.center_b, at);
 
     const Frame<L, turns> frame(block, at);
     for (int k = 0; k < block.points; ++k) {

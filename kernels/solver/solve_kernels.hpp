@@ -65,6 +65,7 @@ struct ContactConstraintsView {
     PointFrictionWide<Real>* point_frictions = nullptr;
     SurfaceVelocityWide<Real>* surface_velocities = nullptr;
     const SolverPrescribedVelocity<Real>* prescribed = nullptr;
+    const GyroscopicInertia<Real>* inertias = nullptr;
 
     static ContactConstraintsView of(ContactConstraints<Real>& constraints)
     {
@@ -77,7 +78,8 @@ struct ContactConstraintsView {
                 constraints.point_frictions.empty() ? nullptr : constraints.point_frictions.data(),
                 constraints.surface_velocities.empty() ? nullptr
                                                        : constraints.surface_velocities.data(),
-                constraints.prescribed.empty() ? nullptr : constraints.prescribed.data()};
+                constraints.prescribed.empty() ? nullptr : constraints.prescribed.data(),
+                constraints.inertias.empty() ? nullptr : constraints.inertias.data()};
     }
 };
 

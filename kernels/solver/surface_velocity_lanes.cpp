@@ -1,10 +1,15 @@
-// Carried contacts: how those that a turning surface carries along slide by where they are now, and
-// those who walk. Written once over the width of the machine's registers.
+// Surface velocities: how contacts that a turning surface carries along slide by where they are
+// now, those of wheels whose axes turn, and those who walk. Written once over the width of the
+// machine's registers.
 #include "kernels/solver/solve_lanes.hpp"
 
 namespace throng::THRONG_LANES {
 
 namespace {
+
+// Of an axis that has turned by more than this cosine since the step began nothing is told any
+// more: contacts of the step's beginning say nothing of where it rolls by now.
+constexpr double kFarthestSwing = 0.98;
 
 // Turned for a time, by a rotation that is exact to the third order and one for any spin.
 template <class L>
@@ -63,6 +68,66 @@ template <class L>
     };
     tell(frame.tangent, carried.speed[0]);
     tell(frame.other, carried.speed[1]);
+}
+
+// The velocity that its spin gives one side at its center, turned with the axes that the spin is in
+// (see spin_frame, of what is symmetric about an axis) to the middle of the substep, less what it
+// is as the spin stands.
+template <class L>
+V3<L> swing_of(const ContactConstraintsView<typename L::Number>& constraints,
+               const std::int32_t* index,
+               const V3<L>& arm,
+               L half)
+{
+    using Real = typename L::Number;
+    const Motion<L, true> motion(constraints.bodies, index);
+    L own[8];
+    gather_8(constraints.inertias->axis, 16, index, own);
+    const V3<L> axis{own[0], own[1], own[2]};
+    const V3<L> now = axis + DeltaPose<L, true>(constraints.bodies, index).change_of(axis);
+    // The shortest turn from one to the other.
+    const L one = Real(1), cosine = dot(axis, now), share = one / max(one + cosine, one);
+    const V3<L> way = cross(axis, now);
+    const auto along = [&](const V3<L>& v) {
+        const V3<L> turn = cross(way, v);
+        return v + turn + cross(way, turn) * share;
+    };
+    const V3<L> still = cross(motion.spin, arm), spin = along(motion.spin);
+    const V3<L> swung = turned_on(along(still), spin - now * dot(now, spin), half);
+    const auto far = cosine < L(Real(kFarthestSwing));
+    const auto change = [&](L to, L from) { return select(far, L(Real(0)), to - from); };
+    return {change(swung.x, still.x), change(swung.y, still.y), change(swung.z, still.z)};
+}
+
+// One where a lane has its bit, else 0.
+template <class L>
+L of_bits(unsigned bits)
+{
+    using Real = typename L::Number;
+    Real ones[L::kWidth];
+    for (int k = 0; k < L::kWidth; ++k) ones[k] = Real(bits >> k & 1);
+    return L::load(ones);
+}
+
+template <class L>
+[[gnu::flatten]] void swing_lanes(const ContactConstraintsView<typename L::Number>& constraints,
+                                  std::size_t place,
+                                  int at,
+                                  typename L::Number half)
+{
+    using Real = typename L::Number;
+    const auto& block = constraints.blocks[place];
+    const L by_a = of_bits<L>(unsigned{block.swings_a} >> at),
+            by_b = of_bits<L>(unsigned{block.swings_b} >> at);
+    const Frame<L, true> frame(block, at);
+    const V3<L> slip = swing_of<L>(constraints, block.b + at, frame.center_b, half) * by_b
+        - swing_of<L>(constraints, block.a + at, frame.center_a, half) * by_a;
+    const auto swings = by_a + by_b > L(Real(0));
+    const auto tell = [&](const V3<L>& along, Lane16<Real>& speed) {
+        select(swings, dot(along, slip), lane<L>(speed, at)).store(speed.at + at);
+    };
+    tell(frame.tangent, constraints.surface_velocities[place].speed[0]);
+    tell(frame.other, constraints.surface_velocities[place].speed[1]);
 }
 
 // As walk_of() has it: b walks on a, or a on b.
@@ -140,9 +205,15 @@ void update_surface_velocity(const ContactConstraintsView<Real>& constraints,
                              std::size_t end,
                              Real half)
 {
-    for (std::size_t place = begin; place < end; ++place)
-        for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
-            carry_lanes<Lanes<Real>>(constraints, place, at, half);
+    for (std::size_t place = begin; place < end; ++place) {
+        const ContactConstraintWide<Real>& block = constraints.blocks[place];
+        const bool carries = constraints.surface_velocities[place].carries;
+        const bool swings = (block.swings_a | block.swings_b) != 0;
+        for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth) {
+            if (carries) carry_lanes<Lanes<Real>>(constraints, place, at, half);
+            if (swings) swing_lanes<Lanes<Real>>(constraints, place, at, half);
+        }
+    }
 }
 
 template void update_surface_velocity<float>(const ContactConstraintsView<float>&,

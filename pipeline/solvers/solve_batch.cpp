@@ -173,7 +173,8 @@ private:
 
     void update_surface_velocity()
     {
-        if (constraints_.surfaces_turn) add(SlicePass::Kind::update_surface_velocity);
+        if (constraints_.surfaces_turn || constraints_.spins_swing)
+            add(SlicePass::Kind::update_surface_velocity);
     }
 
     // With the push that overlap asks for; without it while bodies part, which are pushed by

@@ -7,6 +7,7 @@
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace throng {
@@ -156,13 +157,18 @@ void prepare_constraints(const StepContext& context,
                    velocities);
     const bool forced = context.effects.meets(kForces);
     const bool gyroscopic = context.has(Effect::gyroscopic);
+    std::atomic<bool> spins_swing = false;
     constraints.bodies.resize(layout.body_of_solver_index.size());
     constraints.inertias.resize(gyroscopic ? constraints.bodies.size() : 0);
     constraints.accelerations.resize(forced ? constraints.bodies.size() : 0);
     const auto fill = [&](std::uint32_t body, std::size_t solver_index) {
         fill_body(body, poses, velocities, masses, states, constraints.bodies[solver_index]);
-        if (gyroscopic)
-            fill_inertia(body, poses, masses, states, constraints.inertias[solver_index]);
+        if (gyroscopic) {
+            auto& inertia = constraints.inertias[solver_index];
+            fill_inertia(body, poses, masses, states, inertia);
+            if (!spins_swing && spin_swings(constraints.bodies[solver_index], inertia, context.dt))
+                spins_swing = true;
+        }
         if (forced)
             fill_acceleration(body, accelerations, states, constraints.accelerations[solver_index]);
     };
@@ -189,12 +195,15 @@ void prepare_constraints(const StepContext& context,
     constraints.points.resize(points);
     constraints.restitutions.resize(context.has(Effect::restitution) ? blocks : 0);
     constraints.surfaces_turn = anybody_carries(constraints.bodies, context.dt);
+    constraints.spins_swing = spins_swing && context.has(Effect::friction);
     if (context.has(Effect::drive))
         prepare_prescribed_velocities(prescribed, layout, constraints);
     else
         constraints.prescribed.clear();
-    constraints.surface_velocities.resize(
-        constraints.surfaces_turn || !constraints.prescribed.empty() ? blocks : 0);
+    constraints.surface_velocities.resize(constraints.surfaces_turn || constraints.spins_swing
+                                                  || !constraints.prescribed.empty()
+                                              ? blocks
+                                              : 0);
     constraints.point_frictions.resize(
         parameters.friction_at_points_or_pyramid(context.effects) ? points : 0);
     constraints.rolling_frictions.resize(context.has(Effect::rolling_friction) ? blocks : 0);

@@ -158,6 +158,7 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const double share = given::random_number(random, 0, 1);
             if (lane % 3 != 0) carry(made, lane, share);
+            carried.carries = true;
             // Some have left.
             if (lane % 4 == 0) made.body_b(lane).delta_pose[0] += Real(3);
         }

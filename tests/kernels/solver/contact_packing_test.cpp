@@ -66,9 +66,16 @@ struct Lane {
     Lane(given::BlockCase<double>& in, std::size_t at)
         : made(in), lane(at), contact(in.contacts[at]), a(in.body_a(at)), b(in.body_b(at))
     {
+        double load = 0;
+        for (int k = 0; k < contact.count; ++k)
+            load += contact.points[static_cast<std::size_t>(k)].impulse;
+        // Of round sides the middle of the load.
+        const bool rolls = contact.round_a + contact.round_b > 0 && load > 0;
         for (int k = 0; k < contact.count; ++k) {
-            center_a += contact.points[static_cast<std::size_t>(k)].anchor_a / contact.count;
-            center_b += contact.anchor_b(k) / contact.count;
+            const auto& point = contact.points[static_cast<std::size_t>(k)];
+            const double share = rolls ? point.impulse / load : 1.0 / contact.count;
+            center_a += point.anchor_a * share;
+            center_b += contact.anchor_b(k) * share;
         }
     }
 };

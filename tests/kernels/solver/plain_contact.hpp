@@ -92,10 +92,15 @@ public:
             point.arm_a = from.anchor_a.template cast<double>();
             point.arm_b = point.arm_a + normal * point.separation + between;
             point.impulse = from.impulse;
-            center_a += point.arm_a / contact.count;
-            center_b += point.arm_b / contact.count;
             total += point.impulse;
             points.push_back(point);
+        }
+        // The middle of the points, or of what they bear where a side is round.
+        const bool rolls = round_a + round_b > 0 && total > 0;
+        for (const Point& point : points) {
+            const double share = rolls ? point.impulse / total : 1.0 / contact.count;
+            center_a += point.arm_a * share;
+            center_b += point.arm_b * share;
         }
         held_uncut = friction_impulse;
         // What was carried over stays within the cone.
