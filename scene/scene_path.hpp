@@ -13,9 +13,11 @@ struct PathStep {
     std::size_t index = 0;
     bool is_index = false;
 
+    // NOLINTBEGIN(google-explicit-constructor): a path is written as keys and places
     PathStep(std::string member) : key(std::move(member)) { }
     PathStep(const char* member) : key(member) { }
     PathStep(std::size_t place) : index(place), is_index(true) { }
+    // NOLINTEND(google-explicit-constructor)
 };
 
 /// From the top of the scene downwards; empty is the scene itself.

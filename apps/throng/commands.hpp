@@ -7,13 +7,7 @@
 namespace throng {
 
 /// What the process ends with. A body that was quarantined counts as a failed case.
-enum ExitCode : int {
-    kDone = 0,
-    kCaseFailed = 1,
-    kBadInput = 2,
-    kFault = 3,
-    kInterrupted = 130,
-};
+inline constexpr int kDone = 0, kCaseFailed = 1, kBadInput = 2, kFault = 3, kInterrupted = 130;
 
 struct Command {
     Usage usage;

@@ -294,17 +294,18 @@ template <class L, bool turns>
     const L rolls = select(packed.round_a + packed.round_b > zero, load, zero);
     const auto borne = rolls > L(kLeastLoad<Real>);
     const L share = L(Real(1)) / select(borne, load, count);
-    V3<L> center_a{zero, zero, zero};
+    V3<L> middle{zero, zero, zero};
     L mean_separation = zero;
     for (int k = 0; k < block.points; ++k) {
         const auto& point = packed.point[k];
-        const L weight = select(borne, point.impulse, point.there) * share;
-        center_a = center_a + point.anchor_a * weight;
+        const L weight = select(borne, point.impulse, point.there);
+        middle = middle + point.anchor_a * weight;
         mean_separation += point.separation * weight;
     }
+    const V3<L> center_a = middle * share;
     const V3<L> between = packed.center_offset;
     store3(center_a, block.center_a, at);
-    store3(center_a + normal * mean_separation + between, block.center_b, at);
+    store3(center_a + normal * (mean_separation * share) + between, block.center_b, at);
 
     const Frame<L, turns> frame(block, at);
     for (int k = 0; k < block.points; ++k) {
