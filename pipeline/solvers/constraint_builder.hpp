@@ -65,13 +65,13 @@ public:
     }
 
 private:
-    void fill(std::size_t block, PackedContacts<Real>& packed) const;
+    void fill(std::size_t at, PackedContacts<Real>& packed) const;
     Surfaces::MaterialPair materials_of(std::uint32_t entry) const;
     void settle_separation(const Contact<Real>& contact,
                            std::size_t lane,
                            ContactConstraintWide<Real>& block) const;
-    void find_carried(std::size_t block) const;
-    void find_swinging(std::size_t block) const;
+    void find_carried(std::size_t at) const;
+    void find_swinging(std::size_t at) const;
 
     const Layout& layout_;
     const ActiveContacts& active_;
