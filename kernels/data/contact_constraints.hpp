@@ -27,6 +27,10 @@ inline constexpr double kLeastFreeWalk = 0.25;
 /// what a point gives way or more has to come by lever arms.
 inline constexpr double kLeastLeverArm = 1e-2;
 
+/// Of a rolling body's axis that turns farther in a step nothing is told, rad: contacts of the
+/// step's beginning say nothing of where it rolls by then.
+inline constexpr double kFarthestAxisTurn = 0.2;
+
 /// What the solver knows of one body, in four lines of eight numbers.
 ///
 ///   motion      velocity, 0, angular velocity, 0; the latter of what has a GyroscopicInertia in
@@ -92,11 +96,12 @@ struct ContactPointWide {
 
 /// 16 contacts of up to four points each, as the solver sees them: in the axes of the contact, the
 /// normal and two tangents, all that the two bodies do to one another is six numbers, the relative
-/// velocity at the center of the points (vn, v1, v2) and the relative spin (w1, w2, wn). Friction
-/// acts once a contact, at that center.
+/// velocity at the center of the points, of round sides of what they bear (vn, v1, v2) and the
+/// relative spin (w1, w2, wn). Friction acts once a contact, at that center.
 ///
-///   swings_a, _b  bit a lane: that side rolls below its axis, which turns enough to be seen, and
-///                 its spin with it (see spin_frame)
+///   axis_turns_a, _b  bit a lane: that side rolls below its axis, which turns enough to be seen,
+///   and
+///                     its spin with it (see spin_frame)
 ///   inverse_mass  what an impulse or angular impulse at the center does to the six, symmetric: nn,
 ///                 n1, n2, 11, 12, 22 among the velocities; then the three spins w1, w2, wn against
 ///                 n, 1, 2 each; then 11, 22, nn, 12, 1n, 2n among the spins
@@ -104,7 +109,7 @@ template <class Real>
 struct ContactConstraintWide {
     std::int32_t a[kBlock], b[kBlock];  // places among the solver bodies
     std::uint16_t writes_a, writes_b;   // bit a lane: that body may be changed
-    std::uint16_t swings_a, swings_b;
+    std::uint16_t axis_turns_a, axis_turns_b;
     std::int32_t points;        // greatest number of points of a lane
     std::uint32_t first_point;  // place of the first among ContactConstraints::points
     Lane16<Real> normal[3];
@@ -154,8 +159,8 @@ struct PointFrictionWide {
 ///   range_a, _b m2, see range_of(); past there nothing is carried any more: from twice its arm on
 ///               friction makes more of a slip than it takes
 ///   speed       m/s, along tangent, other tangent: of b against a where the contact is in the
-///               middle of the substep, less what arms and spins have it; of who walks the
-///               opposite of its walk
+///               middle of the substep, less what arms and spins as they stand have it; of
+///               who walks the opposite of its walk
 template <class Real>
 struct SurfaceVelocityWide {
     Lane16<Real> by_a, by_b;
@@ -246,7 +251,7 @@ struct Layout {
 ///   surface_velocities  [blocks] while something turns that carries what lies on it, a spin goes
 ///                       along with an axis that turns, or somebody walks
 ///   surfaces_turn       something turns that carries what lies on it
-///   spins_swing         somebody's spin goes along with an axis that turns enough to be seen
+///   axes_turn         somebody's spin goes along with an axis that turns enough to be seen
 ///   prescribed          [bodies] while bodies that contacts push are driven
 ///   point_frictions     [points] while friction acts at points or within a pyramid
 ///   inertias            [bodies] while the gyroscopic torque acts
@@ -261,7 +266,7 @@ struct ContactConstraints {
     std::vector<RestitutionWide<Real>> restitutions;
     std::vector<RollingFrictionWide<Real>> rolling_frictions;
     std::vector<SurfaceVelocityWide<Real>> surface_velocities;
-    bool surfaces_turn = false, spins_swing = false;
+    bool surfaces_turn = false, axes_turn = false;
     std::vector<SolverPrescribedVelocity<Real>> prescribed;
     std::vector<PointFrictionWide<Real>> point_frictions;
     std::vector<SolverBody<Real>> bodies;

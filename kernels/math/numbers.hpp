@@ -5,7 +5,11 @@
 
 namespace throng {
 
-inline Vec3 vector_at(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+template <class Real>
+Vec3 vector_at(const Real* numbers)
+{
+    return {double{numbers[0]}, double{numbers[1]}, double{numbers[2]}};
+}
 
 /// Anything of Eigen's as the numbers that it is of, in the order in which it holds them.
 template <class Numbers>

@@ -40,6 +40,26 @@ V3<L> cross(const V3<L>& a, const V3<L>& b)
 {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// The shortest turn that takes one unit vector to another. Of two that are all but opposite it is
+/// none.
+template <class L>
+struct ShortestTurn {
+    V3<L> axis;  // from x to
+    L share;     // 1 / (1 + from . to)
+
+    ShortestTurn(const V3<L>& from, const V3<L>& to)
+        : axis(cross(from, to)),
+          share(L(Number(1)) / max(L(Number(1)) + dot(from, to), L(Number(1e-6))))
+    { }
+    V3<L> operator*(const V3<L>& v) const
+    {
+        const V3<L> across = cross(axis, v);
+        return v + across + cross(axis, across) * share;
+    }
+
+private:
+    using Number = typename L::Number;
+};
 /// Turned by the unit quaternion (axis, w).
 template <class L>
 V3<L> turned(const V3<L>& axis, L w, const V3<L>& v)

@@ -223,17 +223,6 @@ Turn<L> small_turn(const V3<L>& turn)
     return by;
 }
 
-// The shortest turn that takes one unit vector to another, applied to a third.
-template <class L>
-V3<L> turned_shortest(const V3<L>& from, const V3<L>& to, const V3<L>& v)
-{
-    using Real = typename L::Number;
-    const V3<L> axis = cross(from, to);
-    const L half = max(L(Real(1)) + dot(from, to), L(Real(1e-6)));
-    const V3<L> across = cross(axis, v);
-    return v + across + cross(axis, across) * (L(Real(1)) / half);
-}
-
 // Turned on by a vector in the axes of spin_frame().
 template <class L>
 Turn<L> turned_along(const Spinning<L>& of, const Turn<L>& before, const V3<L>& turn)
@@ -241,7 +230,7 @@ Turn<L> turned_along(const Spinning<L>& of, const Turn<L>& before, const V3<L>& 
     using Real = typename L::Number;
     const V3<L> own = of.own_axis(), now = turned(before.axis, before.w, own);
     const V3<L> about = own * dot(own, turn), none{L(Real(0)), L(Real(0)), L(Real(0))};
-    const V3<L> across = turned_shortest(own, now, turn - about);
+    const V3<L> across = ShortestTurn<L>(own, now) * (turn - about);
     const V3<L> first = chosen(of.acts(), chosen(of.symmetric(), across, none), turn);
     const V3<L> last = chosen(of.acts(), chosen(of.symmetric(), about, turn), none);
     return small_turn(first) * before * small_turn(last);

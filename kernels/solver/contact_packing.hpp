@@ -13,6 +13,11 @@ Vec3T<Real> vector_at(const Lane16<Real> (&from)[3], std::size_t lane)
 {
     return {from[0].at[lane], from[1].at[lane], from[2].at[lane]};
 }
+template <class Real>
+Vec3 in_double(const Lane16<Real> (&from)[3], std::size_t lane)
+{
+    return vector_at(from, lane).template cast<double>();
+}
 
 /// How a contact gives way: a damped spring, integrated implicitly, seen as three numbers.
 ///

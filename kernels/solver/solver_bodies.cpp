@@ -9,12 +9,6 @@ namespace throng {
 
 namespace {
 
-template <class Real>
-Vec3 vector_of(const Real* numbers)
-{
-    return {double{numbers[0]}, double{numbers[1]}, double{numbers[2]}};
-}
-
 // The shortest turn that takes one unit vector to another.
 Quat shortest_turn(const Vec3& from, const Vec3& to)
 {
@@ -34,10 +28,10 @@ template <class Real>
 SplitTurn
 split_turn(const SolverBody<Real>& body, const GyroscopicInertia<Real>* inertia, double time)
 {
-    const Vec3 turn = vector_of(body.motion + 4) * time;
+    const Vec3 turn = vector_at(body.motion + 4) * time;
     if (inertia == nullptr || !(inertia->share[6] > 0)) return {turn, Vec3::Zero()};
     if (!(inertia->axis[3] > 0)) return {Vec3::Zero(), turn};
-    const Vec3 axis = vector_of(inertia->axis);
+    const Vec3 axis = vector_at(inertia->axis);
     const Vec3 about = axis * axis.dot(turn);
     return {spin_frame(body, inertia) * Vec3(turn - about), about};
 }
@@ -50,7 +44,7 @@ Quat spin_frame(const SolverBody<Real>& body, const GyroscopicInertia<Real>* ine
     if (inertia == nullptr || !(inertia->share[6] > 0)) return Quat::Identity();
     const Quat turn = turn_of(body);
     if (!(inertia->axis[3] > 0)) return turn;
-    const Vec3 axis = vector_of(inertia->axis);
+    const Vec3 axis = vector_at(inertia->axis);
     return shortest_turn(axis, turn * axis);
 }
 

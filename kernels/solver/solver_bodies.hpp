@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/data/contact_constraints.hpp"
+#include "kernels/math/numbers.hpp"
 #include "kernels/solver/carried_points.hpp"
 #include "throng/math.hpp"
 
@@ -50,24 +51,21 @@ InverseMass inverse_mass_of(const SolverBody<Real>& body)
 template <class Real>
 bool carries(const SolverBody<Real>& carrier, const InverseMass& carried, double dt)
 {
-    const Real* const motion = carrier.motion;
-    return carries(Vec3(double{motion[4]}, double{motion[5]}, double{motion[6]}),
-                   inverse_mass_of(carrier), carried, dt);
+    return carries(vector_at(carrier.motion + 4), inverse_mass_of(carrier), carried, dt);
 }
 
 /// Whether the axis that a body is symmetric about, and its spin with it (see spin_frame), turns
-/// enough in dt to be seen where the body rolls, and not so far that contacts of the step's
-/// beginning say nothing of its end. Who can only turn rolls nowhere.
+/// enough in dt to be seen where the body rolls, and less than kFarthestAxisTurn. Who can only turn
+/// rolls nowhere.
 template <class Real>
-bool spin_swings(const SolverBody<Real>& body, const GyroscopicInertia<Real>& inertia, double dt)
+bool axis_turns(const SolverBody<Real>& body, const GyroscopicInertia<Real>& inertia, double dt)
 {
-    constexpr double kSeen = 1e-3, kFarthest = 0.2;  // rad
+    constexpr double kSeen = 1e-3;  // rad
     if (!(inertia.axis[3] > 0) || !(body.inertia[0] > 0)) return false;
-    const Vec3 spin(double{body.motion[4]}, double{body.motion[5]}, double{body.motion[6]});
-    const Vec3 axis(double{inertia.axis[0]}, double{inertia.axis[1]}, double{inertia.axis[2]});
-    const double about = axis.dot(spin);
+    const Vec3 spin = vector_at(body.motion + 4);
+    const double about = vector_at(inertia.axis).dot(spin);
     const double squared = (spin.squaredNorm() - about * about) * dt * dt;
-    return squared > kSeen * kSeen && squared < kFarthest * kFarthest;
+    return squared > kSeen * kSeen && squared < kFarthestAxisTurn * kFarthestAxisTurn;
 }
 
 /// Whether a body is pushed, along a normal at an arm, straight below the axis that it is symmetric
@@ -76,8 +74,7 @@ template <class Real>
 bool rolls_on_axis(const GyroscopicInertia<Real>& inertia, const Vec3& normal, const Vec3& arm)
 {
     constexpr double kBeside = 1e-2, kLeastAcross = 0.5;  // of the arm; sine
-    const Vec3 axis(double{inertia.axis[0]}, double{inertia.axis[1]}, double{inertia.axis[2]});
-    const Vec3 side = axis.cross(normal);
+    const Vec3 side = vector_at(inertia.axis).cross(normal);
     return side.squaredNorm() >= kLeastAcross * kLeastAcross
         && std::abs(side.dot(arm)) <= kBeside * arm.norm();
 }

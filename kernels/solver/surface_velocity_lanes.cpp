@@ -7,10 +7,6 @@ namespace throng::THRONG_LANES {
 
 namespace {
 
-// Of an axis that has turned by more than this cosine since the step began nothing is told any
-// more: contacts of the step's beginning say nothing of where it rolls by now.
-constexpr double kFarthestSwing = 0.98;
-
 // Turned for a time, by a rotation that is exact to the third order and one for any spin.
 template <class L>
 V3<L> turned_on(const V3<L>& arm, const V3<L>& spin, L time)
@@ -74,10 +70,10 @@ template <class L>
 // (see spin_frame, of what is symmetric about an axis) to the middle of the substep, less what it
 // is as the spin stands.
 template <class L>
-V3<L> swing_of(const ContactConstraintsView<typename L::Number>& constraints,
-               const std::int32_t* index,
-               const V3<L>& arm,
-               L half)
+V3<L> turn_of_axis(const ContactConstraintsView<typename L::Number>& constraints,
+                   const std::int32_t* index,
+                   const V3<L>& arm,
+                   L half)
 {
     using Real = typename L::Number;
     const Motion<L, true> motion(constraints.bodies, index);
@@ -85,18 +81,12 @@ V3<L> swing_of(const ContactConstraintsView<typename L::Number>& constraints,
     gather_8(constraints.inertias->axis, 16, index, own);
     const V3<L> axis{own[0], own[1], own[2]};
     const V3<L> now = axis + DeltaPose<L, true>(constraints.bodies, index).change_of(axis);
-    // The shortest turn from one to the other.
-    const L one = Real(1), cosine = dot(axis, now), share = one / max(one + cosine, one);
-    const V3<L> way = cross(axis, now);
-    const auto along = [&](const V3<L>& v) {
-        const V3<L> turn = cross(way, v);
-        return v + turn + cross(way, turn) * share;
-    };
-    const V3<L> still = cross(motion.spin, arm), spin = along(motion.spin);
-    const V3<L> swung = turned_on(along(still), spin - now * dot(now, spin), half);
-    const auto far = cosine < L(Real(kFarthestSwing));
+    const ShortestTurn<L> turn(axis, now);
+    const V3<L> still = cross(motion.spin, arm), spin = turn * motion.spin;
+    const V3<L> turned = turned_on(turn * still, spin - now * dot(now, spin), half);
+    const auto far = dot(axis, now) < L(Real(1 - kFarthestAxisTurn * kFarthestAxisTurn / 2));
     const auto change = [&](L to, L from) { return select(far, L(Real(0)), to - from); };
-    return {change(swung.x, still.x), change(swung.y, still.y), change(swung.z, still.z)};
+    return {change(turned.x, still.x), change(turned.y, still.y), change(turned.z, still.z)};
 }
 
 // One where a lane has its bit, else 0.
@@ -110,21 +100,21 @@ L of_bits(unsigned bits)
 }
 
 template <class L>
-[[gnu::flatten]] void swing_lanes(const ContactConstraintsView<typename L::Number>& constraints,
-                                  std::size_t place,
-                                  int at,
-                                  typename L::Number half)
+[[gnu::flatten]] void turn_lanes(const ContactConstraintsView<typename L::Number>& constraints,
+                                 std::size_t place,
+                                 int at,
+                                 typename L::Number half)
 {
     using Real = typename L::Number;
     const auto& block = constraints.blocks[place];
-    const L by_a = of_bits<L>(unsigned{block.swings_a} >> at),
-            by_b = of_bits<L>(unsigned{block.swings_b} >> at);
+    const L by_a = of_bits<L>(unsigned{block.axis_turns_a} >> at),
+            by_b = of_bits<L>(unsigned{block.axis_turns_b} >> at);
     const Frame<L, true> frame(block, at);
-    const V3<L> slip = swing_of<L>(constraints, block.b + at, frame.center_b, half) * by_b
-        - swing_of<L>(constraints, block.a + at, frame.center_a, half) * by_a;
-    const auto swings = by_a + by_b > L(Real(0));
+    const V3<L> slip = turn_of_axis<L>(constraints, block.b + at, frame.center_b, half) * by_b
+        - turn_of_axis<L>(constraints, block.a + at, frame.center_a, half) * by_a;
+    const auto turns = by_a + by_b > L(Real(0));
     const auto tell = [&](const V3<L>& along, Lane16<Real>& speed) {
-        select(swings, dot(along, slip), lane<L>(speed, at)).store(speed.at + at);
+        select(turns, dot(along, slip), lane<L>(speed, at)).store(speed.at + at);
     };
     tell(frame.tangent, constraints.surface_velocities[place].speed[0]);
     tell(frame.other, constraints.surface_velocities[place].speed[1]);
@@ -208,10 +198,10 @@ void update_surface_velocity(const ContactConstraintsView<Real>& constraints,
     for (std::size_t place = begin; place < end; ++place) {
         const ContactConstraintWide<Real>& block = constraints.blocks[place];
         const bool carries = constraints.surface_velocities[place].carries;
-        const bool swings = (block.swings_a | block.swings_b) != 0;
+        const bool turns = (block.axis_turns_a | block.axis_turns_b) != 0;
         for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth) {
             if (carries) carry_lanes<Lanes<Real>>(constraints, place, at, half);
-            if (swings) swing_lanes<Lanes<Real>>(constraints, place, at, half);
+            if (turns) turn_lanes<Lanes<Real>>(constraints, place, at, half);
         }
     }
 }

@@ -15,12 +15,6 @@ constexpr double kLeft = 0.5;
 constexpr std::size_t kNotForced = ~std::size_t{0};
 
 template <class Real>
-Vec3 in_double(const Lane16<Real> (&from)[3], std::size_t lane)
-{
-    return vector_at(from, lane).template cast<double>();
-}
-
-template <class Real>
 class BorneBodies {
 public:
     BorneBodies(const ContactConstraints<Real>& constraints,

@@ -101,7 +101,7 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
     ContactConstraintWide<Real>& block = constraints_.blocks[at];
     block.points = layout_.points[at];
     block.first_point = constraints_.first_point[at];
-    block.writes_a = block.writes_b = block.swings_a = block.swings_b = 0;
+    block.writes_a = block.writes_b = block.axis_turns_a = block.axis_turns_b = 0;
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
         const std::size_t place = at * kBlock + lane;
         const int lane_at = static_cast<int>(lane);
@@ -130,7 +130,7 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
         constraints_.surface_velocities[at] = {};
         if (constraints_.surfaces_turn) find_carried(at);
         if (view_.prescribed != nullptr) kernels_.walk_surface_velocity(view_, at, up_);
-        if (constraints_.spins_swing) find_swinging(at);
+        if (constraints_.axes_turn) find_turning_axes(at);
     }
     if (!uncut_ && !settles_) return;
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
@@ -198,7 +198,7 @@ void ConstraintBuilder<Real>::find_carried(std::size_t at) const
 }
 
 template <class Real>
-void ConstraintBuilder<Real>::find_swinging(std::size_t at) const
+void ConstraintBuilder<Real>::find_turning_axes(std::size_t at) const
 {
     ContactConstraintWide<Real>& block = constraints_.blocks[at];
     const SurfaceVelocityWide<Real>& surface = constraints_.surface_velocities[at];
@@ -209,20 +209,19 @@ void ConstraintBuilder<Real>::find_swinging(std::size_t at) const
         const Real round_a = block.round_a.at[lane], round_b = block.round_b.at[lane];
         if (!(round_a > 0) && !(round_b > 0)) continue;
         if (surface.by_a.at[lane] + surface.by_b.at[lane] > 0 || walks(lane)) continue;
-        const Vec3 normal = vector_at(block.normal, lane).template cast<double>();
+        const Vec3 normal = in_double(block.normal, lane);
         const auto bit = [&](std::int32_t solver_index, Real round, const auto& center) {
             const auto place = static_cast<std::size_t>(solver_index);
             const GyroscopicInertia<Real>& inertia = constraints_.inertias[place];
-            return round > 0 && spin_swings(constraints_.bodies[place], inertia, dt_)
-                    && rolls_on_axis(inertia, normal,
-                                     vector_at(center, lane).template cast<double>())
+            return round > 0 && axis_turns(constraints_.bodies[place], inertia, dt_)
+                    && rolls_on_axis(inertia, normal, in_double(center, lane))
                 ? 1u << lane
                 : 0u;
         };
-        block.swings_a = static_cast<std::uint16_t>(block.swings_a
-                                                    | bit(block.a[lane], round_a, block.center_a));
-        block.swings_b = static_cast<std::uint16_t>(block.swings_b
-                                                    | bit(block.b[lane], round_b, block.center_b));
+        block.axis_turns_a = static_cast<std::uint16_t>(
+            block.axis_turns_a | bit(block.a[lane], round_a, block.center_a));
+        block.axis_turns_b = static_cast<std::uint16_t>(
+            block.axis_turns_b | bit(block.b[lane], round_b, block.center_b));
     }
 }
 

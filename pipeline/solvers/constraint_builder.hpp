@@ -71,7 +71,7 @@ private:
                            std::size_t lane,
                            ContactConstraintWide<Real>& block) const;
     void find_carried(std::size_t at) const;
-    void find_swinging(std::size_t at) const;
+    void find_turning_axes(std::size_t at) const;
 
     const Layout& layout_;
     const ActiveContacts& active_;

@@ -173,7 +173,7 @@ private:
 
     void update_surface_velocity()
     {
-        if (constraints_.surfaces_turn || constraints_.spins_swing)
+        if (constraints_.surfaces_turn || constraints_.axes_turn)
             add(SlicePass::Kind::update_surface_velocity);
     }
 

@@ -157,7 +157,7 @@ void prepare_constraints(const StepContext& context,
                    velocities);
     const bool forced = context.effects.meets(kForces);
     const bool gyroscopic = context.has(Effect::gyroscopic);
-    std::atomic<bool> spins_swing = false;
+    std::atomic<bool> axes_turn = false;
     constraints.bodies.resize(layout.body_of_solver_index.size());
     constraints.inertias.resize(gyroscopic ? constraints.bodies.size() : 0);
     constraints.accelerations.resize(forced ? constraints.bodies.size() : 0);
@@ -166,8 +166,8 @@ void prepare_constraints(const StepContext& context,
         if (gyroscopic) {
             auto& inertia = constraints.inertias[solver_index];
             fill_inertia(body, poses, masses, states, inertia);
-            if (!spins_swing && spin_swings(constraints.bodies[solver_index], inertia, context.dt))
-                spins_swing = true;
+            if (!axes_turn && axis_turns(constraints.bodies[solver_index], inertia, context.dt))
+                axes_turn = true;
         }
         if (forced)
             fill_acceleration(body, accelerations, states, constraints.accelerations[solver_index]);
@@ -195,12 +195,12 @@ void prepare_constraints(const StepContext& context,
     constraints.points.resize(points);
     constraints.restitutions.resize(context.has(Effect::restitution) ? blocks : 0);
     constraints.surfaces_turn = anybody_carries(constraints.bodies, context.dt);
-    constraints.spins_swing = spins_swing && context.has(Effect::friction);
+    constraints.axes_turn = axes_turn && context.has(Effect::friction);
     if (context.has(Effect::drive))
         prepare_prescribed_velocities(prescribed, layout, constraints);
     else
         constraints.prescribed.clear();
-    constraints.surface_velocities.resize(constraints.surfaces_turn || constraints.spins_swing
+    constraints.surface_velocities.resize(constraints.surfaces_turn || constraints.axes_turn
                                                   || !constraints.prescribed.empty()
                                               ? blocks
                                               : 0);

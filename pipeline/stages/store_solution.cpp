@@ -19,12 +19,8 @@ bool take_back(const SolverBody<Real>& solver_body,
                Poses& poses,
                Velocities& velocities)
 {
-    const Vec3 moved(double{solver_body.delta_pose[0]}, double{solver_body.delta_pose[1]},
-                     double{solver_body.delta_pose[2]});
-    const Vec3 v(double{solver_body.motion[0]}, double{solver_body.motion[1]},
-                 double{solver_body.motion[2]});
-    const Vec3 spin(double{solver_body.motion[4]}, double{solver_body.motion[5]},
-                    double{solver_body.motion[6]});
+    const Vec3 moved = vector_at(solver_body.delta_pose);
+    const Vec3 v = vector_at(solver_body.motion), spin = vector_at(solver_body.motion + 4);
     const bool goes_along = inertia != nullptr && inertia->share[6] > 0;
     const Vec3 w = goes_along ? spin_frame(solver_body, inertia) * spin : spin;
     const Vec3 position = poses.position[body] + moved;

@@ -82,18 +82,6 @@ TEST(CarriedPoints, GoWithTheRounderSide)
     EXPECT_DOUBLE_EQ(goes_with_b(3, 1, false), 0.75);
 }
 
-template <class Real>
-Vec3 vector_of(const Real* from)
-{
-    return {double{from[0]}, double{from[1]}, double{from[2]}};
-}
-
-template <class Real>
-Vec3 vector_of(const Lane16<Real> (&from)[3], std::size_t lane)
-{
-    return {double{from[0].at[lane]}, double{from[1].at[lane]}, double{from[2].at[lane]}};
-}
-
 struct PlainSide {
     DirectBody body;
     CarriedSide goes;
@@ -101,15 +89,15 @@ struct PlainSide {
     template <class Real>
     PlainSide(const SolverBody<Real>& from, const Vec3& core, double half)
     {
-        body.velocity = vector_of(from.motion);
-        body.spin = vector_of(from.motion + 4);
+        body.velocity = vector_at(from.motion);
+        body.spin = vector_at(from.motion + 4);
         const Real* const inertia = from.inertia;
         body.inverse_inertia.xx = double{inertia[1]};
         body.inverse_inertia.yy = double{inertia[2]};
         body.inverse_inertia.zz = double{inertia[3]};
         const Quat turn(double{from.delta_pose[7]}, double{from.delta_pose[4]},
                         double{from.delta_pose[5]}, double{from.delta_pose[6]});
-        goes = carried_side(vector_of(from.delta_pose), turn, body, core, half);
+        goes = carried_side(vector_at(from.delta_pose), turn, body, core, half);
     }
 };
 
@@ -118,8 +106,8 @@ template <class Real>
 Vec3 plain_slip(BlockCase<Real>& made, std::size_t lane, double half)
 {
     const ContactConstraintWide<Real>& block = made.block();
-    const Vec3 normal = vector_of(block.normal, lane);
-    const Vec3 arm_a = vector_of(block.center_a, lane), arm_b = vector_of(block.center_b, lane);
+    const Vec3 normal = in_double(block.normal, lane);
+    const Vec3 arm_a = in_double(block.center_a, lane), arm_b = in_double(block.center_b, lane);
     const PlainSide a(made.body_a(lane), arm_a - normal * double{block.round_a.at[lane]}, half);
     const PlainSide b(made.body_b(lane), arm_b + normal * double{block.round_b.at[lane]}, half);
     DirectPoint point;
@@ -140,8 +128,9 @@ void carry(BlockCase<Real>& made, std::size_t lane, double share)
     SurfaceVelocityWide<Real>& carried = made.constraints.surface_velocities[given::kPlace];
     carried.by_a.at[lane] = static_cast<Real>(1 - share);
     carried.by_b.at[lane] = static_cast<Real>(share);
-    const Real arm_a = static_cast<Real>(vector_of(made.block().center_a, lane).squaredNorm());
-    const Real arm_b = static_cast<Real>(vector_of(made.block().center_b, lane).squaredNorm());
+    carried.carries = true;
+    const Real arm_a = static_cast<Real>(in_double(made.block().center_a, lane).squaredNorm());
+    const Real arm_b = static_cast<Real>(in_double(made.block().center_b, lane).squaredNorm());
     carried.range_a.at[lane] = range_of(arm_a, inverse_mass_of(made.body_a(lane)).angular > 0);
     carried.range_b.at[lane] = range_of(arm_b, inverse_mass_of(made.body_b(lane)).angular > 0);
 }
@@ -158,7 +147,6 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const double share = given::random_number(random, 0, 1);
             if (lane % 3 != 0) carry(made, lane, share);
-            carried.carries = true;
             // Some have left.
             if (lane % 4 == 0) made.body_b(lane).delta_pose[0] += Real(3);
         }
@@ -172,8 +160,8 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
                   0);
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const Vec3 slip = lane % 3 == 0 ? Vec3(Vec3::Zero()) : plain_slip(made, lane, half);
-            const Vec3 normal = vector_of(made.block().normal, lane);
-            const Vec3 tangent = vector_of(made.block().tangent, lane);
+            const Vec3 normal = in_double(made.block().normal, lane);
+            const Vec3 tangent = in_double(made.block().tangent, lane);
             ASSERT_NEAR(double{carried.speed[0].at[lane]}, tangent.dot(slip), tolerance);
             ASSERT_NEAR(double{carried.speed[1].at[lane]}, normal.cross(tangent).dot(slip),
                         tolerance);

@@ -1,5 +1,6 @@
 // Contact packing: what a contact's pushes do, against brute force; what carries over, how contacts
 // give way.
+#include "tests/kernels/solver/plain_contact.hpp"
 #include "tests/kernels/solver/random_contacts.hpp"
 
 #include <gtest/gtest.h>
@@ -66,15 +67,9 @@ struct Lane {
     Lane(given::BlockCase<double>& in, std::size_t at)
         : made(in), lane(at), contact(in.contacts[at]), a(in.body_a(at)), b(in.body_b(at))
     {
-        double load = 0;
-        for (int k = 0; k < contact.count; ++k)
-            load += contact.points[static_cast<std::size_t>(k)].impulse;
-        // Of round sides the middle of the load.
-        const bool rolls = contact.round_a + contact.round_b > 0 && load > 0;
         for (int k = 0; k < contact.count; ++k) {
-            const auto& point = contact.points[static_cast<std::size_t>(k)];
-            const double share = rolls ? point.impulse / load : 1.0 / contact.count;
-            center_a += point.anchor_a * share;
+            const double share = given::share_of_center(contact, k);
+            center_a += contact.points[static_cast<std::size_t>(k)].anchor_a * share;
             center_b += contact.anchor_b(k) * share;
         }
     }

@@ -52,12 +52,6 @@ TEST(DrivenContacts, EitherSideWalksAlike)
     EXPECT_NEAR(other.dot(normal), 0, 1e-15);
 }
 
-template <class Real>
-Vec3 vector_of(const Lane16<Real> (&from)[3], std::size_t lane)
-{
-    return {double{from[0].at[lane]}, double{from[1].at[lane]}, double{from[2].at[lane]}};
-}
-
 // What the kernel should tell of a lane.
 template <class Real>
 Vec3 plain_walk(BlockCase<Real>& made, std::size_t lane, const Vec3& up)
@@ -83,9 +77,9 @@ Vec3 plain_walk(BlockCase<Real>& made, std::size_t lane, const Vec3& up)
         const Real* const v = (is_b ? made.body_b(lane) : made.body_a(lane)).motion;
         return Vec3(double{v[0]}, double{v[1]}, double{v[2]})
             + Vec3(double{v[4]}, double{v[5]}, double{v[6]})
-                  .cross(vector_of(is_b ? block.center_b : block.center_a, lane));
+                  .cross(in_double(is_b ? block.center_b : block.center_a, lane));
     };
-    return walk_of(driven[0], driven[1], vector_of(block.normal, lane), up, rolls, velocity);
+    return walk_of(driven[0], driven[1], in_double(block.normal, lane), up, rolls, velocity);
 }
 
 template <class Real>
@@ -112,7 +106,7 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
         made.constraints.surface_velocities.assign(made.constraints.blocks.size(), {});
         made.constraints.prescribed.assign(made.constraints.bodies.size(), {});
         drive_some(random, made.constraints.prescribed);
-        const Vec3 up = vector_of(made.block().normal, 0);
+        const Vec3 up = in_double(made.block().normal, 0);
         const Real up_real[3] = {Real(up.x()), Real(up.y()), Real(up.z())};
         SurfaceVelocityWide<Real>& carried = made.constraints.surface_velocities[given::kPlace];
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
@@ -130,8 +124,8 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
             const Vec3 walk = plain_walk(made, lane, up);
             const bool walks = !walk.isZero(0);
             ASSERT_EQ(carried.by_b.at[lane], Real(!walks)) << seed << ' ' << lane;
-            const Vec3 tangent = vector_of(made.block().tangent, lane);
-            const Vec3 other = vector_of(made.block().normal, lane).cross(tangent);
+            const Vec3 tangent = in_double(made.block().tangent, lane);
+            const Vec3 other = in_double(made.block().normal, lane).cross(tangent);
             ASSERT_NEAR(double{carried.speed[0].at[lane]}, walks ? -walk.dot(tangent) : 7,
                         tolerance);
             ASSERT_NEAR(double{carried.speed[1].at[lane]}, -walk.dot(other), tolerance);

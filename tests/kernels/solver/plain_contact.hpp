@@ -68,6 +68,19 @@ struct PlainIteration {
     Vec3 gravity_step = Vec3::Zero();
 };
 
+/// The share that a point of a contact has in its center: as much as all, or of round sides as much
+/// as it bears.
+template <class Real>
+double share_of_center(const Contact<Real>& contact, int k)
+{
+    double load = 0;
+    for (int i = 0; i < contact.count; ++i)
+        load += double{contact.points[static_cast<std::size_t>(i)].impulse};
+    const bool rolls = contact.round_a + contact.round_b > 0 && load > 0;
+    return rolls ? double{contact.points[static_cast<std::size_t>(k)].impulse} / load
+                 : 1.0 / contact.count;
+}
+
 class PlainContact {
 public:
     template <class Real>
@@ -92,15 +105,11 @@ public:
             point.arm_a = from.anchor_a.template cast<double>();
             point.arm_b = point.arm_a + normal * point.separation + between;
             point.impulse = from.impulse;
-            total += point.impulse;
-            points.push_back(point);
-        }
-        // The middle of the points, or of what they bear where a side is round.
-        const bool rolls = round_a + round_b > 0 && total > 0;
-        for (const Point& point : points) {
-            const double share = rolls ? point.impulse / total : 1.0 / contact.count;
+            const double share = share_of_center(contact, k);
             center_a += point.arm_a * share;
             center_b += point.arm_b * share;
+            total += point.impulse;
+            points.push_back(point);
         }
         held_uncut = friction_impulse;
         // What was carried over stays within the cone.

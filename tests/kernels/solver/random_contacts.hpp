@@ -127,7 +127,7 @@ void make_points(int points, const BlockWish& wish, BlockCase<Real>& made)
     made.block().points = points;
     made.block().first_point = kFirstPoint;
     made.block().writes_a = made.block().writes_b = 0;
-    made.block().swings_a = made.block().swings_b = 0;
+    made.block().axis_turns_a = made.block().axis_turns_b = 0;
     for (std::size_t lane = 0; lane < kBlock; ++lane)
         made.block().a[lane] = made.block().b[lane] = 0;
 }
