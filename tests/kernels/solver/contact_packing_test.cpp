@@ -1,6 +1,5 @@
 // Contact packing: what a contact's pushes do, against brute force; what carries over, how contacts
 // give way.
-#include "tests/kernels/solver/plain_contact.hpp"
 #include "tests/kernels/solver/random_contacts.hpp"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 #include "kernels/math/rotation.hpp"
 #include "kernels/solver/contact_packing.hpp"
 #include "kernels/solver/solve_kernels.hpp"
+#include "tests/kernels/solver/plain_contact.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -188,7 +189,6 @@ Contact<Real> random_contact(std::mt19937& random,
     contact.normal = normal.cast<Real>();
     contact.count = 1 + static_cast<int>(random() % static_cast<unsigned>(wish.points));
     const Vec3 middle = (position_a + position_b) / 2;
-    double clearance = 0;
     for (int k = 0; k < contact.count; ++k) {
         auto& point = contact.points[static_cast<std::size_t>(k)];
         Vec3 off = random_vector(random, 0.4);
@@ -197,17 +197,20 @@ Contact<Real> random_contact(std::mt19937& random,
         point.anchor_a = (middle + off - position_a).cast<Real>();
         point.separation = static_cast<Real>(
             random_number(random, -wish.greatest_separation, wish.greatest_separation));
-        clearance += double{point.separation} / contact.count;
         point.impulse =
             wish.impulses && k != 2 ? static_cast<Real>(random_number(random, 0, 2)) : 0;
         point.feature = static_cast<std::uint32_t>(10 + k);
     }
-    const Vec3 apart = wish.one_place ? Vec3(normal * clearance) : Vec3(Vec3::Zero());
-    contact.center_offset = (position_a - position_b - apart).cast<Real>();
     if (wish.round) {
         if (random() % 3 == 0) contact.round_a = static_cast<Real>(random_number(random, 0, 0.5));
         if (random() % 3 == 0) contact.round_b = static_cast<Real>(random_number(random, 0, 0.5));
     }
+    double clearance = 0;
+    for (int k = 0; k < contact.count; ++k)
+        clearance += double{contact.points[static_cast<std::size_t>(k)].separation}
+            * share_of_center(contact, k);
+    const Vec3 apart = wish.one_place ? Vec3(normal * clearance) : Vec3(Vec3::Zero());
+    contact.center_offset = (position_a - position_b - apart).cast<Real>();
     if (wish.impulses) {
         Vec3 friction = random_vector(random, 0.2);
         friction -= normal * normal.dot(friction);

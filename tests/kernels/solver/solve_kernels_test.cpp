@@ -206,8 +206,7 @@ void check_momentum(double tolerance)
 {
     for (unsigned seed = 0; seed < 300; ++seed) {
         std::mt19937 random(seed);
-        // What meets in the middle of points does not in that of loads, which round sides have.
-        const BlockWish wish{.still = false, .round = false, .one_place = true};
+        const BlockWish wish{.still = false, .one_place = true};
         BlockCase<Real> made = random_block<Real>(random, wish);
         const SolverIteration<Real> iteration = random_iteration<Real>(random, wish);
         const Momentum before = momentum_of(made);
