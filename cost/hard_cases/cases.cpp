@@ -129,6 +129,9 @@ constexpr HardCase kCases[] = {
      case_small_columns, Fault::haste},
     {"H92", "stacks near attractors and on springs come to rest, and swings stay",
      case_rest_under_forces, Fault::haste},
+    {"H93", "what is round rolls along at the same speed on a floor of any kind",
+     case_rolling_along, Fault::haste},
+    {"H94", "small hulls of many sides stay on a floor of any kind", case_pebbles, Fault::sink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -100,6 +100,8 @@ void case_forced_bounces(CaseBench& bench);     // H89, forced_bounces.cpp
 void case_landing_columns(CaseBench& bench);    // H90, landing_columns.cpp
 void case_small_columns(CaseBench& bench);      // H91, small_columns.cpp
 void case_rest_under_forces(CaseBench& bench);  // H92, rest_under_forces.cpp
+void case_rolling_along(CaseBench& bench);      // H93, rolling_along.cpp
+void case_pebbles(CaseBench& bench);            // H94, pebbles.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

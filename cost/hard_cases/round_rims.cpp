@@ -3,7 +3,7 @@
 // Answer: whatever a hull lies on, it comes to rest within seconds and sinks in by no more than a
 // thousandth of its size. A finely rounded rim has many corners a hair above the lowest: a contact
 // that spreads over those and leaves the lowest out bears the hull at one point.
-#include "cost/hard_cases/hard_cases.hpp"
+#include "cost/hard_cases/floors.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
 
@@ -92,42 +92,13 @@ RoundedHull die(double rim, int steps)
     return hull;
 }
 
-enum class Floor : std::uint8_t { plane, box, mesh, hull };
-constexpr Floor kFloors[] = {Floor::plane, Floor::box, Floor::mesh, Floor::hull};
-constexpr const char* kFloorNames[] = {"plane", "box", "mesh", "hull"};
-
 struct Fall {
     double lean = 0;  // rad, as it is let go a hundredth of its size above the floor
     Vec3 at = Vec3::Zero();
     bool last = false;  // the floor is made after the hull
 };
 
-void put_floor(SceneParts& parts, std::uint32_t material, Floor floor, const Vec3& at, double size)
-{
-    const double wide = 4 * size, thick = size / 2;
-    std::uint32_t id = 0;
-    if (floor == Floor::plane) {
-        parts.plane(material, Vec3::UnitZ(), at.z());
-        return;
-    }
-    id = parts.box(material, 1, Vec3(wide, wide, thick),
-                   {at - thick * Vec3::UnitZ(), Quat::Identity()});
-    parts.hold(id);
-    auto& shape = parts.scene().shapes[parts.body(id).shape].shape;
-    if (floor == Floor::hull) {
-        HullShape slab;
-        for (int i = 0; i < 8; ++i)
-            slab.points.emplace_back(i & 1 ? wide : -wide, i & 2 ? wide : -wide,
-                                     i & 4 ? thick : -thick);
-        shape = slab;
-    } else if (floor == Floor::mesh) {
-        MeshShape mesh;
-        mesh.vertices = {
-            {-wide, -wide, thick}, {wide, -wide, thick}, {wide, wide, thick}, {-wide, wide, thick}};
-        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-        shape = mesh;
-    }
-}
+FloorSize floor_for(const RoundedHull& hull) { return {4 * hull.size, hull.size / 2}; }
 
 double lowest_of(const RoundedHull& hull, const Pose& pose)
 {
@@ -147,11 +118,12 @@ void let_fall(CaseBench& bench,
     parts.scene().settings = settings;
     parts.scene().settings.sleep = false;
     const std::uint32_t material = parts.material(0.5);
-    if (!fall.last) put_floor(parts, material, floor, fall.at, hull.size);
+    const Pose ground{fall.at, Quat::Identity()};
+    if (!fall.last) put_floor(parts, material, floor, ground, floor_for(hull));
     Pose pose{fall.at, exponential(fall.lean * Vec3(0.28, 0.96, 0))};
     pose.position.z() += fall.at.z() + 0.01 * hull.size - lowest_of(hull, pose);
     const std::uint32_t id = parts.hull(material, 100, HullShape{hull.points}, pose);
-    if (fall.last) put_floor(parts, material, floor, fall.at, hull.size);
+    if (fall.last) put_floor(parts, material, floor, ground, floor_for(hull));
     double speed = 0, sunk = 0;
     bench.run(parts.scene(), kTime, [&](World& world, double now) {
         const BodyId body = world.bodies()[id];
@@ -161,7 +133,7 @@ void let_fall(CaseBench& bench,
                          hull.size / 2 * world.angular_velocity(body).norm());
         return true;
     });
-    const std::string setting = hull.name + " on a " + kFloorNames[static_cast<int>(floor)] + how;
+    const std::string setting = hull.name + " on a " + name_of(floor) + how;
     bench.report(setting, "sinks in", sunk, std::max(1e-3 * hull.size, kGives), "m");
     bench.report(setting, "speed after 5 s", speed, 1e-4, "m/s");
 }

@@ -24,6 +24,9 @@ struct PolytopeView {
     double inner_radius = 0;
     double outer_radius = 0;
     const HullGuide* guide = nullptr;  // of a hull
+    // A prism that stands for a cylinder about z: its sides are one round side, which shows no more
+    // than a line.
+    bool round = false;
 
     std::span<const std::uint16_t> face(std::size_t index) const
     {

@@ -4,11 +4,13 @@
 // plain arithmetic of double, and so do pairs in double. Where the vertices are many, GJK and EPA
 // tell which corners meet, and the axes of these are looked at alone.
 #include "kernels/geometry/polytope_contacts.hpp"
+#include "kernels/geometry/shape_bounds.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
 #include "narrowphase/convex/query_gjk.hpp"
 #include "narrowphase/convex/wide/hull_kernels.hpp"
 #include "narrowphase/convex/wide_shapes.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
+#include "narrowphase/manifold/polytope_foot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -239,6 +241,36 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
     if (by_b) turn_round(pair, out);
 }
 
+// The face of a that a normal is along, or none.
+constexpr std::size_t kNoFace = ~std::size_t{0};
+std::size_t face_along(const PolytopeView& shape, const Vec3& normal)
+{
+    for (std::size_t i = 0; i < shape.normals.size(); ++i)
+        if (shape.normals[i].dot(normal) > kAlike) return i;
+    return kNoFace;
+}
+
+// A floor to another is what is this many times as large.
+constexpr double kFloor = 4;
+
+// Lets what is small to the other stand on its face.
+void spread_feet(const PolytopePair& pair, double speculative_margin, LocalManifold<double>& out)
+{
+    if (out.count == 0) return;
+    if (pair.a.outer_radius > kFloor * pair.b.outer_radius) {
+        if (const std::size_t face = face_along(pair.a, out.normal); face != kNoFace)
+            spread_foot(pair, static_cast<std::uint16_t>(face), speculative_margin, out);
+        return;
+    }
+    if (!(pair.b.outer_radius > kFloor * pair.a.outer_radius)) return;
+    const std::size_t face = face_along(pair.b, -(pair.turn.transpose() * out.normal));
+    if (face == kNoFace) return;
+    const PolytopePair turned = pair.mirrored();
+    turn_round(turned, out);
+    spread_foot(turned, static_cast<std::uint16_t>(face), speculative_margin, out);
+    turn_round(pair, out);
+}
+
 void collide_polytopes(const PolytopePair& pair,
                        double speculative_margin,
                        const Shown* shown,
@@ -260,7 +292,9 @@ void collide_polytopes(const PolytopePair& pair,
         found = look_at_all(sides, guess, cache, axes) ? Found::near : Found::apart;
         cache.kind |= fell_back;
     }
-    if (found == Found::near) find_points(sides, axes, out);
+    if (found != Found::near) return;
+    find_points(sides, axes, out);
+    spread_feet(pair, speculative_margin, out);
 }
 
 // Of the size of both: where the balls inside are smaller, the bias of faces comes near rounding.
@@ -306,6 +340,25 @@ bool meet_wide(const PairInput<float>& in, PairCache& cache, LocalManifold<float
     return true;
 }
 
+// As above, for what the wide kernels found.
+void spread_wide_feet(const PairInput<float>& in, LocalManifold<float>& out)
+{
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
+    const double outer_a = outer_radius(shapes, a), outer_b = outer_radius(shapes, b);
+    if (outer_a <= kFloor * outer_b && outer_b <= kFloor * outer_a) return;
+    float deepest = 0;
+    for (int i = 0; i < out.count; ++i)
+        deepest = std::min(deepest, out.points[static_cast<std::size_t>(i)].separation);
+    const double inner = inner_extent(shapes, outer_a > outer_b ? b : a);
+    if (!is_long_step(double{speculative_margin}, double{deepest}, inner)) return;
+    const PolytopeShape shape_a(shapes, a), shape_b(shapes, b);
+    const PolytopePair pair(shape_a.view(), shape_b.view(),
+                            {b_in_a.position.cast<double>(), b_in_a.orientation.cast<double>()});
+    LocalManifold<double> spread = out.cast<double>();
+    spread_feet(pair, double{speculative_margin}, spread);
+    out = spread.cast<float>();
+}
+
 // Of both: from how many vertices on GJK takes less than all axes do.
 constexpr std::size_t kManyVertices = 192;
 
@@ -335,7 +388,10 @@ void meet_plain(const PairInput<Real>& in,
 template <>
 void hull_hull<float>(const PairInput<float>& in, PairCache& cache, LocalManifold<float>& out)
 {
-    if (!meet_wide(in, cache, out)) meet_plain(in, true, cache, out);
+    if (!meet_wide(in, cache, out))
+        meet_plain(in, true, cache, out);
+    else if (out.count > 0)
+        spread_wide_feet(in, out);
 }
 
 template <>

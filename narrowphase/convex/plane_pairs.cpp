@@ -4,6 +4,7 @@
 #include "kernels/check.hpp"
 #include "kernels/geometry/support.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
+#include "narrowphase/manifold/foot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -99,129 +100,34 @@ void touch_cylinder(const ConvexCore<Real>& cylinder, const Ground<Real>& ground
     ground.add_point(Vec3T<Real>(x, y, cylinder.extents.z()), Real(0), 33);
 }
 
-// Which vertices of a hull bear it on a plane.
+// The vertices of a hull over a plane.
 template <class Real>
-class HullFoot {
-public:
-    HullFoot(const Hull& hull, const Ground<Real>& ground)
-        : hull_(hull), ground_(ground), lowest_(std::numeric_limits<Real>::infinity())
-    {
-        for (const Vec3& vertex : hull.vertices)
-            lowest_ = std::min(lowest_, ground.height(vertex.cast<Real>()));
-    }
+struct VerticesOver {
+    const Hull& hull;
+    const Ground<Real>& ground;
 
-    bool within_margin() const { return lowest_ <= ground_.speculative_margin; }
-
-    Real lowest() const { return lowest_; }
-
-    // Of the vertices that tilting by an angle may bring down to a height, four that span the most
-    // area: the lowest, the one furthest from it, and the furthest to either side of the line
-    // between them.
-    void spread(Real size, Real tilt, Real down)
-    {
-        const Real slack =
-            std::min(Real(1e-4) * size, std::max(ground_.speculative_margin - lowest_, Real(0)));
-        tilt_ = tilt;
-        down_ = std::max(lowest_, down);
-        first_ = lowest_within(slack);
-        left_ = right_ = kNone;
-        const Vec3T<Real> from = at(first_);
-        const auto flat_from = [&](const Vec3T<Real>& vertex) -> Vec3T<Real> {
-            const Vec3T<Real> offset = vertex - from;
-            return offset - ground_.into * offset.dot(ground_.into);
-        };
-        second_ = first_down([&](const auto& vertex) { return flat_from(vertex).norm(); });
-        if (second_ == kNone) return;
-        const Vec3T<Real> along = flat_from(at(second_));
-        const Real length = along.norm();
-        const Vec3T<Real> left = ground_.into.cross(along) / length;
-        // Within a millionth of the line's own length, what is beside it is noise.
-        const auto beside = [&](Real sign) {
-            return first_down([&](const auto& vertex) {
-                return sign * left.dot(vertex - from) - Real(1e-6) * length;
-            });
-        };
-        left_ = beside(Real(1));
-        right_ = beside(Real(-1));
-    }
-
-    // Whether the hull would stand on these, its middle above what they span.
-    bool stands() const
-    {
-        if (second_ == kNone) return false;
-        const std::array<std::size_t, 4> round = {first_, right_, second_, left_};
-        const Vec3T<Real> middle = hull_.center.template cast<Real>();
-        Vec3T<Real> from = at(left_ == kNone ? second_ : left_);
-        for (const std::size_t i : round) {
-            if (i == kNone) continue;
-            const Vec3T<Real> to = at(i);
-            if (!(ground_.into.cross(to - from).dot(middle - from) > 0)) return false;
-            from = to;
-        }
-        return true;
-    }
-
-    void add_points() const
-    {
-        for (const std::size_t i : {first_, second_, left_, right_})
-            if (i != kNone) ground_.add_point(at(i), Real(0), static_cast<std::uint32_t>(i));
-    }
-
-private:
-    static constexpr std::size_t kNone = ~std::size_t{0};
-
-    Vec3T<Real> at(std::size_t i) const { return hull_.vertices[i].template cast<Real>(); }
-
-    std::size_t lowest_within(Real slack) const
-    {
-        std::size_t i = 0;
-        while (!(ground_.height(at(i)) <= lowest_ + slack)) ++i;
-        return i;
-    }
-
-    // The one that the tilt would take furthest down, where distance(vertex) tells how far it is
-    // from the axis of tilting; none where all would stay above the lowest. Among near equals the
-    // first wins, so that noise in the pose does not swap points from step to step.
-    template <class Distance>
-    std::size_t first_down(const Distance& distance) const
-    {
-        std::size_t best = kNone;
-        Real most = 0;
-        for (std::size_t i = 0; i < hull_.vertices.size(); ++i) {
-            const Vec3T<Real> vertex = at(i);
-            const Real height = ground_.height(vertex);
-            if (!(height <= ground_.speculative_margin)) continue;
-            const Real below = tilt_ * distance(vertex) - (std::max(height, down_) - down_);
-            if (!(below > most * Real(1.001))) continue;
-            most = below;
-            best = i;
-        }
-        return best;
-    }
-
-    const Hull& hull_;
-    const Ground<Real>& ground_;
-    Real lowest_;
-    Real tilt_ = 0;  // rad
-    Real down_ = 0;  // m
-    std::size_t first_ = kNone, second_ = kNone, left_ = kNone, right_ = kNone;
+    std::size_t size() const { return hull.vertices.size(); }
+    Vec3T<Real> at(std::size_t i) const { return hull.vertices[i].template cast<Real>(); }
+    Real height(std::size_t i) const { return ground.height(at(i)); }
 };
 
 // What a hull stands on by its lowest vertices is held there: corners of a finely rounded rim that
 // are a hair above the lowest would leave these to bear it one at a time. One that still comes down
-// is held by all that the step may bring down, and by what has sunk in.
+// is held by what the step may bring down, and by what has sunk in.
 template <class Real>
 void touch_hull(const Hull& hull, Real size, const Ground<Real>& ground)
 {
-    HullFoot<Real> foot(hull, ground);
+    const VerticesOver<Real> vertices{hull, ground};
+    Foot<Real, VerticesOver<Real>> foot(vertices, ground.into, ground.speculative_margin);
     if (!foot.within_margin()) return;
-    // Of a ball, 1e-5 of its radius is within this of its lowest point.
-    constexpr Real kLevelTilt = Real(5e-3);
-    foot.spread(size, kLevelTilt, foot.lowest());
-    if (!foot.stands())
-        foot.spread(size, ground.speculative_margin / static_cast<Real>(hull.outer_radius),
-                    Real(0));
-    foot.add_points();
+    const Vec3T<Real> middle = hull.center.template cast<Real>();
+    foot.spread(size, foot.kLevelTilt, foot.lowest());
+    if (!foot.stands(middle))
+        foot.spread_to_stand(size, ground.speculative_margin / static_cast<Real>(hull.outer_radius),
+                             middle);
+    for (const std::size_t i : foot.chosen())
+        if (i != foot.kNone)
+            ground.add_point(vertices.at(i), Real(0), static_cast<std::uint32_t>(i));
 }
 
 }  // namespace

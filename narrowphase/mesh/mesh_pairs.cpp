@@ -109,7 +109,7 @@ struct Prism {
         static const PrismTopology topology;
         return {vertices,       normals, offsets, topology.face_begin, topology.face_vertices,
                 topology.edges, {},      {},      Vec3::Zero(),        inner_radius,
-                outer_radius};
+                outer_radius,   nullptr, true};
     }
 };
 

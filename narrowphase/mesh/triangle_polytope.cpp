@@ -2,6 +2,7 @@
 // points that come of it.
 #include "kernels/geometry/polytope_contacts.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
+#include "narrowphase/manifold/polytope_foot.hpp"
 #include "narrowphase/mesh/triangle_contacts.hpp"
 
 #include <algorithm>
@@ -98,6 +99,24 @@ void drop_overlaps(PolytopePoints& found)
     found.count = kept;
 }
 
+// Of a round side that lies on the triangle no more than its lowest line: the prism's other corners
+// are above it, and would brake what rolls.
+void keep_line(const PolytopePair& pair, const Vec3& normal, PolytopePoints& found)
+{
+    const Vec3 down = -(pair.turn.transpose() * normal);
+    const double across = down.head<2>().norm(), radius = pair.b.vertices[0].head<2>().norm();
+    if (!(across > std::abs(down.z()))) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < found.count; ++i) {
+        const auto& point = found.points[i];
+        const Vec3 on_b = point.position + normal * (point.separation / 2) - pair.shift;
+        const Vec3 local = pair.turn.transpose() * on_b;
+        if (local.head<2>().dot(down.head<2>()) > (1 - 1e-6) * radius * across)
+            found.points[kept++] = point;
+    }
+    found.count = kept;
+}
+
 // Points along the face that leads, of the triangle or of the polytope.
 void lay_face(const MeshTriangle& triangle,
               const PolytopePair& pair,
@@ -114,8 +133,12 @@ void lay_face(const MeshTriangle& triangle,
                found);
     if (by_front) clip_like_faces(pair, front, speculative_margin, bias, found);
     if (best.apart > bias) drop_overlaps(found);
+    if (by_front && pair.b.round) keep_line(pair, triangle.normal, found);
     out.normal = by_front ? triangle.normal : turned.a.normals[best.face.face];
     reduce_to_four<double>({found.points.data(), found.count}, out);
+    // Of two that are apart by another axis, what is over the triangle may be behind it.
+    if (by_front && best.apart <= bias && !pair.b.round)
+        spread_foot(pair, 0, speculative_margin, out);
     if (!by_front) turn_round(pair, out);
 }
 

@@ -443,4 +443,27 @@ TEST(MeshPairs, ABallCrossingAConvexRidgeIsHeldThroughout)
     }
 }
 
+TEST(MeshPairs, ALyingCylinderShowsItsLowestLineAlone)
+{
+    // However far the margin sees: points up its side would brake it as it rolls.
+    Shapes shapes;
+    shapes.cylinders = {{0.4, 0.5}};
+    shapes.meshes = {floor_of(8)};
+    const double root = std::sqrt(0.5);
+    for (const Quat& lying : {Quat(root, root, 0, 0), Quat(root, -root, 0, 0)})
+        for (int i = 0; i < 200; ++i) {
+            const double turned = 0.05 * i;
+            Pose pose = at(0.01 * i - 1, 0.3, 0.39);
+            pose.orientation = Quat(Eigen::AngleAxisd(turned, Vec3::UnitZ())) * lying
+                * Quat(Eigen::AngleAxisd(0.1 * i, Vec3::UnitZ()));
+            const auto found = touch_mesh<double>(shapes, {ShapeKind::cylinder, 0}, pose, 0.4);
+            ASSERT_FALSE(found.empty()) << i;
+            for (const auto& one : found)
+                for (int k = 0; k < one.manifold.count; ++k)
+                    ASSERT_NEAR(one.manifold.points[static_cast<std::size_t>(k)].separation, -0.01,
+                                1e-6)
+                        << i;
+        }
+}
+
 }  // namespace throng

@@ -1,0 +1,64 @@
+#include "cost/hard_cases/floors.hpp"
+
+#include "throng/rotation.hpp"
+
+namespace throng {
+
+namespace {
+
+HullShape slab(const FloorSize& size)
+{
+    HullShape hull;
+    for (int i = 0; i < 8; ++i)
+        hull.points.emplace_back(i & 1 ? size.wide : -size.wide, i & 2 ? size.wide : -size.wide,
+                                 i & 4 ? size.thick : -size.thick);
+    return hull;
+}
+
+MeshShape grid(const FloorSize& size, int cells)
+{
+    Random random(1);
+    MeshShape mesh;
+    const auto along = [&](int i) { return size.wide * (2.0 * i / cells - 1); };
+    for (int i = 0; i <= cells; ++i)
+        for (int k = 0; k <= cells; ++k)
+            mesh.vertices.emplace_back(along(i), along(k),
+                                       size.thick + random.uniform(0, size.height));
+    const auto corner = [&](int i, int k) {
+        return static_cast<std::uint32_t>(i * (cells + 1) + k);
+    };
+    for (int i = 0; i < cells; ++i)
+        for (int k = 0; k < cells; ++k) {
+            mesh.triangles.push_back({corner(i, k), corner(i + 1, k), corner(i + 1, k + 1)});
+            mesh.triangles.push_back({corner(i, k), corner(i + 1, k + 1), corner(i, k + 1)});
+        }
+    return mesh;
+}
+
+}  // namespace
+
+const char* name_of(Floor floor)
+{
+    constexpr const char* kNames[] = {"plane", "box", "mesh", "hull", "grid"};
+    return kNames[static_cast<int>(floor)];
+}
+
+std::uint32_t put_floor(SceneParts& parts,
+                        std::uint32_t material,
+                        Floor floor,
+                        const Pose& frame,
+                        const FloorSize& size)
+{
+    const Vec3 up = frame.orientation * Vec3::UnitZ();
+    if (floor == Floor::plane) return parts.plane(material, up, up.dot(frame.position));
+    const std::uint32_t id = parts.box(material, 1, Vec3(size.wide, size.wide, size.thick),
+                                       {frame.position - size.thick * up, frame.orientation});
+    parts.hold(id);
+    auto& shape = parts.scene().shapes[parts.body(id).shape].shape;
+    if (floor == Floor::hull) shape = slab(size);
+    if (floor == Floor::mesh) shape = grid(size, 1);
+    if (floor == Floor::grid) shape = grid(size, size.cells);
+    return id;
+}
+
+}  // namespace throng
