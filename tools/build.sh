@@ -42,6 +42,21 @@ what_failed() {
     fi
 }
 
+# Says every 20 s how far a build has come, by its log, until it is killed: what waits in a script
+# or in CI sees that something goes on.
+tell_progress() {  # LOG
+    local start=$SECONDS at told=""
+    while true; do
+        # A builtin that waits: a sleep of its own would outlive this.
+        read -r -t 20 <> <(:) || true
+        at=$(grep -o '^\[[0-9]*/[0-9]*\]' "$1" | tail -n 1) || true
+        at=${at//[\[\]]/}
+        [[ -z $at || $at == "$told" ]] \
+            || say "${at%/*} of ${at#*/} built after $((SECONDS - start)) s"
+        told=$at
+    done
+}
+
 # Runs a command: shown on a terminal, else kept in a log, of which what failed is shown.
 logged() {
     local log=$1 status=0
@@ -109,12 +124,15 @@ build_preset() {
     : >"$log"
     jobs=$(job_count)
     say "building $name with $jobs jobs; a build from nothing takes minutes"
-    local start=$SECONDS
+    local start=$SECONDS watcher="" failed=0
+    [[ -t 2 ]] || { tell_progress "$log" 9>&- & watcher=$!; }
     (
         cd "$root"
         logged "$log" cmake --preset "$name" || exit 3
         logged "$log" cmake --build "$dir" -j "$jobs" ${1:+--target "$@"} || exit 3
-    ) || { say "$name does not build"; exit 3; }
+    ) || failed=1
+    [[ -z $watcher ]] || { kill "$watcher" && wait "$watcher"; } 2>/dev/null || true
+    ((failed == 0)) || { say "$name does not build"; exit 3; }
     say "built $name in $((SECONDS - start)) s"
 }
 
