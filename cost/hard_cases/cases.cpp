@@ -132,6 +132,8 @@ constexpr HardCase kCases[] = {
     {"H93", "what is round rolls along at the same speed on a floor of any kind",
      case_rolling_along, Fault::haste},
     {"H94", "small hulls of many sides stay on a floor of any kind", case_pebbles, Fault::sink},
+    {"H95", "who falls flat comes up flat, on however many shapes", case_flat_bounces,
+     Fault::restitution},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -102,6 +102,7 @@ void case_small_columns(CaseBench& bench);      // H91, small_columns.cpp
 void case_rest_under_forces(CaseBench& bench);  // H92, rest_under_forces.cpp
 void case_rolling_along(CaseBench& bench);      // H93, rolling_along.cpp
 void case_pebbles(CaseBench& bench);            // H94, pebbles.cpp
+void case_flat_bounces(CaseBench& bench);       // H95, flat_bounces.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -193,7 +193,7 @@ struct SolidContacts : ManyContacts<Real> {
 };
 
 /// Which list a contact is kept in.
-enum class ContactList : std::uint8_t { convex, mesh, solid };
+enum class ContactList : std::uint8_t { convex, mesh, solid, joined };
 
 /// The contacts that this step solves: at least one point, at least one body that can move.
 struct ActiveContacts {
@@ -210,6 +210,28 @@ struct ActiveContacts {
     /// Of the entries of each block of pairs.
     struct Scratch {
         std::vector<std::size_t> begin, end;
+    } scratch;
+};
+
+/// Contacts that are solved as one, for this step: see join_contacts. Each keeps what it is made
+/// of, which impulses are given back to.
+template <class Real>
+struct JoinedContacts {
+    /// Where a point comes from: which of the sources, and which point of it.
+    struct PointSource {
+        std::uint32_t source = 0, point = 0;
+    };
+    struct Joined {
+        Contact<Real> contact;
+        std::uint32_t first = 0, count = 0;  // of the sources
+        std::array<PointSource, 4> points;
+    };
+    std::vector<Joined> contacts;
+    std::vector<ActiveContacts::Entry> sources;
+    struct Scratch {
+        std::vector<std::uint32_t> order;  // entries that may be joined, those of one pair together
+        std::vector<std::uint64_t> pair;   // [order]
+        std::vector<std::uint8_t> joined;  // [entries] 1: it is part of a joined one
     } scratch;
 };
 

@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace throng {
 
@@ -220,12 +222,18 @@ bool EventDrivenGroup::resolve_impacts()
                 && relative_normal_velocity(contact.point, bodies) < -contact.least_speed);
     }
     if (!any) return false;
+    // Those of two bodies bounce together, whatever shapes of theirs meet.
     impacts_.points.clear();
+    std::map<std::pair<std::uint32_t, std::uint32_t>, PairKey> first_of_two;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const GroupContact& contact = contacts_[i];
+        const auto two = std::minmax(contact.body_a, contact.body_b);
+        const PairKey pair = first_of_two.try_emplace(two, contact.key).first->second;
         impacts_.points.push_back(
-            {contact.point, i, contact.key, restitution_of(contact), contact.least_speed, 0});
+            {contact.point, i, pair, restitution_of(contact), contact.least_speed, 0});
     }
+    std::stable_sort(impacts_.points.begin(), impacts_.points.end(),
+                     [](const ImpactPoint& x, const ImpactPoint& y) { return x.pair < y.pair; });
     const bool in_order = scene_.parameters.impact_law == ImpactLaw::sequential;
     const auto stop = [&](auto& stopped, auto& points) { solve(stopped, points); };
     int passes = 0;

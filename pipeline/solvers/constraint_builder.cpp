@@ -76,10 +76,11 @@ ConstraintBuilder<Real>::ConstraintBuilder(const StepContext& context,
                                            ConvexContacts<Real>& convex,
                                            MeshContacts<Real>& meshes,
                                            SolidContacts<Real>& solids,
+                                           JoinedContacts<Real>& joined,
                                            ContactConstraints<Real>& constraints)
     : layout_(layout), active_(active), convex_(convex), meshes_(meshes), solids_(solids),
-      constraints_(constraints), view_(ContactConstraintsView<Real>::of(constraints)),
-      kernels_(solve_kernels<Real>()),
+      joined_(joined), constraints_(constraints),
+      view_(ContactConstraintsView<Real>::of(constraints)), kernels_(solve_kernels<Real>()),
       turns_(context.has(Effect::rotation)
              || parameters.friction_at_points_or_pyramid(context.effects)),
       uncut_(parameters.friction_at_points_or_pyramid(context.effects)
@@ -237,16 +238,39 @@ void ConstraintBuilder<Real>::store(std::size_t begin, std::size_t end) const
 {
     for (std::size_t i = begin; i < end; ++i) {
         const std::size_t lane = layout_.lane[i];
-        store_impulses(view_, lane / kBlock, static_cast<int>(lane % kBlock),
-                       contact_of(active_.entries[layout_.contacts[i]]));
+        const ActiveContacts::Entry& entry = active_.entries[layout_.contacts[i]];
+        store_impulses(view_, lane / kBlock, static_cast<int>(lane % kBlock), contact_of(entry));
+        give_back(entry);
     }
 }
 
 template <class Real>
 void ConstraintBuilder<Real>::scale_impulses(const Slice& slice, Real scale) const
 {
-    for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i)
-        throng::scale_impulses(scale, contact_of(active_.entries[layout_.contacts[i]]));
+    for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i) {
+        const ActiveContacts::Entry& entry = active_.entries[layout_.contacts[i]];
+        throng::scale_impulses(scale, contact_of(entry));
+        give_back(entry);
+    }
+}
+
+template <class Real>
+void ConstraintBuilder<Real>::give_back(const ActiveContacts::Entry& entry) const
+{
+    if (entry.list != ContactList::joined) return;
+    const auto& joined = joined_.contacts[entry.list_index];
+    const auto source = [&](std::uint32_t i) -> Contact<Real>& {
+        return contact_of(joined_.sources[joined.first + i]);
+    };
+    for (std::uint32_t i = 0; i < joined.count; ++i) throng::scale_impulses(Real(0), source(i));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(joined.contact.count); ++k) {
+        const auto& from = joined.points[k];
+        source(from.source).points[from.point].impulse = joined.contact.points[k].impulse;
+    }
+    // Friction of one plane adds up, wherever it is kept.
+    source(0).friction = joined.contact.friction;
+    source(0).rolling = joined.contact.rolling;
+    source(0).torsional_impulse = joined.contact.torsional_impulse;
 }
 
 template class ConstraintBuilder<float>;

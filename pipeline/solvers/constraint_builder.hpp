@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/solver/contact_packing.hpp"
+#include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/step/step_data.hpp"
 
 namespace throng {
@@ -21,21 +22,6 @@ double push_rate(const StepContext& context, const SolverParameters& parameters,
 ///   extent  m, the lesser of the smallest half extents of the two shapes
 double rigid_overlap(double extent, int points);
 
-/// The contact that an entry stands for, as const as the lists are.
-template <class Convex, class Meshes, class Solids>
-auto& contact_of(Convex& convex, Meshes& meshes, Solids& solids, const ActiveContacts::Entry& entry)
-{
-    switch (entry.list) {
-    case ContactList::mesh:
-        return meshes.entries[entry.list_index].contact;
-    case ContactList::solid:
-        return solids.entries[entry.list_index].contact;
-    case ContactList::convex:
-        break;
-    }
-    return convex.contacts[entry.list_index];
-}
-
 template <class Real>
 class ConstraintBuilder {
 public:
@@ -47,6 +33,7 @@ public:
                       ConvexContacts<Real>& convex,
                       MeshContacts<Real>& meshes,
                       SolidContacts<Real>& solids,
+                      JoinedContacts<Real>& joined,
                       ContactConstraints<Real>& constraints);
 
     /// Makes the constraints of blocks from `begin` to before `end`. Bodies have not moved yet.
@@ -61,8 +48,10 @@ public:
 
     Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const
     {
-        return throng::contact_of(convex_, meshes_, solids_, entry);
+        return throng::contact_of(convex_, meshes_, solids_, joined_, entry);
     }
+    /// Gives what a joined contact holds back to those that it is made of.
+    void give_back(const ActiveContacts::Entry& entry) const;
 
 private:
     void fill(std::size_t at, PackedContacts<Real>& packed) const;
@@ -78,6 +67,7 @@ private:
     ConvexContacts<Real>& convex_;
     MeshContacts<Real>& meshes_;
     SolidContacts<Real>& solids_;
+    JoinedContacts<Real>& joined_;
     ContactConstraints<Real>& constraints_;
     ContactConstraintsView<Real> view_;
     const SolveKernels<Real>& kernels_;

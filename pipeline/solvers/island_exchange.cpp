@@ -246,6 +246,7 @@ void IslandSolver::finish(const IslandScene<Real>& scene,
         const std::uint32_t entry = scene.layout.contacts[contacts_[first].contact];
         Contact<Real>& contact = scene.builder.contact_of(scene.active.entries[entry]);
         give_impulses(first, contact);
+        scene.builder.give_back(scene.active.entries[entry]);
         first += static_cast<std::size_t>(contact.count);
     }
 }

@@ -74,10 +74,12 @@ public:
           const ConvexContacts<Real>& convex,
           const MeshContacts<Real>& meshes,
           const SolidContacts<Real>& solids,
+          const JoinedContacts<Real>& joined,
           OverloadedIslands& overloaded)
         : islands_(islands), layout_(layout), active_(active), masses_(masses),
           velocities_(velocities), convex_(convex), meshes_(meshes), solids_(solids),
-          overloaded_(overloaded), resting_(kResting * context.gravity.norm()), step_(context.dt)
+          joined_(joined), overloaded_(overloaded), resting_(kResting * context.gravity.norm()),
+          step_(context.dt)
     {
         for (int points = 1; points <= 4; ++points) {
             const double omega = contact_frequency(context, parameters, points);
@@ -116,7 +118,7 @@ public:
 private:
     const Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const
     {
-        return throng::contact_of(convex_, meshes_, solids_, entry);
+        return throng::contact_of(convex_, meshes_, solids_, joined_, entry);
     }
 
     // A heap that settles trembles.
@@ -281,6 +283,7 @@ private:
     const ConvexContacts<Real>& convex_;
     const MeshContacts<Real>& meshes_;
     const SolidContacts<Real>& solids_;
+    const JoinedContacts<Real>& joined_;
     OverloadedIslands& overloaded_;
     double resting_;       // m/s
     double step_;          // s
@@ -300,13 +303,14 @@ void measure_strain(const StepContext& context,
                     const ConvexContacts<Real>& convex,
                     const MeshContacts<Real>& meshes,
                     const SolidContacts<Real>& solids,
+                    const JoinedContacts<Real>& joined,
                     OverloadedIslands& overloaded)
 {
     const std::size_t count = islands.size();
     overloaded.scratch.of_island.resize(count);
     overloaded.scratch.height.resize(layout.body_of_solver_index.size());
     const Gauge<Real> gauge(context, parameters, islands, layout, active, masses, velocities,
-                            convex, meshes, solids, overloaded);
+                            convex, meshes, solids, joined, overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i)
             overloaded.scratch.of_island[i] = float(gauge.strain_of(i));
@@ -327,7 +331,8 @@ void measure_strain(const StepContext& context,
     template void measure_strain<Real>(                                                            \
         const StepContext&, const SolverParameters&, const Islands&, const Layout&,                \
         const ActiveContacts&, const Masses&, const Velocities&, const ConvexContacts<Real>&,      \
-        const MeshContacts<Real>&, const SolidContacts<Real>&, OverloadedIslands&);
+        const MeshContacts<Real>&, const SolidContacts<Real>&, const JoinedContacts<Real>&,        \
+        OverloadedIslands&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -48,13 +48,21 @@ public:
           convex_(problem.template get<ConvexContacts<Real>>()),
           meshes_(problem.template get<MeshContacts<Real>>()),
           solids_(problem.template get<SolidContacts<Real>>()),
+          joined_(problem.template get<JoinedContacts<Real>>()),
           constraints_(problem.template get<ContactConstraints<Real>>()),
           split_impulse_(problem.template get<SplitImpulse>()),
           diagnostics_(problem.template get<StepDiagnostics>()),
           facts_{problem.template get<const Forces>(), problem.template get<const Masses>(),
                  problem.template get<Poses>(), problem.template get<Velocities>()},
-          builder_(
-              context_, parameters_, layout_, active_, convex_, meshes_, solids_, constraints_),
+          builder_(context_,
+                   parameters_,
+                   layout_,
+                   active_,
+                   convex_,
+                   meshes_,
+                   solids_,
+                   joined_,
+                   constraints_),
           effort_(effort), islands_{context_,
                                     parameters_,
                                     effort_,
@@ -132,7 +140,7 @@ private:
         parameters.push_limit /= batch.times;
         parameters.relax_iterations = finer_relax_iterations(parameters, finer.substeps, batch);
         const ConstraintBuilder<Real> with(finer, parameters, layout_, active_, convex_, meshes_,
-                                           solids_, constraints_);
+                                           solids_, joined_, constraints_);
         const Slice& slice = layout_.slices[batch.first_slice];
         // Impulses are kept as of the substep that the settings say.
         with.scale_impulses(slice, Real(1) / Real(batch.times));
@@ -147,6 +155,7 @@ private:
     ConvexContacts<Real>& convex_;
     MeshContacts<Real>& meshes_;
     SolidContacts<Real>& solids_;
+    JoinedContacts<Real>& joined_;
     ContactConstraints<Real>& constraints_;
     SplitImpulse& split_impulse_;
     StepDiagnostics& diagnostics_;

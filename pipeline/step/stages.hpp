@@ -93,6 +93,17 @@ void gather_contacts(const Pairs&,
                      const SolidContacts<Real>&,
                      ActiveContacts&);
 
+/// Contacts of two bodies, or of one with what stands still, that lie in one plane and may bounce,
+/// into one.
+template <class Real>
+void join_contacts(const StepContext&,
+                   const BodyStates&,
+                   const ConvexContacts<Real>&,
+                   const MeshContacts<Real>&,
+                   const SolidContacts<Real>&,
+                   ActiveContacts&,
+                   JoinedContacts<Real>&);
+
 /// Contacts into islands, with those that springs join to who is in one.
 void split_islands(
     const ActiveContacts&, const BodyStates&, const Forces&, IslandFinder&, Islands&);
@@ -153,6 +164,7 @@ using ContactProblem = StageData<const StepContext,
                                  ConvexContacts<Real>,
                                  MeshContacts<Real>,
                                  SolidContacts<Real>,
+                                 JoinedContacts<Real>,
                                  Poses,
                                  Velocities,
                                  SplitImpulse,
@@ -187,6 +199,7 @@ void measure_strain(const StepContext&,
                     const ConvexContacts<Real>&,
                     const MeshContacts<Real>&,
                     const SolidContacts<Real>&,
+                    const JoinedContacts<Real>&,
                     OverloadedIslands&);
 
 /// What solver bodies came to since the step began, onto poses and velocities.

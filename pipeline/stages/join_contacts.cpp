@@ -1,0 +1,209 @@
+// Join contacts: who falls flat on many triangles, on his own many shapes or on tiles side by side
+// meets one plane.
+//
+// Bouncing is one event for all that meets there at once. Contact by contact it is none: the first
+// throws the body back at its own side alone, and what was flat spins. So contacts that may bounce
+// and have one normal are solved as one, of four of their points, and impulses are given back to
+// where they are kept from step to step.
+#include "narrowphase/manifold/contact_points.hpp"
+#include "pipeline/contacts/contact_lists.hpp"
+#include "pipeline/step/stages.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+
+namespace throng {
+
+namespace {
+
+// Cosine beyond which two normals are one: a hundredth of a radian, as for what lies flush.
+constexpr double kAlike = 0.99995;
+constexpr std::uint64_t kAlone = std::numeric_limits<std::uint64_t>::max();
+
+template <class Real>
+class Joining {
+public:
+    Joining(const BodyStates& states,
+            const ConvexContacts<Real>& convex,
+            const MeshContacts<Real>& meshes,
+            const SolidContacts<Real>& solids,
+            ActiveContacts& active,
+            JoinedContacts<Real>& joined)
+        : states_(states), convex_(convex), meshes_(meshes), solids_(solids), active_(active),
+          joined_(joined)
+    { }
+
+    void run()
+    {
+        list_candidates();
+        auto& scratch = joined_.scratch;
+        scratch.joined.assign(active_.entries.size(), 0);
+        const std::span all(scratch.order);
+        for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+            while (end < all.size() && scratch.pair[end] == scratch.pair[begin]) ++end;
+            if (end - begin > 1) join_alike(all.subspan(begin, end - begin));
+        }
+        if (!joined_.contacts.empty()) drop_sources();
+    }
+
+private:
+    using Entry = ActiveContacts::Entry;
+
+    const Contact<Real>& contact_of(const Entry& entry) const
+    {
+        return throng::contact_of(convex_, meshes_, solids_, std::as_const(joined_), entry);
+    }
+
+    bool stands(std::uint32_t body) const { return states_.kind[body] == BodyKind::static_; }
+
+    // Whose contacts may be one: two bodies, or one and all that stands still, seen from one side.
+    std::uint64_t pair_of(const Entry& entry) const
+    {
+        constexpr std::uint32_t kStanding = 0xffffffffu;
+        if (!(entry.restitution > 0) || entry.list == ContactList::solid) return kAlone;
+        const std::uint32_t a = stands(entry.body_a) ? kStanding : entry.body_a,
+                            b = stands(entry.body_b) ? kStanding : entry.body_b;
+        return std::uint64_t{a} << 32 | b;
+    }
+
+    void list_candidates()
+    {
+        std::vector<std::uint32_t>& order = joined_.scratch.order;
+        std::vector<std::uint64_t>& pair = joined_.scratch.pair;
+        order.clear();
+        for (std::uint32_t i = 0; i < active_.entries.size(); ++i)
+            if (pair_of(active_.entries[i]) != kAlone) order.push_back(i);
+        const auto before = [&](std::uint32_t x, std::uint32_t y) {
+            const std::uint64_t of_x = pair_of(active_.entries[x]),
+                                of_y = pair_of(active_.entries[y]);
+            return of_x != of_y ? of_x < of_y : x < y;
+        };
+        std::sort(order.begin(), order.end(), before);
+        pair.resize(order.size());
+        for (std::size_t i = 0; i < order.size(); ++i) pair[i] = pair_of(active_.entries[order[i]]);
+    }
+
+    bool alike(const Entry& x, const Entry& y) const
+    {
+        if (x.friction != y.friction || x.restitution != y.restitution
+            || x.rolling_friction != y.rolling_friction)
+            return false;
+        const Contact<Real>&one = contact_of(x), &other = contact_of(y);
+        return one.round_a == other.round_a && one.round_b == other.round_b
+            && double{one.normal.dot(other.normal)} > kAlike;
+    }
+
+    // Those of one pair, by the first of each plane.
+    void join_alike(std::span<const std::uint32_t> of_pair)
+    {
+        auto& taken = joined_.scratch.joined;
+        for (std::size_t i = 0; i < of_pair.size(); ++i) {
+            if (taken[of_pair[i]] != 0) continue;
+            const auto first = static_cast<std::uint32_t>(joined_.sources.size());
+            const Entry of_first = active_.entries[of_pair[i]];
+            joined_.sources.push_back(of_first);
+            for (std::size_t k = i + 1; k < of_pair.size(); ++k) {
+                const Entry& other = active_.entries[of_pair[k]];
+                if (taken[of_pair[k]] != 0 || !alike(of_first, other)) continue;
+                taken[of_pair[k]] = 1;
+                joined_.sources.push_back(other);
+            }
+            const auto count = static_cast<std::uint32_t>(joined_.sources.size()) - first;
+            if (count < 2) {
+                joined_.sources.pop_back();
+                continue;
+            }
+            make(first, count, active_.entries[of_pair[i]]);
+        }
+    }
+
+    // One of sources, in place of the first of them.
+    void make(std::uint32_t first, std::uint32_t count, Entry& entry)
+    {
+        using Point = typename LocalManifold<Real>::Point;
+        auto& joined = joined_.contacts.emplace_back();
+        joined.first = first;
+        joined.count = count;
+        Contact<Real>& contact = joined.contact;
+        candidates_.clear();
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Contact<Real>& source = contact_of(joined_.sources[first + i]);
+            if (i == 0) contact.take(source);
+            for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(source.count); ++k) {
+                const auto& point = source.points[k];
+                candidates_.push_back({point.anchor_a + source.normal * (point.separation / 2),
+                                       point.separation, i << 2 | k});
+            }
+            if (i == 0) continue;
+            contact.friction += source.friction;
+            contact.rolling += source.rolling;
+            contact.torsional_impulse += source.torsional_impulse;
+            entry.extent = std::min(entry.extent, joined_.sources[first + i].extent);
+        }
+        LocalManifold<Real> manifold;
+        manifold.normal = contact.normal;
+        reduce_to_four<Real>(std::span<const Point>(candidates_), manifold);
+        contact.count = manifold.count;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(manifold.count); ++k) {
+            const std::uint32_t feature = manifold.points[k].feature;
+            joined.points[k] = {feature >> 2, feature & 3u};
+            contact.points[k] =
+                contact_of(joined_.sources[first + (feature >> 2)]).points[feature & 3u];
+        }
+        entry.list = ContactList::joined;
+        entry.list_index = static_cast<std::uint32_t>(joined_.contacts.size()) - 1;
+        entry.points = static_cast<std::uint8_t>(contact.count);
+    }
+
+    void drop_sources()
+    {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < active_.entries.size(); ++i) {
+            if (joined_.scratch.joined[i] != 0) continue;
+            if (!active_.materials.empty()) active_.materials[kept] = active_.materials[i];
+            active_.entries[kept++] = active_.entries[i];
+        }
+        active_.entries.resize(kept);
+        if (!active_.materials.empty()) active_.materials.resize(kept);
+    }
+
+    const BodyStates& states_;
+    const ConvexContacts<Real>& convex_;
+    const MeshContacts<Real>& meshes_;
+    const SolidContacts<Real>& solids_;
+    ActiveContacts& active_;
+    JoinedContacts<Real>& joined_;
+    std::vector<typename LocalManifold<Real>::Point> candidates_;
+};
+
+}  // namespace
+
+template <class Real>
+void join_contacts(const StepContext& context,
+                   const BodyStates& states,
+                   const ConvexContacts<Real>& convex,
+                   const MeshContacts<Real>& meshes,
+                   const SolidContacts<Real>& solids,
+                   ActiveContacts& active,
+                   JoinedContacts<Real>& joined)
+{
+    joined.contacts.clear();
+    joined.sources.clear();
+    // Where nothing has a rim, and nobody has several shapes, no two meet twice.
+    if (!context.has(Effect::seams) && !context.has(Effect::mesh_contact)) return;
+    Joining<Real>(states, convex, meshes, solids, active, joined).run();
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void join_contacts<Real>(const StepContext&, const BodyStates&,                       \
+                                      const ConvexContacts<Real>&, const MeshContacts<Real>&,      \
+                                      const SolidContacts<Real>&, ActiveContacts&,                 \
+                                      JoinedContacts<Real>&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng

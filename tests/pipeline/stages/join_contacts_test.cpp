@@ -1,0 +1,98 @@
+#include "tests/support/small_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace throng {
+namespace {
+
+using given::SceneOf;
+
+constexpr double kGravity = 9.81, kMass = 3;
+
+// Two slabs side by side, and a box or a table that lies across.
+Scene across_two(double restitution, bool table)
+{
+    SceneOf made;
+    made.scene.materials[0].restitution = restitution;
+    made.scene.gravity = Vec3(0, 0, -kGravity);
+    made.scene.settings.sleep = false;
+    for (const double x : {-2.0, 2.0})
+        made.box(Vec3(2, 2, 0.5), Vec3(x, 0, -0.5)).motion = Motion::static_;
+    if (!table) {
+        made.box(Vec3(0.5, 0.4, 0.2), Vec3(0.1, 0.05, 0.2)).mass = kMass;
+        return made.scene;
+    }
+    const std::uint32_t leg = made.shape(BoxShape{Vec3(0.05, 0.05, 0.2)});
+    CompoundShape legs;
+    for (const double x : {-0.5, 0.5})
+        for (const double y : {-0.4, 0.4})
+            legs.parts.push_back({leg, {Vec3(x, y, 0), Quat::Identity()}});
+    made.body(made.shape(legs), Vec3(0.1, 0.05, 0.2)).mass = kMass;
+    return made.scene;
+}
+
+}  // namespace
+
+TEST(JoinContacts, WhatMayBounceOnOnePlaneIsSolvedAsOne)
+{
+    for (const bool table : {false, true}) {
+        World bouncing(across_two(0.5, table)), resting(across_two(0, table));
+        bouncing.step();
+        resting.step();
+        EXPECT_EQ(bouncing.report().manifolds, 1u) << table;
+        EXPECT_EQ(bouncing.report().contacts, 4u) << table;
+        EXPECT_EQ(resting.report().manifolds, table ? 4u : 2u) << table;
+    }
+}
+
+TEST(JoinContacts, EachThatItLiesOnIsToldItsOwnLoad)
+{
+    // Its four corners, or its legs, bear a quarter each, and two of them are on either slab.
+    for (const bool table : {false, true}) {
+        World world(across_two(0.5, table));
+        for (int i = 0; i < 240; ++i) world.step();
+        for (const std::size_t slab : {0u, 1u})
+            EXPECT_NEAR(-world.contact_force(world.bodies()[slab]).z(), kMass * kGravity / 2,
+                        1e-3 * kMass * kGravity)
+                << table << ' ' << slab;
+        EXPECT_NEAR(world.contact_force(world.bodies()[2]).z(), kMass * kGravity,
+                    1e-3 * kMass * kGravity)
+            << table;
+    }
+}
+
+TEST(JoinContacts, OtherNormalsAndMaterialsStayApart)
+{
+    Scene scene = across_two(0.5, false);
+    scene.materials.push_back(scene.materials[0]);
+    scene.materials.back().name = "other";
+    scene.materials.back().restitution = 0.6;
+    scene.bodies[1].material = 1;
+    World unlike(scene);
+    unlike.step();
+    EXPECT_EQ(unlike.report().manifolds, 2u);
+
+    Scene corner = across_two(0.5, false);
+    corner.bodies[1].position = Vec3(2.601, 0.05, 0.5);  // a wall at the box's side
+    World in_corner(corner);
+    in_corner.step();
+    EXPECT_EQ(in_corner.report().manifolds, 2u);
+}
+
+TEST(JoinContacts, BySubstepsOfAnotherLengthNothingIsLost)
+{
+    // Escalated islands are solved by finer substeps, with impulses of theirs.
+    Scene scene = across_two(0.5, true);
+    for (int i = 1; i < 12; ++i) {
+        BodyDescription above = scene.bodies.back();
+        above.position.z() = 0.2 + 0.4 * i;
+        above.mass = i == 11 ? 1000 * kMass : kMass;
+        scene.bodies.push_back(above);
+    }
+    World world(scene);
+    for (int i = 0; i < 300; ++i) world.step();
+    EXPECT_LT(given::greatest_speed(world), 0.01);
+    EXPECT_GT(world.pose(world.bodies().back()).position.z(), 0.2 + 0.4 * 11 - 0.05);
+}
+
+}  // namespace throng
