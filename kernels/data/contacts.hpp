@@ -232,6 +232,7 @@ struct JoinedContacts {
         std::vector<std::uint32_t> order;  // entries that may be joined, those of one pair together
         std::vector<std::uint64_t> pair;   // [order]
         std::vector<std::uint8_t> joined;  // [entries] 1: it is part of a joined one
+        std::vector<std::uint8_t> touches;  // [bodies] of it with what stands, up to two; else 0
     } scratch;
 };
 

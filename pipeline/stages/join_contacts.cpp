@@ -27,13 +27,14 @@ template <class Real>
 class Joining {
 public:
     Joining(const BodyStates& states,
+            const Colliders& colliders,
             const ConvexContacts<Real>& convex,
             const MeshContacts<Real>& meshes,
             const SolidContacts<Real>& solids,
             ActiveContacts& active,
             JoinedContacts<Real>& joined)
-        : states_(states), convex_(convex), meshes_(meshes), solids_(solids), active_(active),
-          joined_(joined)
+        : states_(states), colliders_(colliders), convex_(convex), meshes_(meshes), solids_(solids),
+          active_(active), joined_(joined)
     { }
 
     void run()
@@ -69,13 +70,41 @@ private:
         return std::uint64_t{a} << 32 | b;
     }
 
+    // Two of one shape each meet once.
+    bool may_meet_twice(const Entry& entry) const
+    {
+        return entry.list != ContactList::convex || colliders_.count[entry.body_a] > 1
+            || colliders_.count[entry.body_b] > 1;
+    }
+
+    // Who of the two is on what stands still, or none.
+    std::uint32_t standing_on(const Entry& entry) const
+    {
+        return stands(entry.body_a) ? entry.body_b : stands(entry.body_b) ? entry.body_a : kNoBody;
+    }
+
     void list_candidates()
     {
         std::vector<std::uint32_t>& order = joined_.scratch.order;
         std::vector<std::uint64_t>& pair = joined_.scratch.pair;
+        std::vector<std::uint8_t>& touches = joined_.scratch.touches;
         order.clear();
-        for (std::uint32_t i = 0; i < active_.entries.size(); ++i)
-            if (pair_of(active_.entries[i]) != kAlone) order.push_back(i);
+        touches.resize(colliders_.count.size(), 0);
+        const auto for_each_candidate = [&](const auto& visit) {
+            for (std::uint32_t i = 0; i < active_.entries.size(); ++i)
+                if (pair_of(active_.entries[i]) != kAlone) visit(i, active_.entries[i]);
+        };
+        for_each_candidate([&](std::uint32_t, const Entry& entry) {
+            const std::uint32_t body = standing_on(entry);
+            if (body != kNoBody && touches[body] < 2) ++touches[body];
+        });
+        for_each_candidate([&](std::uint32_t i, const Entry& entry) {
+            const std::uint32_t body = standing_on(entry);
+            if (body != kNoBody ? touches[body] > 1 : may_meet_twice(entry)) order.push_back(i);
+        });
+        for_each_candidate([&](std::uint32_t, const Entry& entry) {
+            if (const std::uint32_t body = standing_on(entry); body != kNoBody) touches[body] = 0;
+        });
         const auto before = [&](std::uint32_t x, std::uint32_t y) {
             const std::uint64_t of_x = pair_of(active_.entries[x]),
                                 of_y = pair_of(active_.entries[y]);
@@ -171,6 +200,7 @@ private:
     }
 
     const BodyStates& states_;
+    const Colliders& colliders_;
     const ConvexContacts<Real>& convex_;
     const MeshContacts<Real>& meshes_;
     const SolidContacts<Real>& solids_;
@@ -184,6 +214,7 @@ private:
 template <class Real>
 void join_contacts(const StepContext& context,
                    const BodyStates& states,
+                   const Colliders& colliders,
                    const ConvexContacts<Real>& convex,
                    const MeshContacts<Real>& meshes,
                    const SolidContacts<Real>& solids,
@@ -194,11 +225,11 @@ void join_contacts(const StepContext& context,
     joined.sources.clear();
     // Where nothing has a rim, and nobody has several shapes, no two meet twice.
     if (!context.has(Effect::seams) && !context.has(Effect::mesh_contact)) return;
-    Joining<Real>(states, convex, meshes, solids, active, joined).run();
+    Joining<Real>(states, colliders, convex, meshes, solids, active, joined).run();
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void join_contacts<Real>(const StepContext&, const BodyStates&,                       \
+    template void join_contacts<Real>(const StepContext&, const BodyStates&, const Colliders&,     \
                                       const ConvexContacts<Real>&, const MeshContacts<Real>&,      \
                                       const SolidContacts<Real>&, ActiveContacts&,                 \
                                       JoinedContacts<Real>&);

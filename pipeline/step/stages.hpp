@@ -98,6 +98,7 @@ void gather_contacts(const Pairs&,
 template <class Real>
 void join_contacts(const StepContext&,
                    const BodyStates&,
+                   const Colliders&,
                    const ConvexContacts<Real>&,
                    const MeshContacts<Real>&,
                    const SolidContacts<Real>&,

@@ -246,6 +246,7 @@ std::size_t World::memory_bytes() const
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             const auto& constraints = std::get<ContactConstraints<Real>>(chosen.data);
             const auto& methods = std::get<MethodPairs>(chosen.data);
+            const auto& joined = std::get<JoinedContacts<Real>>(chosen.data);
             sum += bytes(pairs.keys, pairs.from, pairs.scratch.found, pairs.asked, convex.of_pair,
                          convex.contacts, convex.free, convex.astray, convex.scratch.gathered,
                          convex.scratch.order, convex.found, convex.scratch.found_gathered,
@@ -254,7 +255,9 @@ std::size_t World::memory_bytes() const
                          methods.scratch.fallbacks, std::get<ActiveContacts>(chosen.data).entries,
                          constraints.blocks, constraints.points, constraints.restitutions,
                          constraints.rolling_frictions, constraints.surface_velocities,
-                         constraints.prescribed, constraints.bodies, constraints.inertias);
+                         constraints.prescribed, constraints.bodies, constraints.inertias,
+                         joined.contacts, joined.sources, joined.scratch.order, joined.scratch.pair,
+                         joined.scratch.joined);
         },
         state_->step);
     return sum;
