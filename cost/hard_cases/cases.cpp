@@ -134,6 +134,8 @@ constexpr HardCase kCases[] = {
     {"H94", "small hulls of many sides stay on a floor of any kind", case_pebbles, Fault::sink},
     {"H95", "who falls flat comes up flat, on however many shapes", case_flat_bounces,
      Fault::restitution},
+    {"H96", "bodies that fall together to an attractor make no energy", case_attracted_heaps,
+     Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

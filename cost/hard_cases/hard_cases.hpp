@@ -103,6 +103,7 @@ void case_rest_under_forces(CaseBench& bench);  // H92, rest_under_forces.cpp
 void case_rolling_along(CaseBench& bench);      // H93, rolling_along.cpp
 void case_pebbles(CaseBench& bench);            // H94, pebbles.cpp
 void case_flat_bounces(CaseBench& bench);       // H95, flat_bounces.cpp
+void case_attracted_heaps(CaseBench& bench);    // H96, attracted_heaps.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -21,7 +21,7 @@ inline RigidRule rigid_rule(const StepContext& context)
     RigidRule rule;
     rule.gravity = context.gravity;
     rule.time = context.time;
-    rule.substep = context.substep();
+    rule.substep = context.substep_of_settings();
     rule.turns = context.has(Effect::rotation);
     rule.rotation = context.rotation;
     rule.gyroscopic = !context.has(Effect::gyroscopic) ? Law::off

@@ -136,6 +136,7 @@ private:
         StepContext finer = context_;
         SolverParameters parameters = parameters_;
         finer.substeps *= batch.times;
+        finer.times_finer = batch.times;
         // Its overlap is that of the usual ones, which these would push apart as much faster.
         parameters.push_limit /= batch.times;
         parameters.relax_iterations = finer_relax_iterations(parameters, finer.substeps, batch);

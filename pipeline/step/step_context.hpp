@@ -10,6 +10,7 @@ namespace throng {
 struct StepContext {
     double dt = 1.0 / 60;  // s
     int substeps = 4;
+    int times_finer = 1;  // as many of them as the settings say, of an island that is escalated
     Integrator integrator = Integrator::auto_;
     Rotation rotation = Rotation::quaternion;
     Gyroscopic gyroscopic = Gyroscopic::implicit;
@@ -29,6 +30,9 @@ struct StepContext {
         response = settings.response;
     }
     double substep() const { return dt / substeps; }
+    /// s, by the settings: what attractors are followed by, however finely an island is solved, as
+    /// one that drew harder within finer substeps would give energy that it does not take back.
+    double substep_of_settings() const { return dt * times_finer / substeps; }
     /// m/s: slower than what gravity gives in two steps is resting, not bouncing.
     double resting_speed() const { return 2 * gravity.norm() * dt; }
     bool has(Effect effect) const { return effects.has(effect); }
