@@ -138,6 +138,27 @@ void let_fall(CaseBench& bench,
     bench.report(setting, "speed after 5 s", speed, 1e-4, "m/s");
 }
 
+// Corners that are as far from one another as others must not take turns in bearing it.
+void rest_on_slope(CaseBench& bench, Floor floor)
+{
+    RoundedHull prism = lathe("prism", {{kSize / 3, -0.2}, {kSize / 3, 0.2}}, 7);
+    SceneParts parts(bench.scene());
+    parts.scene().settings.sleep = false;
+    const Quat slope = exponential(20 * kPi / 180 * Vec3(0.3, 0.95, 0).normalized());
+    parts.scene().gravity = slope * Vec3(0, 0, -kGravity);
+    const std::uint32_t material = parts.material(0.5);
+    put_floor(parts, material, floor, {}, floor_for(prism));
+    const Pose pose{Vec3(0.2, 0.1, 0.2), exponential(Vec3(0, 0, 0.2))};
+    const std::uint32_t id = parts.hull(material, 100, HullShape{prism.points}, pose);
+    double way = 0;
+    bench.run(parts.scene(), 2 * kTime, [&](World& world, double) {
+        way = (world.pose(world.bodies()[id]).position - pose.position).norm();
+        return true;
+    });
+    bench.report(prism.name + " on a slope that is a " + name_of(floor), "creeps in 10 s", way,
+                 1e-3 * kSize, "m");
+}
+
 RoundedHull scaled(RoundedHull hull, double by)
 {
     for (Vec3& point : hull.points) point *= by;
@@ -169,6 +190,7 @@ void case_round_rims(CaseBench& bench)
                          ", dt 1/" + std::to_string(std::lround(rate)), settings);
             }
         }
+    for (const Floor floor : kFloors) rest_on_slope(bench, floor);
     const RoundedHull one = drum(0.05, 16, 32);
     let_fall(bench, one, Floor::plane, {}, ", level", usual);
     let_fall(bench, one, Floor::plane, {.lean = 0.02, .last = true}, ", made last", usual);

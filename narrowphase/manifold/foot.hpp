@@ -108,7 +108,8 @@ private:
 
     // The one that the tilt would take furthest down, where distance(place) tells how far it is
     // from the axis of tilting; none where all would stay above the lowest. Among near equals the
-    // first wins, so that noise in the pose does not swap points from step to step.
+    // first wins, so that noise in the pose does not swap points from step to step: at rest heights
+    // differ by some thousandths of what such a tilt does.
     template <class Distance>
     std::size_t first_down(const Distance& distance) const
     {
@@ -118,7 +119,7 @@ private:
             const Real height = points_.height(i);
             if (!(height <= margin_)) continue;
             const Real below = tilt_ * distance(points_.at(i)) - (std::max(height, down_) - down_);
-            if (!(below > most * Real(1.001))) continue;
+            if (!(below > most * Real(1.01))) continue;
             most = below;
             best = i;
         }
