@@ -108,18 +108,19 @@ private:
 
     // The one that the tilt would take furthest down, where distance(place) tells how far it is
     // from the axis of tilting; none where all would stay above the lowest. Among near equals the
-    // first wins, so that noise in the pose does not swap points from step to step: at rest heights
-    // differ by some thousandths of what such a tilt does.
+    // first wins, so that noise in the pose does not swap points from step to step: a hundredth of
+    // what a level tilt does, and less by wider ones.
     template <class Distance>
     std::size_t first_down(const Distance& distance) const
     {
+        const Real alike = tilt_ > kLevelTilt ? Real(1.001) : Real(1.01);
         std::size_t best = kNone;
         Real most = 0;
         for (std::size_t i = 0; i < points_.size(); ++i) {
             const Real height = points_.height(i);
             if (!(height <= margin_)) continue;
             const Real below = tilt_ * distance(points_.at(i)) - (std::max(height, down_) - down_);
-            if (!(below > most * Real(1.01))) continue;
+            if (!(below > most * alike)) continue;
             most = below;
             best = i;
         }
