@@ -42,11 +42,11 @@ what_failed() {
     fi
 }
 
-# Says every 20 s how far a build has come, by its log, until it is killed: what waits in a script
-# or in CI sees that something goes on.
+# Says every 20 s how far a build has come, by its log, until it is killed or nobody is left to
+# kill it: what waits in a script or in CI sees that something goes on.
 tell_progress() {  # LOG
     local start=$SECONDS at told=""
-    while true; do
+    while kill -0 $$ 2>/dev/null; do
         # A builtin that waits: a sleep of its own would outlive this.
         read -r -t 20 <> <(:) || true
         at=$(grep -o '^\[[0-9]*/[0-9]*\]' "$1" | tail -n 1) || true

@@ -35,22 +35,36 @@ MeshShape grid(const FloorSize& size, int cells)
     return mesh;
 }
 
+void lay_tiles(SceneParts& parts, std::uint32_t material, const Pose& frame, const FloorSize& size)
+{
+    const FloorSize tile{size.wide / size.cells, size.thick};
+    const auto middle = [&](int i) { return tile.wide * (2 * i + 1) - size.wide; };
+    for (int i = 0; i < size.cells; ++i)
+        for (int k = 0; k < size.cells; ++k)
+            put_floor(parts, material, Floor::box,
+                      {frame * Vec3(middle(i), middle(k), 0), frame.orientation}, tile);
+}
+
 }  // namespace
 
 const char* name_of(Floor floor)
 {
-    constexpr const char* kNames[] = {"plane", "box", "mesh", "hull", "grid"};
+    constexpr const char* kNames[] = {"plane", "box", "mesh", "hull", "grid", "tiles"};
     return kNames[static_cast<int>(floor)];
 }
 
-std::uint32_t put_floor(SceneParts& parts,
-                        std::uint32_t material,
-                        Floor floor,
-                        const Pose& frame,
-                        const FloorSize& size)
+void put_floor(SceneParts& parts,
+               std::uint32_t material,
+               Floor floor,
+               const Pose& frame,
+               const FloorSize& size)
 {
     const Vec3 up = frame.orientation * Vec3::UnitZ();
-    if (floor == Floor::plane) return parts.plane(material, up, up.dot(frame.position));
+    if (floor == Floor::plane) {
+        parts.plane(material, up, up.dot(frame.position));
+        return;
+    }
+    if (floor == Floor::tiles) return lay_tiles(parts, material, frame, size);
     const std::uint32_t id = parts.box(material, 1, Vec3(size.wide, size.wide, size.thick),
                                        {frame.position - size.thick * up, frame.orientation});
     parts.hold(id);
@@ -58,7 +72,6 @@ std::uint32_t put_floor(SceneParts& parts,
     if (floor == Floor::hull) shape = slab(size);
     if (floor == Floor::mesh) shape = grid(size, 1);
     if (floor == Floor::grid) shape = grid(size, size.cells);
-    return id;
 }
 
 }  // namespace throng

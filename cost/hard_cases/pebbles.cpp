@@ -137,7 +137,7 @@ void case_pebbles(CaseBench& bench)
         {.how = ", far off", .at = Vec3(3e4, -1e4, 2e4)},
         {.how = ", made last", .last = true},
     };
-    for (const Floor floor : {Floor::plane, Floor::box, Floor::mesh, Floor::hull, Floor::grid})
+    for (const Floor floor : kFloorsAndGrid)
         for (std::size_t i = 0; i < (bench.brief() ? 2 : std::size(falls)); ++i)
             let_fall(bench, floor, falls[i]);
 }

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kWay = 40, kLongest = 5;  // m, s
 constexpr double kSpeeds[] = {1, 3, 10};   // m/s
-constexpr Floor kAllFloors[] = {Floor::plane, Floor::box, Floor::mesh, Floor::hull, Floor::grid};
 
 struct Roller {
     const char* name;
@@ -170,7 +169,7 @@ void roll_on_corners(CaseBench& bench)
 void case_rolling_along(CaseBench& bench)
 {
     for (const Roller& roller : kRollers)
-        for (const Floor floor : kAllFloors)
+        for (const Floor floor : kFloorsAndGrid)
             if (!bench.brief() || floor == Floor::grid) roll_along(bench, roller, floor, {});
     if (bench.brief()) return;
     const Way ways[] = {

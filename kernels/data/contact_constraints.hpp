@@ -99,9 +99,8 @@ struct ContactPointWide {
 /// velocity at the center of the points, of round sides of what they bear (vn, v1, v2) and the
 /// relative spin (w1, w2, wn). Friction acts once a contact, at that center.
 ///
-///   axis_turns_a, _b  bit a lane: that side rolls below its axis, which turns enough to be seen,
-///   and
-///                     its spin with it (see spin_frame)
+///   axis_turns_a, _b  bit a lane: that side rolls below its axis, which turns enough to be seen
+///                     and its spin with it (see spin_frame)
 ///   inverse_mass  what an impulse or angular impulse at the center does to the six, symmetric: nn,
 ///                 n1, n2, 11, 12, 22 among the velocities; then the three spins w1, w2, wn against
 ///                 n, 1, 2 each; then 11, 22, nn, 12, 1n, 2n among the spins
@@ -251,7 +250,7 @@ struct Layout {
 ///   surface_velocities  [blocks] while something turns that carries what lies on it, a spin goes
 ///                       along with an axis that turns, or somebody walks
 ///   surfaces_turn       something turns that carries what lies on it
-///   axes_turn         somebody's spin goes along with an axis that turns enough to be seen
+///   axes_turn           somebody's spin goes along with an axis that turns enough to be seen
 ///   prescribed          [bodies] while bodies that contacts push are driven
 ///   point_frictions     [points] while friction acts at points or within a pyramid
 ///   inertias            [bodies] while the gyroscopic torque acts

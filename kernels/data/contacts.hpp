@@ -11,6 +11,7 @@
 #include "kernels/parallel/compact.hpp"
 
 #include <algorithm>
+#include <compare>
 #include <vector>
 
 namespace throng {
@@ -228,10 +229,15 @@ struct JoinedContacts {
     };
     std::vector<Joined> contacts;
     std::vector<ActiveContacts::Entry> sources;
+    /// An entry that may be joined, and whose it is: those of one pair may be one.
+    struct Candidate {
+        std::uint64_t pair = 0;
+        std::uint32_t entry = 0;
+        auto operator<=>(const Candidate&) const = default;
+    };
     struct Scratch {
-        std::vector<std::uint32_t> order;  // entries that may be joined, those of one pair together
-        std::vector<std::uint64_t> pair;   // [order]
-        std::vector<std::uint8_t> joined;  // [entries] 1: it is part of a joined one
+        std::vector<Candidate> candidates;  // ascending
+        std::vector<std::uint8_t> joined;   // [entries] 1: it is part of a joined one
         std::vector<std::uint8_t> touches;  // [bodies] of it with what stands, up to two; else 0
     } scratch;
 };

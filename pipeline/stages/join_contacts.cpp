@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -40,11 +39,10 @@ public:
     void run()
     {
         list_candidates();
-        auto& scratch = joined_.scratch;
-        scratch.joined.assign(active_.entries.size(), 0);
-        const std::span all(scratch.order);
+        joined_.scratch.joined.assign(active_.entries.size(), 0);
+        const std::span<const Candidate> all(joined_.scratch.candidates);
         for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
-            while (end < all.size() && scratch.pair[end] == scratch.pair[begin]) ++end;
+            while (end < all.size() && all[end].pair == all[begin].pair) ++end;
             if (end - begin > 1) join_alike(all.subspan(begin, end - begin));
         }
         if (!joined_.contacts.empty()) drop_sources();
@@ -52,6 +50,7 @@ public:
 
 private:
     using Entry = ActiveContacts::Entry;
+    using Candidate = typename JoinedContacts<Real>::Candidate;
 
     const Contact<Real>& contact_of(const Entry& entry) const
     {
@@ -85,34 +84,27 @@ private:
 
     void list_candidates()
     {
-        std::vector<std::uint32_t>& order = joined_.scratch.order;
-        std::vector<std::uint64_t>& pair = joined_.scratch.pair;
+        std::vector<Candidate>& candidates = joined_.scratch.candidates;
         std::vector<std::uint8_t>& touches = joined_.scratch.touches;
-        order.clear();
+        candidates.clear();
         touches.resize(colliders_.count.size(), 0);
-        const auto for_each_candidate = [&](const auto& visit) {
+        const auto for_each_entry = [&](const auto& visit) {
             for (std::uint32_t i = 0; i < active_.entries.size(); ++i)
-                if (pair_of(active_.entries[i]) != kAlone) visit(i, active_.entries[i]);
+                if (const std::uint64_t pair = pair_of(active_.entries[i]); pair != kAlone)
+                    visit(Candidate{pair, i}, standing_on(active_.entries[i]));
         };
-        for_each_candidate([&](std::uint32_t, const Entry& entry) {
-            const std::uint32_t body = standing_on(entry);
+        for_each_entry([&](const Candidate&, std::uint32_t body) {
             if (body != kNoBody && touches[body] < 2) ++touches[body];
         });
-        for_each_candidate([&](std::uint32_t i, const Entry& entry) {
-            const std::uint32_t body = standing_on(entry);
-            if (body != kNoBody ? touches[body] > 1 : may_meet_twice(entry)) order.push_back(i);
+        for_each_entry([&](const Candidate& candidate, std::uint32_t body) {
+            const bool twice = body != kNoBody ? touches[body] > 1
+                                               : may_meet_twice(active_.entries[candidate.entry]);
+            if (twice) candidates.push_back(candidate);
         });
-        for_each_candidate([&](std::uint32_t, const Entry& entry) {
-            if (const std::uint32_t body = standing_on(entry); body != kNoBody) touches[body] = 0;
+        for_each_entry([&](const Candidate&, std::uint32_t body) {
+            if (body != kNoBody) touches[body] = 0;
         });
-        const auto before = [&](std::uint32_t x, std::uint32_t y) {
-            const std::uint64_t of_x = pair_of(active_.entries[x]),
-                                of_y = pair_of(active_.entries[y]);
-            return of_x != of_y ? of_x < of_y : x < y;
-        };
-        std::sort(order.begin(), order.end(), before);
-        pair.resize(order.size());
-        for (std::size_t i = 0; i < order.size(); ++i) pair[i] = pair_of(active_.entries[order[i]]);
+        std::sort(candidates.begin(), candidates.end());
     }
 
     bool alike(const Entry& x, const Entry& y) const
@@ -126,26 +118,26 @@ private:
     }
 
     // Those of one pair, by the first of each plane.
-    void join_alike(std::span<const std::uint32_t> of_pair)
+    void join_alike(std::span<const Candidate> of_pair)
     {
-        auto& taken = joined_.scratch.joined;
+        std::vector<std::uint8_t>& taken = joined_.scratch.joined;
         for (std::size_t i = 0; i < of_pair.size(); ++i) {
-            if (taken[of_pair[i]] != 0) continue;
+            if (taken[of_pair[i].entry] != 0) continue;
+            Entry& one = active_.entries[of_pair[i].entry];
             const auto first = static_cast<std::uint32_t>(joined_.sources.size());
-            const Entry of_first = active_.entries[of_pair[i]];
-            joined_.sources.push_back(of_first);
+            joined_.sources.push_back(one);
             for (std::size_t k = i + 1; k < of_pair.size(); ++k) {
-                const Entry& other = active_.entries[of_pair[k]];
-                if (taken[of_pair[k]] != 0 || !alike(of_first, other)) continue;
-                taken[of_pair[k]] = 1;
+                const std::uint32_t at = of_pair[k].entry;
+                const Entry& other = active_.entries[at];
+                if (taken[at] != 0 || !alike(one, other)) continue;
+                taken[at] = 1;
                 joined_.sources.push_back(other);
             }
             const auto count = static_cast<std::uint32_t>(joined_.sources.size()) - first;
-            if (count < 2) {
+            if (count > 1)
+                make(first, count, one);
+            else
                 joined_.sources.pop_back();
-                continue;
-            }
-            make(first, count, active_.entries[of_pair[i]]);
         }
     }
 

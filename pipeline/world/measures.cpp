@@ -256,8 +256,8 @@ std::size_t World::memory_bytes() const
                          constraints.blocks, constraints.points, constraints.restitutions,
                          constraints.rolling_frictions, constraints.surface_velocities,
                          constraints.prescribed, constraints.bodies, constraints.inertias,
-                         joined.contacts, joined.sources, joined.scratch.order, joined.scratch.pair,
-                         joined.scratch.joined);
+                         joined.contacts, joined.sources, joined.scratch.candidates,
+                         joined.scratch.joined, joined.scratch.touches);
         },
         state_->step);
     return sum;
