@@ -3,6 +3,7 @@
 // Answers: a smooth floor takes no speed, whatever it is laid of; with friction a box slides
 // v^2 / (2 mu g), as on one piece. A tile that stands out is a step: it is met.
 #include "cost/hard_cases/hard_cases.hpp"
+#include "scene/catalog/parts.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
 
@@ -17,6 +18,13 @@ constexpr double kSpeed = 8;
 const Vec3 kTile(0.5, 0.5, 0.25);  // half extents
 
 enum class Floor { boxes, hulls, meshes, compound };
+enum class Slider { ball, box, voxels, depth_image };  // the last two: the box as a mesh
+
+const char* name_of(Slider slider)
+{
+    constexpr const char* kNames[] = {"ball", "box", "box of voxels", "box by depth_image"};
+    return kNames[static_cast<int>(slider)];
+}
 
 // How a floor is laid, and where.
 struct Laid {
@@ -88,14 +96,27 @@ void lay_floor(Scene& scene, const Laid& laid, int tiles)
     }
 }
 
-Scene tiled(const CaseBench& bench, const Laid& laid, bool ball, double friction, int tiles)
+std::uint32_t put_slider(SceneParts& parts, Slider slider, std::uint32_t material, const Pose& at)
+{
+    const Vec3 half = Vec3::Constant(0.25);
+    if (slider == Slider::ball) return parts.ball(material, 1, 0.5, at.position);
+    const std::uint32_t body = parts.box(material, 1, half, at);
+    if (slider == Slider::box) return body;
+    Scene& scene = parts.scene();
+    MeshShape mesh = mesh_shape(box_mesh(half));
+    mesh.nonconvex = slider == Slider::voxels ? "voxels" : "depth_image";
+    scene.shapes[scene.bodies[body].shape].shape = std::move(mesh);
+    return body;
+}
+
+Scene tiled(const CaseBench& bench, const Laid& laid, Slider kind, double friction, int tiles)
 {
     SceneParts parts(bench.scene());
     const std::uint32_t material = parts.material(friction);
     if (!laid.backwards) lay_floor(parts.scene(), laid, tiles);
-    const Pose at = laid.at * Pose{Vec3(0, 0.13, ball ? 0.5 : 0.25), Quat::Identity()};
-    const std::uint32_t slider = ball ? parts.ball(material, 1, 0.5, at.position)
-                                      : parts.box(material, 1, Vec3::Constant(0.25), at);
+    const Vec3 begin(0, 0.13, kind == Slider::ball ? 0.5 : 0.25);
+    const std::uint32_t slider =
+        put_slider(parts, kind, material, laid.at * Pose{begin, Quat::Identity()});
     parts.body(slider).velocity = laid.at.orientation * Vec3(kSpeed, 0, 0);
     if (laid.backwards) lay_floor(parts.scene(), laid, tiles);
     parts.scene().gravity = laid.at.orientation * Vec3(0, 0, -kGravity);
@@ -126,14 +147,14 @@ void keeps_speed(CaseBench& bench,
                  const std::function<void(Settings&)>& set)
 {
     const double seconds = bench.brief() ? 1 : 4;
-    for (const bool ball : {true, false}) {
-        Scene scene = tiled(bench, laid, ball, 0, static_cast<int>(kSpeed * seconds) + 3);
+    for (const Slider slider : {Slider::ball, Slider::box, Slider::voxels, Slider::depth_image}) {
+        Scene scene = tiled(bench, laid, slider, 0, static_cast<int>(kSpeed * seconds) + 3);
         set(scene.settings);
         const Slid seen = slide(bench, scene, laid, seconds);
-        bench.report(name + (ball ? ", ball" : ", box"), "speed lost or gained",
-                     std::abs(seen.speed / kSpeed - 1), 0.01, "1");
-        bench.report(name + (ball ? ", ball" : ", box"), "error of the way",
-                     std::abs(seen.way / (kSpeed * seconds) - 1), 0.01, "1");
+        const std::string which = name + ", " + name_of(slider);
+        bench.report(which, "speed lost or gained", std::abs(seen.speed / kSpeed - 1), 0.01, "1");
+        bench.report(which, "error of the way", std::abs(seen.way / (kSpeed * seconds) - 1), 0.01,
+                     "1");
     }
 }
 
@@ -158,14 +179,21 @@ void case_tiles(CaseBench& bench)
 
     const double friction = 0.3, way = kSpeed * kSpeed / (2 * friction * kGravity);
     for (const Floor of : {Floor::boxes, Floor::meshes}) {
-        const std::string name = of == Floor::boxes ? "boxes, mu 0.3, box" : "meshes, mu 0.3, box";
-        const Slid seen = slide(bench, tiled(bench, {.of = of}, false, friction, 15), {}, 4);
-        bench.report(name, "error of the way to rest", std::abs(seen.way / way - 1), 0.01, "1");
+        const std::string name = of == Floor::boxes ? "boxes, mu 0.3, " : "meshes, mu 0.3, ";
+        for (const Slider slider : {Slider::box, Slider::voxels, Slider::depth_image}) {
+            const Slid seen = slide(bench, tiled(bench, {.of = of}, slider, friction, 15), {}, 4);
+            bench.report(name + name_of(slider), "error of the way to rest",
+                         std::abs(seen.way / way - 1), 0.01, "1");
+        }
     }
-    const Laid stepped{.step = 0.005};
-    const Slid seen = slide(bench, tiled(bench, stepped, false, 0, 15), stepped, 1);
-    bench.report("boxes, one 5 mm higher, box", "not met: wrong outcomes",
-                 seen.speed < 0.9 * kSpeed ? 0 : 1, 0, "1");
+    // Depth images see what is higher than their rays are apart, 16 mm.
+    for (const auto& [slider, step] :
+         {std::pair{Slider::box, 5}, {Slider::voxels, 5}, {Slider::depth_image, 20}}) {
+        const Laid stepped{.step = 1e-3 * step};
+        const Slid seen = slide(bench, tiled(bench, stepped, slider, 0, 15), stepped, 1);
+        bench.report("boxes, one " + std::to_string(step) + " mm higher, " + name_of(slider),
+                     "not met: wrong outcomes", seen.speed < 0.9 * kSpeed ? 0 : 1, 0, "1");
+    }
 }
 
 }  // namespace throng

@@ -11,6 +11,7 @@
 //
 // A face that leans towards the body bears it itself and is never dropped; so of two contacts one
 // is left.
+#include "kernels/geometry/mesh_distance.hpp"
 #include "kernels/geometry/nearest_point.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/mesh/mesh_sides.hpp"
@@ -38,7 +39,7 @@ constexpr double kLevel = 2e-3, kBeyond = 0.1;
 template <class Real>
 struct Seen {
     std::uint32_t moving = 0, other = 0;  // colliders
-    std::uint32_t part = 0;               // triangle of a mesh
+    std::uint32_t part = 0;               // triangle of a mesh, kNoTriangle where none is told
     bool mover_first = false;
     Contact<Real>* contact = nullptr;
 
@@ -74,7 +75,8 @@ public:
 
     // Most lie on one floor, and on nothing else that stands still: who meets no ghost is told by
     // marks, before anything is listed.
-    void gather(ConvexContacts<Real>& convex, ManyContacts<Real>& meshes)
+    void
+    gather(ConvexContacts<Real>& convex, ManyContacts<Real>& meshes, ManyContacts<Real>& solids)
     {
         touches_.assign(colliders_.size(), 0);
         const std::size_t count = pairs_to_look_at();
@@ -91,8 +93,9 @@ public:
         for (std::size_t i = 0; i < count; ++i)
             if (concerns(pairs_.keys[i]) && convex.of_pair[i].contact != PairState::kApart)
                 mark(pairs_.keys[i]);
-        for (const auto& entry : meshes.entries)
-            if (entry.contact.count > 0) mark(pairs_.keys[entry.pair]);
+        for (const auto* list : {&meshes, &solids})
+            for (const auto& entry : list->entries)
+                if (entry.contact.count > 0) mark(pairs_.keys[entry.pair]);
         if (!some) return;
 
         BlockLists<Seen<Real>> lists;
@@ -110,6 +113,9 @@ public:
         for (auto& entry : meshes.entries)
             if (entry.contact.count > 0)
                 note(pairs_.keys[entry.pair], entry.part, entry.contact, seen_);
+        for (auto& entry : solids.entries)
+            if (entry.contact.count > 0)
+                note(pairs_.keys[entry.pair], kNoTriangle, entry.contact, seen_);
     }
 
     // Shape by shape: those of one come together. All are judged before any goes, as a contact of
@@ -207,7 +213,18 @@ private:
             seen.at[static_cast<std::size_t>(k)] = center + on_mover - seen.normal * separation;
             seen.nearest = std::min(seen.nearest, separation);
         }
+        if (seen.part == kNoTriangle) seen.part = triangle_at(seen.other, seen.at[0]);
         seen.face = is_face(seen);
+    }
+
+    // Of a solid's contact with a mesh, which is told of patches.
+    std::uint32_t triangle_at(std::uint32_t collider, const Vec3& place) const
+    {
+        const ShapeRef shape = colliders_.shape[collider];
+        if (shape.kind != ShapeKind::mesh) return 0;
+        return nearest_on_mesh(shapes_.meshes[shape.index],
+                               bounds_.placed[collider].to_local(place))
+            .triangle;
     }
 
     bool is_face(const Seen<Real>& seen) const
@@ -326,17 +343,19 @@ void remove_ghost_contacts(const Pairs& pairs,
                            const Velocities& velocities,
                            const BodyStates& states,
                            ConvexContacts<Real>& convex,
-                           MeshContacts<Real>& meshes)
+                           MeshContacts<Real>& meshes,
+                           SolidContacts<Real>& solids)
 {
     GhostSearch<Real> search(pairs, shapes, colliders, bounds, poses, velocities, states);
-    search.gather(convex, meshes);
+    search.gather(convex, meshes, solids);
     search.remove();
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void remove_ghost_contacts<Real>(                                                     \
-        const Pairs&, const Shapes&, const Colliders&, const Bounds&, const Poses&,                \
-        const Velocities&, const BodyStates&, ConvexContacts<Real>&, MeshContacts<Real>&);
+    template void remove_ghost_contacts<Real>(const Pairs&, const Shapes&, const Colliders&,       \
+                                              const Bounds&, const Poses&, const Velocities&,      \
+                                              const BodyStates&, ConvexContacts<Real>&,            \
+                                              MeshContacts<Real>&, SolidContacts<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -80,7 +80,8 @@ void remove_ghost_contacts(const Pairs&,
                            const Velocities&,
                            const BodyStates&,
                            ConvexContacts<Real>&,
-                           MeshContacts<Real>&);
+                           MeshContacts<Real>&,
+                           SolidContacts<Real>&);
 
 /// All kinds of contact into one order: those that this step has to solve.
 template <class Real>
