@@ -104,6 +104,7 @@ void case_rolling_along(CaseBench& bench);      // H93, rolling_along.cpp
 void case_pebbles(CaseBench& bench);            // H94, pebbles.cpp
 void case_flat_bounces(CaseBench& bench);       // H95, flat_bounces.cpp
 void case_attracted_heaps(CaseBench& bench);    // H96, attracted_heaps.cpp
+void case_link_chains(CaseBench& bench);        // H97, link_chains.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -148,6 +148,20 @@ struct PointFrictionWide {
     Lane16<Real> impulse[2];  // N s on b, along tangent, other tangent
 };
 
+/// 16 contacts as the step began, of which some go with their bodies within it: see
+/// turning_arms.hpp. The first three are as ContactConstraintWide has them.
+///
+///   lanes           bit a lane: it is one of them; the others have nothing here
+///   flat_a, flat_b  bit a lane: a flat side of that body rolls on a round one
+template <class Real>
+struct TurningArmsWide {
+    std::uint16_t lanes = 0, flat_a = 0, flat_b = 0;
+    Lane16<Real> normal[3], tangent[3];
+    Lane16<Real> center_a[3], center_b[3];
+    Lane16<Real> center_offset[3];  // m, from b's center of mass to a's
+    Lane16<Real> beyond[4];         // m, what the points are further apart than their middle
+};
+
 /// What surfaces that go do to the sliding of 16 contacts within the step. Constraints see arms as
 /// the step began, by which a body that a plate carries leaves it along the tangent; spins in axes
 /// that go with a body (see spin_frame), by which a wheel that rolls round a curve slides; and they
@@ -251,6 +265,7 @@ struct Layout {
 ///                       along with an axis that turns, or somebody walks
 ///   surfaces_turn       something turns that carries what lies on it
 ///   axes_turn           somebody's spin goes along with an axis that turns enough to be seen
+///   turning_arms        [blocks] while somebody moves that may hang
 ///   prescribed          [bodies] while bodies that contacts push are driven
 ///   point_frictions     [points] while friction acts at points or within a pyramid
 ///   inertias            [bodies] while the gyroscopic torque acts
@@ -266,6 +281,7 @@ struct ContactConstraints {
     std::vector<RollingFrictionWide<Real>> rolling_frictions;
     std::vector<SurfaceVelocityWide<Real>> surface_velocities;
     bool surfaces_turn = false, axes_turn = false;
+    std::vector<TurningArmsWide<Real>> turning_arms;
     std::vector<SolverPrescribedVelocity<Real>> prescribed;
     std::vector<PointFrictionWide<Real>> point_frictions;
     std::vector<SolverBody<Real>> bodies;

@@ -66,6 +66,7 @@ struct ContactConstraintsView {
     SurfaceVelocityWide<Real>* surface_velocities = nullptr;
     const SolverPrescribedVelocity<Real>* prescribed = nullptr;
     const GyroscopicInertia<Real>* inertias = nullptr;
+    TurningArmsWide<Real>* turning_arms = nullptr;
 
     static ContactConstraintsView of(ContactConstraints<Real>& constraints)
     {
@@ -79,7 +80,8 @@ struct ContactConstraintsView {
                 constraints.surface_velocities.empty() ? nullptr
                                                        : constraints.surface_velocities.data(),
                 constraints.prescribed.empty() ? nullptr : constraints.prescribed.data(),
-                constraints.inertias.empty() ? nullptr : constraints.inertias.data()};
+                constraints.inertias.empty() ? nullptr : constraints.inertias.data(),
+                constraints.turning_arms.empty() ? nullptr : constraints.turning_arms.data()};
     }
 };
 

@@ -3,6 +3,7 @@
 #include "kernels/solver/carried_points.hpp"
 #include "kernels/solver/driven_contacts.hpp"
 #include "kernels/solver/solver_bodies.hpp"
+#include "kernels/solver/turning_arms.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -133,13 +134,18 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
         if (view_.prescribed != nullptr) kernels_.walk_surface_velocity(view_, at, up_);
         if (constraints_.axes_turn) find_turning_axes(at);
     }
-    if (!uncut_ && !settles_) return;
+    const bool turn = view_.turning_arms != nullptr;
+    if (turn)
+        view_.turning_arms[at].lanes = view_.turning_arms[at].flat_a =
+            view_.turning_arms[at].flat_b = 0;
+    if (!uncut_ && !settles_ && !turn) return;
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
         const std::uint32_t entry = layout_.lanes[at * kBlock + lane].entry;
         if (entry == LaneSource{}.entry) continue;
         const Contact<Real>& contact = contact_of(active_.entries[entry]);
         if (uncut_) pack_unclamped_friction(contact, static_cast<int>(lane), block);
         if (settles_) settle_separation(contact, lane, block);
+        if (turn) note_turning_arms(view_, at, lane, contact);
     }
 }
 

@@ -40,6 +40,8 @@ constexpr double kDeep = 0.5;
 // share of the extent in a step; and what is small enough to be solved exactly at once.
 constexpr double kHeavy = 8, kDriven = 0.1, kCrushed = 2 * kExactStrain;
 constexpr std::size_t kCrushedContacts = 16;
+// Strain of an island that overlaps in spite of finer substeps: solved exactly as long as it rests.
+constexpr double kInVain = 4 * kExactStrain;
 constexpr double kAllBut = 0.999999;  // for the last digits of a product in another order
 
 // How easily a body gives way, 1/kg. Who cannot be moved, only turned, gives way by lever arms
@@ -112,7 +114,10 @@ public:
         if (!(std::max(strain, faded) > kRelieved)) return 0;
         const double lasting =
             std::max({strain, faded, std::min({before, kLasting * strain, kExactStrain})});
-        return rests && is_deep(contacts) ? -lasting : lasting;
+        if (!rests) return lasting;
+        // By turns it would be pushed out and sink in again.
+        if (before >= kInVain && contacts.size() <= kExactContacts) return kInVain;
+        return !is_deep(contacts) ? lasting : before > 1 ? -kInVain : -lasting;
     }
 
 private:

@@ -2,6 +2,7 @@
 
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solver/solver_bodies.hpp"
+#include "kernels/solver/turning_arms.hpp"
 
 #include <algorithm>
 
@@ -115,6 +116,10 @@ void SlicePasses<Real>::run_pass(const SlicePass& pass, const Slice& slice, bool
     case SlicePass::Kind::update_surface_velocity:
         return for_blocks(slice, shared, [&](std::size_t from, std::size_t end) {
             kernels_.update_surface_velocity(view_, from, end, time_ * Real(0.5));
+        });
+    case SlicePass::Kind::turn_arms:
+        return for_colors(slice, shared, pass.backward, [&](std::size_t from, std::size_t end) {
+            throng::turn_arms(view_, from, end);
         });
     case SlicePass::Kind::apply_restitution:
         return apply_restitution_of(slice, shared, pass.backward);

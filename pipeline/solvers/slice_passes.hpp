@@ -20,6 +20,7 @@ struct SlicePass {
         begin,
         warm_start,
         update_surface_velocity,
+        turn_arms,
         solve_biased,
         advance,
         relax,

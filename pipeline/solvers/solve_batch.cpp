@@ -90,7 +90,7 @@ public:
     }
 
 private:
-    static constexpr std::array<Pass<Task>, 17> passes_with(Set<Effect> limited,
+    static constexpr std::array<Pass<Task>, 18> passes_with(Set<Effect> limited,
                                                             const Pass<Task>& after_moving)
     {
         using enum Effect;
@@ -104,6 +104,7 @@ private:
             pass<&Task::integrate_velocities>({contact}, each_substep),
             pass<&Task::begin_state_forces>(kFollowBodies, each_substep),
             pass<&Task::warm_start>({contact}, first_substep),
+            pass<&Task::turn_arms>({rotation}, each_substep),
             pass<&Task::limit_warm_start>({contact}, each_substep),
             pass<&Task::update_surface_velocity>({contact}, each_substep),
             pass<&Task::solve_velocities>({contact}, each_iteration),
@@ -170,6 +171,12 @@ private:
     void integrate_velocities() { add(SlicePass::Kind::begin); }
 
     void warm_start() { add(SlicePass::Kind::warm_start); }
+
+    // Before the first substep nobody has turned.
+    void turn_arms()
+    {
+        if (!constraints_.turning_arms.empty() && substep_ > 0) add(SlicePass::Kind::turn_arms);
+    }
 
     void update_surface_velocity()
     {

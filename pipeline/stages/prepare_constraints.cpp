@@ -98,6 +98,16 @@ bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
     });
 }
 
+// Somebody who may hang, or lie with a flat side on a round one.
+bool anybody_swings(const Layout& layout, const Shapes& shapes, const Colliders& colliders)
+{
+    const bool rounds = !shapes.capsules.empty() || !shapes.cylinders.empty();
+    const unsigned how = Colliders::kHangs | (rounds ? Colliders::kFlat : 0u);
+    const auto first = layout.body_of_solver_index.begin() + 1;
+    return std::any_of(first, first + layout.dynamic,
+                       [&](std::uint32_t body) { return (colliders.may_swing[body] & how) != 0; });
+}
+
 template <class Real>
 void fill_prescribed_velocity(const PrescribedVelocity& velocity,
                               const SolverBody<Real>& body,
@@ -146,6 +156,8 @@ void prepare_constraints(const StepContext& context,
                          const Poses& poses,
                          const Masses& masses,
                          const BodyStates& states,
+                         const Shapes& shapes,
+                         const Colliders& colliders,
                          const ExternalAcceleration& accelerations,
                          const PrescribedVelocities& prescribed,
                          Flights& flights,
@@ -204,6 +216,7 @@ void prepare_constraints(const StepContext& context,
                                                   || !constraints.prescribed.empty()
                                               ? blocks
                                               : 0);
+    constraints.turning_arms.resize(anybody_swings(layout, shapes, colliders) ? blocks : 0);
     constraints.point_frictions.resize(
         parameters.friction_at_points_or_pyramid(context.effects) ? points : 0);
     constraints.rolling_frictions.resize(context.has(Effect::rolling_friction) ? blocks : 0);
@@ -212,8 +225,9 @@ void prepare_constraints(const StepContext& context,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void prepare_constraints<Real>(                                                       \
         const StepContext&, const SolverParameters&, const Layout&, const Forces&, const Poses&,   \
-        const Masses&, const BodyStates&, const ExternalAcceleration&,                             \
-        const PrescribedVelocities&, Flights&, Velocities&, ContactConstraints<Real>&);
+        const Masses&, const BodyStates&, const Shapes&, const Colliders&,                         \
+        const ExternalAcceleration&, const PrescribedVelocities&, Flights&, Velocities&,           \
+        ContactConstraints<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

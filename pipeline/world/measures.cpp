@@ -255,9 +255,9 @@ std::size_t World::memory_bytes() const
                          methods.scratch.fallbacks, std::get<ActiveContacts>(chosen.data).entries,
                          constraints.blocks, constraints.points, constraints.restitutions,
                          constraints.rolling_frictions, constraints.surface_velocities,
-                         constraints.prescribed, constraints.bodies, constraints.inertias,
-                         joined.contacts, joined.sources, joined.scratch.candidates,
-                         joined.scratch.joined, joined.scratch.touches);
+                         constraints.turning_arms, constraints.prescribed, constraints.bodies,
+                         constraints.inertias, joined.contacts, joined.sources,
+                         joined.scratch.candidates, joined.scratch.joined, joined.scratch.touches);
         },
         state_->step);
     return sum;

@@ -260,12 +260,16 @@ void SceneBuilder::place_colliders(std::uint32_t body,
     put(colliders.begin, body, first);
     put(colliders.count, body, count);
     double radius = 0;
+    std::uint8_t swings = count > 1 ? Colliders::kHangs : 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t at = first + i;
         const ShapeRef part = shape->parts[i];
         Pose local = shape->poses[i];
         local.position -= state_.center[body];
         const double outer = local.position.norm() + outer_radius(shapes, part);
+        // By what is not convex, or round about another point.
+        if (part.kind == ShapeKind::solid || !local.position.isZero(0)) swings |= Colliders::kHangs;
+        if (part.kind == ShapeKind::box || part.kind == ShapeKind::hull) swings |= Colliders::kFlat;
         put(colliders.body, at, body);
         put(colliders.shape, at, part);
         put(colliders.local, at, local);
@@ -279,6 +283,7 @@ void SceneBuilder::place_colliders(std::uint32_t body,
         filter.mask[at] = stated.mask;
         if (std::isfinite(outer)) radius = std::max(radius, outer);
     }
+    put(colliders.may_swing, body, swings);
     put(state_.get<BodyStates>().radius, body, radius);
 }
 
@@ -434,7 +439,7 @@ void SceneBuilder::grow_lists(std::size_t bodies)
     Colliders& c = state_.get<Colliders>();
     PairFilter& filter = state_.get<PairFilter>();
     reserve(bodies, c.body, c.shape, c.local, c.material, c.inner_extent, c.outer_radius, c.begin,
-            c.count, filter.body, filter.group, filter.mask);
+            c.count, c.may_swing, filter.body, filter.group, filter.mask);
 }
 
 void SceneBuilder::add_forces(const Scene& scene, std::span<const BodyId> ids)

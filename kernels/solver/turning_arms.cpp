@@ -1,0 +1,191 @@
+#include "kernels/solver/turning_arms.hpp"
+
+#include "kernels/solver/contact_packing.hpp"
+#include "kernels/solver/solver_bodies.hpp"
+
+namespace throng {
+
+namespace {
+
+// What b, or a against it, has of impulses at an arm.
+template <class Real>
+void push(SolverBody<Real>& body, const Vec3& impulse, const Vec3& torque)
+{
+    const Real* const inertia = body.inertia;
+    const Sym3 inverse{double{inertia[1]}, double{inertia[2]}, double{inertia[3]},
+                       double{inertia[4]}, double{inertia[5]}, double{inertia[6]}};
+    const Vec3 velocity = impulse * double{inertia[0]}, spin = inverse.matrix() * torque;
+    for (int k = 0; k < 3; ++k) {
+        body.motion[k] += static_cast<Real>(velocity[k]);
+        body.motion[4 + k] += static_cast<Real>(spin[k]);
+    }
+}
+
+template <class Real>
+void store(const Vec3& vector, Lane16<Real> (&to)[3], std::size_t lane)
+{
+    for (int k = 0; k < 3; ++k) to[k].at[lane] = static_cast<Real>(vector[k]);
+}
+
+// N s on b, at the center.
+template <class Real>
+Vec3 impulse_of(const ContactConstraintsView<Real>& constraints,
+                const ContactConstraintWide<Real>& block,
+                std::size_t lane)
+{
+    double load = 0, along = double{block.friction_impulse[0].at[lane]},
+           other = double{block.friction_impulse[1].at[lane]};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
+        const std::size_t point = block.first_point + k;
+        load += double{constraints.points[point].impulse.at[lane]};
+        if (constraints.point_frictions == nullptr) continue;
+        along += double{constraints.point_frictions[point].impulse[0].at[lane]};
+        other += double{constraints.point_frictions[point].impulse[1].at[lane]};
+    }
+    const Vec3 normal = in_double(block.normal, lane), tangent = in_double(block.tangent, lane);
+    return normal * load + tangent * along + normal.cross(tangent) * other;
+}
+
+// A contact where its bodies are now.
+class TurnedContact {
+public:
+    template <class Real>
+    TurnedContact(const ContactConstraintWide<Real>& block,
+                  const TurningArmsWide<Real>& begun,
+                  const SolverBody<Real>& a,
+                  const SolverBody<Real>& b,
+                  std::size_t lane)
+        : turn_a_(turn_of(a)), turn_b_(turn_of(b)),
+          moved_(vector_at(b.delta_pose) - vector_at(a.delta_pose)),
+          begun_tangent_(in_double(begun.tangent, lane))
+    {
+        const bool flat_a = (begun.flat_a >> lane & 1) != 0,
+                   flat_b = (begun.flat_b >> lane & 1) != 0;
+        const Quat along = flat_a ? turn_a_ : flat_b ? turn_b_ : Quat(Quat::Identity());
+        const Vec3 before = in_double(begun.normal, lane);
+        const double round_a{block.round_a.at[lane]}, round_b{block.round_b.at[lane]};
+        begun_other_ = before.cross(begun_tangent_);
+        normal = along * before;
+        tangent = along * begun_tangent_;
+        offset_ = in_double(begun.center_offset, lane) - moved_;
+        // The radius of a round side does not turn along, but with the normal.
+        end_a_ = normal * round_a;
+        end_b_ = -normal * round_b;
+        center_a = turn_a_ * (in_double(begun.center_a, lane) - before * round_a) + end_a_;
+        center_b = turn_b_ * (in_double(begun.center_b, lane) + before * round_b) + end_b_;
+        apart_ = normal.dot(center_b - offset_ - center_a);
+        // On a flat side it goes to where the round one is.
+        if (flat_a) center_a = center_b - offset_ - normal * apart_;
+        if (flat_b) center_b = center_a + offset_ + normal * apart_;
+    }
+
+    Vec3 normal, tangent, center_a, center_b;
+
+    /// m, what a constraint that is given this, and adds what has moved since the step began, is to
+    /// have for a point to come out where it is now.
+    ///
+    ///   first, second  m, see ContactPointWide::lever_arm
+    double separation(double first, double second) const
+    {
+        const Vec3 off = begun_other_ * first - begun_tangent_ * second;
+        const Vec3 turn_a = turn_a_.conjugate() * normal - normal,
+                   turn_b = turn_b_.conjugate() * normal - normal;
+        const double now = apart_ + normal.dot(turn_b_ * off - turn_a_ * off);
+        const double added =
+            normal.dot(moved_) + turn_b.dot(center_b - end_b_) - turn_a.dot(center_a - end_a_);
+        const Vec3 turn = turn_b - turn_a;
+        return now - added - first * turn.dot(normal.cross(tangent)) + second * turn.dot(tangent);
+    }
+
+private:
+    Quat turn_a_, turn_b_;
+    Vec3 moved_, begun_tangent_, begun_other_, offset_, end_a_, end_b_;
+    double apart_ = 0;
+};
+
+template <class Real>
+void turn_lane(const ContactConstraintsView<Real>& constraints, std::size_t place, std::size_t lane)
+{
+    ContactConstraintWide<Real>& block = constraints.blocks[place];
+    const TurningArmsWide<Real>& begun = constraints.turning_arms[place];
+    SolverBody<Real>& a = constraints.bodies[block.a[lane]];
+    SolverBody<Real>& b = constraints.bodies[block.b[lane]];
+    const TurnedContact now(block, begun, a, b, lane);
+    const Vec3 before = impulse_of(constraints, block, lane);
+    const Vec3 torque_a = in_double(block.center_a, lane).cross(before),
+               torque_b = in_double(block.center_b, lane).cross(before);
+    store(now.normal, block.normal, lane);
+    store(now.tangent, block.tangent, lane);
+    store(now.center_a, block.center_a, lane);
+    store(now.center_b, block.center_b, lane);
+    const Vec3 impulse = impulse_of(constraints, block, lane), more = impulse - before;
+    if ((block.writes_a >> lane & 1) != 0) push(a, -more, torque_a - now.center_a.cross(impulse));
+    if ((block.writes_b >> lane & 1) != 0) push(b, more, now.center_b.cross(impulse) - torque_b);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
+        ContactPointWide<Real>& point = constraints.points[block.first_point + k];
+        point.separation.at[lane] =
+            static_cast<Real>(double{begun.beyond[k].at[lane]}
+                              + now.separation(double{point.lever_arm[0].at[lane]},
+                                               double{point.lever_arm[1].at[lane]}));
+    }
+}
+
+}  // namespace
+
+template <class Real>
+void note_turning_arms(const ContactConstraintsView<Real>& constraints,
+                       std::size_t place,
+                       std::size_t lane,
+                       const Contact<Real>& contact)
+{
+    const ContactConstraintWide<Real>& block = constraints.blocks[place];
+    TurningArmsWide<Real>& begun = constraints.turning_arms[place];
+    const bool moves_a = (block.writes_a >> lane & 1) != 0,
+               moves_b = (block.writes_b >> lane & 1) != 0;
+    // Along two points and more a round side touches nothing but a flat one, or another.
+    const bool line = contact.count > 1, rounds_a = contact.round_a > 0,
+               rounds_b = contact.round_b > 0;
+    const bool flat_a = line && moves_a && rounds_b && !rounds_a,
+               flat_b = line && moves_b && rounds_a && !rounds_b;
+    const Vec3T<Real> outward = vector_at(block.normal, lane);
+    const bool held =
+        (moves_a && is_held_beyond<Real>(vector_at(block.center_a, lane), outward, contact.round_a))
+        || (moves_b
+            && is_held_beyond<Real>(vector_at(block.center_b, lane), -outward, contact.round_b));
+    if (!held && !flat_a && !flat_b) return;
+
+    const auto bit = [&](bool is) { return is ? 1u << lane : 0u; };
+    const Vec3 normal = outward.template cast<double>(), center_a = in_double(block.center_a, lane),
+               center_b = in_double(block.center_b, lane);
+    begun.lanes = static_cast<std::uint16_t>(begun.lanes | bit(true));
+    begun.flat_a = static_cast<std::uint16_t>(begun.flat_a | bit(flat_a));
+    begun.flat_b = static_cast<std::uint16_t>(begun.flat_b | bit(flat_b));
+    store(normal, begun.normal, lane);
+    store(in_double(block.tangent, lane), begun.tangent, lane);
+    store(center_a, begun.center_a, lane);
+    store(center_b, begun.center_b, lane);
+    const Vec3 offset = contact.center_offset.template cast<double>();
+    store(offset, begun.center_offset, lane);
+    const double apart = normal.dot(center_b - offset - center_a);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k)
+        begun.beyond[k].at[lane] = static_cast<Real>(double{contact.points[k].separation} - apart);
+}
+
+template <class Real>
+void turn_arms(const ContactConstraintsView<Real>& constraints, std::size_t begin, std::size_t end)
+{
+    for (std::size_t place = begin; place < end; ++place)
+        for (std::size_t lane = 0; constraints.turning_arms[place].lanes >> lane != 0; ++lane)
+            if ((constraints.turning_arms[place].lanes >> lane & 1) != 0)
+                turn_lane(constraints, place, lane);
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void note_turning_arms<Real>(const ContactConstraintsView<Real>&, std::size_t,        \
+                                          std::size_t, const Contact<Real>&);                      \
+    template void turn_arms<Real>(const ContactConstraintsView<Real>&, std::size_t, std::size_t);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng
