@@ -142,24 +142,20 @@ void note_turning_arms(const ContactConstraintsView<Real>& constraints,
     TurningArmsWide<Real>& begun = constraints.turning_arms[place];
     const bool moves_a = (block.writes_a >> lane & 1) != 0,
                moves_b = (block.writes_b >> lane & 1) != 0;
-    // Along two points and more a round side touches nothing but a flat one, or another.
-    const bool line = contact.count > 1, rounds_a = contact.round_a > 0,
-               rounds_b = contact.round_b > 0;
-    const bool flat_a = line && moves_a && rounds_b && !rounds_a,
-               flat_b = line && moves_b && rounds_a && !rounds_b;
+    const RollsFlat flat = rolls_flat(contact, moves_a, moves_b);
     const Vec3T<Real> outward = vector_at(block.normal, lane);
     const bool held =
         (moves_a && is_held_beyond<Real>(vector_at(block.center_a, lane), outward, contact.round_a))
         || (moves_b
             && is_held_beyond<Real>(vector_at(block.center_b, lane), -outward, contact.round_b));
-    if (!held && !flat_a && !flat_b) return;
+    if (!held && flat == RollsFlat::no) return;
 
     const auto bit = [&](bool is) { return is ? 1u << lane : 0u; };
     const Vec3 normal = outward.template cast<double>(), center_a = in_double(block.center_a, lane),
                center_b = in_double(block.center_b, lane);
     begun.lanes = static_cast<std::uint16_t>(begun.lanes | bit(true));
-    begun.flat_a = static_cast<std::uint16_t>(begun.flat_a | bit(flat_a));
-    begun.flat_b = static_cast<std::uint16_t>(begun.flat_b | bit(flat_b));
+    begun.flat_a = static_cast<std::uint16_t>(begun.flat_a | bit(flat == RollsFlat::a));
+    begun.flat_b = static_cast<std::uint16_t>(begun.flat_b | bit(flat == RollsFlat::b));
     store(normal, begun.normal, lane);
     store(in_double(block.tangent, lane), begun.tangent, lane);
     store(center_a, begun.center_a, lane);

@@ -31,6 +31,19 @@ bool is_held_beyond(const Vec3T<Real>& arm, const Vec3T<Real>& outward, Real rou
     return beyond > 0 && beyond * beyond > kBeyond * kBeyond * arm.squaredNorm();
 }
 
+/// Who rolls with a flat side on a round one, that of the other.
+enum class RollsFlat : std::uint8_t { no, a, b };
+
+/// Along two points and more a round side touches nothing but a flat one, or another.
+template <class Real>
+RollsFlat rolls_flat(const Contact<Real>& contact, bool moves_a, bool moves_b)
+{
+    const bool round_a = contact.round_a > 0, round_b = contact.round_b > 0;
+    if (contact.count < 2 || round_a == round_b) return RollsFlat::no;
+    if (round_b) return moves_a ? RollsFlat::a : RollsFlat::no;
+    return moves_b ? RollsFlat::b : RollsFlat::no;
+}
+
 /// Notes whether a contact is one of those, once its constraint is made.
 ///
 ///   arms  of its block, where no lane was noted before the first

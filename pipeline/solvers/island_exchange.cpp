@@ -164,6 +164,10 @@ void IslandSolver::take_contact(const IslandScene<Real>& scene,
         ? scene.active.materials[scene.layout.contacts[place]]
         : Surfaces::MaterialPair{double{entry.friction}, double{entry.restitution},
                                  double{entry.rolling_friction}};
+    island_contact.rolls_flat =
+        rolls_flat(contact, scene.layout.movable(scene.layout.solver_index_a[lane]),
+                   scene.layout.movable(scene.layout.solver_index_b[lane]));
+    island_contact.center_offset = in_double(contact.center_offset);
     island_contact.restitution = materials.restitution;
     island_contact.extent = double{entry.extent};
     island_contact.tolerance = kTolerance<Real> * island_contact.extent;
@@ -186,7 +190,7 @@ void IslandSolver::take_contact(const IslandScene<Real>& scene,
         island_contact.separation = double{from.separation};
         point.arm_a = in_double(from.anchor_a);
         point.arm_b = point.arm_a + island_contact.normal * island_contact.separation
-            + in_double(contact.center_offset);
+            + island_contact.center_offset;
         island_contact.arm_a = point.arm_a - island_contact.normal * island_contact.round_a;
         island_contact.arm_b = point.arm_b + island_contact.normal * island_contact.round_b;
         if (by_a != nullptr || by_b != nullptr) walks_.push_back({contacts_.size(), by_a, by_b});

@@ -25,12 +25,14 @@ Vec3 IslandSolver::arm_now(const Vec3& arm, std::int32_t index, const Vec3& roun
     return bodies_[static_cast<std::size_t>(index)].turned * arm + round;
 }
 
+Vec3 IslandSolver::moved(std::int32_t index) const
+{
+    return index < 0 ? Vec3(Vec3::Zero()) : bodies_[static_cast<std::size_t>(index)].moved;
+}
+
 // By the arms that place_points() last found.
 double IslandSolver::separation_now(std::size_t at) const
 {
-    const auto moved = [&](std::int32_t index) -> Vec3 {
-        return index < 0 ? Vec3(Vec3::Zero()) : bodies_[static_cast<std::size_t>(index)].moved;
-    };
     const IslandContact& contact = contacts_[at];
     const DirectPoint& point = points_[at];
     const Vec3 by_a =
@@ -46,6 +48,10 @@ void IslandSolver::place_points()
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const IslandContact& contact = contacts_[i];
         DirectPoint& point = points_[i];
+        if (contact.rolls_flat != RollsFlat::no) {
+            separations_[i] = place_rolling(contact, point);
+            continue;
+        }
         const Vec3 round_a = contact.normal * contact.round_a,
                    round_b = -contact.normal * contact.round_b;
         point.arm_a = arm_now(contact.arm_a, contact.a, round_a);
@@ -53,6 +59,24 @@ void IslandSolver::place_points()
         separations_[i] = separation_now(i);
     }
     find_walks();
+}
+
+// The normal goes with the flat side, and the point on that with the round one: see
+// turning_arms.hpp. Gives the separation.
+double IslandSolver::place_rolling(const IslandContact& contact, DirectPoint& point) const
+{
+    const bool is_a = contact.rolls_flat == RollsFlat::a;
+    const Vec3& normal = point.normal =
+        arm_now(contact.normal, is_a ? contact.a : contact.b, Vec3::Zero());
+    point.arm_a = arm_now(contact.arm_a, contact.a, normal * contact.round_a);
+    point.arm_b = arm_now(contact.arm_b, contact.b, -normal * contact.round_b);
+    const Vec3 offset = contact.center_offset + moved(contact.a) - moved(contact.b);
+    const double separation = normal.dot(point.arm_b - offset - point.arm_a);
+    if (is_a)
+        point.arm_a = point.arm_b - offset - normal * separation;
+    else
+        point.arm_b = point.arm_a + offset + normal * separation;
+    return separation;
 }
 
 // Who is driven walks on what bears it: see driven_contacts.hpp. By the arms as they are.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/solver/direct/impacts.hpp"
+#include "kernels/solver/turning_arms.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/solvers/solve_island.hpp"
 #include "pipeline/step/passes.hpp"
@@ -34,8 +35,10 @@ struct IslandContact {
     std::uint32_t contact = 0, point = 0;  // place in Layout::contacts; of the contact
     std::int32_t a = -1, b = -1;           // places among the bodies
     Vec3 normal = Vec3::UnitZ();
-    Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();
+    Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  // m, without the radius of a round side
     double round_a = 0, round_b = 0;
+    RollsFlat rolls_flat = RollsFlat::no;
+    Vec3 center_offset = Vec3::Zero();  // m, from b's center of mass to a's
     double separation = 0;
     double restitution = 0;
     double extent = 0;     // m, smallest half extent of the lesser shape
@@ -94,6 +97,8 @@ private:
     void find_walks();
     void turn_inertias();
     double separation_now(std::size_t at) const;
+    Vec3 moved(std::int32_t index) const;
+    double place_rolling(const IslandContact& contact, DirectPoint& point) const;
     void move_freely(const StepContext& context, double time);
     double approach(std::size_t point, std::span<const DirectBody> bodies) const;
     // Forces that change as bodies go.
