@@ -136,15 +136,15 @@ void judge(CaseBench& bench,
     bench.show(name, "greatest speed at the end", held.speed, "m/s");
 }
 
-void hangs(CaseBench& bench,
-           const std::string& name,
-           const Chain& chain,
-           const std::string& met_by = "")
+void hung(CaseBench& bench,
+          const std::string& name,
+          const Chain& chain,
+          const std::string& met_by = "")
 {
     judge(bench, name, chain, bench.brief() ? 2 : 10, met_by);
 }
 
-void swings(CaseBench& bench, const std::string& name, Chain chain)
+void swung(CaseBench& bench, const std::string& name, Chain chain)
 {
     chain.aslant = kPi / 6;
     judge(bench, name, chain, 5);
@@ -164,25 +164,25 @@ void direct(Settings& settings) { settings.solver = Solver::direct; }
 
 void case_link_chains(CaseBench& bench)
 {
-    hangs(bench, "20 links", {});
+    hung(bench, "20 links", {});
     if (bench.brief()) return;
     sleeps(bench);
-    hangs(bench, "20 links, dt 1/30", {.choose = [](Settings& s) { s.dt = 1.0 / 30; }});
-    hangs(bench, "20 links, dt 1/240", {.choose = [](Settings& s) { s.dt = 1.0 / 240; }});
-    hangs(bench, "20 links, dt 1e-3", {.choose = shorter});
-    hangs(bench, "20 links, turned", {.frame = {Vec3::Zero(), exponential(Vec3(0.3, -0.5, 0.7))}});
-    hangs(bench, "20 links, far off", {.frame = {Vec3(3e4, -1e4, 2e4), Quat::Identity()}});
-    hangs(bench, "20 links, made backwards", {.backwards = true});
-    hangs(bench, "20 links, 16 substeps", {.choose = [](Settings& s) { s.substeps = 16; }});
-    hangs(bench, "20 links, double",
-          {.choose = [](Settings& s) { s.precision = Precision::double_; }});
-    hangs(bench, "20 links, direct", {.choose = direct});
-    hangs(bench, "8 links", {.links = 8});
-    hangs(bench, "20 links of 0.6 m", {.length = 0.6});
-    hangs(bench, "60 links of 0.6 m", {.links = 60, .length = 0.6});
-    hangs(bench, "12 links, the last 10 times as heavy", {.links = 12, .load = 10});
-    hangs(bench, "12 links of 0.6 m, the last 100 times as heavy",
-          {.links = 12, .length = 0.6, .load = 100});
+    hung(bench, "20 links, dt 1/30", {.choose = [](Settings& s) { s.dt = 1.0 / 30; }});
+    hung(bench, "20 links, dt 1/240", {.choose = [](Settings& s) { s.dt = 1.0 / 240; }});
+    hung(bench, "20 links, dt 1e-3", {.choose = shorter});
+    hung(bench, "20 links, turned", {.frame = {Vec3::Zero(), exponential(Vec3(0.3, -0.5, 0.7))}});
+    hung(bench, "20 links, far off", {.frame = {Vec3(3e4, -1e4, 2e4), Quat::Identity()}});
+    hung(bench, "20 links, made backwards", {.backwards = true});
+    hung(bench, "20 links, 16 substeps", {.choose = [](Settings& s) { s.substeps = 16; }});
+    hung(bench, "20 links, double",
+         {.choose = [](Settings& s) { s.precision = Precision::double_; }});
+    hung(bench, "20 links, direct", {.choose = direct});
+    hung(bench, "8 links", {.links = 8});
+    hung(bench, "20 links of 0.6 m", {.length = 0.6});
+    hung(bench, "60 links of 0.6 m", {.links = 60, .length = 0.6});
+    hung(bench, "12 links, the last 10 times as heavy", {.links = 12, .load = 10});
+    hung(bench, "12 links of 0.6 m, the last 100 times as heavy",
+         {.links = 12, .length = 0.6, .load = 100});
     const struct {
         const char* name;
         Chain chain;
@@ -192,17 +192,17 @@ void case_link_chains(CaseBench& bench)
         {"12 links, the last 100 times as heavy", {.links = 12, .load = 100}},
     };
     for (const auto& [name, chain] : fast) {
-        hangs(bench, name, chain, "dt=0.001");
+        hung(bench, name, chain, "dt=0.001");
         Chain finer = chain;
         finer.choose = shorter;
-        hangs(bench, std::string(name) + ", dt 1e-3", finer);
+        hung(bench, std::string(name) + ", dt 1e-3", finer);
     }
     for (const double length : {0.06, 0.6}) {
         const std::string name = length < 0.1 ? "swing, 20 links" : "swing, 20 links of 0.6 m";
-        swings(bench, name, {.length = length});
-        swings(bench, name + ", dt 1/240",
-               {.length = length, .choose = [](Settings& s) { s.dt = 1.0 / 240; }});
-        swings(bench, name + ", direct", {.length = length, .choose = direct});
+        swung(bench, name, {.length = length});
+        swung(bench, name + ", dt 1/240",
+              {.length = length, .choose = [](Settings& s) { s.dt = 1.0 / 240; }});
+        swung(bench, name + ", direct", {.length = length, .choose = direct});
     }
 }
 

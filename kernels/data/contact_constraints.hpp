@@ -160,6 +160,9 @@ struct TurningArmsWide {
     Lane16<Real> center_a[3], center_b[3];
     Lane16<Real> center_offset[3];  // m, from b's center of mass to a's
     Lane16<Real> beyond[4];         // m, what the points are further apart than their middle
+    // m, the centers as they are now, in all digits: of what a needle's spin makes of a load's arm
+    // that float would have moved by one of its digits.
+    Lane16<double> now_a[3], now_b[3];
 };
 
 /// What surfaces that go do to the sliding of 16 contacts within the step. Constraints see arms as

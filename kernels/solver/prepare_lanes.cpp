@@ -256,6 +256,27 @@ void fill_rolling(RollingFrictionWide<typename L::Number>& rolling,
 template <class Real>
 constexpr Real kLeastLoad = sizeof(Real) == 4 ? Real(1e-30) : Real(1e-300);
 
+// Of all but the points.
+template <class L, bool turns>
+void fill_masses(const ContactConstraintsView<typename L::Number>& constraints,
+                 std::size_t place,
+                 int at,
+                 const V3<L>& normal,
+                 const Mobility<L, turns>& a,
+                 const Mobility<L, turns>& b)
+{
+    ContactConstraintWide<typename L::Number>& block = constraints.blocks[place];
+    // A single point has no lever arm: only what resists rolling asks what spins do, and friction
+    // of another kind than the usual, which goes one way for any number of points.
+    const bool asked =
+        constraints.rolling_frictions != nullptr || constraints.point_frictions != nullptr;
+    fill_inverse_mass(block, at, block.points > 1 || asked, a, b);
+    if constexpr (turns)
+        inverse_or_zero(dot(normal, a.turned_by(normal)) + dot(normal, b.turned_by(normal)))
+            .store(block.torsional_mass.at + at);
+    fill_friction<L>(block, at);
+}
+
 template <class L, bool turns>
 [[gnu::flatten]] void prepare_lanes(const PackedContacts<typename L::Number>& from,
                                     std::size_t place,
@@ -321,15 +342,7 @@ template <class L, bool turns>
         const L mass = normal_mass(a, b, normal, arm, arm + normal * separation + between);
         (mass * there).store(to.mass.at + at);
     }
-    // A single point has no lever arm: only what resists rolling asks what spins do, and friction
-    // of another kind than the usual, which goes one way for any number of points.
-    const bool asked =
-        constraints.rolling_frictions != nullptr || constraints.point_frictions != nullptr;
-    fill_inverse_mass(block, at, block.points > 1 || asked, a, b);
-    if constexpr (turns)
-        inverse_or_zero(dot(normal, a.turned_by(normal)) + dot(normal, b.turned_by(normal)))
-            .store(block.torsional_mass.at + at);
-    fill_friction<L>(block, at);
+    fill_masses(constraints, place, at, normal, a, b);
     fill_held(block, at, packed.held, frame, load);
 
     if (constraints.rolling_frictions != nullptr)
@@ -338,7 +351,39 @@ template <class L, bool turns>
         fill_bounce<L>(constraints.restitutions[place], at, from);
 }
 
+template <class L>
+[[gnu::flatten]] void update_masses_lanes(
+    const ContactConstraintsView<typename L::Number>& constraints, std::size_t place, int at)
+{
+    using Real = typename L::Number;
+    const ContactConstraintWide<Real>& block = constraints.blocks[place];
+    const Mobility<L, true> a(constraints.bodies, block.a + at),
+        b(constraints.bodies, block.b + at);
+    const Frame<L, true> frame(block, at);
+    const L zero = Real(0);
+    for (int k = 0; k < block.points; ++k) {
+        ContactPointWide<Real>& point = constraints.points[block.first_point + std::uint32_t(k)];
+        const V3<L> off = frame.other * lane<L>(point.lever_arm[0], at)
+            - frame.tangent * lane<L>(point.lever_arm[1], at);
+        const L mass =
+            normal_mass<L, true>(a, b, frame.normal, frame.center_a + off, frame.center_b + off);
+        // One that bears nothing is not there, or has no lever arm.
+        select(lane<L>(point.mass, at) > zero, mass, zero).store(point.mass.at + at);
+    }
+    fill_masses(constraints, place, at, frame.normal, a, b);
+}
+
 }  // namespace
+
+template <class Real>
+void update_masses(const ContactConstraintsView<Real>& constraints, std::size_t place)
+{
+    for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
+        update_masses_lanes<Lanes<Real>>(constraints, place, at);
+}
+
+template void update_masses<float>(const ContactConstraintsView<float>&, std::size_t);
+template void update_masses<double>(const ContactConstraintsView<double>&, std::size_t);
 
 template <class Real>
 void prepare(const PackedContacts<Real>& packed,

@@ -248,6 +248,7 @@ constexpr SolveKernels<Real> table()
     return {THRONG_LANES_NAME,
             Lanes<Real>::kWidth,
             prepare<Real>,
+            update_masses<Real>,
             warm_start<Real>,
             update_surface_velocity<Real>,
             walk_surface_velocity<Real>,

@@ -115,6 +115,7 @@ inline constexpr double kAtRest = 1e-4;
 ///   solve                    moves every point towards its wanted normal speed, never pulling;
 ///                            then friction, a round cone of the contact's normal impulse; then the
 ///                            points again
+///   update_masses            effective masses of those at `place`, whose arms have changed
 ///   apply_restitution        impacts, one contact after another: points that come in faster than
 ///                            `restitution_threshold` and would touch before the substep ends leave
 ///                            again, those of a contact together, with friction within the cone of
@@ -148,6 +149,7 @@ struct SolveKernels {
                     std::size_t place,
                     const ContactConstraintsView<Real>& constraints,
                     bool turns);
+    void (*update_masses)(const ContactConstraintsView<Real>& constraints, std::size_t place);
     void (*warm_start)(const ContactConstraintsView<Real>& constraints,
                        std::size_t begin,
                        std::size_t end,

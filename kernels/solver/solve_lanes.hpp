@@ -13,6 +13,9 @@ void prepare(const PackedContacts<Real>& packed,
              bool turns);
 
 template <class Real>
+void update_masses(const ContactConstraintsView<Real>& constraints, std::size_t place);
+
+template <class Real>
 void begin_substep(SolverBody<Real>* bodies,
                    const GyroscopicInertia<Real>* inertias,
                    std::size_t count,

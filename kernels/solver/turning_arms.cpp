@@ -3,9 +3,13 @@
 #include "kernels/solver/contact_packing.hpp"
 #include "kernels/solver/solver_bodies.hpp"
 
+#include <algorithm>
+
 namespace throng {
 
 namespace {
+
+constexpr double kFarthestTurn = 0.3;  // rad, in a step
 
 // What b, or a against it, has of impulses at an arm.
 template <class Real>
@@ -46,17 +50,21 @@ Vec3 impulse_of(const ContactConstraintsView<Real>& constraints,
     return normal * load + tangent * along + normal.cross(tangent) * other;
 }
 
+// Of two bodies since the step began: how they turned, and how far b moved against a, m.
+struct Travel {
+    Quat turn_a = Quat::Identity(), turn_b = Quat::Identity();
+    Vec3 moved = Vec3::Zero();
+};
+
 // A contact where its bodies are now.
 class TurnedContact {
 public:
     template <class Real>
     TurnedContact(const ContactConstraintWide<Real>& block,
                   const TurningArmsWide<Real>& begun,
-                  const SolverBody<Real>& a,
-                  const SolverBody<Real>& b,
+                  const Travel& travel,
                   std::size_t lane)
-        : turn_a_(turn_of(a)), turn_b_(turn_of(b)),
-          moved_(vector_at(b.delta_pose) - vector_at(a.delta_pose)),
+        : turn_a_(travel.turn_a), turn_b_(travel.turn_b), moved_(travel.moved),
           begun_tangent_(in_double(begun.tangent, lane))
     {
         const bool flat_a = (begun.flat_a >> lane & 1) != 0,
@@ -75,8 +83,21 @@ public:
         center_b = turn_b_ * (in_double(begun.center_b, lane) + before * round_b) + end_b_;
         apart_ = normal.dot(center_b - offset_ - center_a);
         // On a flat side it goes to where the round one is.
-        if (flat_a) center_a = center_b - offset_ - normal * apart_;
-        if (flat_b) center_b = center_a + offset_ + normal * apart_;
+        const Vec3 along_a = center_b - offset_ - normal * apart_,
+                   along_b = center_a + offset_ + normal * apart_;
+        if (flat_a) rolled_ = (along_a - center_a).norm() / (center_a.norm() + round_b);
+        if (flat_b) rolled_ = (along_b - center_b).norm() / (center_b.norm() + round_a);
+        flat_ = flat_a || flat_b;
+        if (flat_a) center_a = along_a;
+        if (flat_b) center_b = along_b;
+    }
+
+    /// Whether the contact that was there as the step began says nothing of where that leads to.
+    bool is_far() const
+    {
+        const double half = std::max(turn_a_.vec().norm(), turn_b_.vec().norm());
+        return half > (flat_ ? kFarthestFlatTurn : kFarthestTurn) / 2
+            || rolled_ > kFarthestFlatRoll;
     }
 
     Vec3 normal, tangent, center_a, center_b;
@@ -100,24 +121,32 @@ public:
 private:
     Quat turn_a_, turn_b_;
     Vec3 moved_, begun_tangent_, begun_other_, offset_, end_a_, end_b_;
-    double apart_ = 0;
+    double apart_ = 0, rolled_ = 0;
+    bool flat_ = false;
 };
 
 template <class Real>
 void turn_lane(const ContactConstraintsView<Real>& constraints, std::size_t place, std::size_t lane)
 {
     ContactConstraintWide<Real>& block = constraints.blocks[place];
-    const TurningArmsWide<Real>& begun = constraints.turning_arms[place];
+    TurningArmsWide<Real>& begun = constraints.turning_arms[place];
     SolverBody<Real>& a = constraints.bodies[block.a[lane]];
     SolverBody<Real>& b = constraints.bodies[block.b[lane]];
-    const TurnedContact now(block, begun, a, b, lane);
+    const Travel travel{turn_of(a), turn_of(b), vector_at(b.delta_pose) - vector_at(a.delta_pose)};
+    TurnedContact now(block, begun, travel, lane);
+    if (now.is_far()) {
+        now = TurnedContact(block, begun, Travel{}, lane);
+        begun.lanes = static_cast<std::uint16_t>(begun.lanes & ~(1u << lane));
+    }
     const Vec3 before = impulse_of(constraints, block, lane);
-    const Vec3 torque_a = in_double(block.center_a, lane).cross(before),
-               torque_b = in_double(block.center_b, lane).cross(before);
+    const Vec3 torque_a = vector_at(begun.now_a, lane).cross(before),
+               torque_b = vector_at(begun.now_b, lane).cross(before);
     store(now.normal, block.normal, lane);
     store(now.tangent, block.tangent, lane);
     store(now.center_a, block.center_a, lane);
     store(now.center_b, block.center_b, lane);
+    store(now.center_a, begun.now_a, lane);
+    store(now.center_b, begun.now_b, lane);
     const Vec3 impulse = impulse_of(constraints, block, lane), more = impulse - before;
     if ((block.writes_a >> lane & 1) != 0) push(a, -more, torque_a - now.center_a.cross(impulse));
     if ((block.writes_b >> lane & 1) != 0) push(b, more, now.center_b.cross(impulse) - torque_b);
@@ -136,13 +165,14 @@ template <class Real>
 void note_turning_arms(const ContactConstraintsView<Real>& constraints,
                        std::size_t place,
                        std::size_t lane,
-                       const Contact<Real>& contact)
+                       const Contact<Real>& contact,
+                       double extent)
 {
     const ContactConstraintWide<Real>& block = constraints.blocks[place];
     TurningArmsWide<Real>& begun = constraints.turning_arms[place];
     const bool moves_a = (block.writes_a >> lane & 1) != 0,
                moves_b = (block.writes_b >> lane & 1) != 0;
-    const RollsFlat flat = rolls_flat(contact, moves_a, moves_b);
+    const RollsFlat flat = rolls_flat(contact, extent, moves_a, moves_b);
     const Vec3T<Real> outward = vector_at(block.normal, lane);
     const bool held =
         (moves_a && is_held_beyond<Real>(vector_at(block.center_a, lane), outward, contact.round_a))
@@ -160,6 +190,8 @@ void note_turning_arms(const ContactConstraintsView<Real>& constraints,
     store(in_double(block.tangent, lane), begun.tangent, lane);
     store(center_a, begun.center_a, lane);
     store(center_b, begun.center_b, lane);
+    store(center_a, begun.now_a, lane);
+    store(center_b, begun.now_b, lane);
     const Vec3 offset = contact.center_offset.template cast<double>();
     store(offset, begun.center_offset, lane);
     const double apart = normal.dot(center_b - offset - center_a);
@@ -170,15 +202,18 @@ void note_turning_arms(const ContactConstraintsView<Real>& constraints,
 template <class Real>
 void turn_arms(const ContactConstraintsView<Real>& constraints, std::size_t begin, std::size_t end)
 {
-    for (std::size_t place = begin; place < end; ++place)
+    for (std::size_t place = begin; place < end; ++place) {
+        if (constraints.turning_arms[place].lanes == 0) continue;
         for (std::size_t lane = 0; constraints.turning_arms[place].lanes >> lane != 0; ++lane)
             if ((constraints.turning_arms[place].lanes >> lane & 1) != 0)
                 turn_lane(constraints, place, lane);
+        solve_kernels<Real>().update_masses(constraints, place);
+    }
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void note_turning_arms<Real>(const ContactConstraintsView<Real>&, std::size_t,        \
-                                          std::size_t, const Contact<Real>&);                      \
+                                          std::size_t, const Contact<Real>&, double);              \
     template void turn_arms<Real>(const ContactConstraintsView<Real>&, std::size_t, std::size_t);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

@@ -13,6 +13,7 @@
 #include "kernels/data/contacts.hpp"
 #include "kernels/solver/solve_kernels.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace throng {
@@ -31,31 +32,46 @@ bool is_held_beyond(const Vec3T<Real>& arm, const Vec3T<Real>& outward, Real rou
     return beyond > 0 && beyond * beyond > kBeyond * kBeyond * arm.squaredNorm();
 }
 
+/// How far a flat side may turn in a step, rad, and how far a round one may roll along it, as a
+/// share of the arm there and its radius: the contact of the step's beginning says nothing of where
+/// more leads to.
+inline constexpr double kFarthestFlatTurn = 0.1, kFarthestFlatRoll = 0.1;
+
 /// Who rolls with a flat side on a round one, that of the other.
 enum class RollsFlat : std::uint8_t { no, a, b };
 
-/// Along two points and more a round side touches nothing but a flat one, or another.
+/// Along two points and more a round side touches nothing but a flat one, or another. Where they do
+/// not touch yet nothing rolls; and of what is much thinner than its arm is long the digits of
+/// float do not tell where it would roll to.
+///
+///   extent  m, the lesser of the smallest half extents of the two
 template <class Real>
-RollsFlat rolls_flat(const Contact<Real>& contact, bool moves_a, bool moves_b)
+RollsFlat rolls_flat(const Contact<Real>& contact, double extent, bool moves_a, bool moves_b)
 {
+    constexpr double kTouching = 0.1, kLongest = 1e3;  // of the extent
     const bool round_a = contact.round_a > 0, round_b = contact.round_b > 0;
-    if (contact.count < 2 || round_a == round_b) return RollsFlat::no;
-    if (round_b) return moves_a ? RollsFlat::a : RollsFlat::no;
-    return moves_b ? RollsFlat::b : RollsFlat::no;
+    if (contact.count < 2 || round_a == round_b || !(round_b ? moves_a : moves_b))
+        return RollsFlat::no;
+    const auto& first = contact.points[0];
+    if (std::min(first.separation, contact.points[1].separation) > kTouching * extent)
+        return RollsFlat::no;
+    const double arm{(round_b ? first.anchor_a : contact.anchor_b(0)).norm()};
+    if (arm > kLongest * extent) return RollsFlat::no;
+    return round_b ? RollsFlat::a : RollsFlat::b;
 }
 
 /// Notes whether a contact is one of those, once its constraint is made.
 ///
-///   arms  of its block, where no lane was noted before the first
+///   extent  m, as of rolls_flat()
 template <class Real>
 void note_turning_arms(const ContactConstraintsView<Real>& constraints,
                        std::size_t place,
                        std::size_t lane,
-                       const Contact<Real>& contact);
+                       const Contact<Real>& contact,
+                       double extent);
 
 /// Puts the contacts of blocks where their bodies are, once velocities of a substep are integrated,
-/// and what they gave in the last one with them. Effective masses stay: they say how fast
-/// iterations come to an answer, and not which.
+/// and what they gave in the last one with them.
 template <class Real>
 void turn_arms(const ContactConstraintsView<Real>& constraints, std::size_t begin, std::size_t end);
 

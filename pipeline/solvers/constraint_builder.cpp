@@ -145,7 +145,8 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
         const Contact<Real>& contact = contact_of(active_.entries[entry]);
         if (uncut_) pack_unclamped_friction(contact, static_cast<int>(lane), block);
         if (settles_) settle_separation(contact, lane, block);
-        if (turn) note_turning_arms(view_, at, lane, contact);
+        if (turn)
+            note_turning_arms(view_, at, lane, contact, double{active_.entries[entry].extent});
     }
 }
 

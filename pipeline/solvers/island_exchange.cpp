@@ -164,9 +164,9 @@ void IslandSolver::take_contact(const IslandScene<Real>& scene,
         ? scene.active.materials[scene.layout.contacts[place]]
         : Surfaces::MaterialPair{double{entry.friction}, double{entry.restitution},
                                  double{entry.rolling_friction}};
-    island_contact.rolls_flat =
-        rolls_flat(contact, scene.layout.movable(scene.layout.solver_index_a[lane]),
-                   scene.layout.movable(scene.layout.solver_index_b[lane]));
+    island_contact.rolls_flat = rolls_flat(contact, double{entry.extent},
+                                           scene.layout.movable(scene.layout.solver_index_a[lane]),
+                                           scene.layout.movable(scene.layout.solver_index_b[lane]));
     island_contact.center_offset = in_double(contact.center_offset);
     island_contact.restitution = materials.restitution;
     island_contact.extent = double{entry.extent};

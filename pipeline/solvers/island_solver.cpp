@@ -48,10 +48,9 @@ void IslandSolver::place_points()
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const IslandContact& contact = contacts_[i];
         DirectPoint& point = points_[i];
-        if (contact.rolls_flat != RollsFlat::no) {
-            separations_[i] = place_rolling(contact, point);
+        if (contact.rolls_flat != RollsFlat::no && place_rolling(contact, point, separations_[i]))
             continue;
-        }
+        point.normal = contact.normal;
         const Vec3 round_a = contact.normal * contact.round_a,
                    round_b = -contact.normal * contact.round_b;
         point.arm_a = arm_now(contact.arm_a, contact.a, round_a);
@@ -62,21 +61,26 @@ void IslandSolver::place_points()
 }
 
 // The normal goes with the flat side, and the point on that with the round one: see
-// turning_arms.hpp. Gives the separation.
-double IslandSolver::place_rolling(const IslandContact& contact, DirectPoint& point) const
+// turning_arms.hpp. False where that goes too far.
+bool IslandSolver::place_rolling(const IslandContact& contact,
+                                 DirectPoint& point,
+                                 double& separation) const
 {
     const bool is_a = contact.rolls_flat == RollsFlat::a;
-    const Vec3& normal = point.normal =
-        arm_now(contact.normal, is_a ? contact.a : contact.b, Vec3::Zero());
+    const std::int32_t flat = is_a ? contact.a : contact.b;
+    const double half = bodies_[static_cast<std::size_t>(flat)].turned.vec().norm();
+    const Vec3& normal = point.normal = arm_now(contact.normal, flat, Vec3::Zero());
     point.arm_a = arm_now(contact.arm_a, contact.a, normal * contact.round_a);
     point.arm_b = arm_now(contact.arm_b, contact.b, -normal * contact.round_b);
     const Vec3 offset = contact.center_offset + moved(contact.a) - moved(contact.b);
-    const double separation = normal.dot(point.arm_b - offset - point.arm_a);
-    if (is_a)
-        point.arm_a = point.arm_b - offset - normal * separation;
-    else
-        point.arm_b = point.arm_a + offset + normal * separation;
-    return separation;
+    separation = normal.dot(point.arm_b - offset - point.arm_a);
+    Vec3& arm = is_a ? point.arm_a : point.arm_b;
+    const Vec3 there = is_a ? Vec3(point.arm_b - offset - normal * separation)
+                            : Vec3(point.arm_a + offset + normal * separation);
+    const double round = is_a ? contact.round_b : contact.round_a;
+    const double rolled = (there - arm).norm(), most = kFarthestFlatRoll * (arm.norm() + round);
+    arm = there;
+    return half <= kFarthestFlatTurn / 2 && rolled <= most;
 }
 
 // Who is driven walks on what bears it: see driven_contacts.hpp. By the arms as they are.

@@ -98,7 +98,7 @@ private:
     void turn_inertias();
     double separation_now(std::size_t at) const;
     Vec3 moved(std::int32_t index) const;
-    double place_rolling(const IslandContact& contact, DirectPoint& point) const;
+    bool place_rolling(const IslandContact& contact, DirectPoint& point, double& separation) const;
     void move_freely(const StepContext& context, double time);
     double approach(std::size_t point, std::span<const DirectBody> bodies) const;
     // Forces that change as bodies go.

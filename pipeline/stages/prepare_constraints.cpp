@@ -102,7 +102,7 @@ bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
 bool anybody_swings(const Layout& layout, const Shapes& shapes, const Colliders& colliders)
 {
     const bool rounds = !shapes.capsules.empty() || !shapes.cylinders.empty();
-    const unsigned how = Colliders::kHangs | (rounds ? Colliders::kFlat : 0u);
+    const unsigned how = Colliders::kMayHang | (rounds ? Colliders::kFlat : 0u);
     const auto first = layout.body_of_solver_index.begin() + 1;
     return std::any_of(first, first + layout.dynamic,
                        [&](std::uint32_t body) { return (colliders.may_swing[body] & how) != 0; });

@@ -260,7 +260,7 @@ void SceneBuilder::place_colliders(std::uint32_t body,
     put(colliders.begin, body, first);
     put(colliders.count, body, count);
     double radius = 0;
-    std::uint8_t swings = count > 1 ? Colliders::kHangs : 0;
+    std::uint8_t swings = count > 1 ? Colliders::kMayHang : 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t at = first + i;
         const ShapeRef part = shape->parts[i];
@@ -268,7 +268,8 @@ void SceneBuilder::place_colliders(std::uint32_t body,
         local.position -= state_.center[body];
         const double outer = local.position.norm() + outer_radius(shapes, part);
         // By what is not convex, or round about another point.
-        if (part.kind == ShapeKind::solid || !local.position.isZero(0)) swings |= Colliders::kHangs;
+        if (part.kind == ShapeKind::solid || !local.position.isZero(0))
+            swings |= Colliders::kMayHang;
         if (part.kind == ShapeKind::box || part.kind == ShapeKind::hull) swings |= Colliders::kFlat;
         put(colliders.body, at, body);
         put(colliders.shape, at, part);
