@@ -136,7 +136,7 @@ constexpr HardCase kCases[] = {
      Fault::restitution},
     {"H96", "bodies that fall together to an attractor make no energy", case_attracted_heaps,
      Fault::haste},
-    {"H97", "chains of links hold, hung and swung", case_link_chains, Fault::whirl},
+    {"H97", "chains of links hold, hung and swung", case_link_chains, Fault::sink},
     {"H98", "what swings on a contact keeps its swing", case_swings, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
