@@ -166,7 +166,7 @@ void swing(CaseBench& bench, const Setting& setting, Swinger swinger)
         [](World&, double) { return true; }, &ledger);
     const std::string which = std::string(name_of(swinger)) + ", " + setting.name;
     const double most = ledger.greatest_kinetic(), net = ledger.net();
-    bench.report(which, "energy won over the greatest of motion", std::max(0.0, net) / most, 0.02,
+    bench.report(which, "energy won over the greatest of motion", std::max(0.0, net) / most, 0.01,
                  "1");
     // A ring of rods and a frame strike their peg with an edge now and then.
     const bool has_edges = swinger == Swinger::ring || swinger == Swinger::frame;

@@ -31,21 +31,17 @@ void store(const Vec3& vector, Lane16<Real> (&to)[3], std::size_t lane)
     for (int k = 0; k < 3; ++k) to[k].at[lane] = static_cast<Real>(vector[k]);
 }
 
-// N s on b, at the center.
+// N s on b, at the center; of friction at points their sum.
 template <class Real>
 Vec3 impulse_of(const ContactConstraintsView<Real>& constraints,
                 const ContactConstraintWide<Real>& block,
                 std::size_t lane)
 {
-    double load = 0, along = double{block.friction_impulse[0].at[lane]},
-           other = double{block.friction_impulse[1].at[lane]};
-    for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
-        const std::size_t point = block.first_point + k;
-        load += double{constraints.points[point].impulse.at[lane]};
-        if (constraints.point_frictions == nullptr) continue;
-        along += double{constraints.point_frictions[point].impulse[0].at[lane]};
-        other += double{constraints.point_frictions[point].impulse[1].at[lane]};
-    }
+    double load = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k)
+        load += double{constraints.points[block.first_point + k].impulse.at[lane]};
+    const double along{block.friction_impulse[0].at[lane]},
+        other{block.friction_impulse[1].at[lane]};
     const Vec3 normal = in_double(block.normal, lane), tangent = in_double(block.tangent, lane);
     return normal * load + tangent * along + normal.cross(tangent) * other;
 }
