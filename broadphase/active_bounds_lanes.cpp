@@ -16,7 +16,7 @@ Lane load_floats(const float* from, const RowIds& ids)
 {
     if constexpr (Lane::kWidth > 1) {
         if (ids.run) {
-            typedef float F __attribute__((vector_size(Lane::kWidth * sizeof(float))));
+            using F __attribute__((vector_size(Lane::kWidth * sizeof(float)))) = float;
             F numbers;
             __builtin_memcpy(&numbers, from + ids.at[0], sizeof(F));
             return Lane(__builtin_convertvector(numbers, typename Lane::V));
@@ -106,7 +106,7 @@ template <class Wanted = ActiveBody>  // a template, so that each width sees its
 void store_near(const Wanted& active, float* near)
 {
     if constexpr (decltype(active.speculative_margin)::kWidth == 8) {
-        typedef float F __attribute__((vector_size(8 * sizeof(float))));
+        using F __attribute__((vector_size(8 * sizeof(float)))) = float;
         F rows[8] = {};
         for (int k = 0; k < 3; ++k) {
             rows[k] = outward(__builtin_convertvector(active.lower[k].v, F), -1.0f);

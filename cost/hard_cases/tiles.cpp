@@ -41,7 +41,7 @@ HullShape tile_hull()
     for (const double x : {-1.0, 1.0})
         for (const double y : {-1.0, 1.0})
             for (const double z : {-1.0, 1.0})
-                hull.points.push_back(kTile.cwiseProduct(Vec3(x, y, z)));
+                hull.points.emplace_back(kTile.cwiseProduct(Vec3(x, y, z)));
     return hull;
 }
 
@@ -50,7 +50,7 @@ MeshShape tile_mesh()
 {
     MeshShape mesh;
     for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
-        mesh.vertices.push_back(kTile.cwiseProduct(Vec3(x, y, 1)));
+        mesh.vertices.emplace_back(kTile.cwiseProduct(Vec3(x, y, 1)));
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     return mesh;
 }

@@ -15,7 +15,7 @@ inline bool boxes_overlap(const float* lower_a,
                           const float* lower_b,
                           const float* upper_b)
 {
-    typedef float Four __attribute__((vector_size(16)));
+    using Four __attribute__((vector_size(16))) = float;
     const auto load = [](const float* from) {
         Four four;
         __builtin_memcpy(&four, from, sizeof four);

@@ -23,7 +23,7 @@ namespace throng::THRONG_LANES {
 // The register that holds W numbers; one number is just itself.
 template <class T, int W>
 struct Register {
-    typedef T Type __attribute__((vector_size(W * sizeof(T))));
+    using Type __attribute__((vector_size(W * sizeof(T)))) = T;
     static Type all(T value) { return value - Type{}; }
 };
 template <class T>
@@ -193,8 +193,8 @@ template <class T, int W, class Row>
 void gather_8(Row row, Wide<T, W> (&out)[8])
 {
     if constexpr (W == 8 || W == 16) {
-        typedef T V8 __attribute__((vector_size(8 * sizeof(T))));
-        typedef typename Wide<T, W>::V V;
+        using V8 __attribute__((vector_size(8 * sizeof(T)))) = T;
+        using V = typename Wide<T, W>::V;
         V rows[8];
         for (int i = 0; i < 8; ++i) {
             V8 lower;
@@ -234,8 +234,8 @@ void scatter_8(
     const Wide<T, W> (&in)[8], T* base, int stride, const std::int32_t* index, unsigned writes)
 {
     if constexpr (W == 8 || W == 16) {
-        typedef T V8 __attribute__((vector_size(8 * sizeof(T))));
-        typedef typename Wide<T, W>::V V;
+        using V8 __attribute__((vector_size(8 * sizeof(T)))) = T;
+        using V = typename Wide<T, W>::V;
         V rows[8];
         for (int k = 0; k < 8; ++k) rows[k] = in[k].v;
         if constexpr (W == 16)

@@ -100,7 +100,7 @@ private:
     Vec3 moved(std::int32_t index) const;
     bool place_rolling(const IslandContact& contact, DirectPoint& point, double& separation) const;
     void move_freely(const StepContext& context, double time);
-    double approach(std::size_t point, std::span<const DirectBody> bodies) const;
+    double approach(std::size_t at, std::span<const DirectBody> bodies) const;
     // Forces that change as bodies go.
     void update_forced_bodies();
     void move_forced_bodies(std::vector<DirectBody>& bodies) const;

@@ -57,10 +57,10 @@ template <class Mask>
 unsigned bits_of(Mask mask)
 {
 #if THRONG_LANE_BYTES == 64
-    typedef int V __attribute__((vector_size(64)));
+    using V __attribute__((vector_size(64))) = int;
     return static_cast<std::uint16_t>(__builtin_ia32_cvtd2mask512(reinterpret_cast<V>(mask)));
 #elif THRONG_LANE_BYTES == 32
-    typedef float V __attribute__((vector_size(32)));
+    using V __attribute__((vector_size(32))) = float;
     return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<V>(mask)));
 #else
     return mask ? 1u : 0u;
