@@ -4,6 +4,7 @@
 // and makes no energy. What a load keeps in line turns back the faster the greater it is: the upper
 // links of these by a radian and more in a step.
 #include "cost/hard_cases/hard_cases.hpp"
+#include "scene/catalog/parts.hpp"
 #include "throng/energy_ledger.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
@@ -22,7 +23,7 @@ constexpr double kDensity = 1000;  // kg/m3
 struct Chain {
     int links = 20;
     double length = 0.06;  // m, of a link between the middles of its ends
-    double load = 0;       // the last link's mass over that of another, where it is not one of them
+    double load = 1;       // the last link's mass over that of another
     double aslant = 0;     // rad, from which it swings
     Pose frame = {};
     bool backwards = false;  // the last link is made first
@@ -43,20 +44,17 @@ double link_mass(double length)
 std::uint32_t add_link(Scene& scene, double length)
 {
     const double wide = kWide * length, wire = kWire * length;
-    const auto rod = [&](double half_length) {
-        scene.shapes.push_back(
-            {"rod" + std::to_string(scene.shapes.size()), CapsuleShape{wire, half_length}});
-        return static_cast<std::uint32_t>(scene.shapes.size() - 1);
+    const auto rod = [&](std::string_view name, double half_length) {
+        return add_shape(scene, name, CapsuleShape{wire, half_length});
     };
-    const std::uint32_t side = rod(length / 2), end = rod(wide / 2);
+    const std::uint32_t side = rod("side", length / 2), end = rod("end", wide / 2);
     const Quat across = exponential(Vec3(kPi / 2, 0, 0));
     CompoundShape link;
     for (const double sign : {1.0, -1.0}) {
         link.parts.push_back({side, {Vec3(0, sign * wide / 2, 0), Quat::Identity()}});
         link.parts.push_back({end, {Vec3(0, 0, sign * length / 2), across}});
     }
-    scene.shapes.push_back({"link", std::move(link)});
-    return static_cast<std::uint32_t>(scene.shapes.size() - 1);
+    return add_shape(scene, "link", std::move(link));
 }
 
 Scene chain_scene(const CaseBench& bench, const Chain& chain)
@@ -81,7 +79,7 @@ Scene chain_scene(const CaseBench& bench, const Chain& chain)
         body.position = placed.position;
         body.orientation = placed.orientation;
         if (link == 0) body.motion = Motion::static_;
-        if (link == chain.links - 1 && chain.load > 0)
+        if (link == chain.links - 1 && chain.load != 1)
             body.mass = chain.load * link_mass(chain.length);
         scene.bodies.push_back(body);
     }
@@ -112,7 +110,7 @@ Held hold(CaseBench& bench, const Chain& chain, double seconds)
         return true;
     };
     bench.run(chain_scene(bench, chain), seconds, watch, &ledger);
-    const double weight = kGravity * link_mass(chain.length) * (chain.links - 1 + chain.load);
+    const double weight = kGravity * link_mass(chain.length) * (chain.links - 2 + chain.load);
     held.gained = ledger.gained() / (weight * pitch * chain.links);
     return held;
 }

@@ -3,6 +3,7 @@
 // Answer: nothing turns its energy into anything else while it rolls to and fro: energy of motion
 // and height together stay what they were. Where it is stopped by an edge it loses some.
 #include "cost/hard_cases/hard_cases.hpp"
+#include "scene/catalog/parts.hpp"
 #include "throng/energy_ledger.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
@@ -81,9 +82,8 @@ public:
 private:
     std::uint32_t shape(decltype(ShapeDescription::shape) kind)
     {
-        auto& shapes = parts_.scene().shapes;
-        shapes.push_back({"shape" + std::to_string(shapes.size()), std::move(kind)});
-        return static_cast<std::uint32_t>(shapes.size() - 1);
+        Scene& scene = parts_.scene();
+        return add_shape(scene, "shape" + std::to_string(scene.shapes.size()), std::move(kind));
     }
 
     BodyDescription& body(decltype(ShapeDescription::shape) kind, const Pose& at)

@@ -160,8 +160,8 @@ struct TurningArmsWide {
     Lane16<Real> center_a[3], center_b[3];
     Lane16<Real> center_offset[3];  // m, from b's center of mass to a's
     Lane16<Real> beyond[4];         // m, what the points are further apart than their middle
-    // m, the centers as they are now, in all digits: of what a needle's spin makes of a load's arm
-    // that float would have moved by one of its digits.
+    // m, the centers as they are now. In all digits: a load whose arm on a needle moved by the last
+    // one of float would spin it.
     Lane16<double> now_a[3], now_b[3];
 };
 
@@ -268,7 +268,7 @@ struct Layout {
 ///                       along with an axis that turns, or somebody walks
 ///   surfaces_turn       something turns that carries what lies on it
 ///   axes_turn           somebody's spin goes along with an axis that turns enough to be seen
-///   turning_arms        [blocks] while somebody moves that may hang
+///   turning_arms        [blocks] while somebody moves that may swing
 ///   prescribed          [bodies] while bodies that contacts push are driven
 ///   point_frictions     [points] while friction acts at points or within a pyramid
 ///   inertias            [bodies] while the gyroscopic torque acts

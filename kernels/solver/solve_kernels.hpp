@@ -125,8 +125,7 @@ inline constexpr double kAtRest = 1e-4;
 ///                            then, but in the first substep, what all contacts gave in the last
 ///                            one: within a step arms and inertia do not change, but for those that
 ///                            turn_arms() sees to, so it is `motion` less `free`, and no contact
-///                            has to be asked. `inertias` null: no
-///                            gyroscopic torque
+///                            has to be asked. `inertias` null: no gyroscopic torque
 ///   advance                  moves and turns bodies by their velocities for a time; returns how
 ///                            many turn too fast for it and were moved only (see turn_fast)
 ///

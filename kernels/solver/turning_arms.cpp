@@ -46,116 +46,134 @@ Vec3 impulse_of(const ContactConstraintsView<Real>& constraints,
     return normal * load + tangent * along + normal.cross(tangent) * other;
 }
 
-// Of two bodies since the step began: how they turned, and how far b moved against a, m.
-struct Travel {
-    Quat turn_a = Quat::Identity(), turn_b = Quat::Identity();
-    Vec3 moved = Vec3::Zero();
-};
+bool has(std::uint16_t lanes, std::size_t lane) { return (lanes >> lane & 1) != 0; }
 
-// A contact where its bodies are now.
-class TurnedContact {
-public:
-    template <class Real>
-    TurnedContact(const ContactConstraintWide<Real>& block,
-                  const TurningArmsWide<Real>& begun,
-                  const Travel& travel,
-                  std::size_t lane)
-        : turn_a_(travel.turn_a), turn_b_(travel.turn_b), moved_(travel.moved),
-          begun_tangent_(in_double(begun.tangent, lane))
-    {
-        const bool flat_a = (begun.flat_a >> lane & 1) != 0,
-                   flat_b = (begun.flat_b >> lane & 1) != 0;
-        const Quat along = flat_a ? turn_a_ : flat_b ? turn_b_ : Quat(Quat::Identity());
-        const Vec3 before = in_double(begun.normal, lane);
-        const double round_a{block.round_a.at[lane]}, round_b{block.round_b.at[lane]};
-        begun_other_ = before.cross(begun_tangent_);
-        normal = along * before;
-        tangent = along * begun_tangent_;
-        offset_ = in_double(begun.center_offset, lane) - moved_;
-        // The radius of a round side does not turn along, but with the normal.
-        end_a_ = normal * round_a;
-        end_b_ = -normal * round_b;
-        center_a = turn_a_ * (in_double(begun.center_a, lane) - before * round_a) + end_a_;
-        center_b = turn_b_ * (in_double(begun.center_b, lane) + before * round_b) + end_b_;
-        apart_ = normal.dot(center_b - offset_ - center_a);
-        // On a flat side it goes to where the round one is.
-        const Vec3 along_a = center_b - offset_ - normal * apart_,
-                   along_b = center_a + offset_ + normal * apart_;
-        if (flat_a) rolled_ = (along_a - center_a).norm() / (center_a.norm() + round_b);
-        if (flat_b) rolled_ = (along_b - center_b).norm() / (center_b.norm() + round_a);
-        flat_ = flat_a || flat_b;
-        if (flat_a) center_a = along_a;
-        if (flat_b) center_b = along_b;
-    }
+void set(std::uint16_t& lanes, std::size_t lane, bool to)
+{
+    const unsigned bit = 1u << lane;
+    lanes = static_cast<std::uint16_t>(to ? lanes | bit : lanes & ~bit);
+}
 
-    /// Whether the contact that was there as the step began says nothing of where that leads to.
-    bool is_far() const
-    {
-        const double half = std::max(turn_a_.vec().norm(), turn_b_.vec().norm());
-        return half > (flat_ ? kFarthestFlatTurn : kFarthestTurn) / 2
-            || rolled_ > kFarthestFlatRoll;
-    }
+// A contact of which both bodies are where they were as the step began.
+template <class Real>
+MovedContact begun_contact(const ContactConstraintWide<Real>& block,
+                           const TurningArmsWide<Real>& begun,
+                           std::size_t lane)
+{
+    MovedContact contact;
+    contact.normal = in_double(begun.normal, lane);
+    contact.round_a = double{block.round_a.at[lane]};
+    contact.round_b = double{block.round_b.at[lane]};
+    contact.core_a = in_double(begun.center_a, lane) - contact.normal * contact.round_a;
+    contact.core_b = in_double(begun.center_b, lane) + contact.normal * contact.round_b;
+    contact.center_offset = in_double(begun.center_offset, lane);
+    contact.flat = has(begun.flat_a, lane) ? RollsFlat::a
+        : has(begun.flat_b, lane)          ? RollsFlat::b
+                                           : RollsFlat::no;
+    return contact;
+}
 
-    Vec3 normal, tangent, center_a, center_b;
+// Whether the contact that was there as the step began says nothing of where that leads to.
+bool is_far(const MovedContact& contact, const PlacedContact& placed)
+{
+    const double half = std::max(contact.turn_a.vec().norm(), contact.turn_b.vec().norm());
+    return half > (contact.flat == RollsFlat::no ? kFarthestTurn : kFarthestFlatTurn) / 2
+        || placed.rolled > kFarthestFlatRoll;
+}
 
-    /// m, what a constraint that is given this, and adds what has moved since the step began, is to
-    /// have for a point to come out where it is now.
-    ///
-    ///   first, second  m, see ContactPointWide::lever_arm
-    double separation(double first, double second) const
-    {
-        const Vec3 off = begun_other_ * first - begun_tangent_ * second;
-        const Vec3 turn_a = turn_a_.conjugate() * normal - normal,
-                   turn_b = turn_b_.conjugate() * normal - normal;
-        const double now = apart_ + normal.dot(turn_b_ * off - turn_a_ * off);
-        const double added =
-            normal.dot(moved_) + turn_b.dot(center_b - end_b_) - turn_a.dot(center_a - end_a_);
-        const Vec3 turn = turn_b - turn_a;
-        return now - added - first * turn.dot(normal.cross(tangent)) + second * turn.dot(tangent);
-    }
-
-private:
-    Quat turn_a_, turn_b_;
-    Vec3 moved_, begun_tangent_, begun_other_, offset_, end_a_, end_b_;
-    double apart_ = 0, rolled_ = 0;
-    bool flat_ = false;
-};
+// m, what a constraint that is placed there, and adds what has moved since the step began, is to
+// have for a point to come out where it is now.
+//
+//   moved   m, b against a
+//   begun   tangent as the step began; `tangent` by now
+//   point   of a lever arm (see ContactPointWide)
+template <class Real>
+double separation_for(const MovedContact& contact,
+                      const PlacedContact& placed,
+                      const Vec3& moved,
+                      const Vec3& begun,
+                      const Vec3& tangent,
+                      const ContactPointWide<Real>& point,
+                      std::size_t lane)
+{
+    const double first{point.lever_arm[0].at[lane]}, second{point.lever_arm[1].at[lane]};
+    const Vec3& normal = placed.normal;
+    const Vec3 off = contact.normal.cross(begun) * first - begun * second;
+    const Vec3 turn_a = contact.turn_a.conjugate() * normal - normal,
+               turn_b = contact.turn_b.conjugate() * normal - normal;
+    const double now = placed.separation + normal.dot(contact.turn_b * off - contact.turn_a * off);
+    const double added = normal.dot(moved) + turn_b.dot(placed.arm_b + normal * contact.round_b)
+        - turn_a.dot(placed.arm_a - normal * contact.round_a);
+    const Vec3 turn = turn_b - turn_a;
+    return now - added - first * turn.dot(normal.cross(tangent)) + second * turn.dot(tangent);
+}
 
 template <class Real>
-void turn_lane(const ContactConstraintsView<Real>& constraints, std::size_t place, std::size_t lane)
+void turn_lane(const ContactConstraintsView<Real>& constraints, std::size_t at, std::size_t lane)
 {
-    ContactConstraintWide<Real>& block = constraints.blocks[place];
-    TurningArmsWide<Real>& begun = constraints.turning_arms[place];
+    ContactConstraintWide<Real>& block = constraints.blocks[at];
+    TurningArmsWide<Real>& begun = constraints.turning_arms[at];
     SolverBody<Real>& a = constraints.bodies[block.a[lane]];
     SolverBody<Real>& b = constraints.bodies[block.b[lane]];
-    const Travel travel{turn_of(a), turn_of(b), vector_at(b.delta_pose) - vector_at(a.delta_pose)};
-    TurnedContact now(block, begun, travel, lane);
-    if (now.is_far()) {
-        now = TurnedContact(block, begun, Travel{}, lane);
-        begun.lanes = static_cast<std::uint16_t>(begun.lanes & ~(1u << lane));
+    const MovedContact still = begun_contact(block, begun, lane);
+    MovedContact contact = still;
+    Vec3 moved = vector_at(b.delta_pose) - vector_at(a.delta_pose);
+    contact.center_offset -= moved;
+    contact.turn_a = turn_of(a);
+    contact.turn_b = turn_of(b);
+    PlacedContact now = place(contact);
+    if (is_far(contact, now)) {
+        contact = still;
+        moved = Vec3::Zero();
+        now = place(still);
+        set(begun.lanes, lane, false);
     }
+    const Vec3 begun_tangent = in_double(begun.tangent, lane);
+    const Vec3 tangent = (contact.flat == RollsFlat::a       ? contact.turn_a
+                              : contact.flat == RollsFlat::b ? contact.turn_b
+                                                             : Quat(Quat::Identity()))
+        * begun_tangent;
+
     const Vec3 before = impulse_of(constraints, block, lane);
     const Vec3 torque_a = vector_at(begun.now_a, lane).cross(before),
                torque_b = vector_at(begun.now_b, lane).cross(before);
     store(now.normal, block.normal, lane);
-    store(now.tangent, block.tangent, lane);
-    store(now.center_a, block.center_a, lane);
-    store(now.center_b, block.center_b, lane);
-    store(now.center_a, begun.now_a, lane);
-    store(now.center_b, begun.now_b, lane);
+    store(tangent, block.tangent, lane);
+    store(now.arm_a, block.center_a, lane);
+    store(now.arm_b, block.center_b, lane);
+    store(now.arm_a, begun.now_a, lane);
+    store(now.arm_b, begun.now_b, lane);
     const Vec3 impulse = impulse_of(constraints, block, lane), more = impulse - before;
-    if ((block.writes_a >> lane & 1) != 0) push(a, -more, torque_a - now.center_a.cross(impulse));
-    if ((block.writes_b >> lane & 1) != 0) push(b, more, now.center_b.cross(impulse) - torque_b);
+    if (has(block.writes_a, lane)) push(a, -more, torque_a - now.arm_a.cross(impulse));
+    if (has(block.writes_b, lane)) push(b, more, now.arm_b.cross(impulse) - torque_b);
     for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
         ContactPointWide<Real>& point = constraints.points[block.first_point + k];
-        point.separation.at[lane] =
-            static_cast<Real>(double{begun.beyond[k].at[lane]}
-                              + now.separation(double{point.lever_arm[0].at[lane]},
-                                               double{point.lever_arm[1].at[lane]}));
+        point.separation.at[lane] = static_cast<Real>(
+            double{begun.beyond[k].at[lane]}
+            + separation_for(contact, now, moved, begun_tangent, tangent, point, lane));
     }
 }
 
 }  // namespace
+
+PlacedContact place(const MovedContact& contact)
+{
+    PlacedContact now;
+    now.normal = contact.normal;
+    if (contact.flat == RollsFlat::a) now.normal = contact.turn_a * contact.normal;
+    if (contact.flat == RollsFlat::b) now.normal = contact.turn_b * contact.normal;
+    now.arm_a = contact.turn_a * contact.core_a + now.normal * contact.round_a;
+    now.arm_b = contact.turn_b * contact.core_b - now.normal * contact.round_b;
+    now.separation = now.normal.dot(now.arm_b - contact.center_offset - now.arm_a);
+    const auto roll = [&](Vec3& arm, const Vec3& there, double round) {
+        now.rolled = (there - arm).norm() / (arm.norm() + round);
+        arm = there;
+    };
+    const Vec3 apart = contact.center_offset + now.normal * now.separation;
+    if (contact.flat == RollsFlat::a) roll(now.arm_a, now.arm_b - apart, contact.round_b);
+    if (contact.flat == RollsFlat::b) roll(now.arm_b, now.arm_a + apart, contact.round_a);
+    return now;
+}
 
 template <class Real>
 void note_turning_arms(const ContactConstraintsView<Real>& constraints,
@@ -166,8 +184,7 @@ void note_turning_arms(const ContactConstraintsView<Real>& constraints,
 {
     const ContactConstraintWide<Real>& block = constraints.blocks[place];
     TurningArmsWide<Real>& begun = constraints.turning_arms[place];
-    const bool moves_a = (block.writes_a >> lane & 1) != 0,
-               moves_b = (block.writes_b >> lane & 1) != 0;
+    const bool moves_a = has(block.writes_a, lane), moves_b = has(block.writes_b, lane);
     const RollsFlat flat = rolls_flat(contact, extent, moves_a, moves_b);
     const Vec3T<Real> outward = vector_at(block.normal, lane);
     const bool held =
@@ -176,12 +193,11 @@ void note_turning_arms(const ContactConstraintsView<Real>& constraints,
             && is_held_beyond<Real>(vector_at(block.center_b, lane), -outward, contact.round_b));
     if (!held && flat == RollsFlat::no) return;
 
-    const auto bit = [&](bool is) { return is ? 1u << lane : 0u; };
     const Vec3 normal = outward.template cast<double>(), center_a = in_double(block.center_a, lane),
                center_b = in_double(block.center_b, lane);
-    begun.lanes = static_cast<std::uint16_t>(begun.lanes | bit(true));
-    begun.flat_a = static_cast<std::uint16_t>(begun.flat_a | bit(flat == RollsFlat::a));
-    begun.flat_b = static_cast<std::uint16_t>(begun.flat_b | bit(flat == RollsFlat::b));
+    set(begun.lanes, lane, true);
+    set(begun.flat_a, lane, flat == RollsFlat::a);
+    set(begun.flat_b, lane, flat == RollsFlat::b);
     store(normal, begun.normal, lane);
     store(in_double(block.tangent, lane), begun.tangent, lane);
     store(center_a, begun.center_a, lane);
@@ -199,10 +215,10 @@ template <class Real>
 void turn_arms(const ContactConstraintsView<Real>& constraints, std::size_t begin, std::size_t end)
 {
     for (std::size_t place = begin; place < end; ++place) {
-        if (constraints.turning_arms[place].lanes == 0) continue;
-        for (std::size_t lane = 0; constraints.turning_arms[place].lanes >> lane != 0; ++lane)
-            if ((constraints.turning_arms[place].lanes >> lane & 1) != 0)
-                turn_lane(constraints, place, lane);
+        const std::uint16_t lanes = constraints.turning_arms[place].lanes;
+        if (lanes == 0) continue;
+        for (std::size_t lane = 0; lane < kBlock; ++lane)
+            if (has(lanes, lane)) turn_lane(constraints, place, lane);
         solve_kernels<Real>().update_masses(constraints, place);
     }
 }

@@ -60,6 +60,28 @@ RollsFlat rolls_flat(const Contact<Real>& contact, double extent, bool moves_a, 
     return round_b ? RollsFlat::a : RollsFlat::b;
 }
 
+/// A contact as the step began, and how its two bodies have gone since.
+///
+///   core_a, core_b  m, arms without the radius of a round side, which does not turn along
+///   center_offset   m, from b's center of mass to a's, as they are by now
+struct MovedContact {
+    Vec3 normal, core_a, core_b;
+    double round_a = 0, round_b = 0;
+    RollsFlat flat = RollsFlat::no;
+    Vec3 center_offset;
+    Quat turn_a = Quat::Identity(), turn_b = Quat::Identity();
+};
+
+/// Where a contact is by now: the normal goes with a flat side that rolls, and the point on that
+/// with the round one.
+///
+///   rolled  along a flat side, as a share of the arm there and the radius of the other
+struct PlacedContact {
+    Vec3 normal, arm_a, arm_b;
+    double separation = 0, rolled = 0;
+};
+PlacedContact place(const MovedContact& contact);
+
 /// Notes whether a contact is one of those, once its constraint is made.
 ///
 ///   extent  m, as of rolls_flat()

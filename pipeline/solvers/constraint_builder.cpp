@@ -135,9 +135,7 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
         if (constraints_.axes_turn) find_turning_axes(at);
     }
     const bool turn = view_.turning_arms != nullptr;
-    if (turn)
-        view_.turning_arms[at].lanes = view_.turning_arms[at].flat_a =
-            view_.turning_arms[at].flat_b = 0;
+    if (turn) view_.turning_arms[at].lanes = 0;
     if (!uncut_ && !settles_ && !turn) return;
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
         const std::uint32_t entry = layout_.lanes[at * kBlock + lane].entry;

@@ -60,27 +60,25 @@ void IslandSolver::place_points()
     find_walks();
 }
 
-// The normal goes with the flat side, and the point on that with the round one: see
-// turning_arms.hpp. False where that goes too far.
+// False where the flat side goes too far.
 bool IslandSolver::place_rolling(const IslandContact& contact,
                                  DirectPoint& point,
                                  double& separation) const
 {
-    const bool is_a = contact.rolls_flat == RollsFlat::a;
-    const std::int32_t flat = is_a ? contact.a : contact.b;
-    const double half = bodies_[static_cast<std::size_t>(flat)].turned.vec().norm();
-    const Vec3& normal = point.normal = arm_now(contact.normal, flat, Vec3::Zero());
-    point.arm_a = arm_now(contact.arm_a, contact.a, normal * contact.round_a);
-    point.arm_b = arm_now(contact.arm_b, contact.b, -normal * contact.round_b);
+    const auto turned = [&](std::int32_t index) -> Quat {
+        return index < 0 ? Quat(Quat::Identity()) : bodies_[static_cast<std::size_t>(index)].turned;
+    };
     const Vec3 offset = contact.center_offset + moved(contact.a) - moved(contact.b);
-    separation = normal.dot(point.arm_b - offset - point.arm_a);
-    Vec3& arm = is_a ? point.arm_a : point.arm_b;
-    const Vec3 there = is_a ? Vec3(point.arm_b - offset - normal * separation)
-                            : Vec3(point.arm_a + offset + normal * separation);
-    const double round = is_a ? contact.round_b : contact.round_a;
-    const double rolled = (there - arm).norm(), most = kFarthestFlatRoll * (arm.norm() + round);
-    arm = there;
-    return half <= kFarthestFlatTurn / 2 && rolled <= most;
+    const MovedContact now{contact.normal,  contact.arm_a,     contact.arm_b,
+                           contact.round_a, contact.round_b,   contact.rolls_flat,
+                           offset,          turned(contact.a), turned(contact.b)};
+    const PlacedContact placed = place(now);
+    point.normal = placed.normal;
+    point.arm_a = placed.arm_a;
+    point.arm_b = placed.arm_b;
+    separation = placed.separation;
+    const Quat& flat = contact.rolls_flat == RollsFlat::a ? now.turn_a : now.turn_b;
+    return flat.vec().norm() <= kFarthestFlatTurn / 2 && placed.rolled <= kFarthestFlatRoll;
 }
 
 // Who is driven walks on what bears it: see driven_contacts.hpp. By the arms as they are.

@@ -110,12 +110,12 @@ public:
             }
         });
         lists.append_to(seen_);
-        for (auto& entry : meshes.entries)
-            if (entry.contact.count > 0)
-                note(pairs_.keys[entry.pair], entry.part, entry.contact, seen_);
-        for (auto& entry : solids.entries)
-            if (entry.contact.count > 0)
-                note(pairs_.keys[entry.pair], kNoTriangle, entry.contact, seen_);
+        // A solid's contacts are told of patches.
+        for (auto* list : {&meshes, &solids})
+            for (auto& entry : list->entries)
+                if (entry.contact.count > 0)
+                    note(pairs_.keys[entry.pair], list == &meshes ? entry.part : kNoTriangle,
+                         entry.contact, seen_);
     }
 
     // Shape by shape: those of one come together. All are judged before any goes, as a contact of
@@ -217,7 +217,7 @@ private:
         seen.face = is_face(seen);
     }
 
-    // Of a solid's contact with a mesh, which is told of patches.
+    // Of a mesh that a solid touches there; of others any.
     std::uint32_t triangle_at(std::uint32_t collider, const Vec3& place) const
     {
         const ShapeRef shape = colliders_.shape[collider];
