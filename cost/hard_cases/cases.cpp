@@ -138,6 +138,8 @@ constexpr HardCase kCases[] = {
      Fault::haste},
     {"H97", "chains of links hold, hung and swung", case_link_chains, Fault::sink},
     {"H98", "what swings on a contact keeps its swing", case_swings, Fault::haste},
+    {"H99", "what slides or rolls in a bent mesh loses what its edges take", case_bent_tracks,
+     Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -1,5 +1,6 @@
 #include "cost/hard_cases/floors.hpp"
 
+#include "scene/catalog/random.hpp"
 #include "throng/rotation.hpp"
 
 namespace throng {

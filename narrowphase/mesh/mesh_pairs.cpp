@@ -9,6 +9,7 @@
 #include "kernels/check.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
+#include "narrowphase/mesh/concave_edges.hpp"
 #include "narrowphase/mesh/mesh_sides.hpp"
 #include "narrowphase/mesh/triangle_contacts.hpp"
 
@@ -19,6 +20,9 @@ namespace throng {
 namespace {
 
 constexpr std::size_t kSides = 16;
+
+// Corners this part of the inner radius above the lowest are as low.
+constexpr double kAsLow = 1e-3;
 
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
@@ -150,6 +154,59 @@ void collide(const Shapes& shapes,
     }
 }
 
+// The corners that are lowest over the triangle, four at most.
+std::size_t lowest_corners(const PolytopeView& shape,
+                           const MeshTriangle& triangle,
+                           const Pose& pose,
+                           std::array<Vec3, 4>& lowest)
+{
+    const Vec3 down = pose.orientation.conjugate() * -triangle.normal;
+    double furthest = -std::numeric_limits<double>::infinity();
+    for (const Vec3& vertex : shape.vertices) furthest = std::max(furthest, down.dot(vertex));
+    std::size_t count = 0;
+    for (const Vec3& vertex : shape.vertices)
+        if (count < 4 && down.dot(vertex) > furthest - kAsLow * shape.inner_radius)
+            lowest[count++] = pose * vertex;
+    return count;
+}
+
+// Of a shape that has nothing over the triangle.
+void collide_ahead(const Shapes& shapes,
+                   ShapeRef shape,
+                   const MeshTriangle& triangle,
+                   const Pose& pose,
+                   double speculative_margin,
+                   LocalManifold<double>& out)
+{
+    if (!triangle.has_concave_edge()) return;
+    std::array<Vec3, 4> points;
+    std::size_t count = 0;
+    double radius = 0;
+    switch (shape.kind) {
+    case ShapeKind::sphere:
+        radius = shapes.spheres[shape.index].radius;
+        points[count++] = pose.position;
+        break;
+    case ShapeKind::capsule: {
+        const Capsule& capsule = shapes.capsules[shape.index];
+        const Vec3 half(0, 0, capsule.half_length);
+        radius = capsule.radius;
+        points[count++] = pose * Vec3(-half);
+        points[count++] = pose * half;
+        break;
+    }
+    case ShapeKind::cylinder: {
+        const Vec3 towards = pose.orientation.conjugate() * -triangle.normal;
+        const Prism prism(shapes.cylinders[shape.index], towards);
+        count = lowest_corners(prism.view(), triangle, pose, points);
+        break;
+    }
+    default:
+        count = lowest_corners(PolytopeShape(shapes, shape).view(), triangle, pose, points);
+    }
+    add_points_ahead(triangle, {points.data(), count}, radius, speculative_margin, out);
+}
+
 // What the side of a shape is told by.
 Vec3 center_of(const Shapes& shapes, ShapeRef shape, const Pose& pose)
 {
@@ -183,6 +240,9 @@ void collide_triangles(const PairInput<double>& in,
         if (!from.any) continue;
         collide(shapes, b, MeshTriangle(surface, index, from.behind), pose, speculative_margin,
                 from.through, found);
+        if (found.count == 0 && !from.through)
+            collide_ahead(shapes, b, MeshTriangle(surface, index, from.behind), pose,
+                          speculative_margin, found);
         if (found.count == 0) continue;
         if (from.behind && !from.known && sides.is_hidden(nearest_of(found), index)) continue;
         take(from.behind ? index | kBehind : index, found);

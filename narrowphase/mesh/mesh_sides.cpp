@@ -122,7 +122,8 @@ MeshSides::Approach MeshSides::approach(std::uint32_t triangle) const
 
 bool MeshSides::is_hidden(const Vec3& point, std::uint32_t triangle) const
 {
-    const Vec3 way = kNearly * (point - center_);
+    const Vec3 place = nearest_to(point, MeshTriangle(mesh_, triangle)).point;
+    const Vec3 way = kNearly * (place - center_);
     return std::any_of(near_.begin(), near_.end(), [&](std::uint32_t other) {
         return other != triangle && MeshTriangle(mesh_, other).is_crossed(center_, center_ + way);
     });

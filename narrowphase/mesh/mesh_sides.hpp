@@ -37,7 +37,8 @@ public:
     };
     Approach approach(std::uint32_t triangle) const;
 
-    /// Whether a point of a triangle is hidden from the center by another that is near.
+    /// Whether the place of a triangle that is nearest to a point of its plane is hidden from the
+    /// center by another that is near.
     bool is_hidden(const Vec3& point, std::uint32_t triangle) const;
 
 private:

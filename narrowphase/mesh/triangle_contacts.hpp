@@ -33,6 +33,13 @@ struct MeshTriangle {
     {
         return (mesh.convex_edges[index] >> (own_edge(edge) + (behind ? 3 : 0)) & 1) != 0;
     }
+    /// Whether the mesh bends up there.
+    bool is_concave(std::size_t edge) const
+    {
+        return (mesh.convex_edges[index] >> (own_edge(edge) + (behind ? 0 : 3)) & 1) != 0
+            && adjacent(edge) >= 0;
+    }
+    bool has_concave_edge() const { return is_concave(0) || is_concave(1) || is_concave(2); }
     Vec3 normal_of(std::int32_t other) const
     {
         const Vec3& own = mesh.normals[static_cast<std::size_t>(other)];
