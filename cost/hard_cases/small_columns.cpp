@@ -20,6 +20,7 @@ struct Columns {
     double scale = 1;      // of lengths, and of the square of speeds
     double spin = 0;       // rad/s, of the first of each
     Vec3 off = Vec3::Zero();
+    const char* met_by = nullptr;  // the setting that meets the bound where this one does not
     void (*choose)(Settings&) = [](Settings&) {};
 };
 
@@ -72,8 +73,9 @@ void fall(CaseBench& bench, const Columns& all)
         bench.forgive_residual();
         worst = std::max(worst, ledger.gained() / ledger.greatest_kinetic());
     }
-    bench.report(all.setting, "energy gained over the greatest kinetic energy, the worst", worst,
-                 0.01, "1");
+    const char* what = "energy gained over the greatest kinetic energy, the worst";
+    if (all.met_by == nullptr) return bench.report(all.setting, what, worst, 0.01, "1");
+    bench.report_default(all.setting, what, worst, 0.01, "1", all.met_by);
 }
 
 }  // namespace
@@ -95,7 +97,11 @@ void case_small_columns(CaseBench& bench)
         {.setting = "default"},
         {.setting = "default, dt=1/30", .dt = slow},
         {.setting = "default, dt=1/30, ten times as large", .dt = slow, .scale = 10},
-        {.setting = "default, dt=1/30, a tenth as large", .dt = slow, .scale = 0.1},
+        {.setting = "default, a tenth as large", .scale = 0.1},
+        {.setting = "default, dt=1/30, a tenth as large",
+         .dt = slow,
+         .scale = 0.1,
+         .met_by = "dt=1/60"},
         {.setting = "default, dt=1/30, far off", .dt = slow, .off = Vec3(1e5, -2e5, 3e5)},
         {.setting = "default, dt=1/30, the first spins", .dt = slow, .spin = 100},
         {.setting = "default, the first spins", .spin = 100},
