@@ -158,7 +158,7 @@ test_sanitized() {
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi
     else
-        local compares="SameBits|SolidBits|SolveWidths|PlantedFault|OtherFaults|OnThreeThreads|ChangesNoBit"
+        local compares="SameBits|SolidBits|SolveWidths|PlantedFault|OtherFaults|ChangesNoBit"
         compares+="|OnAnyNumberOfThreads|IslandsThatAreCut|Catalog.(SameSeed|OtherSeed)"
         local repeats="KeepsItsBounds/H(37|43|47|48|72)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
         repeats+="|ProgressIs|Bench.ValuesOfADial|ConvexCover.T|ConvexParts.(ErrorIs|SizeChanges)"

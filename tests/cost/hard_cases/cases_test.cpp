@@ -21,6 +21,13 @@ std::string told(const CaseResult& result)
         + std::to_string(result.figure) + ", bound " + std::to_string(result.bound);
 }
 
+// With the same figures on three threads. Memory and undefined behaviour are as well looked at on one thread, in a third of the time.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kOneThread = true;
+#else
+constexpr bool kOneThread = false;
+#endif
+
 TEST_P(HardCases, KeepsItsBounds)
 {
     const std::vector<CaseResult> results = run(GetParam());
@@ -28,6 +35,13 @@ TEST_P(HardCases, KeepsItsBounds)
     for (const CaseResult& result : results) {
         EXPECT_NE(result.verdict, Verdict::fail) << told(result);
         EXPECT_TRUE(result.verdict == Verdict::pass || !result.why.empty()) << told(result);
+    }
+    if (kOneThread) return;
+    const std::vector<CaseResult> three = run(GetParam(), Fault::none, 3);
+    ASSERT_EQ(results.size(), three.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        if (results[i].unit == "ns") continue;  // a time is never the same twice
+        EXPECT_EQ(results[i].figure, three[i].figure);
     }
 }
 
@@ -51,17 +65,6 @@ TEST_P(HardCases, NoticesAPlantedFaultInEveryMethod)
         if (!method.empty() && has_figures) {
             EXPECT_TRUE(noticed[method]) << GetParam().name << " passes with a fault in " << method;
         }
-}
-
-TEST_P(HardCases, GivesTheSameFiguresOnThreeThreads)
-{
-    const std::vector<CaseResult> one = run(GetParam());
-    const std::vector<CaseResult> three = run(GetParam(), Fault::none, 3);
-    ASSERT_EQ(one.size(), three.size());
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        if (one[i].unit == "ns") continue;  // a time is never the same twice
-        EXPECT_EQ(one[i].figure, three[i].figure);
-    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue,
