@@ -28,6 +28,7 @@ constexpr Choice kNarrowPhase[] = {{"auto"},       {"gjk"},         {"sat"},
 constexpr Choice kMethodStart[] = {{"cached"}, {"cold"}, {"plain"}};
 constexpr Choice kBoundsFilter[] = {{"none"},    {"sphere"},   {"k_dop:14"},
                                     {"k_dop:6"}, {"k_dop:18"}, {"k_dop:26"}};
+constexpr Choice kMeshTree[] = {{"boxes"}, {"k_dop:14"}, {"k_dop:18"}, {"k_dop:26"}};
 constexpr Choice kNonconvex[] = {{"voxels"}, {"parts"}, {"spheres"}, {"depth_image"}, {"hull"}};
 constexpr Choice kResponse[] = {{"impulse"}, {"penalty"}, {"kinematic"}};
 constexpr Choice kSolver[] = {{"soft_step"}, {"pgs"}, {"direct"}};
@@ -319,6 +320,8 @@ std::vector<Dial> make_dials()
             "time alone: what a pair remembers from the step before saves work"),
         choice_dial<&S::bounds_filter, kBoundsFilter>("bounds_filter",
             "time alone: tighter bounds leave fewer pairs to look at, and cost a test each"),
+        choice_dial<&S::mesh_tree, kMeshTree>("mesh_tree",
+            "tighter bounds leave fewer triangles of a static mesh to look at, and cost memory and a test each"),
         choice_dial<&S::nonconvex, kNonconvex>("nonconvex",
             "finer stand-ins for a moving non-convex shape fit better, and cost more points"),
         number_dial("voxel_size", "auto (a 48th of the shape's longest side), or a length", "m", set_voxel_size, get_voxel_size,

@@ -30,6 +30,8 @@ enum class MethodStart : std::uint8_t {
     plain,   // without its accelerations: the answer sheet
 };
 enum class BoundsFilter : std::uint8_t { none, sphere, k_dop_14, k_dop_6, k_dop_18, k_dop_26 };
+/// What the nodes of a static mesh's tree are bounded by.
+enum class MeshTree : std::uint8_t { boxes, k_dop_14, k_dop_18, k_dop_26 };
 enum class NonConvex : std::uint8_t { voxels, parts, spheres, depth_image, hull };
 enum class Response : std::uint8_t { impulse, penalty, kinematic };
 enum class Solver : std::uint8_t { soft_step, pgs, direct };
@@ -69,6 +71,7 @@ struct Settings {
     NarrowPhase narrowphase = NarrowPhase::auto_;
     MethodStart method_start = MethodStart::cached;
     BoundsFilter bounds_filter = BoundsFilter::none;
+    MeshTree mesh_tree = MeshTree::boxes;  // of meshes made from then on
     // How moving shapes that are not convex are taken, where they do not say so themselves; 0: set
     // by the shape's size.
     NonConvex nonconvex = NonConvex::voxels;

@@ -1,7 +1,7 @@
 // Mesh: triangles that know their neighbors, in a tree.
 #pragma once
 
-#include "throng/math.hpp"
+#include "kernels/data/k_dop.hpp"
 
 #include <array>
 #include <vector>
@@ -27,6 +27,8 @@ struct Mesh {
     std::vector<std::uint8_t> convex_edges;             // bit e set: edge e sticks out, or is a rim
     std::vector<Node> tree;                             // [0] is the root
     std::vector<std::uint32_t> order;
+    std::vector<KDop> k_dops;  // [tree] round the nodes, with `sides` each; empty: boxes alone
+    int sides = 6;
 };
 
 }  // namespace throng

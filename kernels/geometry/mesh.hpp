@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/data/bounds.hpp"
+#include "kernels/data/k_dop.hpp"
 #include "kernels/data/shapes.hpp"
 
 namespace throng {
@@ -58,5 +59,16 @@ void visit_triangles(const Mesh& mesh, const Box3& box, Visitor visit)
 
 /// Appends the triangles whose boxes overlap the given one, in mesh axes, in ascending order.
 void find_triangles(const Mesh& mesh, const Box3& box, std::vector<std::uint32_t>& found);
+
+/// Puts k-DOPs round the nodes of the tree, besides their boxes. k of 14, 18 or 26.
+void bound_by_k_dops(Mesh& mesh, int k);
+
+/// Of the triangles that find_triangles() finds, those within `speculative_margin` m of the k-DOP
+/// in each of its slabs. Needs the mesh's k-DOPs, and as many sides.
+void find_triangles(const Mesh& mesh,
+                    const Box3& box,
+                    const KDop& k_dop,
+                    double speculative_margin,
+                    std::vector<std::uint32_t>& found);
 
 }  // namespace throng

@@ -7,6 +7,7 @@
 #include "narrowphase/mesh/mesh_pairs.hpp"
 
 #include "kernels/check.hpp"
+#include "kernels/geometry/k_dop.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "narrowphase/mesh/concave_edges.hpp"
@@ -274,7 +275,15 @@ void collide_mesh(const PairInput<Real>& in,
     box.lower.array() -= double{speculative_margin};
     box.upper.array() += double{speculative_margin};
     near.clear();
-    find_triangles(*mesh_of(shapes, mesh), box, near);
+    const Mesh& surface = *mesh_of(shapes, mesh);
+    if (surface.k_dops.empty()) {
+        find_triangles(surface, box, near);
+    } else {
+        const KDop k_dop =
+            k_dop_of(convex_core_of<double>(shapes, b), pose.orientation.toRotationMatrix(),
+                     pose.position, surface.sides);
+        find_triangles(surface, box, k_dop, double{speculative_margin}, near);
+    }
     keep_held(held, near);
     collide_triangles({shapes, mesh, b, pose, double{speculative_margin}}, near, held,
                       [&](std::uint32_t triangle, const LocalManifold<double>& found) {

@@ -1,5 +1,6 @@
 // Scene builder: what a user states, made into the arrays that the step works on.
 #include "cooking/repair/mesh_health.hpp"
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "pipeline/world/force_builder.hpp"
 #include "pipeline/world/world_state.hpp"
@@ -30,6 +31,12 @@ ShapeRef append(std::vector<Shape>& shapes, ShapeKind kind, Shape shape)
 {
     throw SceneRefused({{"shapes", name, "mesh", "file"},
                         "wanted a mesh that can be made into what collides; " + trouble});
+}
+
+int sides_of(MeshTree tree)
+{
+    constexpr int kSides[] = {6, 14, 18, 26};
+    return kSides[static_cast<std::size_t>(tree)];
 }
 
 // Principal moments that differ by more than rounding.
@@ -168,6 +175,8 @@ PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& 
             if (!result.trouble.empty()) refuse_mesh(name, result.trouble);
             for (const std::string& warning : result.warnings)
                 builder.state_.warnings.push_back("shape " + name + ": " + warning);
+            if (const int sides = sides_of(builder.state_.settings.mesh_tree); sides > 6)
+                bound_by_k_dops(result.mesh, sides);
             return single(append(shapes.meshes, ShapeKind::mesh, std::move(result.mesh)));
         }
         PlacedShape operator()(const VoxelsShape& s) const { return builder.add_solid(name, s); }

@@ -44,6 +44,16 @@ std::vector<const MeshShape*> moving_meshes(const Scene& scene)
     return meshes;
 }
 
+/// Why the dial `mesh_tree` does nothing; empty where it does something, or another is asked for.
+std::string why_still_meshes_leave(const Scene& scene, std::string_view name)
+{
+    if (name != "mesh_tree") return {};
+    const std::vector<bool> stands = shape_uses(scene).other;
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        if (std::holds_alternative<MeshShape>(scene.shapes[i].shape) && stands[i]) return {};
+    return "no mesh stands still";
+}
+
 /// Why a dial of moving meshes does nothing; empty when it does something, or is no such dial.
 std::string why_meshes_leave(const Scene& scene, std::string_view name)
 {
@@ -141,6 +151,7 @@ std::vector<std::string> unused_dials(const Scene& scene)
     for (const std::string& name : scene.dials_set) {
         std::string why = why_settings_leave(scene.settings, name);
         if (why.empty()) why = why_meshes_leave(scene, name);
+        if (why.empty()) why = why_still_meshes_leave(scene, name);
         if (why.empty()) why = why_carrying_leaves(scene, name);
         if (!why.empty()) unused.push_back(name + ": unused, " + why);
     }

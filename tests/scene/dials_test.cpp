@@ -20,7 +20,7 @@ TEST(Dials, AreAllThere)
         "voxel_size",  "image_resolution", "sphere_levels",     "max_parts",       "response",
         "solver",      "direct_limit",     "penalty_stiffness", "penalty_damping", "friction_cone",
         "impact_law",  "overlap",          "halvings",          "toi_method",      "toi_tolerance",
-        "sleep",       "escalation",       "relax_iterations"};
+        "sleep",       "escalation",       "relax_iterations",  "mesh_tree"};
     for (const char* name : names) EXPECT_NE(find_dial(name), nullptr) << name;
     EXPECT_EQ(find_dial("speed"), nullptr);
 

@@ -21,7 +21,8 @@ std::string told(const CaseResult& result)
         + std::to_string(result.figure) + ", bound " + std::to_string(result.bound);
 }
 
-// With the same figures on three threads. Memory and undefined behaviour are as well looked at on one thread, in a third of the time.
+// With the same figures on three threads. Memory and undefined behaviour are as well looked at on
+// one thread, in a third of the time.
 #ifdef __SANITIZE_ADDRESS__
 constexpr bool kOneThread = true;
 #else

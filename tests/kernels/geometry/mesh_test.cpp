@@ -1,7 +1,10 @@
 #include "kernels/geometry/mesh.hpp"
 
 #include "cooking/repair/build_mesh.hpp"
+#include "kernels/geometry/k_dop.hpp"
 #include "kernels/geometry/mass.hpp"
+#include "scene/catalog/closed_meshes.hpp"
+#include "tests/support/dice.hpp"
 #include "tests/support/shared_data.hpp"
 
 #include <gtest/gtest.h>
@@ -320,6 +323,44 @@ TEST(BuildMesh, RealMeshesAreJoinedAndSearchable)
             EXPECT_GT(mass_of(mesh).volume, 0);
         }
     }
+}
+
+// Those whose own k-DOPs are near, one by one.
+TEST(FindTriangles, ByKDopsFindsAllThatAreNearInEverySlab)
+{
+    const TriangleSoup ball = ball_mesh(1, 60, 30);
+    Mesh mesh = build_mesh(ball.vertices, ball.triangles).mesh;
+    Shapes shapes;
+    shapes.capsules = {{0.05, 0.8}};
+    const auto rod = convex_core_of<double>(shapes, {ShapeKind::capsule, 0});
+    test::Dice dice(5);
+    std::size_t by_boxes = 0, by_slabs = 0;
+    for (const int k : {14, 18, 26}) {
+        bound_by_k_dops(mesh, k);
+        const Slabs slabs = slabs_of(k);
+        for (int i = 0; i < 50; ++i) {
+            const Vec3 at = dice.point(1);
+            const Mat3 turn = dice.turn().toRotationMatrix();
+            const double margin = dice.between(0, 0.1);
+            const KDop around = k_dop_of(rod, turn, at, k);
+            const Vec3 half = (turn.col(2) * 0.8).cwiseAbs() + Vec3::Constant(0.05 + margin);
+            const Box3 box{at - half, at + half};
+            std::vector<std::uint32_t> boxes, wanted, found;
+            find_triangles(mesh, box, boxes);
+            for (const std::uint32_t t : boxes) {
+                KDop own = empty_k_dop(slabs);
+                for (const std::uint32_t corner : mesh.triangles[t])
+                    add(mesh.vertices[corner], slabs, own);
+                if (parting_slab(around, own, slabs, margin) == slabs.end) wanted.push_back(t);
+            }
+            find_triangles(mesh, box, around, margin, found);
+            EXPECT_EQ(found, wanted) << k << ' ' << i;
+            by_boxes += boxes.size();
+            by_slabs += found.size();
+        }
+    }
+    EXPECT_GT(by_slabs, 500u);
+    EXPECT_LT(by_slabs, by_boxes / 2);
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 #include "cooking/repair/build_mesh.hpp"
+#include "kernels/geometry/mesh.hpp"
 #include "narrowphase/dispatch.hpp"
 #include "scene/catalog/closed_meshes.hpp"
+#include "tests/support/dice.hpp"
 #include "tests/support/polyhedra.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace throng {
@@ -98,6 +101,44 @@ double separation_from(const Mesh& mesh, const Vec3& half, const Pose& pose)
         least = std::min(least, best);
     }
     return least;
+}
+
+// What the bounds of the tree leave out is beyond reach.
+TEST(MeshPairs, KDopsLoseNoContactThatTouches)
+{
+    Shapes shapes;
+    const std::vector<Slider> all = sliders(shapes);
+    Mesh rough = floor_of(12);
+    test::Dice dice(9);
+    std::vector<Vec3> vertices = rough.vertices;
+    for (Vec3& vertex : vertices) vertex.z() = dice.between(-0.2, 0.2);
+    rough = build_mesh(vertices, rough.triangles).mesh;
+    std::size_t touching = 0;
+    for (int i = 0; i < 200; ++i)
+        for (const Slider& slider : all) {
+            const Vec3 at(dice.between(-3, 3), dice.between(-3, 3), dice.between(0, 0.6));
+            const Pose pose{at, dice.turn()};
+            std::vector<std::vector<TriangleManifold<double>>> told;
+            for (const int k : {6, 14, 26}) {
+                shapes.meshes = {rough};
+                if (k > 6) bound_by_k_dops(shapes.meshes[0], k);
+                told.push_back(touch_mesh<double>(shapes, slider.shape, pose, 0.02));
+                std::erase_if(told.back(), [](const auto& one) {
+                    const auto& points = one.manifold.points;
+                    return std::none_of(points.begin(), points.begin() + one.manifold.count,
+                                        [](const auto& point) { return point.separation <= 0; });
+                });
+            }
+            touching += told[0].size();
+            for (const auto& others : told) {
+                ASSERT_EQ(others.size(), told[0].size()) << slider.name;
+                for (std::size_t t = 0; t < others.size(); ++t) {
+                    EXPECT_EQ(others[t].triangle, told[0][t].triangle);
+                    EXPECT_EQ(others[t].manifold.normal, told[0][t].manifold.normal);
+                }
+            }
+        }
+    EXPECT_GT(touching, 500u);
 }
 
 }  // namespace

@@ -57,6 +57,15 @@ TEST(UnusedDials, AreAllOfMovingMeshesWhereNoneMoves)
         EXPECT_EQ(unused[i], still.dials_set[i] + ": unused, no mesh moves");
 }
 
+TEST(UnusedDials, HaveTheTreeOfAMeshWhereNoneStandsStill)
+{
+    Scene still = scene_of({box_shape()}, Motion::static_);
+    Scene moving = scene_of({box_shape()}, Motion::dynamic);
+    still.dials_set = moving.dials_set = {"mesh_tree"};
+    EXPECT_TRUE(unused_dials(still).empty());
+    EXPECT_EQ(unused_dials(moving), Sentences{"mesh_tree: unused, no mesh stands still"});
+}
+
 TEST(UnusedDials, AreThoseThatNoWayOfAMovingMeshAsksFor)
 {
     const Scene scene = scene_of({box_shape()}, Motion::dynamic);
