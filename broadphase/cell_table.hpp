@@ -52,7 +52,7 @@ private:
     void rebuild(const OverlapQuery& query);
     void put(std::uint32_t id, const Box3& box);
     void take_out(std::uint32_t id);
-    void insert(const Entry& entry, std::uint32_t bucket);
+    void insert(const Entry& entry, std::uint32_t at);
     void leave_room(const Bucket& bucket);
     std::uint32_t find_free_places(std::uint32_t capacity);
     static Entry entry_of(std::uint32_t id, const Box3& box);

@@ -76,6 +76,7 @@ void check_environment()
     std::vector<std::string> words = {program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> passed;
+    passed.reserve(words.size() + 1);
     for (std::string& word : words) passed.push_back(word.data());
     passed.push_back(nullptr);
     std::error_code trouble;

@@ -47,7 +47,7 @@ std::string RunFrames::close()
     // What could not be closed cannot be read.
     const bool readable = writer_->closed();
     writer_.reset();
-    const std::string not_kept = readable ? file_.try_keep() : "";
+    std::string not_kept = readable ? file_.try_keep() : "";
     if (trouble_.empty()) return not_kept;
     const std::string what_is_left = readable && not_kept.empty() ? "its first "
             + std::to_string(frames) + (frames == 1 ? " frame is" : " frames are") + " there"

@@ -37,7 +37,7 @@ void list_catalog()
         name_width = std::max(name_width, entry.name.size());
         range_width = std::max(range_width, ranges.back().size());
     }
-    const auto print = [&](std::string name, std::string size, std::string range,
+    const auto print = [&](std::string name, const std::string& size, std::string range,
                            std::string_view about) {
         name.resize(std::max(name.size(), name_width), ' ');
         range.resize(std::max(range.size(), range_width), ' ');

@@ -88,7 +88,7 @@ private:
     }
 
     // False where the hull is of no use.
-    bool grow(const HullPlace place)
+    bool grow(const HullPlace& place)
     {
         HullCell cell(search_, places_);
         if (!cell.close(place)) return false;

@@ -231,6 +231,7 @@ ConvexParts by_cuts(const PartSearch& search, std::size_t most)
     cut_worst(search, most == 1 ? 1 : most + most / 2, parts);
     merge(search, most, parts);
     std::vector<HullMesh> pieces;
+    pieces.reserve(parts.size());
     for (MeshPart& part : parts) pieces.push_back(std::move(part.hull));
     return finished(search, pieces, kMostPartVertices);
 }
@@ -246,6 +247,7 @@ ConvexParts by_cover(const PartSearch& search, std::size_t grown, std::size_t mo
     if (parts.empty()) return made;
     merge(search, most, parts);
     std::vector<HullMesh> hulls;
+    hulls.reserve(parts.size());
     for (MeshPart& part : parts) hulls.push_back(std::move(part.hull));
     made.trouble.clear();
     hulls = take_hulls(search, hulls, kMostPartVertices, search.error, FacetCut::in_two, made);

@@ -35,7 +35,7 @@ HullMesh from_triangles(std::span<const Vec3> points, const TriangleHull& made)
         // Slivers of no area bound nothing that their neighbors do not.
         if (!(length > 0)) continue;
         hull.triangles.push_back({place[a], place[b], place[c]});
-        hull.normals.push_back(across / length);
+        hull.normals.emplace_back(across / length);
         hull.offsets.push_back(hull.normals.back().dot(origin));
     }
     return hull;
@@ -77,6 +77,7 @@ std::vector<std::uint32_t> extremes(const HullMesh& hull)
 HullMesh hull_of(const HullMesh& all, const std::vector<std::uint32_t>& chosen)
 {
     std::vector<Vec3> points;
+    points.reserve(chosen.size());
     for (const std::uint32_t i : chosen) points.push_back(all.vertices[i]);
     return hull_mesh(points);
 }
@@ -99,6 +100,7 @@ std::vector<std::uint32_t> sticking_out(const HullMesh& all, const HullMesh& par
         return a.height != b.height ? a.height > b.height : a.vertex < b.vertex;
     });
     std::vector<std::uint32_t> found;
+    found.reserve(over.size());
     for (const Out& out : over) found.push_back(out.vertex);
     return found;
 }

@@ -155,7 +155,7 @@ private:
         const double limit = std::abs(static_cast<double>(seed.guess)) + 0.01 * laid_.voxel;
         MeshPoint nearest = nearest_on_mesh(mesh_, at, rule == SeedRule::value ? kFar : limit);
         if (!(nearest.distance < kFar)) nearest = nearest_on_mesh(mesh_, at);
-        double value = static_cast<double>(seed.guess);
+        auto value = static_cast<double>(seed.guess);
         if (rule == SeedRule::distance) value = signed_distance(mesh_, at, nearest);
         if (rule == SeedRule::sign)
             value = std::signbit(seed.guess) ? -nearest.distance : nearest.distance;
@@ -170,7 +170,7 @@ private:
     std::vector<Place> next_layer(SeedRule rule)
     {
         std::vector<Place> next;
-        const float last = static_cast<float>(laid_.band + 0.5 * laid_.voxel);
+        const auto last = static_cast<float>(laid_.band + 0.5 * laid_.voxel);
         for (const Place& from : layer_) {
             const float value = blocks_.values[from.value_index];
             const bool inside = std::signbit(value);

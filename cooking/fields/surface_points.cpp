@@ -215,7 +215,7 @@ public:
             out.x.push_back(static_cast<float>(places[i].position.x()));
             out.y.push_back(static_cast<float>(places[i].position.y()));
             out.z.push_back(static_cast<float>(places[i].position.z()));
-            out.normals.push_back(places[i].normal.cast<float>());
+            out.normals.emplace_back(places[i].normal.cast<float>());
             out.cones.push_back(static_cast<float>(cone(places[i].least)));
         }
     }

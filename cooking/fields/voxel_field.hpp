@@ -58,7 +58,7 @@ double field_bytes(const Mesh& mesh, double voxel, double band = kBandVoxels);
 
 /// The level set of a mesh, on the grid of lay_bricks(). Needs vertex normals. The same bits on
 /// every run and any number of threads.
-FieldResult build_field(const Mesh& mesh, const FieldSettings& settings);
+FieldResult build_field(const Mesh& mesh, const FieldSettings& wanted);
 
 /// The surface of a level set, where it is 0 but for a thousandth of a voxel: closed, vertex
 /// normals included.

@@ -192,7 +192,7 @@ void fill_faces(std::span<const Vec3> points, const std::vector<HullFace>& faces
     hull.face_begin.push_back(0);
     for (const HullFace& face : faces) {
         // Adding zero turns -0 into 0.
-        hull.normals.push_back(face.normal + Vec3::Zero());
+        hull.normals.emplace_back(face.normal + Vec3::Zero());
         hull.offsets.push_back(hull.normals.back().dot(points[face.highest]));
         for (const std::uint32_t corner : face.corners) {
             const auto at = std::lower_bound(corners.begin(), corners.end(), corner);

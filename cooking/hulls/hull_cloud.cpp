@@ -110,7 +110,7 @@ HullCloud hull_cloud(std::span<const Vec3> given)
     std::frexp(extent, &exponent);
     const double scale = std::ldexp(1.0, -exponent);
     cloud.extent = extent * scale;
-    for (const Vec3& point : given) cloud.points.push_back((point - lower) * scale);
+    for (const Vec3& point : given) cloud.points.emplace_back((point - lower) * scale);
     find_start(cloud);
     return cloud;
 }
@@ -123,7 +123,7 @@ std::vector<GridPoint> round_to_grid(const HullCloud& cloud)
     for (const Vec3& point : cloud.points) upper = upper.cwiseMax(point);
     if (cloud.thickness > 0.01 * upper.minCoeff()) return to_grid(cloud.points);
     std::vector<Vec3> turned;
-    for (const Vec3& point : cloud.points) turned.push_back(cloud.frame * point);
+    for (const Vec3& point : cloud.points) turned.emplace_back(cloud.frame * point);
     return to_grid(turned);
 }
 

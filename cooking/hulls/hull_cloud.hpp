@@ -18,7 +18,7 @@ struct HullCloud {
     std::string trouble;   // why they have no hull; then nothing else is filled
 };
 
-HullCloud hull_cloud(std::span<const Vec3> points);
+HullCloud hull_cloud(std::span<const Vec3> given);
 
 /// Finds start, frame and thickness, each point as far as possible from those before it.
 void find_start(HullCloud& cloud);

@@ -59,7 +59,7 @@ void find_bounds(SphereTree& tree)
 {
     for (std::size_t level = tree.levels.size(); level-- > 0;)
         for (SphereTree::Node& node : tree.levels[level].nodes) {
-            double bound = double{node.radius};
+            double bound = node.radius;
             for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
                 const SphereTree::Node& child = tree.levels[level + 1].nodes[i];
                 const Vec3 apart = (child.center - node.center).cast<double>();

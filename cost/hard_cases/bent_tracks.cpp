@@ -59,9 +59,9 @@ MeshShape bowl()
     for (std::uint32_t i = 1; i <= kRings; ++i)
         for (std::uint32_t k = 0; k < kAround; ++k) {
             const double down = 1.2 * i / kRings, round = 2 * kPi * k / kAround;
-            mesh.vertices.push_back(kRadius
-                                    * Vec3(std::sin(down) * std::cos(round),
-                                           std::sin(down) * std::sin(round), -std::cos(down)));
+            mesh.vertices.emplace_back(kRadius
+                                       * Vec3(std::sin(down) * std::cos(round),
+                                              std::sin(down) * std::sin(round), -std::cos(down)));
         }
     const auto at = [](std::uint32_t ring, std::uint32_t k) {
         return 1 + (ring - 1) * kAround + k % kAround;
@@ -129,9 +129,11 @@ Scene met(const CaseBench& bench,
 double speed_round(int strips, double along, double speed, double duration)
 {
     const double kept = std::cos(2 * kPi / strips);
-    for (double left = duration, way = along / 2; way < left * speed; way = along) {
+    double left = duration, way = along / 2;
+    while (way < left * speed) {
         left -= way / speed;
         speed *= kept;
+        way = along;
     }
     return speed;
 }

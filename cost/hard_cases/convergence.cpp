@@ -105,7 +105,7 @@ struct Fall {
     }
     double order() const
     {
-        const double n = static_cast<double>(cells.size());
+        const auto n = static_cast<double>(cells.size());
         double x = 0, y = 0, xx = 0, xy = 0;
         for (std::size_t i = 0; i < cells.size(); ++i) {
             x += cells[i];

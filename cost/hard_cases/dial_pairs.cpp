@@ -115,7 +115,7 @@ std::vector<Row> covering_rows(const std::vector<Factor>& list)
 std::string set_all(const std::vector<Factor>& list, const Row& row, Settings& settings)
 {
     for (std::size_t i = 0; i < list.size(); ++i) {
-        const std::string trouble = set_dial(settings, list[i].name, list[i].values[row[i]]);
+        std::string trouble = set_dial(settings, list[i].name, list[i].values[row[i]]);
         if (!trouble.empty()) return trouble;
     }
     return {};

@@ -125,6 +125,7 @@ void fit_order(CaseBench& bench, const Top& top, Integrator integrator, Rotation
     if (order == 1 && &top == &tops()[1]) return;  // far off at every step that can be afforded
     const std::vector<double> steps = steps_to_fit(order);
     std::vector<double> errors;
+    errors.reserve(steps.size());
     for (const double dt : steps)
         errors.push_back(error_at(bench, top, {integrator, rotation}, dt));
     bench.report(std::string(top.name) + ", " + name_of(integrator, rotation),

@@ -151,7 +151,7 @@ void judge(CaseBench& bench, const std::string& name, const Stand& stand, double
 }
 
 // Falls as it may, but nothing is thrown: no faster than from its height.
-void judge_thrown(CaseBench& bench, Stand stand, double time)
+void judge_thrown(CaseBench& bench, const Stand& stand, double time)
 {
     double highest = 0, top = 0;
     for (const BodyDescription& body : stand.scene.bodies)

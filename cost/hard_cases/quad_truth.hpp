@@ -28,7 +28,7 @@ struct QuadPose {
     /// The quaternion is made one of unit length; places are told from `origin`.
     explicit QuadPose(const Pose& pose, const Vec3& origin = Vec3::Zero());
     /// As given: nothing is made orthogonal.
-    QuadPose(const Mat3& turn, const Vec3& position);
+    QuadPose(const Mat3& turn, const Vec3& place);
 };
 
 /// A convex polyhedron in the world. Of the lists, more than is needed does no harm: an axis that

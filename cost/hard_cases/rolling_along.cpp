@@ -36,7 +36,8 @@ struct Way {
     void (*choose)(Settings&) = [](Settings&) {};
 };
 
-std::uint32_t put_roller(SceneParts& parts, std::uint32_t material, const Roller& roller, Pose pose)
+std::uint32_t
+put_roller(SceneParts& parts, std::uint32_t material, const Roller& roller, const Pose& pose)
 {
     if (roller.half_length == 0) return parts.ball(material, 10, roller.radius, pose.position);
     const std::uint32_t id = parts.cylinder(material, 10, roller.radius, roller.half_length, pose);

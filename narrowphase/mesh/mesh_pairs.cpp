@@ -265,7 +265,7 @@ void keep_held(std::span<const std::uint32_t> held, std::vector<std::uint32_t>& 
 template <class Real>
 void collide_mesh(const PairInput<Real>& in,
                   std::span<const std::uint32_t> held,
-                  std::vector<TriangleManifold<Real>>& out)
+                  TriangleManifolds<Real>& out)
 {
     const auto& [shapes, mesh, b, b_in_a, speculative_margin] = in;
     thread_local std::vector<std::uint32_t> near;
@@ -292,16 +292,15 @@ void collide_mesh(const PairInput<Real>& in,
 }
 
 template <class Real>
-void collide_mesh(const PairInput<Real>& in, std::vector<TriangleManifold<Real>>& out)
+void collide_mesh(const PairInput<Real>& in, TriangleManifolds<Real>& out)
 {
     collide_mesh(in, {}, out);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void collide_mesh<Real>(const PairInput<Real>&,                                       \
-                                     std::vector<TriangleManifold<Real>>&);                        \
+    template void collide_mesh<Real>(const PairInput<Real>&, TriangleManifolds<Real>&);            \
     template void collide_mesh<Real>(const PairInput<Real>&, std::span<const std::uint32_t>,       \
-                                     std::vector<TriangleManifold<Real>>&);
+                                     TriangleManifolds<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -15,6 +15,8 @@ struct TriangleManifold {
     std::uint32_t triangle = 0;
     LocalManifold<Real> manifold;  // in the mesh's frame, normal from the mesh to the shape
 };
+template <class Real>
+using TriangleManifolds = std::vector<TriangleManifold<Real>>;
 
 /// Where a convex shape touches a static triangle mesh: one manifold a triangle, in order of
 /// triangle, contacts on internal edges turned to the surface so that sliding meets no bumps.
@@ -22,6 +24,6 @@ struct TriangleManifold {
 ///   in   a: mesh, or a solid, which is its triangles here; b: the convex shape
 ///   out  appended to
 template <class Real>
-void collide_mesh(const PairInput<Real>& in, std::vector<TriangleManifold<Real>>& out);
+void collide_mesh(const PairInput<Real>& in, TriangleManifolds<Real>& out);
 
 }  // namespace throng

@@ -59,6 +59,6 @@ private:
 template <class Real>
 void collide_mesh(const PairInput<Real>& in,
                   std::span<const std::uint32_t> held,
-                  std::vector<TriangleManifold<Real>>& out);
+                  TriangleManifolds<Real>& out);
 
 }  // namespace throng

@@ -203,6 +203,7 @@ MeshResult surface_of(const FloatGrid& grid)
     openvdb::tools::volumeToMesh(grid, points, quads, 1e-3 * grid.voxelSize().x());
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    vertices.reserve(points.size());
     for (const openvdb::Vec3s& point : points)
         vertices.emplace_back(static_cast<double>(point.x()), static_cast<double>(point.y()),
                               static_cast<double>(point.z()));
