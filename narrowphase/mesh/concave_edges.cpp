@@ -8,8 +8,7 @@ namespace {
 // Edges between a point's place and the triangle; further ones are for steps to come.
 constexpr int kMostCrossed = 8;
 
-// Sine by which what lies between may be beyond the triangle's plane: as flat as concave_edges
-// are told apart from flat ones.
+// Sine by which what lies between may be beyond the triangle's plane: up to there edges are flat.
 constexpr double kLevel = 1e-3;
 
 constexpr std::size_t kNone = 3;
