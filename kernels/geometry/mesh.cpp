@@ -7,6 +7,16 @@
 
 namespace throng {
 
+namespace {
+
+void add_triangle(const Mesh& mesh, std::uint32_t triangle, Slabs slabs, KDop& to)
+{
+    for (const std::uint32_t corner : mesh.triangles[triangle])
+        add(mesh.vertices[corner], slabs, to);
+}
+
+}  // namespace
+
 bool is_closed(const Mesh& mesh)
 {
     return !mesh.adjacent.empty()
@@ -54,8 +64,7 @@ void bound_by_k_dops(Mesh& mesh, int k)
         const Mesh::Node& node = mesh.tree[i];
         KDop& dop = mesh.k_dops[i];
         for (std::uint32_t t = node.first; t < node.first + node.count; ++t)
-            for (const std::uint32_t corner : mesh.triangles[mesh.order[t]])
-                add(mesh.vertices[corner], slabs, dop);
+            add_triangle(mesh, mesh.order[t], slabs, dop);
         if (node.count > 0) continue;
         add(mesh.k_dops[node.first], slabs, dop);
         add(mesh.k_dops[node.first + 1], slabs, dop);
@@ -83,8 +92,7 @@ void find_triangles(const Mesh& mesh,
         [&](std::uint32_t triangle) {
             if (!box.overlaps(triangle_box(mesh, triangle))) return;
             KDop dop = empty_k_dop(slabs);
-            for (const std::uint32_t corner : mesh.triangles[triangle])
-                add(mesh.vertices[corner], slabs, dop);
+            add_triangle(mesh, triangle, slabs, dop);
             if (is_near(dop)) found.push_back(triangle);
         });
     std::sort(found.begin() + begin, found.end());

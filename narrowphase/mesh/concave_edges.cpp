@@ -1,6 +1,7 @@
 #include "narrowphase/mesh/concave_edges.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace throng {
 namespace {
@@ -38,21 +39,22 @@ bool is_beyond_plane(const MeshTriangle& triangle, const MeshTriangle& other)
 }
 
 // The triangle that a point is over, where the mesh bends up from there to this one and first of
-// all at an edge of it; -1 where there is none.
-std::int32_t foot_of_rise(const MeshTriangle& triangle, const Vec3& point)
+// all at an edge of it.
+std::optional<MeshTriangle> foot_of_rise(const MeshTriangle& triangle, const Vec3& point)
 {
     std::uint32_t place = triangle.index;
     for (int crossed = 0; crossed < kMostCrossed; ++crossed) {
         const MeshTriangle here(triangle.mesh, place, triangle.behind);
-        if (crossed > 0 && is_beyond_plane(triangle, here)) return -1;
+        if (crossed > 0 && is_beyond_plane(triangle, here)) return {};
         const std::size_t edge = edge_towards(here, point);
-        if (edge == kNone) return crossed > 0 ? static_cast<std::int32_t>(place) : -1;
-        if (crossed == 0 ? !here.is_concave(edge) : here.is_convex(edge)) return -1;
+        if (edge == kNone && crossed > 0) return here;
+        if (edge == kNone) return {};
+        if (crossed == 0 ? !here.is_concave(edge) : here.is_convex(edge)) return {};
         const std::int32_t next = here.adjacent(edge);
-        if (next < 0) return -1;
+        if (next < 0) return {};
         place = static_cast<std::uint32_t>(next);
     }
-    return -1;
+    return {};
 }
 
 // What comes along the triangle that it is over, or down to it, comes to the plane of the other by
@@ -81,12 +83,11 @@ void add_points_ahead(const MeshTriangle& triangle,
         const double height = triangle.height(point), separation = height - radius;
         // Where the planes meet, the point is over the triangle already.
         if (separation < 0 || separation > speculative_margin) continue;
-        const std::int32_t place = foot_of_rise(triangle, point);
-        if (place < 0) continue;
-        const MeshTriangle foot(triangle.mesh, static_cast<std::uint32_t>(place), triangle.behind);
-        const double over_foot = foot.height(point) - radius;
-        if (over_foot + radius < -speculative_margin
-            || separation > nearing(foot, triangle, over_foot, speculative_margin))
+        const std::optional<MeshTriangle> foot = foot_of_rise(triangle, point);
+        if (!foot) continue;
+        const double over_foot = foot->height(point);
+        if (over_foot < -speculative_margin
+            || separation > nearing(*foot, triangle, over_foot - radius, speculative_margin))
             continue;
         out.add(point - triangle.normal * ((height + radius) / 2), separation, feature);
     }

@@ -239,11 +239,10 @@ void collide_triangles(const PairInput<double>& in,
     for (const std::uint32_t index : near) {
         const MeshSides::Approach from = sided ? sides.approach(index) : MeshSides::Approach{};
         if (!from.any) continue;
-        collide(shapes, b, MeshTriangle(surface, index, from.behind), pose, speculative_margin,
-                from.through, found);
+        const MeshTriangle triangle(surface, index, from.behind);
+        collide(shapes, b, triangle, pose, speculative_margin, from.through, found);
         if (found.count == 0 && !from.through)
-            collide_ahead(shapes, b, MeshTriangle(surface, index, from.behind), pose,
-                          speculative_margin, found);
+            collide_ahead(shapes, b, triangle, pose, speculative_margin, found);
         if (found.count == 0) continue;
         if (from.behind && !from.known && sides.is_hidden(nearest_of(found), index)) continue;
         take(from.behind ? index | kBehind : index, found);
