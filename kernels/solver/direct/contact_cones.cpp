@@ -228,4 +228,13 @@ double ContactCones::residual(std::vector<BodySix>& scratch) const
     return greatest;
 }
 
+double ContactCones::work(std::vector<BodySix>& scratch) const
+{
+    push_all(scratch);
+    double work = 0;
+    for (const ContactCone& cone : cones)
+        work += dot(cone.impulse, sum(cone.free, seen(cone, scratch), 0.5));
+    return work;
+}
+
 }  // namespace throng

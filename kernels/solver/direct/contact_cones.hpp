@@ -56,6 +56,9 @@ public:
     /// By how much impulses and the velocities they make miss the law: see DirectAnswer. Infinite
     /// where any of them is not finite.
     double residual(std::vector<BodySix>& scratch) const;
+    /// What the impulses do to the energy that bodies have beside the least speeds they may part
+    /// at, in units of their own: an answer's takes some, whatever the friction.
+    double work(std::vector<BodySix>& scratch) const;
 
 private:
     struct Root {

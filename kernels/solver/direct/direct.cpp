@@ -21,6 +21,10 @@ constexpr int kHoldSteps = 8;  // factorisations of one try
 constexpr int kPatience = 5;
 // Sweeps before holding is tried again.
 constexpr int kSweeps[] = {100, 200, 400};
+// Residual from which an answer throws bodies about, and the sweeps that bring it down where no
+// steps are left: together they cost what one or two do.
+constexpr double kThrows = 1e-2;
+constexpr int kLastSweeps = 200;
 // By how much closer sides stand about the way of the friction found before, try by try.
 constexpr int kCloser[] = {1, 2, 3, 4};
 
@@ -65,6 +69,7 @@ struct DirectSolver::Work {
     bool pivot_and_hold();
     bool take_springs(int most);
     void find();
+    void sweep_what_throws();
 };
 
 // True once it is good.
@@ -192,6 +197,17 @@ void DirectSolver::Work::find()
     take_springs(left);
 }
 
+// Where steps run out along the path, its impulses are nobody's answer, and may give energy. What
+// they only take too much of is left: sweeps come nearer to the law and let more sink in.
+void DirectSolver::Work::sweep_what_throws()
+{
+    if (!(answer.residual > kThrows)) return;
+    go_back_to_best();
+    if (!(island.work(scratch) > 0)) return;
+    ConeGaussSeidel(island).run(kLastSweeps);
+    keep_if_better(island.residual(scratch));
+}
+
 DirectSolver::DirectSolver() : work_(std::make_unique<Work>()) { }
 DirectSolver::~DirectSolver() = default;
 DirectSolver::DirectSolver(DirectSolver&&) noexcept = default;
@@ -216,6 +232,7 @@ DirectAnswer DirectSolver::solve(std::span<DirectBody> bodies,
     work.solvable = std::all_of(points.begin(), points.end(),
                                 [](const DirectPoint& point) { return !(point.least > 0); });
     work.find();
+    work.sweep_what_throws();
     work.go_back_to_best();
     work.island.give(bodies, points);
     if (!is_finite(bodies, points)) work.answer.residual = kInfinite;

@@ -425,6 +425,27 @@ TEST(Direct, TakesNoMoreStepsThanAllowedAndTellsWhatIsMissing)
     EXPECT_TRUE(std::isfinite(greatest_speed(problem)));
 }
 
+double kinetic_energy(const Problem& problem)
+{
+    double energy = 0;
+    for (const DirectBody& body : problem.bodies)
+        energy += 0.5 * body.velocity.squaredNorm() / body.inverse_mass
+            + 0.5 * body.spin.dot(body.inverse_inertia.matrix().inverse() * body.spin);
+    return energy;
+}
+
+// What is left along its path would give energy.
+TEST(Direct, WhereStepsRunOutNoEnergyIsGiven)
+{
+    Dice dice(15);
+    for (int round = 0; round < 200; ++round) {
+        Problem problem = heap(dice, 12, round % 2 == 0 ? 0.3 : 0.7);
+        const double before = kinetic_energy(problem);
+        problem.solve({.steps = 1 + round % 4, .pivots = false});
+        EXPECT_LE(kinetic_energy(problem), before) << round;
+    }
+}
+
 TEST(Direct, NothingToStopNeedsNoImpulse)
 {
     Problem problem = stack(2);
