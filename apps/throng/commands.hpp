@@ -16,7 +16,7 @@ struct Command {
     const char* program = nullptr;                   // that this command is; null: this one
 };
 
-extern const Command kRun, kExplain, kScene, kBench;
+extern const Command kRun, kExplain, kScene, kCost, kBench;
 extern const Usage kCasesUsage;
 
 /// What main() does: runs the command that the words ask for, and answers with the exit code.

@@ -7,7 +7,7 @@ namespace {
 // Most of what takes long to compile, and what few ask for: a program of its own.
 const Command kCases = {kCasesUsage, nullptr, nullptr, "throng_cases"};
 
-const Command* const kCommands[] = {&kRun, &kExplain, &kScene, &kCases, &kBench};
+const Command* const kCommands[] = {&kRun, &kExplain, &kCost, &kScene, &kCases, &kBench};
 
 }  // namespace
 }  // namespace throng

@@ -70,4 +70,26 @@ void Progress::write(std::int64_t done, const std::string& note)
     shown_ = true;
 }
 
+NoteLine::NoteLine(bool wanted)
+    : on_(wanted && ::isatty(STDERR_FILENO) == 1), begin_(Clock::now()), last_(begin_)
+{ }
+
+NoteLine::~NoteLine()
+{
+    if (shown_) std::fputs("\r\x1b[K", stderr);
+}
+
+void NoteLine::show(const std::string& note)
+{
+    const auto now = Clock::now();
+    if (!on_ || (shown_ && now - last_ < std::chrono::milliseconds(100))) return;
+    last_ = now;
+    const double seconds = std::chrono::duration<double>(now - begin_).count();
+    constexpr std::size_t kMost = 100;  // letters, so that the line is one
+    std::fprintf(stderr, "\r\x1b[K%s, %s", duration_text(seconds).c_str(),
+                 note.substr(0, kMost).c_str());
+    std::fflush(stderr);
+    shown_ = true;
+}
+
 }  // namespace throng

@@ -33,4 +33,22 @@ private:
     Clock::time_point begin_, last_;
 };
 
+/// A line that says what is at work, where nobody knows how much of it there is.
+class NoteLine {
+public:
+    /// Silent unless wanted and the standard error is a terminal.
+    explicit NoteLine(bool wanted);
+    /// Takes its line away.
+    ~NoteLine();
+    NoteLine(const NoteLine&) = delete;
+    NoteLine& operator=(const NoteLine&) = delete;
+
+    void show(const std::string& note);
+
+private:
+    using Clock = std::chrono::steady_clock;
+    bool on_ = false, shown_ = false;
+    Clock::time_point begin_, last_;
+};
+
 }  // namespace throng

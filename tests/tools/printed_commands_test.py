@@ -32,6 +32,7 @@ PLACEHOLDERS = {"SCENE": "pile:20", "FILE": "out.json", "METHOD": "gjk", "WAY": 
 FLAGS = {"--schema", "--quiet", "--energy", "--help", "--version"}
 # Options that are made less: at most so much, and added where they are not there.
 LESS = {"run": {"--steps": 3}, "explain": {}, "scene": {}, "cases": {},
+        "cost": {"--windows": 2, "--seconds": 1},
         "bench": {"--steps": 3, "--sizes": 20, "--repeat": 1, "--max-seconds": 5}}
 CAPPED = {"--steps": 3, "--max-seconds": 5}
 MOST_BODIES = 20

@@ -4,10 +4,10 @@
 #include "apps/throng/bench/budget.hpp"
 #include "apps/throng/bench/report.hpp"
 #include "apps/throng/json_lines.hpp"
+#include "apps/throng/this_machine.hpp"
 #include "scene/files/json_writer.hpp"
 #include "throng/version.hpp"
 
-#include <fstream>
 #include <thread>
 
 namespace throng::bench {
@@ -164,17 +164,6 @@ std::string json_of(const Growth& growth)
         .text();
 }
 
-std::string processor_name()
-{
-    std::ifstream info("/proc/cpuinfo");
-    for (std::string line; std::getline(info, line);)
-        if (line.starts_with("model name")) {
-            const std::size_t colon = line.find(": ");
-            if (colon != std::string::npos) return line.substr(colon + 2);
-        }
-    return "unknown";
-}
-
 }  // namespace
 
 void write_json(const Plan& plan, const std::vector<Case>& cases, bool complete, std::ostream& out)
@@ -183,7 +172,7 @@ void write_json(const Plan& plan, const std::vector<Case>& cases, bool complete,
     json.add("throng", json_string(version()));
     json.add("machine",
              JsonMembers()
-                 .add_text("processor", processor_name())
+                 .add_text("processor", this_machine(0).processor)
                  .add("cores", number(std::thread::hardware_concurrency()))
                  .add_text("lanes", lane_width())
                  .text());

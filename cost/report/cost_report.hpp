@@ -1,0 +1,65 @@
+// Cost report: what a sweep of a scene has to say, for people and for programs.
+#pragma once
+
+#include "cost/sweep/orders.hpp"
+
+#include <cstdint>
+#include <ostream>
+
+namespace throng {
+
+/// What was wished for: an error, in the measure's unit, or a time, in ms for each 1/60 s of the
+/// scene's time; neither: 0.
+struct Wish {
+    double error = 0, time_ms = 0;
+    bool any() const { return error > 0 || time_ms > 0; }
+};
+
+/// What the times were measured on.
+///
+///   load  of the last minute as the sweep began: processes that wanted a core
+struct Machine {
+    std::string processor, version;
+    unsigned cores = 0;
+    int threads = 0;
+    double load = 0;
+};
+
+struct CostReport {
+    std::string scene;
+    std::uint64_t seed = 0;
+    std::size_t bodies = 0;
+    Machine machine;
+    WindowPlan plan;
+    double window = 0;  // s
+    std::size_t windows = 0, at_rest = 0;
+    Measure measure = Measure::drift;
+    ReferenceInfo reference;
+    Wish wish;
+    SweepResult found;
+    std::vector<FittedOrder> orders;
+};
+
+/// A figure with two digits, which is what errors are known to.
+std::string figure_text(double figure);
+
+/// What is advised, and whether it is what was wished for: of no wish the most exact point.
+struct Advice {
+    const Point* point = nullptr;
+    bool meets = false;
+};
+Advice advice_of(const CostReport& report);
+
+/// Sentences that a reader should know before trusting the figures: a reference that does not
+/// settle, windows in which nothing moves, a sweep cut short.
+std::vector<std::string> doubts_of(const CostReport& report);
+
+/// The front, the advice and the doubts, a screen wide.
+void write_cost_text(const CostReport& report, std::ostream& out);
+/// The front drawn in letters: error against time, both by their logarithms.
+void draw_front(const CostReport& report, std::ostream& out);
+/// A row a point, the names and units of the columns in the first.
+void write_cost_csv(const CostReport& report, std::ostream& out);
+void write_cost_json(const CostReport& report, std::ostream& out);
+
+}  // namespace throng

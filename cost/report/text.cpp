@@ -1,0 +1,146 @@
+// Text: the report on a terminal.
+#include "cost/report/cost_report.hpp"
+#include "scene/names.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+
+namespace throng {
+
+namespace {
+
+std::string name_of(const Point& point)
+{
+    return point.changes.empty() ? "the scene as it is" : text_of(point.changes);
+}
+
+std::vector<const Point*> front_of(const CostReport& report)
+{
+    std::vector<const Point*> front;
+    for (const Point& point : report.found.points)
+        if (point.on_front || (point.changes.empty() && point.had())) front.push_back(&point);
+    std::sort(front.begin(), front.end(),
+              [](const Point* a, const Point* b) { return a->time_ms.median < b->time_ms.median; });
+    return front;
+}
+
+void write_row(const CostReport& report, const Point& point, std::ostream& out)
+{
+    const double spread = point.time_ms.median > 0
+        ? 100 * (point.time_ms.most - point.time_ms.least) / point.time_ms.median
+        : 0;
+    out << (point.on_front ? "  " : " -") << std::setw(9)
+        << figure_text(point.error(report.measure)) << std::setw(10)
+        << figure_text(point.error_at_most(report.measure)) << std::setw(10)
+        << figure_text(point.time_ms.median) << std::setw(7) << std::lround(spread) << " %  "
+        << name_of(point) << '\n';
+}
+
+void write_advice(const CostReport& report, std::ostream& out)
+{
+    const MeasureInfo& told = info(report.measure);
+    const Advice advice = advice_of(report);
+    out << '\n';
+    if (advice.point == nullptr) {
+        out << "no setting could be measured: see the troubles in the table of all points\n";
+        return;
+    }
+    const Point& point = *advice.point;
+    const Wish& wish = report.wish;
+    if (wish.time_ms > 0)
+        out << (advice.meets ? "the most exact within " : "nothing is within ") << wish.time_ms
+            << " ms" << (advice.meets ? ":\n" : "; the cheapest that was found:\n");
+    else if (wish.error > 0)
+        out << (advice.meets ? "the cheapest within " : "nothing is within ") << wish.error << ' '
+            << told.unit << (advice.meets ? ":\n" : "; the most exact that was found:\n");
+    else
+        out << "the most exact that was found:\n";
+    out << "  " << (point.changes.empty() ? "the scene as it is" : as_options(point.changes))
+        << '\n';
+    if (!point.changes.empty()) out << "  " << as_settings(point.changes) << '\n';
+    out << "  " << told.name << ' ' << figure_text(point.error(report.measure)) << ' ' << told.unit
+        << ", in 19 of 20 runs like this at most "
+        << figure_text(point.error_at_most(report.measure)) << ' ' << told.unit << "; "
+        << figure_text(point.time_ms.median) << " ms for each 1/60 s ("
+        << figure_text(point.time_ms.least) << " to " << figure_text(point.time_ms.most) << " of "
+        << point.time_ms.repeats << ") on " << report.machine.threads << " thread"
+        << (report.machine.threads == 1 ? "" : "s") << '\n';
+}
+
+}  // namespace
+
+void write_cost_text(const CostReport& report, std::ostream& out)
+{
+    const MeasureInfo& told = info(report.measure);
+    out << report.scene << ", " << report.bodies << " bodies, " << report.windows << " windows of "
+        << number_text(report.window) << " s, from " << number_text(report.plan.seconds)
+        << " s of the scene\n"
+        << "reference: " << report.reference.settings << "; still off by "
+        << figure_text(of(report.reference.remaining, report.measure)) << ' ' << told.unit << '\n'
+        << "machine: " << report.machine.processor << ", " << report.machine.threads << " of "
+        << report.machine.cores << " cores, load " << report.machine.load << "; throng "
+        << report.machine.version << "\n\n"
+        << told.name << ": " << told.about << ", " << told.unit
+        << "; time: ms for each 1/60 s of the scene\n"
+        << "    error   at most   time ms  spread  setting\n";
+    for (const Point* const point : front_of(report)) write_row(report, *point, out);
+    out << "settings on the front, of " << report.found.points.size()
+        << " tried; with - one that others beat\n";
+    for (const FittedOrder& fitted : report.orders)
+        out << "order in " << fitted.dial << ": " << figure_text(fitted.order) << " ("
+            << fitted.points << " values"
+            << (fitted.helps.empty() ? "; none other helps"
+                                     : ", the last that helps " + fitted.dial + '=' + fitted.helps)
+            << ")\n";
+    write_advice(report, out);
+    for (const std::string& doubt : doubts_of(report)) out << "doubt: " << doubt << '\n';
+}
+
+void draw_front(const CostReport& report, std::ostream& out)
+{
+    constexpr int kWidth = 64, kHeight = 18;
+    double low_time = INFINITY, high_time = 0, low = INFINITY, high = 0;
+    std::vector<const Point*> drawn;
+    for (const Point& point : report.found.points) {
+        const double error = point.error(report.measure);
+        if (!point.had() || !std::isfinite(error) || !(error > 0)) continue;
+        drawn.push_back(&point);
+        low_time = std::min(low_time, point.time_ms.median);
+        high_time = std::max(high_time, point.time_ms.median);
+        low = std::min(low, error);
+        high = std::max(high, error);
+    }
+    if (drawn.empty()) return;
+    const auto place = [](double value, double least, double most, int cells) {
+        if (!(most > least)) return 0;
+        return static_cast<int>(
+            std::lround((cells - 1) * std::log(value / least) / std::log(most / least)));
+    };
+    std::vector<std::string> rows(kHeight, std::string(kWidth, ' '));
+    const auto draw = [&](const Point& point, char letter) {
+        const int x = place(point.time_ms.median, low_time, high_time, kWidth);
+        const int y = place(point.error(report.measure), low, high, kHeight);
+        rows[static_cast<std::size_t>(kHeight - 1 - y)][static_cast<std::size_t>(x)] = letter;
+    };
+    for (const Point* const point : drawn) draw(*point, '.');
+    for (const Point* const point : drawn)
+        if (point->on_front) draw(*point, 'o');
+    draw(report.found.points[0], '@');
+    const MeasureInfo& told = info(report.measure);
+    out << '\n' << told.name << ", " << told.unit << '\n';
+    for (int row = 0; row < kHeight; ++row)
+        out << std::setw(9)
+            << (row == 0                 ? figure_text(high)
+                    : row == kHeight - 1 ? figure_text(low)
+                                         : "")
+            << " |" << rows[static_cast<std::size_t>(row)] << '\n';
+    out << std::string(10, ' ') << '+' << std::string(kWidth, '-') << '\n';
+    const std::string left = figure_text(low_time), right = figure_text(high_time);
+    out << std::string(11, ' ') << left
+        << std::string(static_cast<std::size_t>(kWidth) - left.size() - right.size(), ' ') << right
+        << "  ms\n"
+        << std::string(11, ' ') << "o on the front   . beaten   @ the scene as it is\n";
+}
+
+}  // namespace throng

@@ -1,0 +1,134 @@
+#include "cost/sweep/candidates.hpp"
+
+#include "scene/names.hpp"
+#include "throng/dials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+// Of the scene's own dt; each divides the length of a window.
+constexpr double kSteps[] = {2, 1, 0.5, 0.25, 0.125, 0.0625};
+constexpr std::string_view kSubsteps[] = {"1", "2", "4", "8", "16", "32"};
+
+// A value worth a try by itself, and what calls for it: none for what any scene may have.
+struct Try {
+    Change first, second;  // the second may be empty
+    Set<Effect> called_for_by;
+};
+
+const std::vector<Try>& tries()
+{
+    using enum Effect;
+    static constexpr Set<Effect> kTouch = {contact};
+    static constexpr Set<Effect> kTurns = {gyroscopic, forces, springs, attractors, pivot};
+    static const std::vector<Try> all = {
+        {{"precision", "double"}, {}, {}},
+        {{"integrator", "semi_implicit"}, {}, kTurns},
+        {{"integrator", "midpoint"}, {}, kTurns},
+        {{"integrator", "splitting"}, {}, kTurns},
+        {{"integrator", "rk4"}, {}, kTurns},
+        {{"gyroscopic", "off"}, {}, {gyroscopic}},
+        {{"gyroscopic", "explicit"}, {}, {gyroscopic}},
+        {{"iterations", "2"}, {}, kTouch},
+        {{"iterations", "4"}, {}, kTouch},
+        {{"relax_iterations", "1"}, {}, kTouch},
+        {{"relax_iterations", "2"}, {}, kTouch},
+        {{"relax_iterations", "4"}, {}, kTouch},
+        {{"contact_rate", "0.1"}, {}, kTouch},
+        {{"contact_rate", "0.4"}, {}, kTouch},
+        {{"friction_at", "points"}, {}, {friction}},
+        {{"friction_cone", "pyramid"}, {}, {friction}},
+        {{"solver", "pgs"}, {}, kTouch},
+        {{"solver", "pgs"}, {"iterations", "60"}, kTouch},
+        {{"solver", "direct"}, {}, kTouch},
+        {{"response", "penalty"}, {}, kTouch},
+        {{"response", "kinematic"}, {}, kTouch},
+        {{"overlap", "back_up"}, {}, kTouch},
+        {{"overlap", "subdivide"}, {}, kTouch},
+        {{"escalation", "off"}, {}, kTouch},
+        {{"narrowphase", "gjk"}, {}, kTouch},
+        {{"narrowphase", "sat"}, {}, kTouch},
+        {{"broadphase", "embree"}, {}, kTouch},
+        {{"broadphase", "grid"}, {}, kTouch},
+        {{"broadphase", "sweep"}, {}, kTouch},
+        {{"mesh_tree", "k_dop:14"}, {}, {mesh_contact}},
+        {{"nonconvex", "parts"}, {}, kSolidContact},
+        {{"nonconvex", "spheres"}, {}, kSolidContact},
+        {{"nonconvex", "depth_image"}, {}, kSolidContact},
+        {{"nonconvex", "hull"}, {}, kSolidContact},
+    };
+    return all;
+}
+
+// A fraction where the scene's own is one, so that it can be read.
+std::string time_text(double seconds)
+{
+    Settings settings;
+    settings.dt = seconds;
+    return dial_value(settings, "dt");
+}
+
+bool does_something(const Scene& scene, const Changes& changes)
+{
+    Scene by;
+    try {
+        by = changed(scene, changes);
+    } catch (const std::invalid_argument&) {
+        return false;
+    }
+    by.dials_set.clear();
+    for (const Change& each : changes) by.dials_set.push_back(each.dial);
+    const auto is_the_same = [&](const Change& each) {
+        return dial_value(scene.settings, each.dial) == dial_value(by.settings, each.dial);
+    };
+    return unused_dials(by).empty() && !std::all_of(changes.begin(), changes.end(), is_the_same);
+}
+
+}  // namespace
+
+std::vector<std::string_view> swept_dials()
+{
+    std::vector<std::string_view> names = {"dt", "substeps"};
+    for (const Try& each : tries())
+        if (std::find(names.begin(), names.end(), each.first.dial) == names.end())
+            names.push_back(each.first.dial);
+    return names;
+}
+
+Candidates
+candidates_for(const Scene& scene, const Effects& effects, std::span<const std::string> dials)
+{
+    const auto asked_for = [&](std::string_view dial) {
+        return dials.empty() || std::find(dials.begin(), dials.end(), dial) != dials.end();
+    };
+    Candidates candidates;
+    const auto add_step = [&](const Changes& changes) {
+        if (does_something(scene, changes)) candidates.steps.push_back(changes);
+    };
+    for (const double share : kSteps) {
+        if (share != 1 && !asked_for("dt")) continue;
+        const Change dt{"dt", time_text(share * scene.settings.dt)};
+        bool own = false;
+        for (const std::string_view substeps : kSubsteps) {
+            if (!asked_for("substeps")) continue;
+            const Change cut{"substeps", std::string(substeps)};
+            add_step(share == 1 ? Changes{cut} : Changes{dt, cut});
+            own = own || dial_value(scene.settings, "substeps") == substeps;
+        }
+        if (share != 1 && !own) add_step({dt});
+    }
+    for (const Try& each : tries()) {
+        if (!asked_for(each.first.dial)) continue;
+        if (!each.called_for_by.empty() && !each.called_for_by.meets(effects.on)) continue;
+        Changes changes{each.first};
+        if (!each.second.dial.empty()) changes.push_back(each.second);
+        if (does_something(scene, changes)) candidates.others.push_back(std::move(changes));
+    }
+    return candidates;
+}
+
+}  // namespace throng

@@ -1,0 +1,288 @@
+#include "cost/sweep/sweep.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Windows of each round; what is left is measured on all.
+constexpr std::size_t kFirstWindows = 4, kMoreWindows = 10;
+// Another has to be so much better in both time and error for a point to be left, round by round.
+constexpr double kBeatenBy[] = {0.6, 0.75, 0.9};
+// Values that change a scene's error by less, and make it no faster, do nothing here.
+constexpr double kChanges = 0.02, kFaster = 0.95;
+// A window that takes so many times as long as the scene's own way is given up.
+constexpr double kTooSlow = 300;
+constexpr std::size_t kMostJoined = 8;  // others that are tried with steps, and steps with others
+constexpr int kTimedLengths = 3;        // windows' lengths of one time
+
+class Sweeper {
+public:
+    Sweeper(const Scene& scene, const Windows& windows, const SweepPlan& plan, const Watch& watch)
+        : scene_(scene), windows_(windows), plan_(plan), watch_(watch), begin_(Clock::now())
+    { }
+
+    SweepResult run(const Candidates& candidates)
+    {
+        add({});
+        for (const Changes& each : candidates.steps) add(each);
+        for (const Changes& each : candidates.others) add(each);
+        measure_all(kFirstWindows);
+        join(candidates);
+        measure_all(kFirstWindows);
+        leave_beaten(kBeatenBy[0]);
+        measure_left(kMoreWindows);
+        leave_beaten(kBeatenBy[1]);
+        measure_left(windows_.size());
+        leave_beaten(kBeatenBy[2]);
+        time_left();
+        mark_front(found_.points, plan_.measure);
+        return std::move(found_);
+    }
+
+private:
+    bool is_late() const
+    {
+        return std::chrono::duration<double>(Clock::now() - begin_).count() > plan_.patience;
+    }
+    void add(const Changes& changes)
+    {
+        const bool known =
+            std::any_of(found_.points.begin(), found_.points.end(),
+                        [&](const Point& point) { return point.changes == changes; });
+        if (known) return;
+        found_.points.push_back({});
+        found_.points.back().changes = changes;
+        left_.push_back(found_.points.size() - 1);
+    }
+    Point& point(std::size_t at) { return found_.points[at]; }
+
+    void show(std::size_t done, std::size_t of, const Point& point, const char* what)
+    {
+        if (watch_.show)
+            watch_.show(std::string(what) + ' ' + std::to_string(done) + " of " + std::to_string(of)
+                        + ": " + (point.changes.empty() ? "as it is" : text_of(point.changes)));
+    }
+
+    // The scene's own way first, by whose time the others are too slow.
+    void measure(Point& point, std::size_t windows)
+    {
+        windows = std::min(windows, windows_.size());
+        if (!point.trouble.empty() || point.errors.size() >= windows) return;
+        try {
+            const Scene by = changed(scene_, point.changes);
+            const double most =
+                point.changes.empty() ? 0 : kTooSlow * found_.points[0].time_ms.median;
+            while (point.errors.size() < windows) {
+                const WindowRun run = windows_.run(by, point.errors.size());
+                point.errors.push_back(run.errors);
+                add_time(point, run.time_ms);
+                if (most > 0 && run.time_ms > most) {
+                    point.trouble = "takes more than 300 times as long as the scene as it is";
+                    return;
+                }
+            }
+        } catch (const std::invalid_argument& wrong) {
+            point.trouble = wrong.what();
+        }
+    }
+    static void add_time(Point& point, double time_ms)
+    {
+        Point::Time& time = point.time_ms;
+        // Before what is left is timed in turn, the least is the steadiest.
+        time.least = time.repeats == 0 ? time_ms : std::min(time.least, time_ms);
+        time.most = std::max(time.most, time_ms);
+        time.median = time.least;
+        ++time.repeats;
+    }
+
+    void measure_all(std::size_t windows)
+    {
+        const std::size_t count = found_.points.size();
+        for (std::size_t at = 0; at < count; ++at) {
+            if (at > 0 && is_late()) {
+                found_.cut_short = true;
+                break;
+            }
+            show(at + 1, count, point(at), "setting");
+            measure(point(at), windows);
+        }
+    }
+    void measure_left(std::size_t windows)
+    {
+        for (std::size_t k = 0; k < left_.size(); ++k) {
+            if (is_late()) {
+                found_.cut_short = true;
+                return;
+            }
+            show(k + 1, left_.size(), point(left_[k]), "nearer look, setting");
+            measure(point(left_[k]), windows);
+        }
+    }
+
+    bool beaten(const Point& point, double by) const
+    {
+        const double error = point.error(plan_.measure);
+        return std::any_of(found_.points.begin(), found_.points.end(), [&](const Point& other) {
+            return other.had() && other.time_ms.median <= by * point.time_ms.median
+                && other.error(plan_.measure) <= by * error;
+        });
+    }
+    // The scene's own way stays, beaten or not.
+    void leave_beaten(double by)
+    {
+        std::erase_if(left_, [&](std::size_t at) {
+            return !point(at).had() || (at > 0 && beaten(point(at), by));
+        });
+    }
+
+    // Whether a value by itself does the scene any good, or no more harm than it saves.
+    bool is_worth_more(const Point& point) const
+    {
+        const Point& own = found_.points[0];
+        const double error = point.error(plan_.measure), own_error = own.error(plan_.measure);
+        const bool faster = point.time_ms.median < kFaster * own.time_ms.median;
+        return point.had() && !beaten(point, kBeatenBy[1])
+            && (faster || error < (1 - kChanges) * own_error);
+    }
+    void join(const Candidates& candidates)
+    {
+        std::vector<std::size_t> steps, others;
+        for (std::size_t at = 1; at < found_.points.size(); ++at) {
+            const bool is_step = at <= candidates.steps.size();
+            if (is_step && point(at).had() && !beaten(point(at), kBeatenBy[1])) steps.push_back(at);
+            if (!is_step && is_worth_more(point(at))) others.push_back(at);
+        }
+        const auto shorten = [&](std::vector<std::size_t>& list) {
+            std::stable_sort(list.begin(), list.end(), [&](std::size_t a, std::size_t b) {
+                return worth(point(a)) < worth(point(b));
+            });
+            if (list.size() > kMostJoined) list.resize(kMostJoined);
+        };
+        shorten(steps);
+        shorten(others);
+        std::vector<Changes> joint;
+        for (const std::size_t step : steps)
+            for (const std::size_t other : others)
+                joint.push_back(joined(point(step).changes, point(other).changes));
+        for (std::size_t a = 0; a < others.size(); ++a)
+            for (std::size_t b = a + 1; b < others.size(); ++b)
+                joint.push_back(joined(point(others[a]).changes, point(others[b]).changes));
+        for (const Changes& each : joint) add(each);
+    }
+    // The less the better: time times error, as on a front of order 1.
+    double worth(const Point& point) const
+    {
+        return point.time_ms.median * point.error(plan_.measure);
+    }
+
+    // In turn, so that a busy machine is busy for all of them.
+    void time_left()
+    {
+        std::vector<std::vector<double>> times(left_.size());
+        for (int repeat = 0; repeat < plan_.repeats; ++repeat) {
+            for (std::size_t k = 0; k < left_.size(); ++k) {
+                show(k + 1, left_.size(), point(left_[k]), "time of setting");
+                const auto window = static_cast<std::size_t>(repeat) * windows_.size()
+                    / static_cast<std::size_t>(plan_.repeats);
+                times[k].push_back(windows_.time_ms(changed(scene_, point(left_[k]).changes),
+                                                    window, kTimedLengths));
+            }
+        }
+        for (std::size_t k = 0; k < left_.size(); ++k) {
+            std::vector<double>& of = times[k];
+            if (of.empty()) continue;
+            std::sort(of.begin(), of.end());
+            point(left_[k]).time_ms = {of[of.size() / 2], of.front(), of.back(), of.size()};
+        }
+    }
+
+    const Scene& scene_;
+    const Windows& windows_;
+    const SweepPlan& plan_;
+    const Watch& watch_;
+    Clock::time_point begin_;
+    SweepResult found_;
+    std::vector<std::size_t> left_;  // points that nothing beats by far
+};
+
+}  // namespace
+
+SweepResult sweep(const Scene& scene,
+                  const Effects& effects,
+                  const Windows& windows,
+                  const SweepPlan& plan,
+                  const Watch& watch)
+{
+    return Sweeper(scene, windows, plan, watch).run(candidates_for(scene, effects, plan.dials));
+}
+
+void mark_front(std::span<Point> points, Measure measure)
+{
+    std::size_t most = 0;
+    for (const Point& point : points) most = std::max(most, point.errors.size());
+    std::vector<Point*> by_time;
+    for (Point& point : points) {
+        point.on_front = false;
+        if (point.had() && point.errors.size() == most && std::isfinite(point.error(measure)))
+            by_time.push_back(&point);
+    }
+    std::stable_sort(by_time.begin(), by_time.end(), [&](const Point* a, const Point* b) {
+        return a->time_ms.median != b->time_ms.median
+            ? a->time_ms.median < b->time_ms.median
+            : a->error_at_most(measure) < b->error_at_most(measure);
+    });
+    double least = std::numeric_limits<double>::infinity();
+    for (Point* const point : by_time) {
+        const double error = point->error_at_most(measure);
+        if (!(error < least)) continue;
+        least = error;
+        point->on_front = true;
+    }
+}
+
+const Point* cheapest_within(std::span<const Point> points, Measure measure, double error)
+{
+    const Point* best = nullptr;
+    // The front's errors fall as its times rise.
+    for (const Point& point : points) {
+        if (!point.on_front) continue;
+        const bool meets = point.error_at_most(measure) <= error;
+        if (best == nullptr) {
+            best = &point;
+            continue;
+        }
+        const bool best_meets = best->error_at_most(measure) <= error;
+        const bool better = meets != best_meets ? meets
+            : meets                             ? point.time_ms.median < best->time_ms.median
+                    : point.error_at_most(measure) < best->error_at_most(measure);
+        if (better) best = &point;
+    }
+    return best;
+}
+
+const Point* most_exact_within(std::span<const Point> points, Measure measure, double time_ms)
+{
+    const Point* best = nullptr;
+    for (const Point& point : points) {
+        if (!point.on_front) continue;
+        const bool meets = point.time_ms.median <= time_ms;
+        if (best == nullptr) {
+            best = &point;
+            continue;
+        }
+        const bool best_meets = best->time_ms.median <= time_ms;
+        const bool better = meets != best_meets ? meets
+            : meets ? point.error_at_most(measure) < best->error_at_most(measure)
+                    : point.time_ms.median < best->time_ms.median;
+        if (better) best = &point;
+    }
+    return best;
+}
+
+}  // namespace throng

@@ -1,0 +1,78 @@
+// Sweep: what error and what time the settings have that a scene may be stepped by, found without
+// trying all of them.
+#pragma once
+
+#include "cost/sweep/candidates.hpp"
+#include "cost/windows/windows.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace throng {
+
+/// One setting, measured.
+///
+///   errors    of the windows it was measured on, the first of all
+///   time_ms   for each 1/60 s of the scene's time: the median, and of what it is that of
+///   on_front  no other setting is as fast and more exact
+///   trouble   why it was given up; empty where it was not
+struct Point {
+    Changes changes;
+    std::vector<WindowErrors> errors;
+    struct Time {
+        double median = 0, least = 0, most = 0;
+        std::size_t repeats = 0;
+    } time_ms;
+    bool on_front = false;
+    std::string trouble;
+
+    double error(Measure measure) const { return rms(errors, measure); }
+    double error_at_most(Measure measure) const { return rms_at_most(errors, measure); }
+    bool had() const { return trouble.empty() && !errors.empty(); }
+};
+
+/// How it is swept.
+///
+///   dials     alone; empty: all that can matter
+///   measure   by which the front is
+///   patience  s of the clock after which nothing new is begun
+///   repeats   of the times of what is on the front
+struct SweepPlan {
+    std::vector<std::string> dials;
+    Measure measure = Measure::drift;
+    double patience = 180;
+    int repeats = 7;
+};
+
+/// What was found; the first point is the scene as it is.
+///
+///   cut_short  patience ended before all was tried that should have been
+struct SweepResult {
+    std::vector<Point> points;
+    bool cut_short = false;
+};
+
+/// Steps and substeps together and every other value by itself are measured on a few windows; what
+/// another beats by far is left (successive halving); values that did well by themselves are tried
+/// with the steps that did; and what is near the front is measured on more windows, at last on all,
+/// and timed in turn.
+///
+/// Source: Jamieson and Talwalkar, Non-stochastic best arm identification and hyperparameter
+///         optimization (2016).
+SweepResult sweep(const Scene& scene,
+                  const Effects& effects,
+                  const Windows& windows,
+                  const SweepPlan& plan,
+                  const Watch& watch);
+
+/// Marks those of which no other is as fast and more exact.
+void mark_front(std::span<Point> points, Measure measure);
+
+/// The cheapest point whose error stays within what is wanted; where there is none the most exact.
+/// Null where none was measured.
+const Point* cheapest_within(std::span<const Point> points, Measure measure, double error);
+/// The most exact point within a time; where there is none the cheapest.
+const Point* most_exact_within(std::span<const Point> points, Measure measure, double time_ms);
+
+}  // namespace throng

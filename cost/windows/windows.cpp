@@ -1,0 +1,269 @@
+#include "cost/windows/windows.hpp"
+
+#include "scene/names.hpp"
+#include "throng/dials.hpp"
+#include "throng/energy_ledger.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace throng {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kFrame = 1.0 / 60;  // s
+// The golden ratio: windows lie unlike the beats that a scene may have.
+constexpr double kGolden = 0.6180339887498949;
+// Steps of the run that windows start from, and of the reference at first, to one of the scene.
+constexpr int kFiner = 8;
+constexpr int kMostHalvings = 7;
+constexpr double kEnough = 0.1;    // of the error that is wanted
+constexpr double kNearer = 0.75;   // what a halving has to bring the change down to
+constexpr double kMoves = 1e-6;    // m
+constexpr double kNothing = 1e-9;  // m, below which the ends did not move
+
+double seconds_since(Clock::time_point begin)
+{
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// A way to the reference.
+//
+// In short steps soft contacts are stiff, and what overlapped as a window began is driven apart,
+// the faster the shorter they are: the push limit keeps that from being all that is seen. And with
+// one iteration a substep what an impact comes to goes by the moment of the substep that it falls
+// into, however short they are.
+struct Turned {
+    std::string_view dial, value;
+};
+using Way = std::span<const Turned>;
+constexpr Turned kDirect[] = {{"solver", "direct"}, {"substeps", "1"}};
+constexpr Turned kSweeps[] = {
+    {"solver", "pgs"}, {"iterations", "60"}, {"substeps", "1"}, {"push_limit", "0.02"}};
+constexpr Turned kSoft[] = {
+    {"iterations", "8"}, {"relax_iterations", "8"}, {"substeps", "2"}, {"push_limit", "0.02"}};
+constexpr Turned kFlight[] = {{"integrator", "rk4"}, {"substeps", "1"}};
+constexpr Way kOfContacts[] = {kDirect, kSweeps, kSoft}, kOfFlight[] = {kFlight};
+
+// What a scene is, and no matter of how exactly it is stepped, stays as the scene has it.
+Settings reference_settings(const Settings& own, Way way, double dt)
+{
+    Settings settings;
+    settings.dt = dt;
+    settings.precision = Precision::double_;
+    settings.sleep = false;
+    settings.escalation = Escalation::off;
+    settings.nonconvex = own.nonconvex;
+    settings.voxel_size = own.voxel_size;
+    settings.image_resolution = own.image_resolution;
+    settings.sphere_levels = own.sphere_levels;
+    settings.max_parts = own.max_parts;
+    settings.friction_cone = own.friction_cone;
+    settings.impact_law = own.impact_law;
+    for (const auto& [dial, value] : way) set_dial(settings, dial, value);
+    return settings;
+}
+
+std::string text_of(const Settings& settings, Way way)
+{
+    std::string text = "precision=double dt=" + dial_value(settings, "dt");
+    for (const auto& [dial, value] : way) (text += ' ').append(dial).append("=").append(value);
+    return text;
+}
+
+Scene with(const Scene& scene, const Settings& settings)
+{
+    Scene changed = scene;
+    changed.settings = settings;
+    return changed;
+}
+
+int steps_in(double length, double dt) { return static_cast<int>(std::lround(length / dt)); }
+
+}  // namespace
+
+Windows::Windows(
+    const Scene& scene, const WindowPlan& plan, double wanted, double patience, const Watch& watch)
+    : threads_(plan.threads), watch_(watch)
+{
+    const double twice = 2 * scene.settings.dt;
+    length_ = twice * std::max(1.0, std::ceil(plan.length / twice - 1e-9));
+    find_starts(scene, plan);
+    find_reference(scene, wanted, patience);
+}
+
+void Windows::check() const
+{
+    if (watch_.ended && watch_.ended()) throw Interrupted{};
+}
+
+// States that the scene comes by, stepped finely.
+void Windows::find_starts(const Scene& scene, const WindowPlan& plan)
+{
+    const double dt = scene.settings.dt / kFiner;
+    World world(with(scene, reference_settings(scene.settings, kSoft, dt)), threads_);
+    touches_ = world.effects().on.has(Effect::contact);
+    std::int64_t step = 0;
+    for (std::size_t k = 0; k < plan.count; ++k) {
+        const double part = static_cast<double>(k) * kGolden;
+        const double share =
+            (static_cast<double>(k) + part - std::floor(part)) / static_cast<double>(plan.count);
+        const auto until = static_cast<std::int64_t>(share * plan.seconds / dt);
+        for (; step < until; ++step) {
+            check();
+            world.step();
+            if (watch_.show && step % 16 == 0)
+                watch_.show("states to start from, "
+                            + number_text(std::round(100.0 * static_cast<double>(step) * dt) / 100)
+                            + " s of " + number_text(plan.seconds));
+        }
+        windows_.push_back({static_cast<double>(step) * dt, states_of(world), {}});
+    }
+}
+
+World Windows::begun(const Scene& scene, std::size_t window) const
+{
+    World world(scene, threads_);
+    put_states(world, windows_[window].start);
+    return world;
+}
+
+// Empty where they are not there in time.
+std::vector<BodyStates> Windows::ends_by(const Scene& scene, double patience) const
+{
+    const Clock::time_point begin = Clock::now();
+    std::vector<BodyStates> ends;
+    for (std::size_t k = 0; k < windows_.size(); ++k) {
+        World world = begun(scene, k);
+        for (int step = steps_in(length_, scene.settings.dt); step > 0; --step) {
+            check();
+            if (seconds_since(begin) > patience) return {};
+            world.step();
+        }
+        ends.push_back(states_of(world));
+    }
+    return ends;
+}
+
+WindowErrors Windows::moved(const std::vector<BodyStates>& from,
+                            const std::vector<BodyStates>& to) const
+{
+    std::vector<WindowErrors> windows(to.size());
+    for (std::size_t k = 0; k < to.size(); ++k) compare(from[k], to[k], windows[k]);
+    WindowErrors all{};
+    for (const Measure each : {Measure::drift, Measure::turn, Measure::velocity})
+        of(all, each) = rms(windows, each);
+    return all;
+}
+
+// By each way the step is halved once, and by the one whose ends that moved least until they stay
+// where they are.
+void Windows::find_reference(const Scene& scene, double wanted, double patience)
+{
+    const Clock::time_point begin = Clock::now();
+    struct Found {
+        Way way;
+        double dt = 0, took = 0;
+        std::vector<BodyStates> ends;
+        WindowErrors moved{};
+    };
+    const auto drift_of = [](const Found& found) { return of(found.moved, Measure::drift); };
+    const auto settings_of = [&](const Found& found) {
+        return reference_settings(scene.settings, found.way, found.dt);
+    };
+    const auto ends_of = [&](Found& found, double within) {
+        if (watch_.show)
+            watch_.show("reference, " + text_of(settings_of(found), found.way) + ", "
+                        + std::to_string(windows_.size()) + " windows");
+        const Clock::time_point since = Clock::now();
+        std::vector<BodyStates> ends = ends_by(with(scene, settings_of(found)), within);
+        found.took = seconds_since(since);
+        return ends;
+    };
+    Found best;
+    const std::span<const Way> ways =
+        touches_ ? std::span<const Way>(kOfContacts) : std::span<const Way>(kOfFlight);
+    for (const Way& way : ways) {
+        Found found{way, scene.settings.dt / kFiner, 0, {}, {}};
+        // The last has to be had, however long it takes.
+        const bool last = &way == &ways.back() && best.ends.empty();
+        const double within = last ? std::numeric_limits<double>::infinity() : patience / 8;
+        std::vector<BodyStates> before = ends_of(found, within);
+        if (before.empty()) continue;
+        found.dt /= 2;
+        found.ends = ends_of(found, 2 * within);
+        if (found.ends.empty()) continue;
+        found.moved = moved(before, found.ends);
+        if (best.ends.empty() || drift_of(found) < drift_of(best)) best = std::move(found);
+        if (drift_of(best) < kNothing) break;
+    }
+    reference_.settles = true;
+    for (int halving = 2; halving <= kMostHalvings; ++halving) {
+        if (drift_of(best) < std::max(kNothing, kEnough * wanted)) break;
+        // The next takes twice as long.
+        if (seconds_since(begin) + 2 * best.took > patience) break;
+        Found finer{best.way, best.dt / 2, 0, {}, {}};
+        finer.ends = ends_of(finer, std::numeric_limits<double>::infinity());
+        finer.moved = moved(best.ends, finer.ends);
+        reference_.settles = drift_of(finer) <= std::max(kNothing, kNearer * drift_of(best));
+        if (!(drift_of(finer) < drift_of(best))) break;
+        best = std::move(finer);
+    }
+    reference_.remaining = best.moved;
+    reference_.settings = text_of(settings_of(best), best.way);
+    for (std::size_t k = 0; k < windows_.size(); ++k)
+        windows_[k].reference = std::move(best.ends[k]);
+}
+
+std::size_t Windows::at_rest() const
+{
+    return static_cast<std::size_t>(
+        std::count_if(windows_.begin(), windows_.end(), [](const Window& window) {
+            for (std::size_t i = 0; i < window.start.size(); ++i)
+                if ((window.start[i].center - window.reference[i].center).norm() > kMoves)
+                    return false;
+            return true;
+        }));
+}
+
+WindowRun Windows::run(const Scene& scene, std::size_t window) const
+{
+    World world = begun(scene, window);
+    EnergyLedger ledger;
+    const int steps = steps_in(length_, scene.settings.dt), skipped = steps / 3;
+    double time_ms = 0;
+    for (int step = 0; step < steps; ++step) {
+        check();
+        ledger.before_step(world);
+        const Clock::time_point begin = Clock::now();
+        world.step();
+        if (step >= skipped) time_ms += 1e3 * seconds_since(begin);
+        ledger.after_step(world);
+    }
+    WindowRun run;
+    compare(states_of(world), windows_[window].reference, run.errors);
+    const double overlap = world.measure().greatest_overlap, energy = ledger.gained();
+    of(run.errors, Measure::overlap) = overlap * overlap;
+    of(run.errors, Measure::energy) = energy * energy;
+    run.time_ms = time_ms * kFrame / (scene.settings.dt * (steps - skipped));
+    return run;
+}
+
+double Windows::time_ms(const Scene& scene, std::size_t window, int lengths) const
+{
+    World world = begun(scene, window);
+    const int steps = steps_in(length_, scene.settings.dt);
+    for (int step = 0; step < (steps + 2) / 3; ++step) world.step();
+    const Clock::time_point begin = Clock::now();
+    for (int step = 0; step < steps * lengths; ++step) {
+        check();
+        world.step();
+    }
+    return 1e3 * seconds_since(begin) * kFrame / (scene.settings.dt * steps * lengths);
+}
+
+}  // namespace throng

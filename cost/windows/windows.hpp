@@ -1,0 +1,113 @@
+// Windows: short stretches of a scene's run, each begun from a state of its own, and where a
+// reference has them end.
+//
+// Crowded scenes are chaotic: over seconds, two runs that are both right part. Over a window they
+// do not, so that how far a setting drifts from the reference in it is an error, and its average
+// over windows one of the scene.
+#pragma once
+
+#include "cost/windows/errors.hpp"
+#include "throng/scene.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace throng {
+
+/// How a scene is cut.
+///
+///   seconds  s of the scene's time, from its beginning, over which windows are spread
+///   length   s, at least, of each: rounded up to whole steps of twice the scene's dt
+///   count    of windows
+///   threads  that run the steps; 0: all cores
+struct WindowPlan {
+    double seconds = 5;
+    double length = 0.1;
+    std::size_t count = 24;
+    int threads = 0;
+};
+
+/// Who waits for work that takes long.
+///
+///   show   told what is at work; may be empty
+///   ended  whether to stop: asked between steps; what asks then throws Interrupted
+struct Watch {
+    std::function<void(const std::string& note)> show;
+    std::function<bool()> ended;
+};
+struct Interrupted { };
+
+/// A stretch of the scene's run.
+///
+///   begin      s of the scene's time
+///   reference  where its bodies are at the end, by the reference
+struct Window {
+    double begin = 0;
+    BodyStates start, reference;
+};
+
+/// What came of a window by some settings.
+///
+///   time_ms  of its steps, for each 1/60 s of the scene's time; without the first third of them,
+///            which find their contacts anew
+struct WindowRun {
+    WindowErrors errors{};
+    double time_ms = 0;
+};
+
+/// How the reference was found.
+///
+///   settings   its dials, as text
+///   remaining  by measure (drift, turn, velocity): by how much the ends moved as its step was
+///              halved for the last time; about what it is still off by
+///   settles    each halving moved the ends by less than the one before
+struct ReferenceInfo {
+    std::string settings;
+    WindowErrors remaining{};
+    bool settles = false;
+};
+
+class Windows {
+public:
+    /// Runs the scene and the reference. `wanted` is an error in metres a tenth of which is enough
+    /// for the reference; 0: as near as `patience`, in seconds of the clock, allows.
+    /// Throws std::invalid_argument where the scene is impossible, Interrupted.
+    Windows(const Scene& scene,
+            const WindowPlan& plan,
+            double wanted,
+            double patience,
+            const Watch& watch);
+
+    std::size_t size() const { return windows_.size(); }
+    const Window& operator[](std::size_t window) const { return windows_[window]; }
+    /// s
+    double length() const { return length_; }
+    const ReferenceInfo& reference() const { return reference_; }
+    /// Windows in which nothing moves by more than a micrometre.
+    std::size_t at_rest() const;
+
+    /// Goes through a window by the settings that the scene has here: the same scene but for them.
+    /// Throws std::invalid_argument where they cannot be had.
+    WindowRun run(const Scene& scene, std::size_t window) const;
+    /// The time alone, over so many windows' lengths.
+    double time_ms(const Scene& scene, std::size_t window, int lengths) const;
+
+private:
+    void find_starts(const Scene& scene, const WindowPlan& plan);
+    void find_reference(const Scene& scene, double wanted, double patience);
+    std::vector<BodyStates> ends_by(const Scene& scene, double patience) const;
+    WindowErrors moved(const std::vector<BodyStates>& from,
+                       const std::vector<BodyStates>& to) const;
+    World begun(const Scene& scene, std::size_t window) const;
+    void check() const;
+
+    std::vector<Window> windows_;
+    double length_ = 0;
+    int threads_ = 0;
+    bool touches_ = false;  // anything may touch anything
+    ReferenceInfo reference_;
+    Watch watch_;
+};
+
+}  // namespace throng

@@ -1,0 +1,151 @@
+// Sweeps: the front, what is advised, the orders, and what is tried at all.
+#include "cost/sweep/orders.hpp"
+#include "throng/catalog.hpp"
+#include "throng/dials.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+namespace {
+
+Point point(double time_ms, double drift, Changes changes = {{"substeps", "8"}})
+{
+    Point made;
+    made.changes = std::move(changes);
+    WindowErrors errors{};
+    of(errors, Measure::drift) = drift * drift;
+    made.errors.assign(4, errors);
+    made.time_ms = {time_ms, time_ms, time_ms, 7};
+    return made;
+}
+
+Scene scene_of(std::string_view word)
+{
+    const ParsedScene parsed = parse_scene(word);
+    return parsed.entry->make(parsed.size, 1);
+}
+
+TEST(Front, HoldsWhatNothingBeats)
+{
+    std::vector<Point> points = {point(1, 1e-2), point(2, 1e-3), point(2, 5e-3), point(3, 1e-3),
+                                 point(4, 1e-4)};
+    mark_front(points, Measure::drift);
+    const bool wanted[] = {true, true, false, false, true};
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(points[i].on_front, wanted[i]) << i;
+}
+
+TEST(Front, HasNoPlaceForWhatBlewUpOrWasLookedAtLess)
+{
+    std::vector<Point> points = {point(1, INFINITY), point(2, 1e-3), point(0.5, 1e-4)};
+    points[2].errors.resize(2);
+    mark_front(points, Measure::drift);
+    EXPECT_FALSE(points[0].on_front);
+    EXPECT_TRUE(points[1].on_front);
+    EXPECT_FALSE(points[2].on_front);
+}
+
+TEST(Front, AdvisesTheCheapestWithinAnErrorAndTheMostExactWithinATime)
+{
+    std::vector<Point> points = {point(1, 1e-2), point(2, 1e-3), point(4, 1e-4)};
+    mark_front(points, Measure::drift);
+    EXPECT_EQ(cheapest_within(points, Measure::drift, 2e-3), &points[1]);
+    EXPECT_EQ(cheapest_within(points, Measure::drift, 1e-6), &points[2]);
+    EXPECT_EQ(most_exact_within(points, Measure::drift, 3), &points[1]);
+    EXPECT_EQ(most_exact_within(points, Measure::drift, 0.5), &points[0]);
+    EXPECT_EQ(cheapest_within({}, Measure::drift, 1), nullptr);
+}
+
+TEST(Orders, AreTheSlopesOfErrors)
+{
+    Scene scene;
+    SweepResult found;
+    found.points = {point(1, 1e-2, {}), point(2, 2.5e-3, {{"dt", "1/120"}}),
+                    point(4, 6.25e-4, {{"dt", "1/240"}}), point(8, 3e-5, {{"dt", "1/480"}})};
+    const auto fitted = fitted_order(scene, found, "dt", Measure::drift, 2e-5);
+    ASSERT_TRUE(fitted);
+    EXPECT_NEAR(fitted->order, 2, 1e-9);
+    EXPECT_EQ(fitted->points, 3u) << "what is near the reference's own error tells none";
+    EXPECT_EQ(fitted->helps, "1/480");
+    EXPECT_FALSE(fitted_order(scene, found, "substeps", Measure::drift, 0));
+}
+
+TEST(Changes, AreWrittenAsTheyAreRead)
+{
+    const Changes changes = {{"dt", "1/120"}, {"solver", "pgs"}};
+    EXPECT_EQ(as_options(changes), "--set dt=1/120 --set solver=pgs");
+    EXPECT_EQ(as_settings(changes), R"("settings": {"dt": "1/120", "solver": "pgs"})");
+    EXPECT_EQ(joined(changes, {{"solver", "direct"}, {"substeps", "2"}}),
+              (Changes{{"dt", "1/120"}, {"solver", "direct"}, {"substeps", "2"}}));
+    EXPECT_THROW(changed(Scene{}, {{"solver", "pigs"}}), std::invalid_argument);
+}
+
+TEST(Candidates, AreOfDialsThatDoSomething)
+{
+    const Scene scene = scene_of("spheres:20");
+    World world(scene, 1);
+    const Candidates all = candidates_for(scene, world.effects(), {});
+    EXPECT_FALSE(all.steps.empty());
+    for (const Changes& each : all.others) {
+        Scene by = changed(scene, each);
+        EXPECT_TRUE(unused_dials(by).empty()) << text_of(each);
+        for (const Change& change : each) {
+            EXPECT_NE(change.dial, "nonconvex") << "no mesh moves";
+            EXPECT_NE(change.dial, "mesh_tree") << "no mesh stands still";
+        }
+    }
+    const std::vector<std::string> dials = {"dt"};
+    const Candidates few = candidates_for(scene, world.effects(), dials);
+    EXPECT_TRUE(few.others.empty());
+    EXPECT_EQ(few.steps.size(), 5u) << "all but the scene's own";
+}
+
+TEST(Candidates, KnowTheirDials)
+{
+    for (const std::string_view name : swept_dials()) EXPECT_NE(find_dial(name), nullptr) << name;
+}
+
+TEST(SettingsSweep, MeasuresTheFrontOnAllWindowsAndItsTimesInTurn)
+{
+    const Scene scene = scene_of("stacks:10");
+    World world(scene, 1);
+    const Windows windows(scene, {1, 0.1, 5, 1}, 0, 20, {});
+    SweepPlan plan;
+    plan.dials = {"substeps", "contact_rate"};
+    plan.repeats = 3;
+    const SweepResult found = sweep(scene, world.effects(), windows, plan, {});
+    EXPECT_FALSE(found.cut_short);
+    EXPECT_TRUE(found.points.front().changes.empty());
+    std::size_t front = 0;
+    for (const Point& each : found.points) {
+        if (!each.on_front) continue;
+        ++front;
+        EXPECT_EQ(each.errors.size(), windows.size());
+        EXPECT_EQ(each.time_ms.repeats, 3u);
+    }
+    EXPECT_GE(front, 2u);
+    // What more substeps buy.
+    const auto error_of = [&](const Changes& changes) {
+        const auto at = std::find_if(found.points.begin(), found.points.end(),
+                                     [&](const Point& p) { return p.changes == changes; });
+        return at == found.points.end() ? NAN : at->error(Measure::drift);
+    };
+    EXPECT_LT(error_of({{"substeps", "32"}}), 0.1 * error_of({}));
+}
+
+TEST(SettingsSweep, SaysWhereItHadNoTime)
+{
+    const Scene scene = scene_of("stacks:10");
+    World world(scene, 1);
+    const Windows windows(scene, {1, 0.1, 2, 1}, 0, 5, {});
+    SweepPlan plan;
+    plan.patience = 0;
+    const SweepResult found = sweep(scene, world.effects(), windows, plan, {});
+    EXPECT_TRUE(found.cut_short);
+    EXPECT_TRUE(found.points.front().had());
+}
+
+}  // namespace
+}  // namespace throng
