@@ -25,7 +25,9 @@ constexpr Option kOptions[] = {
      "names the most exact setting that takes at most so long for each 1/60 s of the scene"},
     {"--measure", "M",
      "the error: drift, m; turn, rad; velocity, m/s; overlap, m; energy, J (default drift)"},
-    {"--dials", "A,B", "tries values of these dials alone (default: all that may matter here)"},
+    {"--dials", "A,B",
+     "tries values of these dials alone; none: measures the scene as it is (default: all that may "
+     "matter here)"},
     {"--window", "S", "s that bodies may drift from the reference in (default 0.1)"},
     {"--windows", "N", "how many windows, 2 to 1000 (default 24)"},
     {"--seconds", "S", "s of the scene, from its beginning, that windows lie in (default 5)"},
@@ -66,11 +68,13 @@ std::vector<std::string> dials_asked(const Options& options)
     std::vector<std::string> dials;
     const std::vector<std::string_view> known = swept_dials();
     std::string_view rest = options.text("--dials");
+    if (rest == "none") return {std::string(rest)};
     while (!rest.empty()) {
         const std::size_t comma = std::min(rest.find(','), rest.size());
         const std::string_view name = rest.substr(0, comma);
         if (std::find(known.begin(), known.end(), name) == known.end())
-            throw BadInput("--dials: wanted " + either_of(known) + ", not " + in_quotes(name));
+            throw BadInput("--dials: wanted none, " + either_of(known) + ", not "
+                           + in_quotes(name));
         dials.emplace_back(name);
         rest.remove_prefix(std::min(comma + 1, rest.size()));
     }

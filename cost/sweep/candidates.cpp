@@ -10,7 +10,7 @@ namespace throng {
 
 namespace {
 
-// Of the scene's own dt; each divides the length of a window.
+// Of the scene's own dt.
 constexpr double kSteps[] = {2, 1, 0.5, 0.25, 0.125, 0.0625};
 constexpr std::string_view kSubsteps[] = {"1", "2", "4", "8", "16", "32"};
 

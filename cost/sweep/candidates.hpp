@@ -20,7 +20,7 @@ struct Candidates {
 std::vector<std::string_view> swept_dials();
 
 /// For a scene whose effects are these: no dial that is unused there, and of those given alone;
-/// none given: of all.
+/// where none is given: of all.
 Candidates
 candidates_for(const Scene& scene, const Effects& effects, std::span<const std::string> dials);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 
 namespace throng {
 
@@ -31,9 +32,10 @@ public:
     {
         add({});
         for (const Changes& each : candidates.steps) add(each);
+        steps_end_ = found_.points.size();
         for (const Changes& each : candidates.others) add(each);
         measure_all(kFirstWindows);
-        join(candidates);
+        join();
         measure_all(kFirstWindows);
         leave_beaten(kBeatenBy[0]);
         measure_left(kMoreWindows);
@@ -50,8 +52,14 @@ private:
     {
         return std::chrono::duration<double>(Clock::now() - begin_).count() > plan_.patience;
     }
+    // Not what cannot be had, nor steps of which windows hold no whole number.
     void add(const Changes& changes)
     {
+        try {
+            if (!windows_.holds_whole_steps(changed(scene_, changes).settings.dt)) return;
+        } catch (const std::invalid_argument&) {
+            return;
+        }
         const bool known =
             std::any_of(found_.points.begin(), found_.points.end(),
                         [&](const Point& point) { return point.changes == changes; });
@@ -150,11 +158,11 @@ private:
         return point.had() && !beaten(point, kBeatenBy[1])
             && (faster || error < (1 - kChanges) * own_error);
     }
-    void join(const Candidates& candidates)
+    void join()
     {
         std::vector<std::size_t> steps, others;
         for (std::size_t at = 1; at < found_.points.size(); ++at) {
-            const bool is_step = at <= candidates.steps.size();
+            const bool is_step = at < steps_end_;
             if (is_step && point(at).had() && !beaten(point(at), kBeatenBy[1])) steps.push_back(at);
             if (!is_step && is_worth_more(point(at))) others.push_back(at);
         }
@@ -208,6 +216,7 @@ private:
     const Watch& watch_;
     Clock::time_point begin_;
     SweepResult found_;
+    std::size_t steps_end_ = 0;      // of the points of steps, from the second on
     std::vector<std::size_t> left_;  // points that nothing beats by far
 };
 

@@ -18,8 +18,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double kFrame = 1.0 / 60;  // s
 // The golden ratio: windows lie unlike the beats that a scene may have.
 constexpr double kGolden = 0.6180339887498949;
-// Steps of the run that windows start from, and of the reference at first, to one of the scene.
-constexpr int kFiner = 8;
+// The longest step of the run that windows start from, and of the reference, whatever the scene's
+// own: settings that are compared on two scenes alike but for their step see the same windows.
+constexpr double kFine = 1.0 / 480;  // s
 constexpr int kMostHalvings = 7;
 constexpr double kEnough = 0.1;    // of the error that is wanted
 constexpr double kNearer = 0.75;   // what a halving has to bring the change down to
@@ -90,8 +91,9 @@ Windows::Windows(
     const Scene& scene, const WindowPlan& plan, double wanted, double patience, const Watch& watch)
     : threads_(plan.threads), watch_(watch)
 {
-    const double twice = 2 * scene.settings.dt;
-    length_ = twice * std::max(1.0, std::ceil(plan.length / twice - 1e-9));
+    const double dt = scene.settings.dt;
+    length_ = dt * std::max(1.0, std::ceil(plan.length / dt - 1e-9));
+    fine_ = length_ / std::max(1.0, std::ceil(length_ / std::min(kFine, dt) - 1e-9));
     find_starts(scene, plan);
     find_reference(scene, wanted, patience);
 }
@@ -104,7 +106,7 @@ void Windows::check() const
 // States that the scene comes by, stepped finely.
 void Windows::find_starts(const Scene& scene, const WindowPlan& plan)
 {
-    const double dt = scene.settings.dt / kFiner;
+    const double dt = fine_;
     World world(with(scene, reference_settings(scene.settings, kSoft, dt)), threads_);
     touches_ = world.effects().on.has(Effect::contact);
     std::int64_t step = 0;
@@ -188,7 +190,7 @@ void Windows::find_reference(const Scene& scene, double wanted, double patience)
     const std::span<const Way> ways =
         touches_ ? std::span<const Way>(kOfContacts) : std::span<const Way>(kOfFlight);
     for (const Way& way : ways) {
-        Found found{way, scene.settings.dt / kFiner, 0, {}, {}};
+        Found found{way, fine_, 0, {}, {}};
         // The last has to be had, however long it takes.
         const bool last = &way == &ways.back() && best.ends.empty();
         const double within = last ? std::numeric_limits<double>::infinity() : patience / 8;
@@ -217,6 +219,12 @@ void Windows::find_reference(const Scene& scene, double wanted, double patience)
     reference_.settings = text_of(settings_of(best), best.way);
     for (std::size_t k = 0; k < windows_.size(); ++k)
         windows_[k].reference = std::move(best.ends[k]);
+}
+
+bool Windows::holds_whole_steps(double dt) const
+{
+    const double steps = length_ / dt;
+    return steps > 0.5 && std::abs(steps - std::round(steps)) < 1e-9 * steps;
 }
 
 std::size_t Windows::at_rest() const

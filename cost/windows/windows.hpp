@@ -18,7 +18,7 @@ namespace throng {
 /// How a scene is cut.
 ///
 ///   seconds  s of the scene's time, from its beginning, over which windows are spread
-///   length   s, at least, of each: rounded up to whole steps of twice the scene's dt
+///   length   s, at least, of each: rounded up to whole steps of the scene
 ///   count    of windows
 ///   threads  that run the steps; 0: all cores
 struct WindowPlan {
@@ -84,6 +84,8 @@ public:
     /// s
     double length() const { return length_; }
     const ReferenceInfo& reference() const { return reference_; }
+    /// Whether a step fits into them a whole number of times: others cannot be compared.
+    bool holds_whole_steps(double dt) const;
     /// Windows in which nothing moves by more than a micrometre.
     std::size_t at_rest() const;
 
@@ -103,7 +105,7 @@ private:
     void check() const;
 
     std::vector<Window> windows_;
-    double length_ = 0;
+    double length_ = 0, fine_ = 0;  // s; of the step that is halved first
     int threads_ = 0;
     bool touches_ = false;  // anything may touch anything
     ReferenceInfo reference_;

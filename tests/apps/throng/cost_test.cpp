@@ -60,7 +60,8 @@ TEST(Cost, RefusesWithWhatWasWanted)
     }
     const Outcome dials = run_throng({"cost", "stacks:10", "--dials", "dts"});
     EXPECT_EQ(dials.code, 2);
-    EXPECT_NE(dials.err.find("--dials: wanted dt, substeps, "), std::string::npos) << dials.err;
+    EXPECT_NE(dials.err.find("--dials: wanted none, dt, substeps, "), std::string::npos)
+        << dials.err;
 }
 
 }  // namespace

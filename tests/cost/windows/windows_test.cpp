@@ -76,7 +76,9 @@ TEST(Windows, LieWithinTheSecondsAndHoldWholeSteps)
     Scene scene = falling_ball();
     scene.settings.dt = 1.0 / 50;
     const Windows windows(scene, {1, 0.1, 8, 1}, 1, 1, {});
-    EXPECT_NEAR(windows.length(), 0.12, 1e-12);
+    EXPECT_NEAR(windows.length(), 0.1, 1e-12);
+    EXPECT_TRUE(windows.holds_whole_steps(1.0 / 100));
+    EXPECT_FALSE(windows.holds_whole_steps(1.0 / 25)) << "two and a half of them";
     for (std::size_t k = 0; k < windows.size(); ++k) {
         EXPECT_LE(windows[k].begin, 1);
         if (k > 0) {
