@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 
 namespace throng {
 namespace {
@@ -38,6 +40,7 @@ constexpr Option kOptions[] = {
     kSeedOption,
     kMeshOption,
     {"--out", "DIR", "folder of cost.json and cost.csv (default: cost-SCENE)"},
+    {"--resume", "", "takes what cost.json in that folder has of the same windows, and goes on"},
     {"--text", "", "draws the front in letters"},
     {"--quiet", "", "no progress and no warnings"},
 };
@@ -120,9 +123,19 @@ std::filesystem::path folder_asked(const Options& options, const SceneArgument& 
     return folder;
 }
 
+std::string written_before(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw BadInput("--resume: there is no " + in_quotes(path.string())
+                       + " to go on from; leave the option out the first time");
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
 // A third of the time is the reference's, by which all else is judged.
 void measure(const SceneArgument& argument,
              const Asked& asked,
+             const std::string& before,
              const Watch& watch,
              CostReport& report)
 {
@@ -135,7 +148,9 @@ void measure(const SceneArgument& argument,
     report.windows = windows.size();
     report.at_rest = windows.at_rest();
     report.reference = windows.reference();
+    report.state = windows.state_hash();
     SweepPlan plan = asked.sweep;
+    if (!before.empty()) plan.known = read_points(before, "cost.json", report.state);
     plan.patience = patience / 2;
     World world(scene, 1);
     report.found = sweep(scene, world.effects(), windows, plan, watch);
@@ -151,6 +166,8 @@ int run_cost(const Options& options)
     const SceneArgument argument = read_scene_argument(options);
     const bool quiet = options.has("--quiet");
     const std::filesystem::path folder = folder_asked(options, argument);
+    const std::string before =
+        options.has("--resume") ? written_before(folder / "cost.json") : std::string();
     OutputFile json("--out", (folder / "cost.json").string());
     OutputFile csv("--out", (folder / "cost.csv").string());
     note_interrupts();
@@ -170,7 +187,7 @@ int run_cost(const Options& options)
         NoteLine line(!quiet);
         const Watch watch{[&](const std::string& note) { line.show(note); }, interrupted};
         try {
-            measure(argument, asked, watch, report);
+            measure(argument, asked, before, watch, report);
         } catch (const Interrupted&) {
             return kInterrupted;
         }
@@ -182,7 +199,7 @@ int run_cost(const Options& options)
     write_cost_csv(report, csv.stream());
     csv.keep();
     std::cout << "all points: " << json.path() << ", " << csv.path() << std::endl;
-    return kDone;
+    return interrupted() ? kInterrupted : kDone;
 }
 
 }  // namespace

@@ -25,8 +25,12 @@ struct Machine {
     double load = 0;
 };
 
+/// What was measured, and on what.
+///
+///   state  fingerprint of the scene as it begins and of where the reference has the windows end:
+///          points of another are none of this report
 struct CostReport {
-    std::string scene;
+    std::string scene, state;
     std::uint64_t seed = 0;
     std::size_t bodies = 0;
     Machine machine;
@@ -61,5 +65,11 @@ void draw_front(const CostReport& report, std::ostream& out);
 /// A row a point, the names and units of the columns in the first.
 void write_cost_csv(const CostReport& report, std::ostream& out);
 void write_cost_json(const CostReport& report, std::ostream& out);
+
+/// The points of a report that was written before, if they are of that state; else none. Times of
+/// another machine are left, and measured anew.
+/// Throws SceneError, with line and column, where the text is no such report.
+std::vector<Point>
+read_points(const std::string& text, const std::string& file, const std::string& state);
 
 }  // namespace throng

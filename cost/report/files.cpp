@@ -26,6 +26,19 @@ std::string errors_json(const Point& point, double (Point::*error)(Measure) cons
     return errors.text();
 }
 
+// Of each window, of each measure: what averages are taken of.
+std::string squares_json(const Point& point)
+{
+    std::string windows;
+    for (const WindowErrors& window : point.errors) {
+        std::string squares;
+        for (const double square : window)
+            squares += (squares.empty() ? "" : ", ") + json_text(square);
+        windows += (windows.empty() ? "[" : ", [") + squares + ']';
+    }
+    return '[' + windows + ']';
+}
+
 std::string settings_json(const Changes& changes)
 {
     JsonMembers settings;
@@ -40,7 +53,7 @@ std::string point_json(const Point& point)
     if (!point.trouble.empty()) return members.add_text("trouble", point.trouble).text();
     return members.add("errors", errors_json(point, &Point::error))
         .add("errors_at_most", errors_json(point, &Point::error_at_most))
-        .add("windows", static_cast<double>(point.errors.size()))
+        .add("squares", squares_json(point))
         .add("time_ms",
              JsonMembers()
                  .add("median", point.time_ms.median)
@@ -127,6 +140,7 @@ void write_cost_json(const CostReport& report, std::ostream& out)
         .add("seconds", report.plan.seconds)
         .add_text("measure", info(report.measure).name)
         .add("units", units_json())
+        .add_text("state", report.state)
         .add("reference",
              JsonMembers()
                  .add_text("settings", report.reference.settings)

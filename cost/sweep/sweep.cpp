@@ -30,6 +30,18 @@ public:
 
     SweepResult run(const Candidates& candidates)
     {
+        try {
+            search(candidates);
+        } catch (const Interrupted&) {
+            found_.interrupted = true;
+        }
+        mark_front(found_.points, plan_.measure);
+        return std::move(found_);
+    }
+
+private:
+    void search(const Candidates& candidates)
+    {
         add({});
         for (const Changes& each : candidates.steps) add(each);
         steps_end_ = found_.points.size();
@@ -43,11 +55,7 @@ public:
         measure_left(windows_.size());
         leave_beaten(kBeatenBy[2]);
         time_left();
-        mark_front(found_.points, plan_.measure);
-        return std::move(found_);
     }
-
-private:
     bool is_late() const
     {
         return std::chrono::duration<double>(Clock::now() - begin_).count() > plan_.patience;
@@ -64,7 +72,10 @@ private:
             std::any_of(found_.points.begin(), found_.points.end(),
                         [&](const Point& point) { return point.changes == changes; });
         if (known) return;
-        found_.points.push_back({});
+        const auto before =
+            std::find_if(plan_.known.begin(), plan_.known.end(),
+                         [&](const Point& point) { return point.changes == changes; });
+        found_.points.push_back(before == plan_.known.end() ? Point{} : *before);
         found_.points.back().changes = changes;
         left_.push_back(found_.points.size() - 1);
     }

@@ -20,6 +20,7 @@ namespace throng {
 struct Point {
     Changes changes;
     std::vector<WindowErrors> errors;
+    /// Before what is left is timed in turn: of the windows, of which the least is taken.
     struct Time {
         double median = 0, least = 0, most = 0;
         std::size_t repeats = 0;
@@ -38,19 +39,22 @@ struct Point {
 ///   measure   by which the front is
 ///   patience  s of the clock after which nothing new is begun
 ///   repeats   of the times of what is on the front
+///   known     points that were measured before, on the same windows: not measured again
 struct SweepPlan {
     std::vector<std::string> dials;
     Measure measure = Measure::drift;
     double patience = 180;
     int repeats = 7;
+    std::vector<Point> known;
 };
 
 /// What was found; the first point is the scene as it is.
 ///
-///   cut_short  patience ended before all was tried that should have been
+///   cut_short    patience ended before all was tried that should have been
+///   interrupted  somebody ended it: what was found until then is kept
 struct SweepResult {
     std::vector<Point> points;
-    bool cut_short = false;
+    bool cut_short = false, interrupted = false;
 };
 
 /// Steps and substeps together and every other value by itself are measured on a few windows; what

@@ -5,8 +5,10 @@
 #include "throng/energy_ledger.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace throng {
@@ -219,6 +221,30 @@ void Windows::find_reference(const Scene& scene, double wanted, double patience)
     reference_.settings = text_of(settings_of(best), best.way);
     for (std::size_t k = 0; k < windows_.size(); ++k)
         windows_[k].reference = std::move(best.ends[k]);
+}
+
+std::string Windows::state_hash() const
+{
+    // FNV-1a, over the bytes of all places and velocities.
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    const auto add = [&](const Vec3& vector) {
+        for (int k = 0; k < 3; ++k) {
+            const auto bits = std::bit_cast<std::uint64_t>(vector[k]);
+            for (int shift = 0; shift < 64; shift += 8)
+                hash = (hash ^ ((bits >> shift) & 0xff)) * 0x100000001b3u;
+        }
+    };
+    for (const Window& window : windows_)
+        for (const BodyStates* states : {&window.start, &window.reference})
+            for (const BodyState& state : *states) {
+                add(state.center);
+                add(state.pose.orientation.vec());
+                add(state.velocity);
+                add(state.spin);
+            }
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
 }
 
 bool Windows::holds_whole_steps(double dt) const

@@ -84,6 +84,8 @@ public:
     /// s
     double length() const { return length_; }
     const ReferenceInfo& reference() const { return reference_; }
+    /// Fingerprint of where they begin and, by the reference, end: 16 hex digits.
+    std::string state_hash() const;
     /// Whether a step fits into them a whole number of times: others cannot be compared.
     bool holds_whole_steps(double dt) const;
     /// Windows in which nothing moves by more than a micrometre.

@@ -29,7 +29,7 @@ PLACEHOLDERS = {"SCENE": "pile:20", "FILE": "out.json", "METHOD": "gjk", "WAY": 
                 "STEPS": "3", "NAME": "pile", "DIAL": "substeps", "VALUE": "2", "COMMAND": "run",
                 "N": "3"}
 # Options that stand alone; all others have a value behind them.
-FLAGS = {"--schema", "--quiet", "--energy", "--help", "--version"}
+FLAGS = {"--schema", "--resume", "--text", "--quiet", "--energy", "--help", "--version"}
 # Options that are made less: at most so much, and added where they are not there.
 LESS = {"run": {"--steps": 3}, "explain": {}, "scene": {}, "cases": {},
         "cost": {"--windows": 2, "--seconds": 1},

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
+#include <thread>
+
 namespace throng {
 namespace {
 
@@ -41,6 +45,44 @@ TEST(Cost, MarksWhatOnlyComesNear)
               std::string::npos)
         << said.out;
     EXPECT_NE(folder.read("found/cost.json").find("\"meets\": false"), std::string::npos);
+}
+
+TEST(Cost, ResumesWhatItHasMeasured)
+{
+    const TestFolder folder;
+    ASSERT_EQ(run_throng(quick(folder, {})).code, 0);
+    const std::string first = folder.read("found/cost.json");
+    const Outcome again = run_throng(quick(folder, {"--resume"}));
+    ASSERT_EQ(again.code, 0) << again.err;
+    const auto squares = [](const std::string& json) {
+        const auto at = json.find("\"squares\": ");
+        return json.substr(at, json.find("]]", at) - at);
+    };
+    EXPECT_EQ(squares(first), squares(folder.read("found/cost.json")));
+
+    folder.write("found/cost.json", "{\"points\": 3}");
+    const Outcome broken = run_throng(quick(folder, {"--resume"}));
+    EXPECT_EQ(broken.code, 2);
+    EXPECT_NE(broken.err.find("cost.json:1:1: error: scene: wanted the key state"), std::string::npos)
+        << broken.err;
+    const TestFolder empty;
+    const Outcome none = run_throng(quick(empty, {"--resume"}));
+    EXPECT_EQ(none.code, 2);
+    EXPECT_NE(none.err.find("--resume: there is no "), std::string::npos) << none.err;
+}
+
+TEST(Cost, AnInterruptKeepsWhatWasFound)
+{
+    const TestFolder folder;
+    const Outcome said = run_throng(
+        {"cost", "stacks:20", "--windows", "24", "--out", folder / "found"}, [](pid_t process) {
+            std::this_thread::sleep_for(std::chrono::seconds(2));
+            ::kill(process, SIGINT);
+        });
+    EXPECT_EQ(said.code, 130);
+    if (said.out.empty()) return;  // the reference was not there yet
+    EXPECT_NE(said.out.find("doubt: interrupted"), std::string::npos) << said.out;
+    EXPECT_NE(folder.read("found/cost.json").find("\"points\": "), std::string::npos);
 }
 
 TEST(Cost, RefusesWithWhatWasWanted)
