@@ -107,7 +107,7 @@ struct Spin {
         weigh();
         const L squared = min(went / momentum, had / energy);
         const L scale = select(uneven > L(0.0), sqrt(squared), L(1.0));
-        for (int k = 0; k < 3; ++k) w[k] = w[k] * scale;
+        for (L& speed : w) speed = speed * scale;
         square();
         energy = energy * squared;
         momentum = momentum * squared;

@@ -263,10 +263,12 @@ bool encloses_volume(const Simplex& simplex)
     return std::abs(x.cross(y).dot(z)) > kVolume * x.norm() * y.norm() * z.norm();
 }
 
-// Points of both surfaces below 0's shadow on a face.
+// The corners of a face, and the points of both surfaces below 0's shadow on it.
 template <class Grown>
 void place_witness(const Grown& polytope, const Face& face, PenetrationDepth& result)
 {
+    result.has_face = true;
+    for (std::size_t i = 0; i < 3; ++i) result.face[i] = polytope.corner(face.corners[i]);
     const MinkowskiVertex& a = polytope.corner(face.corners[0]);
     const MinkowskiVertex& b = polytope.corner(face.corners[1]);
     const MinkowskiVertex& c = polytope.corner(face.corners[2]);
@@ -326,11 +328,7 @@ PenetrationDepth search(const ConvexCorePair& pair, Furthest& furthest, const Si
         if (nearest < 0) break;
         const Face face = polytope.face(nearest);
         const MinkowskiVertex further = furthest(face.normal);
-        if (keep(face.normal, further)) {
-            place_witness(polytope, face, result);
-            result.has_face = true;
-            for (std::size_t i = 0; i < 3; ++i) result.face[i] = polytope.corner(face.corners[i]);
-        }
+        if (keep(face.normal, further)) place_witness(polytope, face, result);
         // No direction parts the cores by less than the nearest face's offset.
         least = result.depth - face.offset <= tolerance
             || face.normal.dot(further.point) - face.offset <= tolerance;

@@ -15,8 +15,9 @@ struct Placed {
     Placed(const PolytopeView& shape, const Pose& pose) : edges(shape.edges)
     {
         const Mat3 turn = pose.orientation.normalized().toRotationMatrix();
-        for (const Vec3& vertex : shape.vertices) vertices.push_back(turn * vertex + pose.position);
-        for (const Vec3& normal : shape.normals) normals.push_back(turn * normal);
+        for (const Vec3& vertex : shape.vertices)
+            vertices.emplace_back(turn * vertex + pose.position);
+        for (const Vec3& normal : shape.normals) normals.emplace_back(turn * normal);
     }
     Vec3 along(const Hull::Edge& edge) const { return vertices[edge.to] - vertices[edge.from]; }
 };

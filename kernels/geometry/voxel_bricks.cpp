@@ -1,6 +1,7 @@
 #include "kernels/geometry/voxel_bricks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace throng {
@@ -11,6 +12,21 @@ constexpr int kCells = VoxelBricks::kCells, kSide = VoxelBricks::kSide;
 std::size_t value_at(int x, int y, int z)
 {
     return static_cast<std::size_t>((z * kSide + y) * kSide + x);
+}
+
+// The values of the brick whose first one is `first`, as the numbers of the grid go.
+void bake_values(const VoxelBricks& bricks,
+                 const std::array<int, 3>& first,
+                 const std::function<double(const Vec3&)>& distance,
+                 std::vector<float>& values)
+{
+    for (int z = 0; z < kSide; ++z)
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const Vec3 at =
+                    bricks.origin + bricks.voxel * Vec3(first[0] + x, first[1] + y, first[2] + z);
+                values[value_at(x, y, z)] = static_cast<float>(std::min(distance(at), bricks.band));
+            }
 }
 
 }  // namespace
@@ -39,14 +55,7 @@ VoxelBricks bake_bricks(const Box3& box,
     for (int bz = 0; bz < bricks.bricks[2]; ++bz)
         for (int by = 0; by < bricks.bricks[1]; ++by)
             for (int bx = 0; bx < bricks.bricks[0]; ++bx) {
-                for (int z = 0; z < kSide; ++z)
-                    for (int y = 0; y < kSide; ++y)
-                        for (int x = 0; x < kSide; ++x) {
-                            const Vec3 at = bricks.origin
-                                + voxel * Vec3(bx * kCells + x, by * kCells + y, bz * kCells + z);
-                            values[value_at(x, y, z)] =
-                                static_cast<float>(std::min(distance(at), band));
-                        }
+                bake_values(bricks, {bx * kCells, by * kCells, bz * kCells}, distance, values);
                 const bool far =
                     *std::min_element(values.begin(), values.end()) >= static_cast<float>(band);
                 const std::size_t stored = bricks.values.size() / VoxelBricks::kValues;

@@ -34,19 +34,18 @@ struct FieldSample {
 template <class Real>
 FieldSample<Real> sample_bricks(const VoxelBricks& bricks, const Vec3T<Real>& point);
 
-/// Many points, as many side by side as the machine's registers hold: the bits of
-/// sample_bricks<float>() at every width. What comes out may not overlap what goes in.
+/// Many points and what comes of them: spans of one length.
 ///
 ///   x, y, z     [points] m
 ///   distance    [points] m
 ///   gx, gy, gz  [points] gradient
-void sample_many(const VoxelBricks& bricks,
-                 std::span<const float> x,
-                 std::span<const float> y,
-                 std::span<const float> z,
-                 std::span<float> distance,
-                 std::span<float> gx,
-                 std::span<float> gy,
-                 std::span<float> gz);
+struct SampleSpans {
+    std::span<const float> x, y, z;
+    std::span<float> distance, gx, gy, gz;
+};
+
+/// Many points, as many side by side as the machine's registers hold: the bits of
+/// sample_bricks<float>() at every width. What comes out may not overlap what goes in.
+void sample_many(const VoxelBricks& bricks, const SampleSpans& samples);
 
 }  // namespace throng

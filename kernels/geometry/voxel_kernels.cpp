@@ -22,15 +22,9 @@ BrickView view_of(const VoxelBricks& bricks)
     return view;
 }
 
-void sample_many(const VoxelBricks& bricks,
-                 std::span<const float> x,
-                 std::span<const float> y,
-                 std::span<const float> z,
-                 std::span<float> distance,
-                 std::span<float> gx,
-                 std::span<float> gy,
-                 std::span<float> gz)
+void sample_many(const VoxelBricks& bricks, const SampleSpans& samples)
 {
+    const auto& [x, y, z, distance, gx, gy, gz] = samples;
     const std::size_t count = x.size();
     THRONG_CHECK(y.size() == count && z.size() == count && distance.size() == count
                      && gx.size() == count && gy.size() == count && gz.size() == count,

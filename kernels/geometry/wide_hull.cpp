@@ -59,6 +59,43 @@ void fill_indices(const Hull& hull, std::vector<std::uint16_t>& indices)
     indices.insert(indices.end(), around.begin(), around.end());
 }
 
+// Of each face the cosine of half the widest angle to a neighbor, a little less of it.
+std::vector<double> leans_of(const Hull& hull)
+{
+    std::vector<double> lean(hull.normals.size(), 1);
+    for (const Hull::Edge& edge : hull.edges) {
+        const double cosine = hull.normals[edge.left].dot(hull.normals[edge.right]);
+        const double half = std::sqrt(std::max(0.0, (1 + cosine) / 2)) * (1 - 1e-5);
+        lean[edge.left] = std::min(lean[edge.left], half);
+        lean[edge.right] = std::min(lean[edge.right], half);
+    }
+    return lean;
+}
+
+void fill_numbers(const Hull& hull, WideHull& wide)
+{
+    wide.numbers.resize(static_cast<std::size_t>(
+        WidePolytope::count_of_numbers(wide.vertices, wide.faces) / kWideGroup));
+    float* at = wide.numbers.data()->at;
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < WidePolytope::whole(wide.vertices); ++i) {
+            const int vertex = i < wide.vertices ? i : 0;
+            const Vec3 from_center = hull.vertices[static_cast<std::size_t>(vertex)] - hull.center;
+            *at++ = static_cast<float>(from_center[k]);
+        }
+    const std::vector<double> lean = leans_of(hull);
+    for (int k = 0; k < 5; ++k)
+        for (int i = 0; i < WidePolytope::whole(wide.faces); ++i) {
+            const auto face = static_cast<std::size_t>(i);
+            double number = k == 3 ? std::numeric_limits<float>::max() : k == 4 ? 1 : 0;
+            if (i < wide.faces && k < 3) number = hull.normals[face][k];
+            if (i < wide.faces && k == 3)
+                number = hull.offsets[face] - hull.normals[face].dot(hull.center);
+            if (i < wide.faces && k == 4) number = lean[face];
+            *at++ = static_cast<float>(number);
+        }
+}
+
 }  // namespace
 
 bool is_wide(double inner_radius, double outer_radius)
@@ -86,33 +123,7 @@ void widen(Hull& hull)
                               edge.right});
     }
     fill_indices(hull, wide.indices);
-
-    std::vector<double> lean(hull.normals.size(), 1);
-    for (const Hull::Edge& edge : hull.edges) {
-        const double cosine = hull.normals[edge.left].dot(hull.normals[edge.right]);
-        const double half = std::sqrt(std::max(0.0, (1 + cosine) / 2)) * (1 - 1e-5);
-        lean[edge.left] = std::min(lean[edge.left], half);
-        lean[edge.right] = std::min(lean[edge.right], half);
-    }
-    wide.numbers.resize(static_cast<std::size_t>(
-        WidePolytope::count_of_numbers(wide.vertices, wide.faces) / kWideGroup));
-    float* at = wide.numbers.data()->at;
-    for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < WidePolytope::whole(wide.vertices); ++i) {
-            const int vertex = i < wide.vertices ? i : 0;
-            const Vec3 from_center = hull.vertices[static_cast<std::size_t>(vertex)] - hull.center;
-            *at++ = static_cast<float>(from_center[k]);
-        }
-    for (int k = 0; k < 5; ++k)
-        for (int i = 0; i < WidePolytope::whole(wide.faces); ++i) {
-            const auto face = static_cast<std::size_t>(i);
-            double number = k == 3 ? std::numeric_limits<float>::max() : k == 4 ? 1 : 0;
-            if (i < wide.faces && k < 3) number = hull.normals[face][k];
-            if (i < wide.faces && k == 3)
-                number = hull.offsets[face] - hull.normals[face].dot(hull.center);
-            if (i < wide.faces && k == 4) number = lean[face];
-            *at++ = static_cast<float>(number);
-        }
+    fill_numbers(hull, wide);
 }
 
 }  // namespace throng

@@ -228,6 +228,16 @@ void gather_8(const T* base, int stride, const std::int32_t* index, Wide<T, W> (
     gather_8<T, W>([=](int i) { return base + std::int64_t{stride} * index[i]; }, out);
 }
 
+/// scatter_8, number by number.
+template <class T, int W>
+void scatter_8_singly(
+    const Wide<T, W> (&in)[8], T* base, int stride, const std::int32_t* index, unsigned writes)
+{
+    for (int i = 0; i < W; ++i)
+        if ((writes >> i & 1u) != 0)
+            for (int k = 0; k < 8; ++k) base[std::int64_t{stride} * index[i] + k] = in[k].get(i);
+}
+
 /// The reverse of gather_8, for the lanes whose bit in `writes` is set.
 template <class T, int W>
 void scatter_8(
@@ -255,10 +265,7 @@ void scatter_8(
             __builtin_memcpy(base + std::int64_t{stride} * index[i], &row, sizeof(V8));
         }
     } else {
-        for (int i = 0; i < W; ++i)
-            if ((writes >> i & 1u) != 0)
-                for (int k = 0; k < 8; ++k)
-                    base[std::int64_t{stride} * index[i] + k] = in[k].get(i);
+        scatter_8_singly(in, base, stride, index, writes);
     }
 }
 

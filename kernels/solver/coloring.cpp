@@ -97,9 +97,9 @@ void ConstraintGraph::gather_slices(const Islands& islands,
         slice.contacts = batch.contacts;
         if (batch.wide)
             splitter_.split(
-                std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic),
-                std::span(layout.contacts).subspan(begin, batch.contacts), active, states,
-                positions, slice, split_rule, layout.slices);
+                {std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic),
+                 std::span(layout.contacts).subspan(begin, batch.contacts), slice},
+                active, states, positions, split_rule, layout.slices);
         else
             layout.slices.push_back(slice);
         batch.slices = static_cast<std::uint32_t>(layout.slices.size()) - batch.first_slice;
@@ -159,6 +159,11 @@ void ConstraintGraph::color_contacts(const ActiveContacts& active,
     }
     keep_each_once(plan.kinematic);
     keep_each_once(plan.conveyors);
+    count_blocks(plan);
+}
+
+void ConstraintGraph::count_blocks(Plan& plan)
+{
     plan.blocks = plan.colors = 0;
     for (std::uint32_t color = 0; color <= kColors; ++color) {
         std::uint32_t held = 0;

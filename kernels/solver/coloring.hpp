@@ -54,6 +54,7 @@ private:
                         const Layout& layout,
                         const Slice& slice,
                         Plan& plan);
+    static void count_blocks(Plan& plan);
     void lay_out_colors(Layout& layout);
     void place(const ActiveContacts& active,
                const BodyStates& states,

@@ -110,24 +110,23 @@ void IslandSplitter::put_in_order(std::vector<std::uint32_t>& bin_of_item,
     std::copy(ordered_.begin(), ordered_.end(), items.begin());
 }
 
-void IslandSplitter::split(std::span<std::uint32_t> bodies,
-                           std::span<std::uint32_t> contacts,
+void IslandSplitter::split(const Island& island,
                            const ActiveContacts& active,
                            const BodyStates& states,
                            std::span<const Vec3> positions,
-                           Slice first,
                            const SplitRule& rule,
                            std::vector<Slice>& slices)
 {
+    const auto& [bodies, contacts, first] = island;
     std::size_t count = 1;
     if (contacts.size() >= rule.from && bin_bodies(bodies, positions)) {
         bin_contacts(contacts, active, states);
         count = choose_slices(rule.slice);
     }
     if (count == 1) {
-        first.dynamic = static_cast<std::uint32_t>(bodies.size());
-        first.contacts = static_cast<std::uint32_t>(contacts.size());
-        slices.push_back(first);
+        Slice& whole = slices.emplace_back(first);
+        whole.dynamic = static_cast<std::uint32_t>(bodies.size());
+        whole.contacts = static_cast<std::uint32_t>(contacts.size());
         return;
     }
     put_in_order(of_body_, count, bodies, body_begin_);

@@ -28,18 +28,22 @@ struct SplitRule {
 
 class IslandSplitter {
 public:
-    /// Cuts an island and appends its slices, as far as bodies and contacts go; one slice of the
-    /// whole where there is nothing to cut. Positions and ids alone decide.
+    /// An island to cut.
     ///
     ///   bodies    of the island, ascending; put in order of slices
     ///   contacts  of the island, places in `active`, ascending; put in order of slices
     ///   first     solver body and contact at which the island begins
-    void split(std::span<std::uint32_t> bodies,
-               std::span<std::uint32_t> contacts,
+    struct Island {
+        std::span<std::uint32_t> bodies, contacts;
+        Slice first;
+    };
+
+    /// Cuts an island and appends its slices, as far as bodies and contacts go; one slice of the
+    /// whole where there is nothing to cut. Positions and ids alone decide.
+    void split(const Island& island,
                const ActiveContacts& active,
                const BodyStates& states,
                std::span<const Vec3> positions,
-               Slice first,
                const SplitRule& rule,
                std::vector<Slice>& slices);
 

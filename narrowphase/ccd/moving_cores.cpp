@@ -191,17 +191,16 @@ void visit_triangles_in_way(const Mesh& mesh,
                             const MovingShape& on,
                             const ConvexCore<double>& core,
                             const MovingShape& other,
-                            double begin,
-                            double end,
-                            double margin,
+                            const Approach& approach,
                             const std::function<void(std::uint32_t)>& visit)
 {
     const auto seen_at = [&](double time) {
         return (on.trajectory.at(time) * on.local).to_local(other.trajectory.at(time).position);
     };
-    double radius = other.local.position.norm() + extent_of(core) + core.convex_radius + margin;
-    const Vec3 from = seen_at(begin);
-    Vec3 way = seen_at(end) - from;
+    double radius =
+        other.local.position.norm() + extent_of(core) + core.convex_radius + approach.margin;
+    const Vec3 from = seen_at(approach.begin);
+    Vec3 way = seen_at(approach.end) - from;
     if (!on.trajectory.turn.isZero(0)) {
         // As far as the mesh may turn under it, it may be anywhere.
         const double most = (other.trajectory.begin.position - on.trajectory.begin.position).norm()

@@ -88,15 +88,18 @@ private:
     double rounding_;
 };
 
+/// Part of a step, and how near counts as near.
+struct Approach {
+    double begin = 0, end = 0, margin = 0;
+};
+
 /// Visits the triangles of a mesh that a core may come near while the two are on their ways, in the
 /// order of the tree.
 void visit_triangles_in_way(const Mesh& mesh,
                             const MovingShape& on,
                             const ConvexCore<double>& core,
                             const MovingShape& other,
-                            double begin,
-                            double end,
-                            double margin,
+                            const Approach& approach,
                             const std::function<void(std::uint32_t)>& visit);
 
 }  // namespace throng

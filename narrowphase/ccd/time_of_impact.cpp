@@ -83,7 +83,8 @@ Impact impact_with_mesh(const Mesh& mesh,
 {
     Impact first = at_end(end, 0);
     int evaluations = 0;
-    visit_triangles_in_way(mesh, on, core, other, begin, end, rule.close, [&](std::uint32_t at) {
+    const Approach approach{begin, end, rule.close};
+    visit_triangles_in_way(mesh, on, core, other, approach, [&](std::uint32_t at) {
         const auto& [u, v, w] = mesh.triangles[at];
         const Vec3 corners[] = {mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]};
         const MovingCores cores(convex_core_of_points(std::span<const Vec3>(corners)), on, core,

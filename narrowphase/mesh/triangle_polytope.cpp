@@ -117,16 +117,18 @@ void keep_line(const PolytopePair& pair, const Vec3& normal, PolytopePoints& fou
     found.count = kept;
 }
 
+// A triangle and a polytope, as both of them see it, and the triangle's front between them.
+struct FrontedPair {
+    const MeshTriangle& triangle;
+    const PolytopePair &pair, &turned;
+    const FaceAxis& front;
+    double speculative_margin, bias;
+};
+
 // Points along the face that leads, of the triangle or of the polytope.
-void lay_face(const MeshTriangle& triangle,
-              const PolytopePair& pair,
-              const PolytopePair& turned,
-              const FaceAxis& front,
-              const TriangleAxis& best,
-              double speculative_margin,
-              double bias,
-              LocalManifold<double>& out)
+void lay_face(const FrontedPair& fronted, const TriangleAxis& best, LocalManifold<double>& out)
 {
+    const auto& [triangle, pair, turned, front, speculative_margin, bias] = fronted;
     const bool by_front = best.kind == TriangleAxis::Kind::front;
     PolytopePoints found;
     clip_faces(by_front ? pair : turned, by_front ? front : best.face, speculative_margin, bias,
@@ -214,15 +216,11 @@ struct OutwardEdges {
 };
 
 // By what tells them apart best, or least of all overlaps.
-void collide_along_best(const MeshTriangle& triangle,
+void collide_along_best(const FrontedPair& fronted,
                         const TrianglePolytope& flat,
-                        const PolytopePair& pair,
-                        const PolytopePair& turned,
-                        const FaceAxis& front,
-                        double speculative_margin,
-                        double bias,
                         LocalManifold<double>& out)
 {
+    const auto& [triangle, pair, turned, front, speculative_margin, bias] = fronted;
     TriangleAxis best;
     best.separation = best.apart = front.separation;
     if (!within_margin(triangle, pair, turned, speculative_margin, bias, best)) return;
@@ -242,7 +240,7 @@ void collide_along_best(const MeshTriangle& triangle,
             cross_edges(outward.pair, edge, speculative_margin + bias, out);
         return;
     }
-    lay_face(triangle, pair, turned, front, best, speculative_margin, bias, out);
+    lay_face(fronted, best, out);
     // What leads by its bias alone may have nothing over it.
     if (out.count > 0 || best.separation >= 0 || parted) return;
     const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
@@ -267,13 +265,14 @@ void collide_triangle_polytope(const MeshTriangle& triangle,
     if (front.separation > speculative_margin) return;
     const double bias = 1e-3 * shape.inner_radius;
     const PolytopePair turned = pair.mirrored();
-    collide_along_best(triangle, flat, pair, turned, front, speculative_margin, bias, out);
+    const FrontedPair fronted{triangle, pair, turned, front, speculative_margin, bias};
+    collide_along_best(fronted, flat, out);
     if (!through || out.count > 0) return;
     // Pressed all but out of the triangle on its other side it goes back the way it came; by its
     // deepest corner where its lowest side is over another, for which this one pushes too.
     TriangleAxis back;
     back.separation = back.apart = front.separation;
-    lay_face(triangle, pair, turned, front, back, speculative_margin, bias, out);
+    lay_face(fronted, back, out);
     if (out.count > 0) return;
     const Vec3 deepest = pair.turn * shape.vertices[front.vertex] + pair.shift;
     out.normal = triangle.normal;

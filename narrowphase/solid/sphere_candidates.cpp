@@ -30,6 +30,13 @@ std::uint32_t feature_of(int level, std::uint64_t place)
     return static_cast<std::uint32_t>(place) | static_cast<std::uint32_t>(level % 8) << kBits;
 }
 
+template <class Scratch>
+Scratch& of_this_thread()
+{
+    thread_local Scratch scratch;
+    return scratch;
+}
+
 // ---- two trees ----
 
 struct NodePair {
@@ -49,6 +56,11 @@ struct Partner {
     }
 };
 
+struct TwoTreesScratch {
+    std::vector<NodePair> pairs, half, next;
+    std::vector<Partner> partners_a, partners_b;
+};
+
 class TwoTrees {
 public:
     TwoTrees(const SphereTree& a,
@@ -62,10 +74,11 @@ public:
     SphereAnswer find(const SphereBudget& budget, std::vector<ContactCandidate>& candidates)
     {
         const int last = static_cast<int>(std::max(a_.levels.size(), b_.levels.size())) - 1;
-        pairs_.clear();
+        scratch_.pairs.clear();
         for (std::uint32_t i = 0; i < a_.levels[0].nodes.size(); ++i)
             for (std::uint32_t k = 0; k < b_.levels[0].nodes.size(); ++k)
-                if (meets(a_.levels[0].nodes[i], b_.levels[0].nodes[k])) pairs_.push_back({i, k});
+                if (meets(a_.levels[0].nodes[i], b_.levels[0].nodes[k]))
+                    scratch_.pairs.push_back({i, k});
         answer_.tests = a_.levels[0].nodes.size() * b_.levels[0].nodes.size();
         while (answer_.level < std::min(last, budget.level) && error() > budget.error) {
             if (!descend(budget.tests)) break;
@@ -111,54 +124,67 @@ private:
     bool descend(std::size_t most)
     {
         std::size_t tests = answer_.tests;
+        if (!descend_a(most, tests) || !descend_b(most, tests)) return false;
+        scratch_.pairs.swap(scratch_.next);
+        answer_.tests = tests;
+        return true;
+    }
+
+    bool descend_a(std::size_t most, std::size_t& tests)
+    {
+        std::vector<NodePair>& half = scratch_.half;
+        half = scratch_.pairs;
+        if (!goes_beyond(a_, answer_.level)) return true;
+        const Nodes& below = at_level(a_, answer_.level + 1).nodes;
+        half.clear();
+        for (const NodePair& pair : scratch_.pairs) {
+            const Node& parent = nodes_a()[pair.a];
+            tests += parent.count;
+            if (tests > most) return false;
+            for (std::uint32_t i = parent.first; i < parent.first + parent.count; ++i)
+                if (meets(below[i], nodes_b()[pair.b])) half.push_back({i, pair.b});
+        }
+        return true;
+    }
+
+    bool descend_b(std::size_t most, std::size_t& tests)
+    {
+        std::vector<NodePair>& next = scratch_.next;
+        next = scratch_.half;
+        if (!goes_beyond(b_, answer_.level)) return true;
         const Nodes& below_a = at_level(a_, answer_.level + 1).nodes;
         const Nodes& below_b = at_level(b_, answer_.level + 1).nodes;
-        half_ = pairs_;
-        if (goes_beyond(a_, answer_.level)) {
-            half_.clear();
-            for (const NodePair& pair : pairs_) {
-                const Node& parent = nodes_a()[pair.a];
-                tests += parent.count;
-                if (tests > most) return false;
-                for (std::uint32_t i = parent.first; i < parent.first + parent.count; ++i)
-                    if (meets(below_a[i], nodes_b()[pair.b])) half_.push_back({i, pair.b});
-            }
+        next.clear();
+        for (const NodePair& pair : scratch_.half) {
+            const Node& parent = nodes_b()[pair.b];
+            tests += parent.count;
+            if (tests > most) return false;
+            for (std::uint32_t k = parent.first; k < parent.first + parent.count; ++k)
+                if (meets(below_a[pair.a], below_b[k])) next.push_back({pair.a, k});
         }
-        next_ = half_;
-        if (goes_beyond(b_, answer_.level)) {
-            next_.clear();
-            for (const NodePair& pair : half_) {
-                const Node& parent = nodes_b()[pair.b];
-                tests += parent.count;
-                if (tests > most) return false;
-                for (std::uint32_t k = parent.first; k < parent.first + parent.count; ++k)
-                    if (meets(below_a[pair.a], below_b[k])) next_.push_back({pair.a, k});
-            }
-        }
-        pairs_.swap(next_);
-        answer_.tests = tests;
         return true;
     }
 
     void tell(std::vector<ContactCandidate>& candidates)
     {
-        partners_a_.assign(nodes_a().size(), Partner{});
-        partners_b_.assign(nodes_b().size(), Partner{});
+        scratch_.partners_a.assign(nodes_a().size(), Partner{});
+        scratch_.partners_b.assign(nodes_b().size(), Partner{});
         double least = speculative_margin_;
-        for (const NodePair& pair : pairs_) {
+        for (const NodePair& pair : scratch_.pairs) {
             const Node &a = nodes_a()[pair.a], &b = nodes_b()[pair.b];
             const double separation =
                 (center_b(b) - center_a(a)).norm() - double{a.radius} - double{b.radius};
             least = std::min(least, separation);
-            partners_a_[pair.a].offer(pair.b, separation);
-            partners_b_[pair.b].offer(pair.a, separation);
+            scratch_.partners_a[pair.a].offer(pair.b, separation);
+            scratch_.partners_b[pair.b].offer(pair.a, separation);
         }
         answer_.apart = least - answer_.error;
-        for (std::uint32_t i = 0; i < partners_a_.size(); ++i)
-            if (partners_a_[i].other != kNone) add(i, partners_a_[i].other, candidates);
-        for (std::uint32_t k = 0; k < partners_b_.size(); ++k) {
-            const std::uint32_t i = partners_b_[k].other;
-            if (i != kNone && partners_a_[i].other != k) add(i, k, candidates);
+        for (std::uint32_t i = 0; i < scratch_.partners_a.size(); ++i)
+            if (scratch_.partners_a[i].other != kNone)
+                add(i, scratch_.partners_a[i].other, candidates);
+        for (std::uint32_t k = 0; k < scratch_.partners_b.size(); ++k) {
+            const std::uint32_t i = scratch_.partners_b[k].other;
+            if (i != kNone && scratch_.partners_a[i].other != k) add(i, k, candidates);
         }
     }
 
@@ -179,8 +205,7 @@ private:
     const Mat3 turn_;
     const double speculative_margin_;
     SphereAnswer answer_;
-    inline static thread_local std::vector<NodePair> pairs_, half_, next_;
-    inline static thread_local std::vector<Partner> partners_a_, partners_b_;
+    TwoTreesScratch& scratch_ = of_this_thread<TwoTreesScratch>();
 };
 
 // ---- a tree and another shape ----
@@ -258,6 +283,10 @@ private:
     PairCache cache_;
 };
 
+struct OneTreeScratch {
+    std::vector<std::uint32_t> nodes, next, triangles;
+};
+
 class OneTree {
 public:
     OneTree(const SphereTree& tree,
@@ -272,9 +301,9 @@ public:
     SphereAnswer find(const SphereBudget& budget, std::vector<ContactCandidate>& candidates)
     {
         const int last = static_cast<int>(tree_.levels.size()) - 1;
-        nodes_.clear();
+        scratch_.nodes.clear();
         for (std::uint32_t i = 0; i < nodes().size(); ++i)
-            if (meets(nodes()[i])) nodes_.push_back(i);
+            if (meets(nodes()[i])) scratch_.nodes.push_back(i);
         answer_.tests = nodes().size();
         while (answer_.level < std::min(last, budget.level) && error() > budget.error) {
             if (!descend(budget.tests)) break;
@@ -282,7 +311,7 @@ public:
         }
         answer_.error = error();
         answer_.apart = speculative_margin_;
-        for (const std::uint32_t i : nodes_) tell(i, candidates);
+        for (const std::uint32_t i : scratch_.nodes) tell(i, candidates);
         answer_.apart -= answer_.error;
         return answer_;
     }
@@ -301,16 +330,16 @@ private:
 
     bool descend(std::size_t most)
     {
-        next_.clear();
+        scratch_.next.clear();
         std::size_t tests = answer_.tests;
-        for (const std::uint32_t which : nodes_) {
+        for (const std::uint32_t which : scratch_.nodes) {
             const Node& parent = nodes()[which];
             tests += parent.count;
             if (tests > most) return false;
             for (std::uint32_t i = parent.first; i < parent.first + parent.count; ++i)
-                if (meets(tree_.levels[level() + 1].nodes[i])) next_.push_back(i);
+                if (meets(tree_.levels[level() + 1].nodes[i])) scratch_.next.push_back(i);
         }
-        nodes_.swap(next_);
+        scratch_.nodes.swap(scratch_.next);
         answer_.tests = tests;
         return true;
     }
@@ -322,7 +351,7 @@ private:
             tell_triangles(i, candidates);
             return;
         }
-        const double radius = double{node.radius};
+        const auto radius = double{node.radius};
         const Outside outside = other_.look(place(node), radius + speculative_margin_);
         const double separation = outside.distance - radius;
         answer_.apart = std::min(answer_.apart, separation);
@@ -337,14 +366,14 @@ private:
         const Mesh& mesh = shapes_.meshes[ref_.index];
         const Node& node = nodes()[i];
         const Vec3 center = place(node);
-        const double radius = double{node.radius};
+        const auto radius = double{node.radius};
         const double nearest = nearest_on_mesh(mesh, center, radius + speculative_margin_).distance;
         answer_.apart = std::min(answer_.apart, nearest - radius);
         const Vec3 grown = Vec3::Constant(radius + speculative_margin_);
-        triangles_.clear();
-        find_triangles(mesh, {center - grown, center + grown}, triangles_);
+        scratch_.triangles.clear();
+        find_triangles(mesh, {center - grown, center + grown}, scratch_.triangles);
         LocalManifold<double> found;
-        for (const std::uint32_t triangle : triangles_) {
+        for (const std::uint32_t triangle : scratch_.triangles) {
             collide_triangle_ball(MeshTriangle(mesh, triangle), center, radius, speculative_margin_,
                                   found);
             if (found.count == 0) continue;
@@ -361,7 +390,7 @@ private:
     const Pose& pose_;
     const double speculative_margin_;
     SphereAnswer answer_;
-    inline static thread_local std::vector<std::uint32_t> nodes_, next_, triangles_;
+    OneTreeScratch& scratch_ = of_this_thread<OneTreeScratch>();
 };
 
 }  // namespace

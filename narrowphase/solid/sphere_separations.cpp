@@ -85,7 +85,7 @@ void find_on_mesh(const Mesh& mesh,
                   NearestSeparations& separations)
 {
     const Vec3 center = mesh_pose.to_local(center_of(node));
-    const double radius = double{node.radius};
+    const auto radius = double{node.radius};
     const Vec3 wide = Vec3::Constant(radius + speculative_margin);
     thread_local std::vector<std::uint32_t> triangles;
     triangles.clear();

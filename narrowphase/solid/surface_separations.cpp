@@ -244,6 +244,7 @@ void append_spread(const std::vector<Manifold>& found, std::vector<Manifold>& ou
         return;
     }
     std::vector<Manifold::Point> places;
+    places.reserve(found.size());
     for (const Manifold& one : found) places.push_back(one.points[0]);
     std::vector<std::size_t> taken;
     take_between(places, 0, 0, kMostSurfaceSeparations, taken);
@@ -271,6 +272,7 @@ bool append_deep(const PairInput<double>& in, double most, std::vector<Manifold>
     std::vector<PatchManifold> patches;
     collide_solid({shapes, solid, other, other_in_solid, speculative_margin}, patches);
     std::vector<Manifold> found;
+    found.reserve(patches.size());
     for (const PatchManifold& patch : patches) found.push_back(patch.manifold);
     if (!(least_of(found) < -most)) return false;
     out.insert(out.end(), found.begin(), found.end());

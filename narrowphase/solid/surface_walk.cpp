@@ -91,8 +91,9 @@ void FieldSide::sample(LeafSample<float>& leaf) const
 {
     const auto in = [&](const float* all) { return std::span<const float>(all, leaf.count); };
     const auto out = [&](float* all) { return std::span<float>(all, leaf.count); };
-    sample_many(bricks_, in(leaf.x), in(leaf.y), in(leaf.z), out(leaf.distance), out(leaf.gx),
-                out(leaf.gy), out(leaf.gz));
+    sample_many(bricks_,
+                {in(leaf.x), in(leaf.y), in(leaf.z), out(leaf.distance), out(leaf.gx), out(leaf.gy),
+                 out(leaf.gz)});
 }
 
 void ConvexSide::bound(LeafSample<double>& places) const

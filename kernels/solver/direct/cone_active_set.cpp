@@ -77,15 +77,15 @@ void ConeActiveSet::sort_out()
     for (std::size_t i = 0; i < states_.size(); ++i) {
         ContactCone& cone = island_.cones[i];
         Kind& kind = states_[i].kind;
-        if (kind == Kind::parts && cone.speed[0] < -kRounding)
-            kind = Kind::sticks;
-        else if (kind != Kind::parts && cone.impulse[0] < -kRounding)
+        if (kind != Kind::parts && cone.impulse[0] < -kRounding)
             kind = Kind::parts, cone.impulse = {};
         else if (kind == Kind::sticks && cone.rows > 1
                  && width(cone.impulse) > cone.impulse[0] * (1 + kRounding))
             kind = Kind::slides;
-        else if (kind == Kind::slides && dot(states_[i].way, cone.speed) < -kRounding)
-            kind = Kind::sticks;  // it would slide back, so its friction need not be full
+        // What would slide back need not have its friction full.
+        else if ((kind == Kind::parts && cone.speed[0] < -kRounding)
+                 || (kind == Kind::slides && dot(states_[i].way, cone.speed) < -kRounding))
+            kind = Kind::sticks;
         states_[i].way = way_of(cone);
         const double speed = width(cone.speed);
         states_[i].stiffness =

@@ -36,7 +36,7 @@ private:
         ConeVector way{};  // of an impulse of 1
     };
     bool choose_rows(int closer);
-    void add_friction(std::size_t cone, std::size_t sides, int closer);
+    void add_friction(std::size_t at, std::size_t sides, int closer);
     void fill_table();
     void fill_column(std::size_t column);
     bool start();

@@ -29,7 +29,7 @@ struct Spot {
 struct Slab {
     Floats half, limit;
 
-    Slab(Floats half_, Floats slack) : half(half_), limit(half_ + slack) { }
+    Slab(Floats extent, Floats slack) : half(extent), limit(extent + slack) { }
     Mask above(Floats x) const { return x > limit; }
     Mask below(Floats x) const { return x < -limit; }
     Floats at_side(Floats x) const { return sign_of(x) * half; }

@@ -31,7 +31,7 @@ void collide_boxes(const BoxKernels& kernels,
         BoxList faces{face_room, 0}, edges{edge_room, 0};
         for (std::size_t i = 0; i < count; ++i) manifolds[begin + i].count = 0;
         const BoxPair* const from = pairs.data() + begin;
-        float* const to = reinterpret_cast<float*>(manifolds.data() + begin);
+        auto* const to = reinterpret_cast<float*>(manifolds.data() + begin);
         kernels.part(from, static_cast<std::int32_t>(count), faces, edges);
         kernels.clip(from, faces, edges, to);
         kernels.cross(from, edges, to);

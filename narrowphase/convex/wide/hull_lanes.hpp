@@ -135,9 +135,9 @@ inline Wall wall_of(const WidePolytope& shape, int face, int side)
 }
 
 /// The separation of the deepest point, or 0 where there is none: the other's face under one of
-/// self's, what is over it within `slack` of its sides, out to `speculative_margin`. In self's
-/// frame, and appended; the face is named in the features.
+/// self's, that of `index`, what is over it within `slack` of its sides, out to
+/// `speculative_margin`. In self's frame, and appended; the face is named in the features.
 float clip_under(
-    const Side& side, int face, float speculative_margin, float slack, HullOverlap& out);
+    const Side& side, int index, float speculative_margin, float slack, HullOverlap& out);
 
 }  // namespace throng::THRONG_LANES

@@ -112,12 +112,14 @@ TEST_F(VoxelLanes, ServeWhatIsEmptyToo)
     VoxelBricks empty;
     empty.voxel = 1;
     empty.band = 2;
-    sample_many(empty, std::span(x_).first(3), std::span(y_).first(3), std::span(z_).first(3),
-                got.distance, got.gx, got.gy, got.gz);
+    sample_many(empty,
+                {std::span(x_).first(3), std::span(y_).first(3), std::span(z_).first(3),
+                 got.distance, got.gx, got.gy, got.gz});
     EXPECT_EQ(got.distance, (std::vector<float>{2, 2, 2}));
     const Samples wanted = plain(3);
-    sample_many(bricks_, std::span(x_).first(3), std::span(y_).first(3), std::span(z_).first(3),
-                got.distance, got.gx, got.gy, got.gz);
+    sample_many(bricks_,
+                {std::span(x_).first(3), std::span(y_).first(3), std::span(z_).first(3),
+                 got.distance, got.gx, got.gy, got.gz});
     EXPECT_EQ(got.distance, wanted.distance);
 }
 
