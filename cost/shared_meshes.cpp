@@ -16,7 +16,7 @@ std::optional<TriangleSoup> shared_mesh(const std::string& file)
     std::stringstream text;
     text << std::ifstream(path).rdbuf();
     MeshFile read = read_mesh_file(text.str(), file);
-    RepairedMesh repaired = repair(std::move(read.vertices), std::move(read.triangles));
+    RepairedMesh repaired = repair(read.vertices, std::move(read.triangles));
     return TriangleSoup{std::move(repaired.mesh.vertices), std::move(repaired.mesh.triangles)};
 }
 

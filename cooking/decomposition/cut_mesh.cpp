@@ -164,6 +164,14 @@ void cut_surface(const MeshPiece& piece, const std::vector<double>& heights, Sid
     }
 }
 
+// Bit s: a corner of this height, of a triangle that lies so, is a corner of what lies on side s.
+unsigned sides_of(double height, const Lying& how)
+{
+    if (height < 0) return 1;
+    if (height > 0) return 2;
+    return how.through ? 3 : 1u << how.side;
+}
+
 }  // namespace
 
 MeshPiece whole_piece(const Mesh& mesh) { return {mesh.vertices, mesh.triangles, {}, {}}; }
@@ -179,8 +187,8 @@ look_at_cut(const Mesh& mesh, const MeshPiece& piece, const Plane& plane, double
         const Lying how = lying(at);
         if (how.flat) continue;
         for (std::size_t k = 0; k < 3; ++k) {
-            const unsigned on = at[k] < 0 ? 1 : at[k] > 0 ? 2 : how.through ? 3 : 1u << how.side;
-            touches[triangle[k]] = static_cast<std::uint8_t>(touches[triangle[k]] | on);
+            touches[triangle[k]] =
+                static_cast<std::uint8_t>(touches[triangle[k]] | sides_of(at[k], how));
             const std::size_t next = (k + 1) % 3;
             if (at[k] * at[next] >= 0) continue;
             const Vec3 point =

@@ -208,6 +208,15 @@ private:
         blocks_.triangles[place.value_index] = triangle;
     }
 
+    // Where the value of a place stands, or -1 where it is not known.
+    std::ptrdiff_t find_known(const std::array<std::int32_t, 3>& at) const
+    {
+        const std::ptrdiff_t value_index = blocks_.holds(at) ? blocks_.find(at) : -1;
+        if (value_index < 0) return -1;
+        return blocks_.states[static_cast<std::size_t>(value_index)] == State::known ? value_index
+                                                                                     : -1;
+    }
+
     std::pair<double, std::uint32_t> nearest_of_neighbors(const Place& place, const Vec3& at) const
     {
         std::array<std::uint32_t, 26> seen;
@@ -218,12 +227,10 @@ private:
                 for (int x = -1; x <= 1; ++x) {
                     const std::array<std::int32_t, 3> beside{place.at[0] + x, place.at[1] + y,
                                                              place.at[2] + z};
-                    if (!blocks_.holds(beside)) continue;
-                    const std::ptrdiff_t value_index = blocks_.find(beside);
+                    const std::ptrdiff_t value_index = find_known(beside);
                     if (value_index < 0) continue;
-                    const auto i = static_cast<std::size_t>(value_index);
-                    if (blocks_.states[i] != State::known) continue;
-                    const std::uint32_t triangle = blocks_.triangles[i];
+                    const std::uint32_t triangle =
+                        blocks_.triangles[static_cast<std::size_t>(value_index)];
                     const auto last = seen.begin() + static_cast<std::ptrdiff_t>(count);
                     if (std::find(seen.begin(), last, triangle) != last) continue;
                     seen[count++] = triangle;

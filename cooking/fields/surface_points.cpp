@@ -209,14 +209,18 @@ public:
     {
         order_.resize(places.size());
         std::iota(order_.begin(), order_.end(), 0U);
-        out.nodes.resize(1);
-        build(0, 0, static_cast<std::uint32_t>(places.size()));
+    }
+
+    void build()
+    {
+        out_.nodes.resize(1);
+        build(0, 0, static_cast<std::uint32_t>(places_.size()));
         for (const std::uint32_t i : order_) {
-            out.x.push_back(static_cast<float>(places[i].position.x()));
-            out.y.push_back(static_cast<float>(places[i].position.y()));
-            out.z.push_back(static_cast<float>(places[i].position.z()));
-            out.normals.emplace_back(places[i].normal.cast<float>());
-            out.cones.push_back(static_cast<float>(cone(places[i].least)));
+            out_.x.push_back(static_cast<float>(places_[i].position.x()));
+            out_.y.push_back(static_cast<float>(places_[i].position.y()));
+            out_.z.push_back(static_cast<float>(places_[i].position.z()));
+            out_.normals.emplace_back(places_[i].normal.cast<float>());
+            out_.cones.push_back(static_cast<float>(cone(places_[i].least)));
         }
     }
 
@@ -286,7 +290,7 @@ SurfacePoints build_surface_points(const Mesh& mesh, double spacing)
     offer_vertices(mesh, leans, std::vector<std::uint8_t>(mesh.vertices.size(), 1), spacing,
                    thinning);
     offer_faces(mesh, leans, spacing, thinning);
-    TreeBuilder{thinning.kept(), points};
+    TreeBuilder(thinning.kept(), points).build();
     return points;
 }
 

@@ -186,9 +186,13 @@ public:
         for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
             boxes_.push_back(triangle_box(mesh, t));
         costs_.resize(boxes_.size());
-        mesh.order.resize(boxes_.size());
-        std::iota(mesh.order.begin(), mesh.order.end(), 0U);
-        mesh.tree.resize(1);
+    }
+
+    void build()
+    {
+        mesh_.order.resize(boxes_.size());
+        std::iota(mesh_.order.begin(), mesh_.order.end(), 0U);
+        mesh_.tree.resize(1);
         build(0, 0, static_cast<std::uint32_t>(boxes_.size()));
     }
 
@@ -254,7 +258,7 @@ private:
 
 }  // namespace
 
-MeshResult build_mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
+MeshResult build_mesh(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles)
 {
     MeshResult result;
     result.trouble = trouble_with(vertices, triangles);
@@ -267,7 +271,7 @@ MeshResult build_mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangle
     join_neighbors(result.mesh);
     mark_convex_edges(result.mesh);
     mark_open_pieces(result.mesh);
-    TreeBuilder{result.mesh};
+    TreeBuilder(result.mesh).build();
     return result;
 }
 

@@ -20,7 +20,7 @@ struct MeshResult {
 ///                 directions; else -1
 ///   convex_edges  an edge that sticks out by more than a thousandth of a radian, or has no
 ///                 triangle beyond it; bit 3 + e, the same as seen from behind; kOpenPiece
-MeshResult build_mesh(std::vector<Vec3> vertices,
+MeshResult build_mesh(const std::vector<Vec3>& vertices,
                       std::vector<std::array<std::uint32_t, 3>> triangles);
 
 }  // namespace throng

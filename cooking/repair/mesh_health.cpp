@@ -310,10 +310,10 @@ std::size_t count_cuts(const Mesh& mesh, std::size_t most_pairs, bool& cut_short
     return cuts;
 }
 
-RepairedMesh mend_still(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
+RepairedMesh mend_still(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles)
 {
     RepairedMesh result;
-    MeshResult welded = build_mesh(std::move(vertices), std::move(triangles));
+    MeshResult welded = build_mesh(vertices, std::move(triangles));
     result.trouble = welded.trouble;
     if (!result.trouble.empty()) return result;
     MeshHealth& health = result.health;
@@ -336,15 +336,15 @@ RepairedMesh mend_still(std::vector<Vec3> vertices, std::vector<Triangle> triang
                     "room leave them open somewhere, or put them within a shell"));
     result.mesh = std::move(welded.mesh);
     if (kept != result.mesh.triangles)
-        result.mesh = build_mesh(std::move(result.mesh.vertices), std::move(kept)).mesh;
+        result.mesh = build_mesh(result.mesh.vertices, std::move(kept)).mesh;
     return result;
 }
 
-RepairedMesh repair(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
+RepairedMesh repair(const std::vector<Vec3>& vertices, std::vector<Triangle> triangles)
 {
     RepairedMesh result;
     // Built twice: the first time for its welding, which tells what is shared.
-    MeshResult welded = build_mesh(std::move(vertices), std::move(triangles));
+    MeshResult welded = build_mesh(vertices, std::move(triangles));
     result.trouble = welded.trouble;
     if (!result.trouble.empty()) return result;
     MeshHealth& health = result.health;
@@ -360,7 +360,7 @@ RepairedMesh repair(std::vector<Vec3> vertices, std::vector<Triangle> triangles)
     health.pieces = pieces.size();
     turn_outward(pieces, welded.mesh.vertices, kept, health);
 
-    result.mesh = build_mesh(std::move(welded.mesh.vertices), std::move(kept)).mesh;
+    result.mesh = build_mesh(welded.mesh.vertices, std::move(kept)).mesh;
     find_vertex_normals(result.mesh);
     health.cuts =
         count_cuts(result.mesh, kPairsEach * result.mesh.triangles.size(), health.cuts_cut_short);

@@ -44,13 +44,13 @@ struct RepairedMesh {
 
 /// Drops duplicates, makes the windings of every piece agree, closes holes that are small against
 /// the piece that they are in, and turns over what is inside out. Wider holes stay holes.
-RepairedMesh repair(std::vector<Vec3> vertices,
+RepairedMesh repair(const std::vector<Vec3>& vertices,
                     std::vector<std::array<std::uint32_t, 3>> triangles);
 
 /// The same of a mesh that is not to move, which may well be open: holes stay as they are, and no
 /// vertex normals. What is closed is solid, turned over where it is inside out but for hollows;
 /// what is open has two sides. A mesh with nothing wrong comes back as build_mesh() makes it.
-RepairedMesh mend_still(std::vector<Vec3> vertices,
+RepairedMesh mend_still(const std::vector<Vec3>& vertices,
                         std::vector<std::array<std::uint32_t, 3>> triangles);
 
 /// How many pairs of triangles that share no corner cross one another; those that lie in one plane

@@ -31,7 +31,7 @@ std::shared_ptr<const MovingMesh> make(const MeshShape& stated)
     made->at = far_center(stated.vertices);
     std::vector<Vec3> vertices = stated.vertices;
     for (Vec3& vertex : vertices) vertex -= made->at;
-    made->repaired = repair(std::move(vertices), stated.triangles);
+    made->repaired = repair(vertices, stated.triangles);
     return made;
 }
 

@@ -10,13 +10,15 @@
 /// Starts OpenVDB, before anything is asked of it.
 extern "C" const throng::FieldModule* throng_field_module()
 {
-    using namespace throng;
 #ifdef THRONG_PLAIN_THREADS
     // That build has no use for oneTBB and keeps it on the calling thread.
     static const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
 #endif
     openvdb::initialize();
-    static const FieldModule module{version(),  sizeof(FieldModule), vdb::fill,      vdb::surface,
-                                    vdb::write, vdb::read,           vdb::read_bytes};
+    namespace vdb = throng::vdb;
+    static const throng::FieldModule module{throng::version(), sizeof(throng::FieldModule),
+                                            vdb::fill,         vdb::surface,
+                                            vdb::write,        vdb::read,
+                                            vdb::read_bytes};
     return &module;
 }

@@ -130,26 +130,34 @@ FieldNotes notes_of(const FloatGrid& grid)
 
 // --- Bricks from a tree
 
+// What one leaf, or the one value in its place, gives a brick: at a corner beyond the first, the
+// last layer of values alone. False where all of them are far outside.
+bool copy_leaf(
+    const FloatTree& tree, const openvdb::Coord& origin, int corner, float band, float* copied)
+{
+    const int ox = corner & 1, oy = corner >> 1 & 1, oz = corner >> 2;
+    const openvdb::Coord base = origin.offsetBy(ox * kCells, oy * kCells, oz * kCells);
+    const auto* const leaf = tree.probeConstLeaf(base);
+    const float* const buffer = leaf != nullptr ? leaf->buffer().data() : nullptr;
+    const float all = leaf != nullptr ? 0 : tree.getValue(base);
+    bool near = false;
+    for (int z = 0; z < (oz != 0 ? 1 : kCells); ++z)
+        for (int y = 0; y < (oy != 0 ? 1 : kCells); ++y)
+            for (int x = 0; x < (ox != 0 ? 1 : kCells); ++x) {
+                const float value = buffer != nullptr ? buffer[(x * kCells + y) * kCells + z] : all;
+                copied[((z + oz * kCells) * kSide + y + oy * kCells) * kSide + x + ox * kCells] =
+                    std::min(value, band);
+                near |= value < band;
+            }
+    return near;
+}
+
 // The values of a brick, leaf by leaf; false where all of them are far outside.
 bool copy_brick(const FloatTree& tree, const openvdb::Coord& origin, float band, float* copied)
 {
     bool near = false;
-    for (int corner = 0; corner < 8; ++corner) {
-        const int ox = corner & 1, oy = corner >> 1 & 1, oz = corner >> 2;
-        const openvdb::Coord base = origin.offsetBy(ox * kCells, oy * kCells, oz * kCells);
-        const auto* const leaf = tree.probeConstLeaf(base);
-        const float* const buffer = leaf != nullptr ? leaf->buffer().data() : nullptr;
-        const float all = leaf != nullptr ? 0 : tree.getValue(base);
-        for (int z = 0; z < (oz != 0 ? 1 : kCells); ++z)
-            for (int y = 0; y < (oy != 0 ? 1 : kCells); ++y)
-                for (int x = 0; x < (ox != 0 ? 1 : kCells); ++x) {
-                    const float value =
-                        buffer != nullptr ? buffer[(x * kCells + y) * kCells + z] : all;
-                    copied[((z + oz * kCells) * kSide + y + oy * kCells) * kSide + x
-                           + ox * kCells] = std::min(value, band);
-                    near |= value < band;
-                }
-    }
+    for (int corner = 0; corner < 8; ++corner)
+        near |= copy_leaf(tree, origin, corner, band, copied);
     return near;
 }
 
@@ -212,7 +220,7 @@ MeshResult surface_of(const FloatGrid& grid)
         triangles.push_back({quad[0], quad[2], quad[1]});
         triangles.push_back({quad[0], quad[3], quad[2]});
     }
-    MeshResult made = build_mesh(std::move(vertices), std::move(triangles));
+    MeshResult made = build_mesh(vertices, std::move(triangles));
     if (made.trouble.empty()) find_vertex_normals(made.mesh);
     return made;
 }

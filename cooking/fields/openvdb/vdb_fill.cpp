@@ -39,15 +39,15 @@ GridMesh on_grid(const Mesh& mesh, const VoxelBricks& laid)
 // Distances in voxels about the surface: about two each way, one at the least.
 FloatGrid::Ptr near_surface(const Mesh& mesh, const VoxelBricks& laid, FieldSign sign)
 {
-    using namespace openvdb::tools;
+    namespace tools = openvdb::tools;
     const GridMesh made = on_grid(mesh, laid);
-    const QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(made.points,
-                                                                             made.triangles);
-    int flags = DISABLE_RENORMALIZATION | DISABLE_NARROW_BAND_TRIMMING;
-    if (sign != FieldSign::flood) flags |= UNSIGNED_DISTANCE_FIELD;
+    const tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(made.points,
+                                                                                    made.triangles);
+    int flags = tools::DISABLE_RENORMALIZATION | tools::DISABLE_NARROW_BAND_TRIMMING;
+    if (sign != FieldSign::flood) flags |= tools::UNSIGNED_DISTANCE_FIELD;
     openvdb::util::NullInterrupter never;
     const auto unit = openvdb::math::Transform::createLinearTransform(1.0);
-    return meshToVolume<FloatGrid>(never, adapter, *unit, 2.0F, 2.0F, flags);
+    return tools::meshToVolume<FloatGrid>(never, adapter, *unit, 2.0F, 2.0F, flags);
 }
 
 std::vector<FieldSeed> seeds_of(const FloatGrid& grid, const VoxelBricks& laid)
