@@ -4,10 +4,10 @@
 #include "apps/throng/options.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace throng {
@@ -32,6 +32,9 @@ bool create(const std::string& path)
     return file >= 0 && ::close(file) == 0;
 }
 
+// What the last call of the system failed for.
+std::string last_error() { return std::generic_category().message(errno); }
+
 }  // namespace
 
 OutputFile::OutputFile(std::string_view option, std::string_view path)
@@ -46,15 +49,14 @@ OutputFile::OutputFile(std::string_view option, std::string_view path)
     if (is_replaceable(path_)) {
         // A link stays one; what it leads to is replaced.
         if (fs::is_symlink(path_, trouble)) path_ = fs::weakly_canonical(path_, trouble).string();
-        if (fs::exists(path_, trouble) && ::access(path_.c_str(), W_OK) != 0)
-            refuse(std::strerror(errno));
+        if (fs::exists(path_, trouble) && ::access(path_.c_str(), W_OK) != 0) refuse(last_error());
         growing_ = path_ + '.' + std::to_string(::getpid()) + ".part";
-        if (!create(growing_)) refuse(std::strerror(errno));
+        if (!create(growing_)) refuse(last_error());
         kept_ = false;
     }
     stream_.open(growing_, std::ios::binary);
     if (!stream_) {
-        const std::string why = std::strerror(errno);
+        const std::string why = last_error();
         if (!kept_) fs::remove(growing_, trouble);
         refuse(why);
     }
@@ -83,7 +85,7 @@ std::string OutputFile::try_keep()
     const std::string failed = option_ + ": " + path_ + ": cannot be written";
     errno = 0;
     stream_.close();
-    if (!stream_) return failed + (errno != 0 ? std::string(": ") + std::strerror(errno) : "");
+    if (!stream_) return failed + (errno != 0 ? ": " + last_error() : "");
     if (kept_) return {};
     std::error_code trouble;
     fs::rename(growing_, path_, trouble);

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
+#include <exception>
 #include <fcntl.h>
 #include <filesystem>
 #include <hdf5.h>
-#include <optional>
 #include <sys/resource.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -391,7 +391,7 @@ public:
 private:
     [[noreturn]] static void fail(int error)
     {
-        throw RunFileError(std::string("cannot write the frames: ") + std::strerror(error));
+        throw RunFileError("cannot write the frames: " + std::generic_category().message(error));
     }
 
     int file_ = -1;
@@ -432,7 +432,7 @@ struct RunFile::Inside {
         if (stale) flush();
     }
 
-    void write()
+    void write() const
     {
         disk_space.keep(size(), most_bytes(frames->cut, bodies.size()));
         frames->write();
@@ -495,11 +495,11 @@ void RunFile::close()
 {
     if (!inside_) return;
     const Silence silence;
-    std::optional<RunFileError> trouble;
+    std::exception_ptr trouble;
     try {
         if (!inside_->failed && inside_->frames->waiting() > 0) inside_->write();
-    } catch (const RunFileError& error) {
-        trouble = error;
+    } catch (const RunFileError&) {
+        trouble = std::current_exception();
     }
     inside_->flush();
     whole_frames_ = inside_->frames->written;
@@ -508,7 +508,7 @@ void RunFile::close()
     checked(inside_->file.close(), "the file");
     inside_->disk_space.give_back(bytes);
     inside_.reset();
-    if (trouble) throw *trouble;
+    if (trouble) std::rethrow_exception(trouble);
 }
 
 std::size_t RunFile::whole_frames() const
