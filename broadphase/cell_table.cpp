@@ -259,69 +259,103 @@ CellTable::Cells CellTable::cells_round(const Box3& box, const Level& level) con
     return cells;
 }
 
+// What one box meets. Buckets first, then their entries, then a look: each round waits for memory
+// once.
+class CellTable::Search {
+public:
+    Search(const CellTable& table,
+           const OverlapQuery& query,
+           std::uint32_t id,
+           std::vector<PairKey>& pairs)
+        : table_(table), query_(query), id_(id), box_(query.boxes[id]),
+          moves_(query.moving[id] != 0), mine_(entry_of(id, box_)), pairs_(pairs)
+    { }
+
+    void add_if_overlapping(std::uint32_t other) const
+    {
+        if (other == id_ || (table_.asked_[other] != 0 && other < id_)) return;
+        if (!moves_ && query_.moving[other] == 0) return;
+        if (!box_.overlaps(query_.boxes[other])) return;
+        if (query_.filter != nullptr && !query_.filter->allows(id_, other)) return;
+        pairs_.push_back(pair_key(id_, other));
+    }
+
+    // Those of a level that may lie near.
+    void look_into(std::uint8_t level, const Cells& cells)
+    {
+        const std::uint64_t mask = table_.buckets_.size() - 1;
+        for (std::int64_t z = cells.first[2]; z <= cells.last[2]; ++z)
+            for (std::int64_t y = cells.first[1]; y <= cells.last[1]; ++y) {
+                const std::uint64_t row = table_.row_of(level, y, z);
+                for (std::int64_t x = cells.first[0]; x <= cells.last[0]; ++x)
+                    add(&table_.buckets_[(row + static_cast<std::uint64_t>(x)) & mask]);
+            }
+    }
+
+    // At those that were added since the last look.
+    void look()
+    {
+        std::size_t full = 0;
+        for (std::size_t i = 0; i < ahead_; ++i) {
+            if (cells_ahead_[i]->count == 0) continue;
+            __builtin_prefetch(table_.entries_.data() + cells_ahead_[i]->begin);
+            cells_ahead_[full++] = cells_ahead_[i];
+        }
+        for (std::size_t i = 0; i < full; ++i)
+            walk(*cells_ahead_[i], [](std::uint32_t) { return true; });
+        ahead_ = 0;
+    }
+
+    template <class Wanted>
+    void walk(const Bucket& bucket, const Wanted& wanted) const
+    {
+        const Entry* const begin = table_.entries_.data() + bucket.begin;
+        for (const Entry* entry = begin; entry < begin + bucket.count; ++entry)
+            if (near(mine_, *entry) && wanted(entry->id)) add_if_overlapping(entry->id);
+    }
+
+private:
+    void add(const Bucket* bucket)
+    {
+        __builtin_prefetch(bucket);
+        cells_ahead_[ahead_++] = bucket;
+        if (ahead_ == kCellsAhead) look();
+    }
+
+    const CellTable& table_;
+    const OverlapQuery& query_;
+    const std::uint32_t id_;
+    const Box3& box_;
+    const bool moves_;
+    const Entry mine_;
+    std::vector<PairKey>& pairs_;
+    std::array<const Bucket*, kCellsAhead> cells_ahead_;
+    std::size_t ahead_ = 0;
+};
+
 void CellTable::find_overlaps(const OverlapQuery& query,
                               std::uint32_t id,
                               std::vector<PairKey>& pairs) const
 {
     if (level_[id] == kNowhere) return;
-    const Box3& box = query.boxes[id];
-    const bool moves = query.moving[id] != 0;
-    const auto add_if_overlapping = [&](std::uint32_t other) {
-        if (other == id || (asked_[other] != 0 && other < id)) return;
-        if (!moves && query.moving[other] == 0) return;
-        if (!box.overlaps(query.boxes[other])) return;
-        if (query.filter != nullptr && !query.filter->allows(id, other)) return;
-        pairs.push_back(pair_key(id, other));
-    };
-    const Entry mine = entry_of(id, box);
-    const auto walk = [&](const Bucket& bucket, const auto& wanted) {
-        const Entry* const begin = entries_.data() + bucket.begin;
-        for (const Entry* entry = begin; entry < begin + bucket.count; ++entry)
-            if (near(mine, *entry) && wanted(entry->id)) add_if_overlapping(entry->id);
-    };
-    // Buckets first, then their entries, then a look: each round waits for memory once.
-    std::array<const Bucket*, kCellsAhead> cells_ahead;
-    std::size_t ahead = 0;
-    const auto look = [&] {
-        std::size_t full = 0;
-        for (std::size_t i = 0; i < ahead; ++i) {
-            if (cells_ahead[i]->count == 0) continue;
-            __builtin_prefetch(entries_.data() + cells_ahead[i]->begin);
-            cells_ahead[full++] = cells_ahead[i];
-        }
-        for (std::size_t i = 0; i < full; ++i)
-            walk(*cells_ahead[i], [](std::uint32_t) { return true; });
-        ahead = 0;
-    };
+    Search search(*this, query, id, pairs);
     std::array<bool, 256> all{};
     bool scans = false;
-    const std::uint64_t mask = buckets_.size() - 1;
     for (const std::uint8_t at : active_) {
         const Level& level = levels_[at];
         if (level.count == 0) continue;
-        const Cells cells = cells_round(box, level);
+        const Cells cells = cells_round(query.boxes[id], level);
         // A large box beside small ones: to look at each of them is less than to look for them.
-        if (level_[id] == kAside || !(cells.count < static_cast<double>(level_.size()) / 2 + 64)) {
+        if (level_[id] == kAside || !(cells.count < static_cast<double>(level_.size()) / 2 + 64))
             all[at] = scans = true;
-            continue;
-        }
-        for (std::int64_t z = cells.first[2]; z <= cells.last[2]; ++z)
-            for (std::int64_t y = cells.first[1]; y <= cells.last[1]; ++y) {
-                const std::uint64_t row = row_of(at, y, z);
-                for (std::int64_t x = cells.first[0]; x <= cells.last[0]; ++x) {
-                    const Bucket* const bucket =
-                        &buckets_[(row + static_cast<std::uint64_t>(x)) & mask];
-                    __builtin_prefetch(bucket);
-                    cells_ahead[ahead++] = bucket;
-                    if (ahead == kCellsAhead) look();
-                }
-            }
+        else
+            search.look_into(at, cells);
     }
-    look();
+    search.look();
     if (scans)
         for (const Bucket& bucket : buckets_)
-            walk(bucket, [&](std::uint32_t other) { return all[level_[other]]; });
-    for (const std::uint32_t other : aside_) add_if_overlapping(other);
+            search.walk(bucket, [&](std::uint32_t other) { return all[level_[other]]; });
+    for (const std::uint32_t other : aside_) search.add_if_overlapping(other);
 }
 
 }  // namespace throng

@@ -49,6 +49,8 @@ private:
         double count = 0;
     };
 
+    class Search;
+
     void rebuild(const OverlapQuery& query);
     void put(std::uint32_t id, const Box3& box);
     void take_out(std::uint32_t id);

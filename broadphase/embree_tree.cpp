@@ -26,9 +26,9 @@ constexpr double kAsideRatio = 1e6;
 RTCDevice device()
 {
 #ifdef THRONG_PLAIN_THREADS
-    static const RTCDevice only = rtcNewDevice("threads=1");
+    static RTCDeviceTy* const only = rtcNewDevice("threads=1");
 #else
-    static const RTCDevice only = rtcNewDevice(nullptr);
+    static RTCDeviceTy* const only = rtcNewDevice(nullptr);
 #endif
     if (only == nullptr) throw std::runtime_error("embree: no device; is the processor supported?");
     return only;

@@ -188,7 +188,7 @@ void judge(CaseBench& bench,
     ConvexQuery queries[] = {{pair.a, pair.b}, {pair.b, pair.a}};
     for (const MethodDescription& method : known_methods()) {
         if (!method.touch || !serves(method, pair.a, pair.b)) continue;
-        double separations[2][kStarts.size()];
+        double separations[2][kStarts.size()] = {};
         for (std::size_t way = 0; way < 2; ++way) {
             const Judge one{tally, method, setting, bounds, sides[way]};
             for (std::size_t k = 0; k < kStarts.size(); ++k) {

@@ -59,7 +59,7 @@ std::vector<Factor> factors()
 
 struct Pair {
     std::size_t factor_a, value_a, factor_b, value_b;
-    auto operator<=>(const Pair&) const = default;
+    auto operator<=>(const Pair&) const = default;  // NOLINT(modernize-use-nullptr): has none
 };
 
 Pair pair_of(const Row& row, std::size_t a, std::size_t b)

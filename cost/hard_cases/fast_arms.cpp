@@ -153,7 +153,7 @@ void flies(CaseBench& bench)
         Scene scene = flown(bench, 1e5, 230, kAsItIs);
         scene.settings.dt = dt;
         keeps(bench,
-              "needle in flight, 1e5 N/m, 230 m/s, dt=1/" + std::to_string(int(1 / dt + 0.5)),
+              "needle in flight, 1e5 N/m, 230 m/s, dt=1/" + std::to_string(std::lround(1 / dt)),
               scene);
     }
     for (const Layout& as : kLayouts)
@@ -251,7 +251,7 @@ void has_pivot(CaseBench& bench)
             scene.settings.dt = dt;
             if (exactly) scene.settings.solver = Solver::direct;
             rests(bench,
-                  (exactly ? ", direct, dt=1/" : ", dt=1/") + std::to_string(int(1 / dt + 0.5)),
+                  (exactly ? ", direct, dt=1/" : ", dt=1/") + std::to_string(std::lround(1 / dt)),
                   scene, 2);
         }
     for (const Layout& as : kLayouts)

@@ -27,24 +27,26 @@ void for_each_method(const std::function<void(std::string_view, ToiMethod)>& bod
     }
 }
 
-// What a method tells of a meeting whose time is known: how late, how early, and what it took.
-//
-//   speed   m/s, at which the two come together then
+// When two meet, s, and how fast they come together then, m/s.
+struct KnownImpact {
+    double time, speed;
+};
+
+// What a method tells of a meeting that is known: how late, how early, and what it took.
 void judge(CaseBench& bench,
            const char* setting,
            const ImpactQuery& query,
            const ShapeMotion& a,
            const ShapeMotion& b,
            double duration,
-           double truth,
-           double speed)
+           const KnownImpact& truth)
 {
     for_each_method([&](std::string_view name, ToiMethod method) {
         const ImpactAnswer answer = bench.ask_impact(query, method, a, b, duration);
-        const double off = answer.meets ? answer.time - truth : duration;
+        const double off = answer.meets ? answer.time - truth.time : duration;
         // The times themselves are rounded, and so is the truth.
         const double rounding = 1e-14 * duration;
-        const double within = bench.settings().toi_tolerance * query.size() / speed;
+        const double within = bench.settings().toi_tolerance * query.size() / truth.speed;
         bench.report_method(name, setting, "late", std::max(0.0, off), rounding, "s");
         bench.report_method(name, setting, "early", std::max(0.0, -off), within + rounding, "s");
         bench.report_method(name, setting, "evaluations", answer.evaluations, 1e3, "1");
@@ -114,29 +116,39 @@ ShapeMotion moving(const Vec3& position, const Vec3& velocity)
     return motion;
 }
 
-// Runs a body against what stands at x = 0 and shows how far its middle came past the face.
+// What flies, and half its extent along x.
+struct Flyer {
+    ShapeDescription shape;
+    ShapeMotion motion;
+    double half;  // m
+};
+
+// What stands at x = 0, and where its face is.
+struct Obstacle {
+    ShapeDescription shape;
+    double face;  // m
+};
+
+// Runs a body against what stands in its way and shows how far its front came past the face.
 void run_against(CaseBench& bench,
                  const std::string& setting,
-                 const ShapeDescription& thing,
-                 const ShapeMotion& motion,
-                 const ShapeDescription& obstacle,
-                 double face,
-                 double half,
+                 const Flyer& flyer,
+                 const Obstacle& obstacle,
                  double dt)
 {
     for_each_method([&](std::string_view name, ToiMethod method) {
         Scene scene = weightless(bench, dt, method, 0);
-        add_still(scene, obstacle, Vec3::Zero());
-        scene.bodies[add_body(scene, thing, motion)].fast = true;
+        add_still(scene, obstacle.shape, Vec3::Zero());
+        scene.bodies[add_body(scene, flyer.shape, flyer.motion)].fast = true;
         double deepest = -1e30;
         bench.run(scene, 0.25, [&](World& world, double) {
             const double x = world.pose(world.bodies().back()).position.x();
-            deepest = std::max(deepest, x + half - face);
+            deepest = std::max(deepest, x + flyer.half - obstacle.face);
             return true;
         });
         // A hundredth of its half extent is what contacts may give while they stop it.
         bench.report(std::string(name) + ", " + setting, "depth past the face over half extent",
-                     std::max(0.0, deepest) / half, 1e-2, "1");
+                     std::max(0.0, deepest) / flyer.half, 1e-2, "1");
     });
 }
 
@@ -148,18 +160,19 @@ void case_bullet_plate(CaseBench& bench)
     const ShapeDescription bullet = ball(radius), plate = box({half_thickness, 1, 1});
     const ShapeMotion flight = moving({-10, 0.1, 0.2}, {kSpeed, 0, 0}), still;
     judge(bench, "plate of 1 mm", ImpactQuery(bullet, plate), flight, still, 1.0 / 60,
-          (10 - radius - half_thickness) / kSpeed, kSpeed);
+          {(10 - radius - half_thickness) / kSpeed, kSpeed});
     judge(bench, "sheet of triangles", ImpactQuery(bullet, sheet()), flight, still, 1.0 / 60,
-          (10 - radius) / kSpeed, kSpeed);
+          {(10 - radius) / kSpeed, kSpeed});
+    const Flyer shot{bullet, flight, radius};
     for (const auto& [name, dt] :
          {std::pair("dt=1/60", 1.0 / 60), std::pair("dt=1/240", 1.0 / 240)}) {
-        run_against(bench, std::string("plate of 1 mm, ") + name, bullet, flight, plate,
-                    -half_thickness, radius, dt);
-        run_against(bench, std::string("sheet of triangles, ") + name, bullet, flight, sheet(), 0,
-                    radius, dt);
+        run_against(bench, std::string("plate of 1 mm, ") + name, shot, {plate, -half_thickness},
+                    dt);
+        run_against(bench, std::string("sheet of triangles, ") + name, shot, {sheet(), 0}, dt);
     }
-    run_against(bench, "cube of 1 m from 5 m, dt=0.01", box(Vec3::Constant(0.5)),
-                moving({-5, 0, 0}, {kSpeed, 0, 0}), plate, -half_thickness, 0.5, 0.01);
+    run_against(bench, "cube of 1 m from 5 m, dt=0.01",
+                {box(Vec3::Constant(0.5)), moving({-5, 0, 0}, {kSpeed, 0, 0}), 0.5},
+                {plate, -half_thickness}, 0.01);
 }
 
 void case_spinning_rod(CaseBench& bench)
@@ -175,7 +188,7 @@ void case_spinning_rod(CaseBench& bench)
          {std::pair("line", 1e-7), std::pair("capsule r=0.02", 0.02)}) {
         const double sine = wall - radius;
         judge(bench, name, ImpactQuery({"", CapsuleShape{radius, 1}}, slab), turning, still,
-              1.0 / 60, std::asin(sine) / spin, spin * std::sqrt(1 - sine * sine));
+              1.0 / 60, {std::asin(sine) / spin, spin * std::sqrt(1 - sine * sine)});
     }
 
     // A stick of 4 m that comes down on a wall of 0.25 m, at spins from none to 50 rad/s.
@@ -275,15 +288,15 @@ void case_fast_pair(CaseBench& bench)
     const ShapeMotion right = moving({-5, 0, 0}, {kSpeed, 0, 0});
     const auto left = [](double offset) { return moving({5, offset, 0}, {-kSpeed, 0, 0}); };
     const double duration = 1.0 / 60, together = 2 * kSpeed;
-    judge(bench, "head on", pair, right, left(0), duration, 0.00499, together);
+    judge(bench, "head on", pair, right, left(0), duration, {0.00499, together});
     const double along = std::sqrt(0.02 * 0.02 - 0.015 * 0.015);
-    judge(bench, "offset 0.015 m", pair, right, left(0.015), duration, (10 - along) / together,
-          together * along / 0.02);
+    judge(bench, "offset 0.015 m", pair, right, left(0.015), duration,
+          {(10 - along) / together, together * along / 0.02});
     judge_miss(bench, "offset 0.0201 m", pair, right, left(0.0201), duration);
     judge(bench, "cube 0.1 mm from a plate",
           ImpactQuery(box(Vec3::Constant(0.5)), box({0.05, 2, 2})),
           moving(Vec3::Zero(), {10, 0, 0}), moving({0.55 + 1e-4, 0, 0}, Vec3::Zero()), duration,
-          1e-5, 10);
+          {1e-5, 10});
     run_pair(bench, "head on", 0, true);
     run_pair(bench, "offset 0.015 m", 0.015, true);
     run_pair(bench, "offset 0.0201 m", 0.0201, false);

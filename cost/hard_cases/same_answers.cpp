@@ -47,7 +47,8 @@ Stated random_box(Random& random)
     for (int axis = 0; axis < 3; ++axis) half[axis] = random.uniform(0.1, 1);
     std::vector<Vec3> corners;
     for (unsigned i = 0; i < 8; ++i)
-        corners.push_back(half.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+        corners.emplace_back(
+            half.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
     return {build_hull(corners).hull, {"", BoxShape{half}}};
 }
 

@@ -92,7 +92,7 @@ void keeps_its_swing(CaseBench& bench)
             setting.ask(parts.scene().settings);
             const Swing seen = swing(bench, parts.scene());
             const std::string text = "100 N/m, " + std::string(setting.name) + ", dt=1/"
-                + std::to_string(int(1 / dt + 0.5));
+                + std::to_string(std::lround(1 / dt));
             bench.report(
                 text, "swing, off the first",
                 std::max(std::abs(seen.widest / kFirst - 1), std::abs(seen.last / kFirst - 1)),
@@ -111,7 +111,7 @@ void holds_at_any_stiffness(CaseBench& bench)
             SceneParts parts = swinging_box(bench, stiffness);
             setting.ask(parts.scene().settings);
             const Swing seen = swing(bench, parts.scene());
-            bench.report("1e" + std::to_string(int(std::log10(stiffness) + 0.5)) + " N/m, "
+            bench.report("1e" + std::to_string(std::lround(std::log10(stiffness))) + " N/m, "
                              + setting.name,
                          "swing, beyond the first", seen.widest / kFirst - 1, 0.16, "1");
         }
@@ -161,8 +161,8 @@ void sags(CaseBench& bench)
             speed = world.velocity(id).norm();
             return true;
         });
-        const std::string text =
-            "a weight on 1e" + std::to_string(int(std::log10(stiffness) + 0.5)) + " N/m by a wall";
+        const std::string text = "a weight on 1e"
+            + std::to_string(std::lround(std::log10(stiffness))) + " N/m by a wall";
         bench.report(text, "sag, off m g / k", std::abs(sag * stiffness / kGravity - 1), 1e-3, "1");
         bench.report(text, "push of the wall, off its load", std::abs(borne / 5 - 1), 1e-3, "1");
         bench.report(text, "speed at rest", speed, 1e-4, "m/s");
@@ -233,7 +233,7 @@ void many(CaseBench& bench)
     for (const double friction : {0.0, 0.5})
         for (const double stiffness : {1e2, 1e4, 1e6}) {
             const std::string text = "a chain of 1e"
-                + std::to_string(int(std::log10(stiffness) + 0.5)) + " N/m, friction "
+                + std::to_string(std::lround(std::log10(stiffness))) + " N/m, friction "
                 + (friction > 0 ? "0.5" : "0");
             gains_nothing(bench, text, chain(bench, stiffness, friction), 0.05);
         }

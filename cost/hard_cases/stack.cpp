@@ -187,7 +187,7 @@ Settled settle(CaseBench& bench, const Vec3& at)
         if (now < 5 - 1e-9) return true;
         for (const BodyId body : world.bodies())
             if (world.motion(body) == Motion::dynamic)
-                settled.places.push_back(world.pose(body).position - at);
+                settled.places.emplace_back(world.pose(body).position - at);
         return true;
     });
     settled.time_a_step = bench.time_a_step();

@@ -75,11 +75,11 @@ void tell(CaseBench& bench, const std::string& setting, const Stood& stood)
 void case_tall_walls(CaseBench& bench)
 {
     const double time = bench.brief() ? 4 : 20;
-    const auto by_default = [&](std::string name, int rows, int columns, const Pose& place,
+    const auto by_default = [&](const std::string& name, int rows, int columns, const Pose& place,
                                 bool from_above, double dt) {
         Scene scene = wall(bench, rows, columns, place, from_above);
         scene.settings.dt = dt;
-        tell(bench, std::move(name), stand(bench, scene, place, rows, time));
+        tell(bench, name, stand(bench, scene, place, rows, time));
     };
     by_default("8 m", 16, 6, kHere, false, 1.0 / 60);
     if (bench.brief()) return;
