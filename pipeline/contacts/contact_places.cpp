@@ -56,6 +56,40 @@ bool sum_up(std::vector<Count>& counts)
     return ascending;
 }
 
+// Those that stray are set aside; the others keep their order and make room for them.
+template <class Real>
+void reorder(ConvexContacts<Real>& contacts, const std::vector<Count>& counts, std::size_t used)
+{
+    auto& states = contacts.of_pair;
+    resize_closely(contacts.scratch.gathered, counts.back().strays);
+    resize_closely(contacts.scratch.found_gathered, contacts.recycles ? counts.back().strays : 0);
+    resize_closely(contacts.scratch.order, used);
+    for_each_block(states.size(), kOrderGrain, [&](auto begin, auto end, auto block) {
+        auto [next, strays, ascending, first, last] = counts[block];
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t place = states[i].contact;
+            if (place == PairState::kApart) continue;
+            const bool stray = contacts.astray[place] != 0;
+            if (stray) {
+                if (contacts.recycles)
+                    contacts.scratch.found_gathered[strays] = contacts.found[place];
+                contacts.scratch.gathered[strays++] = contacts.contacts[place];
+            }
+            contacts.scratch.order[next] = stray ? kNewItem : place;
+            states[i].contact = next++;
+        }
+    });
+    follow(
+        contacts.scratch.order, contacts.contacts,
+        [&](std::size_t n) { return contacts.scratch.gathered[n]; }, [](const Contact<Real>&) {});
+    if (contacts.recycles)
+        follow(
+            contacts.scratch.order, contacts.found,
+            [&](std::size_t n) { return contacts.scratch.found_gathered[n]; },
+            [](const CachedManifold<Real>&) {});
+    contacts.free.clear();
+}
+
 }  // namespace
 
 template <class Real>
@@ -83,7 +117,7 @@ void move_in_and_out(ConvexContacts<Real>& contacts)
     std::size_t begun = 0;
     for (const auto& of_block : contacts.scratch.begun) begun += of_block.made.size();
     contacts.strayed += begun;
-    std::uint32_t next = static_cast<std::uint32_t>(contacts.contacts.size());
+    auto next = static_cast<std::uint32_t>(contacts.contacts.size());
     if (begun > contacts.free.size())
         resize_closely(contacts.contacts, next + begun - contacts.free.size());
     resize_closely(contacts.astray, contacts.contacts.size());
@@ -114,44 +148,13 @@ void put_in_order(ConvexContacts<Real>& contacts)
     const std::size_t used = contacts.contacts.size() - contacts.free.size();
     if (contacts.strayed * kStrays <= used) return;
     contacts.strayed = 0;
-    auto& states = contacts.of_pair;
-    std::vector<Count> counts(block_count(states.size(), kOrderGrain));
-    for_each_block(states.size(), kOrderGrain, [&](auto begin, auto end, auto block) {
+    const std::size_t states = contacts.of_pair.size();
+    std::vector<Count> counts(block_count(states, kOrderGrain));
+    for_each_block(states, kOrderGrain, [&](auto begin, auto end, auto block) {
         counts[block] = count_block(contacts, begin, end);
     });
     const bool in_order = sum_up(counts) && contacts.free.empty();
-    if (!in_order) {
-        // Those that stray are set aside; the others keep their order and make room for them.
-        resize_closely(contacts.scratch.gathered, counts.back().strays);
-        resize_closely(contacts.scratch.found_gathered,
-                       contacts.recycles ? counts.back().strays : 0);
-        resize_closely(contacts.scratch.order, used);
-        for_each_block(states.size(), kOrderGrain, [&](auto begin, auto end, auto block) {
-            auto [next, strays, ascending, first, last] = counts[block];
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::uint32_t place = states[i].contact;
-                if (place == PairState::kApart) continue;
-                const bool stray = contacts.astray[place] != 0;
-                if (stray) {
-                    if (contacts.recycles)
-                        contacts.scratch.found_gathered[strays] = contacts.found[place];
-                    contacts.scratch.gathered[strays++] = contacts.contacts[place];
-                }
-                contacts.scratch.order[next] = stray ? kNewItem : place;
-                states[i].contact = next++;
-            }
-        });
-        follow(
-            contacts.scratch.order, contacts.contacts,
-            [&](std::size_t n) { return contacts.scratch.gathered[n]; },
-            [](const Contact<Real>&) {});
-        if (contacts.recycles)
-            follow(
-                contacts.scratch.order, contacts.found,
-                [&](std::size_t n) { return contacts.scratch.found_gathered[n]; },
-                [](const CachedManifold<Real>&) {});
-        contacts.free.clear();
-    }
+    if (!in_order) reorder(contacts, counts, used);
     contacts.astray.assign(contacts.contacts.size(), 0);
 }
 

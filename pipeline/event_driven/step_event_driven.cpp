@@ -167,13 +167,13 @@ private:
 
 void advance_all(const EventDrivenStep& step, AdvanceGroup way)
 {
-    StepDiagnostics& diagnostics = step.get<StepDiagnostics>();
+    auto& diagnostics = step.get<StepDiagnostics>();
     diagnostics.quarantined.clear();
     diagnostics.direct_left = diagnostics.held_groups = diagnostics.deep_pieces = 0;
     diagnostics.direct_residual = diagnostics.deepest = 0;
     step.get<Islands>().lone.clear();  // none is left to fly alone
-    EventDrivenContacts& contacts = step.get<EventDrivenContacts>();
-    const BodyStates& states = step.get<const BodyStates>();
+    auto& contacts = step.get<EventDrivenContacts>();
+    const auto& states = step.get<const BodyStates>();
     contacts = {};
     contacts.force.assign(states.kind.size(), Vec3::Zero());
     GroupScene scene{step.get<const StepContext>(),

@@ -24,7 +24,8 @@ MeshOverlap::Side MeshOverlap::side_of(const MeshShape& shape)
             const std::uint32_t from = triangle[k], to = triangle[(k + 1) % 3];
             if (from > to) continue;  // the other triangle's turn
             const Vec3 start = side.mesh.vertices[from], way = side.mesh.vertices[to] - start;
-            for (const double share : {0.25, 0.5, 0.75}) side.points.push_back(start + share * way);
+            for (const double share : {0.25, 0.5, 0.75})
+                side.points.emplace_back(start + share * way);
         }
     return side;
 }

@@ -75,10 +75,10 @@ QueryScene::QueryScene(const WorldState& state)
     : pool_(&const_cast<WorldState&>(state).pool),  // NOLINT: threads are no part of the state
       shapes_(&state.get<Shapes>())
 {
-    const Colliders& all = state.get<Colliders>();
+    const auto& all = state.get<Colliders>();
     const std::vector<std::uint32_t>& groups = state.get<PairFilter>().group;
-    const Poses& poses = state.get<Poses>();
-    const BodyStates& states = state.get<BodyStates>();
+    const auto& poses = state.get<Poses>();
+    const auto& states = state.get<BodyStates>();
     std::vector<double> sizes;
     for (std::uint32_t body = 0; body < states.kind.size(); ++body) {
         if (states.kind[body] == BodyKind::removed) continue;

@@ -167,7 +167,7 @@ void ConstraintBuilder<Real>::settle_separation(const Contact<Real>& contact,
 {
     constexpr double kLastDigit = kDigits * double{std::numeric_limits<Real>::epsilon()} / 2;
     const double pressed = pressed_[static_cast<std::size_t>(contact.count) - 1];
-    const double apart = double{contact.center_offset.norm()};
+    const auto apart = double{contact.center_offset.norm()};
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
         const auto& point = contact.points[k];
         const double told = kLastDigit * (double{point.anchor_a.norm()} + apart);

@@ -19,6 +19,25 @@ constexpr double kFinestSubstep = 5e-5;  // s
 // of one core. An exact solve is counted as so many substeps.
 constexpr std::size_t kBudget = 1 << 15, kExactCost = 128;
 
+// The greatest strain of an island, and whether any body of it is known to need an exact solve.
+struct IslandStrain {
+    double greatest = 0;
+    bool exactly = false;
+};
+
+IslandStrain
+strain_of(const Islands& islands, std::size_t island, const OverloadedIslands& overloaded)
+{
+    IslandStrain strain;
+    for (std::uint32_t k = islands.body_begin[island]; k < islands.body_begin[island + 1]; ++k) {
+        const double of_body = overloaded.of(islands.bodies[k]);
+        if (!is_overloaded(of_body)) continue;
+        strain.greatest = std::max(strain.greatest, std::abs(of_body));
+        strain.exactly = strain.exactly || of_body < 0;
+    }
+    return strain;
+}
+
 }  // namespace
 
 Effort effort_for(double strain)
@@ -36,20 +55,12 @@ void escalate_islands(const StepContext& context,
     const auto substeps = static_cast<std::size_t>(context.substeps);
     std::size_t left = kBudget;
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        double strain = 0;
-        bool exactly = false;
-        for (std::uint32_t k = islands.body_begin[island]; k < islands.body_begin[island + 1];
-             ++k) {
-            const double of_body = overloaded.of(islands.bodies[k]);
-            if (!is_overloaded(of_body)) continue;
-            strain = std::max(strain, std::abs(of_body));
-            exactly = exactly || of_body < 0;
-        }
-        if (!(strain > 0)) continue;
+        const IslandStrain strain = strain_of(islands, island, overloaded);
+        if (!(strain.greatest > 0)) continue;
         const std::size_t contacts =
             islands.contact_begin[island + 1] - islands.contact_begin[island];
-        const Effort wanted = effort_for(strain);
-        Effort effort{wanted.times, wanted.direct || exactly};
+        const Effort wanted = effort_for(strain.greatest);
+        Effort effort{wanted.times, wanted.direct || strain.exactly};
         if (contacts > kExactContacts) effort.direct = false;
         const auto cost = [&] {
             return contacts * (effort.direct ? kExactCost : substeps * (effort.times - 1u));

@@ -77,7 +77,7 @@ public:
     {
         start_islands(layout_, constraints_, diagnostics_);
         start_split_impulse(layout_, split_impulse_);
-        const Colliders& colliders = problem.template get<const Colliders>();
+        const auto& colliders = problem.template get<const Colliders>();
         if (!solids_.entries.empty() || any_compound(colliders))
             split_wedged(active_, colliders, builder_, split_impulse_);
     }
@@ -87,11 +87,11 @@ public:
     void by_iterations()
     {
         for_batches([&](const Batch& batch) {
-            if (split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_))
-                iterate(batch);
-            else if (batch.direct && !is_stiff(context_, facts_, layout_, batch))
+            const bool parts =
+                split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_);
+            if (!parts && batch.direct && !is_stiff(context_, facts_, layout_, batch))
                 solve_island(islands_, batch, constraints_, diagnostics_);
-            else if (batch.times > 1)
+            else if (!parts && batch.times > 1)
                 iterate_finer(batch);
             else
                 iterate(batch);
