@@ -25,15 +25,13 @@ bool box_reaches_plane(const Box3& box,
 
 bool may_touch(PairKey key, const Bounds& bounds, const Shapes& shapes, const Colliders& colliders)
 {
-    for (const auto& [plane, other] :
-         {std::pair(first_of(key), second_of(key)), std::pair(second_of(key), first_of(key))}) {
-        const ShapeRef shape = colliders.shape[plane];
-        if (shape.kind == ShapeKind::plane
-            && !box_reaches_plane(bounds.boxes[other], shapes.planes[shape.index],
-                                  bounds.placed[plane], bounds.speculative_margin[plane]))
-            return false;
-    }
-    return true;
+    const auto may = [&](std::uint32_t one, std::uint32_t other) {
+        const ShapeRef shape = colliders.shape[one];
+        return shape.kind != ShapeKind::plane
+            || box_reaches_plane(bounds.boxes[other], shapes.planes[shape.index],
+                                 bounds.placed[one], bounds.speculative_margin[one]);
+    };
+    return may(first_of(key), second_of(key)) && may(second_of(key), first_of(key));
 }
 
 // What became of a block of the old list: where its part of `from` lies, and of what was found; how

@@ -112,6 +112,35 @@ bool fly_one(const StepContext& context,
     return give_motion({position, orientation, linear, angular}, body, poses, velocities);
 }
 
+// Bodies on whom nothing but gravity acts: by the wide kernel, and one by one what that leaves.
+void fly_freely(const StepContext& context,
+                const Masses& masses,
+                const BodyStates& states,
+                const std::vector<std::uint32_t>& bodies,
+                Poses& poses,
+                Velocities& velocities,
+                StepDiagnostics& diagnostics)
+{
+    const FlightRule rule = rule_of(context);
+    const FlightArrays arrays = arrays_of(masses, poses, velocities);
+    const FlyKernel kernel = fly_kernel();
+    const bool wide =
+        !context.has(Effect::gyroscopic) || rule.precession != FlightRule::Precession::none;
+    diagnostics.scratch.of_block.start(block_count(bodies.size(), kGrain));
+    for_each_block(bodies.size(), kGrain, [&](auto begin, auto end, auto block) {
+        std::array<std::uint32_t, kGrain> chosen, left;
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            if (states.moves(bodies[i])) chosen[count++] = bodies[i];
+        if (wide) count = kernel(rule, arrays, chosen.data(), count, left.data());
+        auto& lost = diagnostics.scratch.of_block[block];
+        for (std::size_t i = 0; i < count; ++i)
+            if (!fly_one(context, rule, masses, wide ? left[i] : chosen[i], poses, velocities))
+                lost.push_back(wide ? left[i] : chosen[i]);
+    });
+    diagnostics.scratch.of_block.append_to(diagnostics.quarantined);
+}
+
 // Bodies by the law of rigid motion: any integrator, any rotation, any forces.
 class LawFlight {
 public:
@@ -133,26 +162,12 @@ public:
     {
         flights_.memory.resize(states.kind.size());
         catch_up_velocities(context_, bodies, flights_, velocities_);
-        const Forces& forces = facts_.forces;
         // The outcome is written down when all have read.
         std::vector<std::vector<Landing>> landings(block_count(bodies.size(), kBodies));
         for_each_block(bodies.size(), kBodies, [&](auto begin, auto end, auto block) {
             RigidMotion law(rule_, facts_);
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::uint32_t body = bodies[i];
-                if (!states.moves(body)) continue;
-                const std::uint32_t group =
-                    body < forces.group_of.size() ? forces.group_of[body] : kNoBody;
-                if (group == kNoBody) {
-                    carry(law, {&body, 1}, landings[block]);
-                    continue;
-                }
-                // Of a group of which one touches something nobody is here.
-                std::vector<std::uint32_t> flying;
-                for (const std::uint32_t member : forces.groups[group])
-                    if (states.movable(member)) flying.push_back(member);
-                if (flying.front() == body) carry_joined(law, flying, landings[block]);
-            }
+            for (std::size_t i = begin; i < end; ++i)
+                if (states.moves(bodies[i])) carry_from(bodies[i], states, law, landings[block]);
         });
         for (const auto& list : landings)
             for (const Landing& landing : list)
@@ -166,6 +181,25 @@ private:
         std::uint32_t body = 0;
         RigidMotion::Outcome outcome;
     };
+
+    // A body, and with the first of a group all that springs join to it.
+    void carry_from(std::uint32_t body,
+                    const BodyStates& states,
+                    RigidMotion& law,
+                    std::vector<Landing>& landings)
+    {
+        const Forces& forces = facts_.forces;
+        const std::uint32_t group = body < forces.group_of.size() ? forces.group_of[body] : kNoBody;
+        if (group == kNoBody) {
+            carry(law, {&body, 1}, landings);
+            return;
+        }
+        // Of a group of which one touches something nobody is here.
+        std::vector<std::uint32_t> flying;
+        for (const std::uint32_t member : forces.groups[group])
+            if (states.movable(member)) flying.push_back(member);
+        if (flying.front() == body) carry_joined(law, flying, landings);
+    }
 
     void
     carry(RigidMotion& law, std::span<const std::uint32_t> bodies, std::vector<Landing>& landings)
@@ -259,25 +293,8 @@ void integrate_poses(const StepContext& context,
     const bool alone = !context.has(Effect::contact) && !context.effects.meets(kEventDriven);
     if (alone) diagnostics.quarantined.clear();
 
-    const FlightRule rule = rule_of(context);
-    const FlightArrays arrays = arrays_of(masses, poses, velocities);
-    const FlyKernel kernel = fly_kernel();
-    const bool wide =
-        !context.has(Effect::gyroscopic) || rule.precession != FlightRule::Precession::none;
     const auto fly = [&](const std::vector<std::uint32_t>& bodies) {
-        diagnostics.scratch.of_block.start(block_count(bodies.size(), kGrain));
-        for_each_block(bodies.size(), kGrain, [&](auto begin, auto end, auto block) {
-            std::array<std::uint32_t, kGrain> chosen, left;
-            std::size_t count = 0;
-            for (std::size_t i = begin; i < end; ++i)
-                if (states.moves(bodies[i])) chosen[count++] = bodies[i];
-            if (wide) count = kernel(rule, arrays, chosen.data(), count, left.data());
-            auto& lost = diagnostics.scratch.of_block[block];
-            for (std::size_t i = 0; i < count; ++i)
-                if (!fly_one(context, rule, masses, wide ? left[i] : chosen[i], poses, velocities))
-                    lost.push_back(wide ? left[i] : chosen[i]);
-        });
-        diagnostics.scratch.of_block.append_to(diagnostics.quarantined);
+        fly_freely(context, masses, states, bodies, poses, velocities, diagnostics);
     };
     const auto& free = alone ? states.active_bodies.dynamic : islands.lone;
     const auto by_law = [&](const std::vector<std::uint32_t>& bodies) {

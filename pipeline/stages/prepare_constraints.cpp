@@ -146,6 +146,20 @@ void prepare_prescribed_velocities(const PrescribedVelocities& prescribed,
     });
 }
 
+// Says where the points of each block begin, and how many there are.
+template <class Real>
+std::uint32_t place_points(const Layout& layout, ContactConstraints<Real>& constraints)
+{
+    const std::size_t blocks = layout.points.size();
+    constraints.first_point.resize(blocks);
+    std::uint32_t points = 0;
+    for (std::size_t i = 0; i < blocks; ++i) {
+        constraints.first_point[i] = points;
+        points += layout.points[i];
+    }
+    return points;
+}
+
 }  // namespace
 
 template <class Real>
@@ -198,12 +212,7 @@ void prepare_constraints(const StepContext& context,
 
     const std::size_t blocks = layout.points.size();
     constraints.blocks.resize(blocks);
-    constraints.first_point.resize(blocks);
-    std::uint32_t points = 0;
-    for (std::size_t i = 0; i < blocks; ++i) {
-        constraints.first_point[i] = points;
-        points += layout.points[i];
-    }
+    const std::uint32_t points = place_points(layout, constraints);
     constraints.points.resize(points);
     constraints.restitutions.resize(context.has(Effect::restitution) ? blocks : 0);
     constraints.surfaces_turn = anybody_carries(constraints.bodies, context.dt);

@@ -80,23 +80,7 @@ public:
     {
         touches_.assign(colliders_.size(), 0);
         const std::size_t count = pairs_to_look_at();
-        bool some = false;
-        const auto mark = [&](PairKey key) {
-            for_each_side(key, [&](std::uint32_t moving, std::uint32_t other, bool) {
-                std::uint8_t& touches = touches_[moving];
-                const std::uint8_t number = (touches & kOne) != 0 ? kMore : kOne;
-                const std::uint8_t rim = roles_[other] & kRimmed;
-                touches = static_cast<std::uint8_t>(touches | number | rim);
-                some = some || meets_ghosts(moving);
-            });
-        };
-        for (std::size_t i = 0; i < count; ++i)
-            if (concerns(pairs_.keys[i]) && convex.of_pair[i].contact != PairState::kApart)
-                mark(pairs_.keys[i]);
-        for (const auto* list : {&meshes, &solids})
-            for (const auto& entry : list->entries)
-                if (entry.contact.count > 0) mark(pairs_.keys[entry.pair]);
-        if (!some) return;
+        if (!mark_touches(count, convex, meshes, solids)) return;
 
         BlockLists<Seen<Real>> lists;
         lists.start(block_count(count, kGrain));
@@ -141,6 +125,31 @@ private:
     static constexpr std::uint8_t kPushed = 1, kPlane = 2, kRimmed = 4;
     // What touches one: something that may lie flush with another, more than one, one with a rim.
     static constexpr std::uint8_t kOne = 1, kMore = 2, kMoreAndRim = kMore | kRimmed;
+
+    // Whether anybody may meet a ghost.
+    bool mark_touches(std::size_t count,
+                      const ConvexContacts<Real>& convex,
+                      const ManyContacts<Real>& meshes,
+                      const ManyContacts<Real>& solids)
+    {
+        bool some = false;
+        const auto mark = [&](PairKey key) {
+            for_each_side(key, [&](std::uint32_t moving, std::uint32_t other, bool) {
+                std::uint8_t& touches = touches_[moving];
+                const std::uint8_t number = (touches & kOne) != 0 ? kMore : kOne;
+                const std::uint8_t rim = roles_[other] & kRimmed;
+                touches = static_cast<std::uint8_t>(touches | number | rim);
+                some = some || meets_ghosts(moving);
+            });
+        };
+        for (std::size_t i = 0; i < count; ++i)
+            if (concerns(pairs_.keys[i]) && convex.of_pair[i].contact != PairState::kApart)
+                mark(pairs_.keys[i]);
+        for (const auto* list : {&meshes, &solids})
+            for (const auto& entry : list->entries)
+                if (entry.contact.count > 0) mark(pairs_.keys[entry.pair]);
+        return some;
+    }
 
     // They ascend by their first, and what stands still is mostly made before what moves: behind
     // the last that may have neighbors, no pair has one.

@@ -199,26 +199,20 @@ private:
                     kernel_(rule, arrays, colliders.data(), owners.data(), count, found.data());
                 asked.insert(asked.end(), found.data(), found.data() + left);
                 for (std::size_t i = 0; i < count; ++i)
-                    if (process(colliders[i], owners[i]))
-                        note_fast_candidate(colliders[i], falls, block);
+                    note_if_fast(colliders[i], owners[i], falls, block);
                 count = 0;
             };
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::uint32_t body = bodies[i], first = colliders_.begin[body];
-                if (!states_.moves(body)) continue;
-                for (std::uint32_t at = first; at < first + colliders_.count[body]; ++at) {
-                    if (bounds_.scratch.flags[at] != 0
-                        || bounds_.form[at] == static_cast<std::uint8_t>(ActiveBoundsForm::other)) {
-                        if (colliders_.body[at] != body) continue;
-                        update(at, asked);
-                        if (process(at, body)) note_fast_candidate(at, falls, block);
-                        continue;
-                    }
-                    colliders[count] = at;
-                    owners[count] = body;
-                    if (++count == kGrain) flush();
+            for_each_collider(bodies, begin, end, [&](std::uint32_t at, std::uint32_t body) {
+                if (goes_alone(at)) {
+                    if (colliders_.body[at] != body) return;
+                    update(at, asked);
+                    note_if_fast(at, body, falls, block);
+                    return;
                 }
-            }
+                colliders[count] = at;
+                owners[count] = body;
+                if (++count == kGrain) flush();
+            });
             flush();
         });
         for (std::size_t block = 0; block < blocks; ++block) {
@@ -229,12 +223,35 @@ private:
         }
     }
 
-    // Whether a collider may be that of a fast body.
-    bool process(std::uint32_t collider, std::uint32_t body) const
+    // Those of bodies that move.
+    template <class Process>
+    void for_each_collider(const std::vector<std::uint32_t>& bodies,
+                           std::size_t begin,
+                           std::size_t end,
+                           const Process& process) const
     {
-        return bounds_.speculative_margin[collider]
-            > kFastCandidateMargin * colliders_.inner_extent[collider]
-            || (sweeps_ && states_.marked_fast(body));
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t body = bodies[i], first = colliders_.begin[body];
+            if (!states_.moves(body)) continue;
+            for (std::uint32_t at = first; at < first + colliders_.count[body]; ++at)
+                process(at, body);
+        }
+    }
+
+    // Whether it was touched, or is no form that the wide kernel knows.
+    bool goes_alone(std::uint32_t collider) const
+    {
+        return bounds_.scratch.flags[collider] != 0
+            || bounds_.form[collider] == static_cast<std::uint8_t>(ActiveBoundsForm::other);
+    }
+
+    // What may be the collider of a fast body is looked at.
+    void note_if_fast(std::uint32_t collider, std::uint32_t body, double falls, std::size_t block)
+    {
+        if (bounds_.speculative_margin[collider]
+                > kFastCandidateMargin * colliders_.inner_extent[collider]
+            || (sweeps_ && states_.marked_fast(body)))
+            note_fast_candidate(collider, falls, block);
     }
 
     // Few ever come here.

@@ -156,12 +156,12 @@ private:
     }
 
     // Filters know groups and masks: bodies of one group and mask are alike.
-    void find_contact()
+    struct Kind {
+        std::uint32_t first = kNoBody, second = kNoBody;  // bodies
+        std::uint32_t dynamic = kNoBody;                  // first dynamic one
+    };
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Kind> find_kinds() const
     {
-        struct Kind {
-            std::uint32_t first = kNoBody, second = kNoBody;  // bodies
-            std::uint32_t dynamic = kNoBody;                  // first dynamic one
-        };
         std::map<std::pair<std::uint32_t, std::uint32_t>, Kind> kinds;
         for (std::uint32_t i = 0; i < facts_.colliders.size(); ++i) {
             const std::uint32_t body = facts_.colliders.body[i];
@@ -173,6 +173,12 @@ private:
                 kind.second = body;
             if (kind.dynamic == kNoBody && facts_.states.dynamic(body)) kind.dynamic = body;
         }
+        return kinds;
+    }
+
+    void find_contact()
+    {
+        const auto kinds = find_kinds();
         for (const auto& [x, a] : kinds)
             for (const auto& [y, b] : kinds) {
                 if ((x.first & y.second) == 0 || (y.first & x.second) == 0) continue;

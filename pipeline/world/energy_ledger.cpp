@@ -26,10 +26,10 @@ Number of_body(const std::vector<Number>& list, std::uint32_t body, const Number
 // Whether a body goes its own way, whatever pushes it. A driven one may be dynamic.
 bool moves_by_itself(const WorldState& state, std::uint32_t body)
 {
-    const BodyStates& states = state.get<BodyStates>();
+    const auto& states = state.get<BodyStates>();
     if (states.carries(body)) return true;
     if (states.kind[body] != BodyKind::kinematic) return false;
-    const Velocities& velocities = state.get<Velocities>();
+    const auto& velocities = state.get<Velocities>();
     return !velocities.linear[body].isZero(0) || !velocities.angular[body].isZero(0);
 }
 
@@ -39,7 +39,7 @@ bool moves_by_itself(const WorldState& state, std::uint32_t body)
 // to win by it. So has who touches something, see velocity_lag.hpp.
 double lag_of(const WorldState& state, std::uint32_t body)
 {
-    const StepContext& context = state.get<StepContext>();
+    const auto& context = state.get<StepContext>();
     if (context.effects.meets(kEventDriven)) return 0;
     const Integrator integrator = context.integrator;
     const bool kicked = integrator == Integrator::semi_implicit
@@ -112,11 +112,11 @@ private:
 void EnergyLedger::Inside::look(const World& world, Look& look) const
 {
     const WorldState& state = state_of(world);
-    const Masses& masses = state.get<Masses>();
-    const BodyStates& states = state.get<BodyStates>();
-    const Poses& poses = state.get<Poses>();
-    const Velocities& velocities = state.get<Velocities>();
-    const Forces& forces = state.get<Forces>();
+    const auto& masses = state.get<Masses>();
+    const auto& states = state.get<BodyStates>();
+    const auto& poses = state.get<Poses>();
+    const auto& velocities = state.get<Velocities>();
+    const auto& forces = state.get<Forces>();
     const Vec3 gravity = world.gravity();
     look.bodies.assign(states.kind.size(), {});
     for (std::uint32_t body = 0; body < look.bodies.size(); ++body) {
@@ -145,7 +145,7 @@ void EnergyLedger::Inside::look(const World& world, Look& look) const
 void EnergyLedger::Inside::join_groups(const World& world)
 {
     const WorldState& state = state_of(world);
-    const BodyStates& states = state.get<BodyStates>();
+    const auto& states = state.get<BodyStates>();
     const auto count = static_cast<std::uint32_t>(states.kind.size());
     sets_.reset(count);
     for (std::uint32_t body = 0; body < count; ++body) sets_.add(body);
@@ -160,7 +160,7 @@ void EnergyLedger::Inside::join_groups(const World& world)
 void EnergyLedger::Inside::mark_groups(const World& world)
 {
     const WorldState& state = state_of(world);
-    const BodyStates& states = state.get<BodyStates>();
+    const auto& states = state.get<BodyStates>();
     const auto mark = [&](std::uint32_t body) {
         if (body != kNoBody && states.dynamic(body)) groups_[sets_.find(body)].driven = true;
     };
@@ -188,7 +188,7 @@ void EnergyLedger::Inside::mark_groups(const World& world)
 
 double EnergyLedger::Inside::work_on(const World& world, std::uint32_t body) const
 {
-    const Forces& forces = state_of(world).get<Forces>();
+    const auto& forces = state_of(world).get<Forces>();
     const double dt = world.settings().dt;
     const OfBody &from = before_.bodies[body], &to = after_.bodies[body];
     const Vec3 none = Vec3::Zero();

@@ -51,9 +51,9 @@ double solid_depth(const Shapes& shapes, ShapeRef solid, ShapeRef other, const P
 
 void measure_overlaps(const WorldState& state, Measures& measures)
 {
-    const Colliders& colliders = state.get<Colliders>();
-    const Shapes& shapes = state.get<Shapes>();
-    const BodyStates& states = state.get<BodyStates>();
+    const auto& colliders = state.get<Colliders>();
+    const auto& shapes = state.get<Shapes>();
+    const auto& states = state.get<BodyStates>();
     const std::size_t count = colliders.size();
     std::vector<Pose> placed(count);
     std::vector<Box3> boxes(count);
@@ -105,10 +105,10 @@ Measures World::measure() const
     // Measuring changes nothing that a step would notice, so it may use the world's own threads.
     auto& pool = const_cast<WorldState&>(*state_).pool;  // NOLINT: threads are no part of the state
     pool.run([&](std::size_t, std::size_t, std::size_t) { measure_overlaps(*state_, measures); });
-    const Masses& masses = state_->get<Masses>();
-    const BodyStates& states = state_->get<BodyStates>();
-    const Poses& poses = state_->get<Poses>();
-    const Velocities& velocities = state_->get<Velocities>();
+    const auto& masses = state_->get<Masses>();
+    const auto& states = state_->get<BodyStates>();
+    const auto& poses = state_->get<Poses>();
+    const auto& velocities = state_->get<Velocities>();
     for (std::uint32_t body = 0; body < states.kind.size(); ++body) {
         if (!states.dynamic(body)) continue;
         const Vec3 v = state_->velocity(body);
@@ -125,112 +125,156 @@ Measures World::measure() const
     return measures;
 }
 
-std::string World::state_hash() const
-{
-    Hash hash;
-    const Poses& poses = state_->get<Poses>();
-    const Velocities& velocities = state_->get<Velocities>();
-    const BodyStates& states = state_->get<BodyStates>();
-    const auto add3 = [&](const auto& v) {
-        for (int k = 0; k < 3; ++k) hash.add(v[k]);
-    };
-    for (std::size_t body = 0; body < states.kind.size(); ++body) {
-        hash.add(std::uint64_t{static_cast<std::uint8_t>(states.kind[body])});
-        if (states.kind[body] == BodyKind::removed) continue;
-        add3(poses.position[body]);
-        for (int k = 0; k < 4; ++k) hash.add(poses.orientation[body].coeffs()[k]);
-        add3(velocities.linear[body]);
-        add3(velocities.angular[body]);
-        hash.add(std::uint64_t{states.awake[body]});
-        hash.add(states.sleep_time[body]);
+namespace {
+
+// All that the next step begins with.
+class StateHash {
+public:
+    explicit StateHash(const WorldState& state) : state_(state) { }
+
+    std::string text()
+    {
+        add_bodies();
+        add_strains();
+        // Where a method of choice will begin, which may show in the last bits of what it finds.
+        for (const MethodMemory& memory : state_.get<MethodPairs>().of_pair) {
+            add_vector(memory.axis);
+            for (std::size_t i = 0; i < 4; ++i)
+                hash_.add(std::uint64_t{memory.a[i]} << 32 | memory.b[i]);
+            hash_.add(std::uint64_t{memory.count} << 32 | memory.kind);
+        }
+        std::visit(
+            [&](const auto& chosen) {
+                using Real =
+                    std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
+                                       float, double>;
+                add_contacts<Real>(chosen.data);
+            },
+            state_.step);
+        return hash_.text();
     }
-    const OverloadedIslands& overloaded = state_->get<OverloadedIslands>();
-    for (const std::uint32_t body : overloaded.strained) {
-        if (!is_overloaded(overloaded.of(body))) continue;
-        hash.add(std::uint64_t{body});
-        hash.add(overloaded.of(body));
+
+private:
+    void add_bodies()
+    {
+        const auto& poses = state_.get<Poses>();
+        const auto& velocities = state_.get<Velocities>();
+        const auto& states = state_.get<BodyStates>();
+        for (std::size_t body = 0; body < states.kind.size(); ++body) {
+            hash_.add(std::uint64_t{static_cast<std::uint8_t>(states.kind[body])});
+            if (states.kind[body] == BodyKind::removed) continue;
+            add_pose(poses.position[body], poses.orientation[body]);
+            add_vector(velocities.linear[body]);
+            add_vector(velocities.angular[body]);
+            hash_.add(std::uint64_t{states.awake[body]});
+            hash_.add(states.sleep_time[body]);
+        }
     }
-    const auto add_contact = [&](std::uint64_t key, const auto& contact) {
+
+    void add_strains()
+    {
+        const auto& overloaded = state_.get<OverloadedIslands>();
+        for (const std::uint32_t body : overloaded.strained) {
+            if (!is_overloaded(overloaded.of(body))) continue;
+            hash_.add(std::uint64_t{body});
+            hash_.add(overloaded.of(body));
+        }
+    }
+
+    template <class Real, class Data>
+    void add_contacts(const Data& data)
+    {
+        const auto& pairs = std::get<Pairs>(data);
+        const auto& convex = std::get<ConvexContacts<Real>>(data);
+        for (std::size_t i = 0; i < convex.of_pair.size(); ++i) {
+            const Contact<Real>* const contact = convex.at(i);
+            if (contact == nullptr) continue;
+            add_contact(pairs.keys[i], *contact);
+            if (convex.recycles
+                && is_recycled(kind_of(first_of(pairs.keys[i])), kind_of(second_of(pairs.keys[i]))))
+                add_found(convex.found[convex.of_pair[i].contact]);
+        }
+        const auto add_many = [&](const ManyContacts<Real>& many) {
+            for (const auto& entry : many.entries) {
+                hash_.add(std::uint64_t{entry.part});
+                add_contact(pairs.keys[entry.pair], entry.contact);
+            }
+        };
+        add_many(std::get<MeshContacts<Real>>(data));
+        const auto& solids = std::get<SolidContacts<Real>>(data);
+        add_many(solids);
+        for (const auto& found : solids.found.pairs)
+            for (std::uint32_t k = 0; k < found.count; ++k)
+                add_found(CachedManifold<double>{solids.found.patches[found.first + k].manifold,
+                                                 found.b_in_a, found.speculative_margin});
+    }
+
+    template <class Contact>
+    void add_contact(std::uint64_t key, const Contact& contact)
+    {
         if (contact.count == 0) return;
-        hash.add(key);
+        hash_.add(key);
         for (int k = 0; k < contact.count; ++k) {
             const auto& point = contact.points[static_cast<std::size_t>(k)];
-            hash.add(std::uint64_t{point.feature});
-            hash.add(point.impulse);
+            hash_.add(std::uint64_t{point.feature});
+            hash_.add(point.impulse);
         }
-        add3(contact.friction);
-        hash.add(contact.torsional_impulse);
-        add3(contact.rolling);
-    };
-    const auto kind_of = [&](std::uint32_t collider) {
-        return state_->get<Colliders>().shape[collider].kind;
-    };
+        add_vector(contact.friction);
+        hash_.add(contact.torsional_impulse);
+        add_vector(contact.rolling);
+    }
+
     // What a contact will be told from as long as its pair hardly moves.
-    const auto add_found = [&](const auto& found) {
-        hash.add(found.speculative_margin);
-        add3(found.b_in_a.position);
-        for (int k = 0; k < 4; ++k) hash.add(found.b_in_a.orientation.coeffs()[k]);
-        add3(found.manifold.normal);
+    template <class Found>
+    void add_found(const Found& found)
+    {
+        hash_.add(found.speculative_margin);
+        add_pose(found.b_in_a.position, found.b_in_a.orientation);
+        add_vector(found.manifold.normal);
         for (int k = 0; k < found.manifold.count; ++k) {
             const auto& point = found.manifold.points[static_cast<std::size_t>(k)];
-            add3(point.position);
-            hash.add(point.separation);
-            hash.add(std::uint64_t{point.feature});
+            add_vector(point.position);
+            hash_.add(point.separation);
+            hash_.add(std::uint64_t{point.feature});
         }
-    };
-    // Where a method of choice will begin, which may show in the last bits of what it finds.
-    for (const MethodMemory& memory : state_->get<MethodPairs>().of_pair) {
-        add3(memory.axis);
-        for (std::size_t i = 0; i < 4; ++i)
-            hash.add(std::uint64_t{memory.a[i]} << 32 | memory.b[i]);
-        hash.add(std::uint64_t{memory.count} << 32 | memory.kind);
     }
-    std::visit(
-        [&](const auto& chosen) {
-            using Real =
-                std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
-                                   float, double>;
-            const Pairs& pairs = std::get<Pairs>(chosen.data);
-            const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
-            for (std::size_t i = 0; i < convex.of_pair.size(); ++i) {
-                const Contact<Real>* const contact = convex.at(i);
-                if (contact == nullptr) continue;
-                add_contact(pairs.keys[i], *contact);
-                if (convex.recycles
-                    && is_recycled(kind_of(first_of(pairs.keys[i])),
-                                   kind_of(second_of(pairs.keys[i]))))
-                    add_found(convex.found[convex.of_pair[i].contact]);
-            }
-            const auto add_many = [&](const ManyContacts<Real>& many) {
-                for (const auto& entry : many.entries) {
-                    hash.add(std::uint64_t{entry.part});
-                    add_contact(pairs.keys[entry.pair], entry.contact);
-                }
-            };
-            add_many(std::get<MeshContacts<Real>>(chosen.data));
-            const auto& solids = std::get<SolidContacts<Real>>(chosen.data);
-            add_many(solids);
-            for (const auto& found : solids.found.pairs)
-                for (std::uint32_t k = 0; k < found.count; ++k)
-                    add_found(CachedManifold<double>{solids.found.patches[found.first + k].manifold,
-                                                     found.b_in_a, found.speculative_margin});
-        },
-        state_->step);
-    return hash.text();
-}
+
+    template <class Position, class Orientation>
+    void add_pose(const Position& position, const Orientation& orientation)
+    {
+        add_vector(position);
+        for (int k = 0; k < 4; ++k) hash_.add(orientation.coeffs()[k]);
+    }
+    template <class Vector>
+    void add_vector(const Vector& v)
+    {
+        for (int k = 0; k < 3; ++k) hash_.add(v[k]);
+    }
+    ShapeKind kind_of(std::uint32_t collider) const
+    {
+        return state_.get<Colliders>().shape[collider].kind;
+    }
+
+    const WorldState& state_;
+    Hash hash_;
+};
+
+}  // namespace
+
+std::string World::state_hash() const { return StateHash(*state_).text(); }
 
 std::size_t World::memory_bytes() const
 {
     const auto bytes = [](const auto&... arrays) {
         return (std::size_t{0} + ... + (arrays.capacity() * sizeof(arrays[0])));
     };
-    const Poses& p = state_->get<Poses>();
-    const Velocities& v = state_->get<Velocities>();
-    const Masses& m = state_->get<Masses>();
-    const BodyStates& s = state_->get<BodyStates>();
-    const Colliders& c = state_->get<Colliders>();
-    const Bounds& b = state_->get<Bounds>();
-    const Shapes& shapes = state_->get<Shapes>();
+    const auto& p = state_->get<Poses>();
+    const auto& v = state_->get<Velocities>();
+    const auto& m = state_->get<Masses>();
+    const auto& s = state_->get<BodyStates>();
+    const auto& c = state_->get<Colliders>();
+    const auto& b = state_->get<Bounds>();
+    const auto& shapes = state_->get<Shapes>();
     std::size_t sum =
         bytes(p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass, m.inertia,
               m.inverse_inertia, s.kind, s.awake, s.sleep_time, s.sleeping_island, c.body, c.shape,
@@ -242,7 +286,7 @@ std::size_t World::memory_bytes() const
             using Real =
                 std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
                                    float, double>;
-            const Pairs& pairs = std::get<Pairs>(chosen.data);
+            const auto& pairs = std::get<Pairs>(chosen.data);
             const auto& convex = std::get<ConvexContacts<Real>>(chosen.data);
             const auto& constraints = std::get<ContactConstraints<Real>>(chosen.data);
             const auto& methods = std::get<MethodPairs>(chosen.data);

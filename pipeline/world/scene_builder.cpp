@@ -98,7 +98,7 @@ void put(Array& array, std::size_t at, Value value)
 
 void SceneBuilder::add_materials(const Scene& scene)
 {
-    Surfaces& surfaces = state_.get<Surfaces>();
+    auto& surfaces = state_.get<Surfaces>();
     const auto add_one = [&](const Material& material, const std::string& name) {
         surfaces.friction.push_back(material.friction);
         surfaces.restitution.push_back(material.restitution);
@@ -125,7 +125,7 @@ void SceneBuilder::add_materials(const Scene& scene)
 
 PlacedShape SceneBuilder::add_shape(const Scene& scene, const ShapeDescription& description)
 {
-    Shapes& shapes = state_.get<Shapes>();
+    auto& shapes = state_.get<Shapes>();
     const auto one = [&](ShapeRef shape) {
         return PlacedShape{{shape}, {Pose{}}, mass_of(shapes, shape)};
     };
@@ -225,7 +225,7 @@ PlacedShape SceneBuilder::add_made(const std::string& name, MadeSolid made)
     state_.solids.push_back(name + ": " + made.summary);
     PlacedShape placed;
     placed.mass = made.mass;
-    Shapes& shapes = state_.get<Shapes>();
+    auto& shapes = state_.get<Shapes>();
     if (Solid* const solid = std::get_if<Solid>(&made.shape))
         placed.parts.push_back(append(shapes.solids, ShapeKind::solid, std::move(*solid)));
     else
@@ -261,9 +261,9 @@ void SceneBuilder::place_colliders(std::uint32_t body,
                                    const BodyDescription& stated,
                                    const PlacedShape* shape)
 {
-    Colliders& colliders = state_.get<Colliders>();
-    PairFilter& filter = state_.get<PairFilter>();
-    const Shapes& shapes = state_.get<Shapes>();
+    auto& colliders = state_.get<Colliders>();
+    auto& filter = state_.get<PairFilter>();
+    const auto& shapes = state_.get<Shapes>();
     const auto count = static_cast<std::uint32_t>(shape == nullptr ? 0 : shape->parts.size());
     const std::uint32_t first = take_colliders(count);
     put(colliders.begin, body, first);
@@ -301,7 +301,7 @@ void SceneBuilder::weigh(std::uint32_t body,
                          const BodyDescription& stated,
                          const PlacedShape* shape)
 {
-    Masses& masses = state_.get<Masses>();
+    auto& masses = state_.get<Masses>();
     put(masses.mass, body, 0.0);
     put(masses.inverse_mass, body, 0.0);
     put(masses.inertia, body, Sym3{});
@@ -360,14 +360,14 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     Quat orientation = stated.orientation;
     orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
 
-    Poses& poses = state_.get<Poses>();
+    auto& poses = state_.get<Poses>();
     put(poses.position, body, Vec3(orientation * state_.center[body] + stated.position));
     put(poses.orientation, body, orientation);
-    Velocities& velocities = state_.get<Velocities>();
+    auto& velocities = state_.get<Velocities>();
     put(velocities.linear, body, stated.velocity);
     put(velocities.angular, body,
         stated.lock_rotation ? Vec3(Vec3::Zero()) : stated.angular_velocity);
-    BodyStates& states = state_.get<BodyStates>();
+    auto& states = state_.get<BodyStates>();
     const bool moves = stated.motion != Motion::static_;
     put(states.kind, body,
         !moves                                 ? BodyKind::static_
@@ -380,7 +380,7 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     put(state_.motion, body, stated.motion);
     if (!stated.name.empty()) put(state_.names, body, stated.name);
 
-    PrescribedVelocities& prescribed = state_.get<PrescribedVelocities>();
+    auto& prescribed = state_.get<PrescribedVelocities>();
     const auto& drive = stated.drive_velocity;
     const Vec3 surface(drive[0].value_or(0), drive[1].value_or(0), drive[2].value_or(0));
     put(states.is_conveyor, body, std::uint8_t{!moves && !surface.isZero(0)});
@@ -402,7 +402,7 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
 
 void SceneBuilder::make_room_for(ShapeKind kind, std::size_t count)
 {
-    Shapes& shapes = state_.get<Shapes>();
+    auto& shapes = state_.get<Shapes>();
     const auto reserve = [&](auto& list) { list.reserve(list.size() + count); };
     if (kind == ShapeKind::sphere) reserve(shapes.spheres);
     if (kind == ShapeKind::capsule) reserve(shapes.capsules);
@@ -412,7 +412,7 @@ void SceneBuilder::make_room_for(ShapeKind kind, std::size_t count)
 
 ShapeRef SceneBuilder::sized(ShapeKind kind, const double* sizes)
 {
-    Shapes& shapes = state_.get<Shapes>();
+    auto& shapes = state_.get<Shapes>();
     switch (kind) {
     case ShapeKind::sphere:
         return append(shapes.spheres, kind, Sphere{sizes[0]});
@@ -437,24 +437,24 @@ void SceneBuilder::grow_lists(std::size_t bodies)
         };
         (one(lists), ...);
     };
-    Poses& p = state_.get<Poses>();
-    Velocities& v = state_.get<Velocities>();
-    Masses& m = state_.get<Masses>();
-    BodyStates& s = state_.get<BodyStates>();
+    auto& p = state_.get<Poses>();
+    auto& v = state_.get<Velocities>();
+    auto& m = state_.get<Masses>();
+    auto& s = state_.get<BodyStates>();
     reserve(bodies, p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass,
             m.inertia, m.inverse_inertia, m.gyroscopic_kind, m.symmetry_axis, s.kind, s.awake,
             s.quarantined, s.sleep_time, s.sleeping_island, s.radius, s.is_conveyor, s.fast,
             s.active_bodies.dynamic, state_.center, state_.generation, state_.motion);
     // Most bodies have one collider.
-    Colliders& c = state_.get<Colliders>();
-    PairFilter& filter = state_.get<PairFilter>();
+    auto& c = state_.get<Colliders>();
+    auto& filter = state_.get<PairFilter>();
     reserve(bodies, c.body, c.shape, c.local, c.material, c.inner_extent, c.outer_radius, c.begin,
             c.count, c.may_swing, filter.body, filter.group, filter.mask);
 }
 
 void SceneBuilder::add_forces(const Scene& scene, std::span<const BodyId> ids)
 {
-    Forces& forces = state_.get<Forces>();
+    auto& forces = state_.get<Forces>();
     std::vector<std::uint32_t> places;
     for (const BodyId id : ids) places.push_back(id.index);
     if (!scene.springs.empty()) {

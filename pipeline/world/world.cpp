@@ -89,7 +89,7 @@ std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
 void WorldState::choose_broad_phase()
 {
     const BroadPhase asked = settings.broadphase;
-    const Colliders& colliders = get<Colliders>();
+    const auto& colliders = get<Colliders>();
     const auto kind = [&] {
         switch (asked) {
         case BroadPhase::embree:
@@ -105,7 +105,7 @@ void WorldState::choose_broad_phase()
         }
         std::vector<Box3> boxes(colliders.size());
         std::vector<std::uint8_t> moving(colliders.size(), 0);
-        const BodyStates& states = get<BodyStates>();
+        const auto& states = get<BodyStates>();
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const std::uint32_t body = colliders.body[i];
             if (body == kNoBody) continue;
@@ -120,21 +120,21 @@ void WorldState::choose_broad_phase()
     if (finder.index() == make_finder(kind).index() && !get<Pairs>().keys.empty()) return;
     finder = make_finder(kind);
     // A new finder has to be asked about everybody.
-    Bounds& bounds = get<Bounds>();
+    auto& bounds = get<Bounds>();
     bounds.touched.clear();
     for (std::uint32_t i = 0; i < colliders.size(); ++i) bounds.touched.push_back(i);
 }
 
 bool WorldState::nothing_to_do() const
 {
-    const StepContext& context = get<StepContext>();
+    const auto& context = get<StepContext>();
     return idle && !effects_stale && !active_bodies_stale && get<Bounds>().touched.empty()
         && context.last_substep == context.substep();
 }
 
 void WorldState::follow_stubborn()
 {
-    OverloadedIslands& overloaded = get<OverloadedIslands>();
+    auto& overloaded = get<OverloadedIslands>();
     report.islands_escalated += overloaded.escalated;
     report.escalation_missed += overloaded.missed;
     overloaded.escalated = overloaded.missed = 0;
@@ -158,8 +158,8 @@ std::string WorldState::called(std::uint32_t body) const
 void WorldState::follow_step()
 {
     follow_stubborn();
-    StepDiagnostics& diagnostics = get<StepDiagnostics>();
-    SleepEvents& sleep_events = get<SleepEvents>();
+    auto& diagnostics = get<StepDiagnostics>();
+    auto& sleep_events = get<SleepEvents>();
     if (!diagnostics.quarantined.empty() || !sleep_events.woke.empty()
         || !sleep_events.fell_asleep.empty())
         update_active_bodies(sleep_events.woke, get<BodyStates>());
@@ -196,7 +196,7 @@ void WorldState::report_state()
         : 0;
     report.bodies_awake = get<BodyStates>().active_bodies.dynamic.size();
     if (!effects.on.meets(kEventDriven)) return;
-    const EventDrivenContacts& carried = get<EventDrivenContacts>();
+    const auto& carried = get<EventDrivenContacts>();
     report.pairs = carried.pairs;
     report.manifolds = carried.touching;
     report.contacts = carried.points;
@@ -237,7 +237,7 @@ Vec3 WorldState::center_of_mass(std::uint32_t body) const
 
 Vec3 WorldState::velocity(std::uint32_t body) const
 {
-    const Velocities& velocities = get<Velocities>();
+    const auto& velocities = get<Velocities>();
     return velocities.linear[body] + velocities.angular[body].cross(arm(body));
 }
 
@@ -260,7 +260,7 @@ void WorldState::refresh_effects()
 {
     effects_stale = false;
     active_bodies_stale = true;
-    StepContext& context = get<StepContext>();
+    auto& context = get<StepContext>();
     effects = find_effects({settings, context.gravity, get<BodyStates>(), get<Poses>(),
                             get<Velocities>(), get<Masses>(), get<PrescribedVelocities>(),
                             get<Forces>(), get<Shapes>(), get<Colliders>(), get<Surfaces>(),
@@ -331,7 +331,7 @@ void World::step(int steps)
                     },
                     state.step);
             });
-            StepContext& context = state.get<StepContext>();
+            auto& context = state.get<StepContext>();
             context.last_substep = context.substep();
             state.report.contacts_dropped += std::visit(
                 [](const auto& chosen) {
@@ -340,7 +340,7 @@ void World::step(int steps)
                 },
                 state.step);
             state.report.fallbacks += state.get<MethodPairs>().fell_back;
-            const StepDiagnostics& diagnostics = state.get<StepDiagnostics>();
+            const auto& diagnostics = state.get<StepDiagnostics>();
             state.report.fallbacks +=
                 diagnostics.direct_left + diagnostics.held_groups + diagnostics.deep_pieces;
             state.report.deepest = std::max(state.report.deepest, diagnostics.deepest);
@@ -387,7 +387,7 @@ std::vector<BodyId> World::bodies() const
 {
     std::vector<BodyId> ids;
     ids.reserve(state_->alive);
-    const BodyStates& states = state_->get<BodyStates>();
+    const auto& states = state_->get<BodyStates>();
     for (std::uint32_t body = 0; body < states.kind.size(); ++body)
         if (states.kind[body] != BodyKind::removed) ids.push_back({body, state_->generation[body]});
     return ids;
@@ -457,6 +457,37 @@ Mat3 World::rotation_matrix(BodyId body) const
                 : orientation.toRotationMatrix();
 }
 
+namespace {
+
+// What all contacts do to a body, in the order of their lists.
+template <class Real, class Data>
+Vec3 impulse_of_contacts(std::uint32_t body, const Data& data)
+{
+    Vec3 impulse = Vec3::Zero();
+    const auto& colliders = std::get<Colliders>(data);
+    const auto& pairs = std::get<Pairs>(data);
+    const auto add = [&](std::size_t pair, const auto& contact) {
+        const bool is_a = colliders.body[first_of(pairs.keys[pair])] == body;
+        const bool is_b = colliders.body[second_of(pairs.keys[pair])] == body;
+        if (!is_a && !is_b) return;
+        Vec3 on_b = contact.friction.template cast<double>();
+        for (int k = 0; k < contact.count; ++k)
+            on_b += contact.normal.template cast<double>()
+                * double{contact.points[static_cast<std::size_t>(k)].impulse};
+        impulse += is_b ? on_b : Vec3(-on_b);
+    };
+    const auto& convex = std::get<ConvexContacts<Real>>(data);
+    for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
+        if (const Contact<Real>* contact = convex.at(i)) add(i, *contact);
+    for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
+        if (entry.contact.count > 0) add(entry.pair, entry.contact);
+    for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
+        if (entry.contact.count > 0) add(entry.pair, entry.contact);
+    return impulse;
+}
+
+}  // namespace
+
 Vec3 World::contact_force(BodyId body) const
 {
     const std::uint32_t at = state_->place_of(body, "contact_force");
@@ -469,29 +500,11 @@ Vec3 World::contact_force(BodyId body) const
     Vec3 impulse = Vec3::Zero();
     std::visit(
         [&](const auto& chosen) {
-            const auto& data = chosen.data;
-            const Colliders& colliders = std::get<Colliders>(data);
-            const Pairs& pairs = std::get<Pairs>(data);
-            const auto add = [&](std::size_t pair, const auto& contact) {
-                const bool is_a = colliders.body[first_of(pairs.keys[pair])] == at;
-                const bool is_b = colliders.body[second_of(pairs.keys[pair])] == at;
-                if (!is_a && !is_b) return;
-                Vec3 on_b = contact.friction.template cast<double>();
-                for (int k = 0; k < contact.count; ++k)
-                    on_b += contact.normal.template cast<double>()
-                        * double{contact.points[static_cast<std::size_t>(k)].impulse};
-                impulse += is_b ? on_b : Vec3(-on_b);
-            };
             using Real =
                 std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
                                    float, double>;
-            const auto& convex = std::get<ConvexContacts<Real>>(data);
-            for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
-                if (const Contact<Real>* contact = convex.at(i)) add(i, *contact);
-            for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
-                if (entry.contact.count > 0) add(entry.pair, entry.contact);
-            for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
-                if (entry.contact.count > 0) add(entry.pair, entry.contact);
+            const auto& data = chosen.data;
+            impulse = impulse_of_contacts<Real>(at, data);
             if (state_->effects.on.has(Effect::restitution))
                 impulse += impacts_on(at, std::get<Layout>(data), std::get<ActiveContacts>(data),
                                       std::get<ContactConstraints<Real>>(data));

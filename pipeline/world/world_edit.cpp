@@ -15,12 +15,12 @@ namespace throng {
 
 void WorldState::wake(std::uint32_t body)
 {
-    BodyStates& states = get<BodyStates>();
+    auto& states = get<BodyStates>();
     states.sleep_time[body] = 0;
     const std::uint32_t sleeping_island = states.sleeping_island[body];
     if (sleeping_island == kNoBody) return;
     active_bodies_stale = true;
-    SleepingIslands& sleeping_islands = get<SleepingIslands>();
+    auto& sleeping_islands = get<SleepingIslands>();
     for (const std::uint32_t sleeping : sleeping_islands.bodies[sleeping_island]) {
         states.awake[sleeping] = 1;
         states.sleep_time[sleeping] = 0;
@@ -32,8 +32,8 @@ void WorldState::wake(std::uint32_t body)
 
 void WorldState::mark_changed(std::uint32_t body)
 {
-    const Colliders& colliders = get<Colliders>();
-    Bounds& bounds = get<Bounds>();
+    const auto& colliders = get<Colliders>();
+    auto& bounds = get<Bounds>();
     for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
         bounds.touched.push_back(colliders.begin[body] + i);
     get<SplitImpulse>().place(body);
@@ -42,7 +42,7 @@ void WorldState::mark_changed(std::uint32_t body)
 
 void WorldState::wake_neighbors(const std::vector<std::uint8_t>& of)
 {
-    const Colliders& colliders = get<Colliders>();
+    const auto& colliders = get<Colliders>();
     for (const PairKey key : get<Pairs>().keys) {
         const std::uint32_t a = colliders.body[first_of(key)], b = colliders.body[second_of(key)];
         if (of[a] != 0) wake(b);
@@ -52,8 +52,8 @@ void WorldState::wake_neighbors(const std::vector<std::uint8_t>& of)
 
 void WorldState::forget_pairs(const std::vector<std::uint8_t>& of)
 {
-    Pairs& pairs = get<Pairs>();
-    const Colliders& colliders = get<Colliders>();
+    auto& pairs = get<Pairs>();
+    const auto& colliders = get<Colliders>();
     std::vector<std::uint32_t> kept_as(pairs.keys.size(), Pairs::kNewPair);
     std::uint32_t kept = 0;
     for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
@@ -66,6 +66,12 @@ void WorldState::forget_pairs(const std::vector<std::uint8_t>& of)
     pairs.keys.resize(kept);
 
     const auto gone = [&](std::uint32_t pair) { return kept_as[pair] == Pairs::kNewPair; };
+    // What is known by the number of the pair.
+    const auto close_up = [&](auto& list) {
+        for (std::uint32_t i = 0; i < list.size(); ++i)
+            if (!gone(i)) list[kept_as[i]] = list[i];
+        list.resize(std::min<std::size_t>(list.size(), kept));
+    };
     for (auto* const list : {&pairs.on_mesh, &pairs.on_solid}) {
         std::erase_if(*list, gone);
         for (std::uint32_t& pair : *list) pair = kept_as[pair];
@@ -75,20 +81,12 @@ void WorldState::forget_pairs(const std::vector<std::uint8_t>& of)
             using Real = typename std::decay_t<decltype(chosen)>::Number;
             auto& contacts = std::get<ConvexContacts<Real>>(chosen.data);
             auto& states = contacts.of_pair;
-            for (std::size_t i = 0; i < states.size(); ++i)
-                if (kept_as[i] != Pairs::kNewPair)
-                    states[kept_as[i]] = states[i];
-                else if (states[i].contact != PairState::kApart)
+            for (std::uint32_t i = 0; i < states.size(); ++i)
+                if (gone(i) && states[i].contact != PairState::kApart)
                     contacts.free.push_back(states[i].contact);
-            states.resize(std::min<std::size_t>(states.size(), kept));
-            auto& until = contacts.apart_until;
-            for (std::size_t i = 0; i < until.size(); ++i)
-                if (kept_as[i] != Pairs::kNewPair) until[kept_as[i]] = until[i];
-            until.resize(std::min<std::size_t>(until.size(), kept));
-            auto& memories = std::get<MethodPairs>(chosen.data).of_pair;
-            for (std::size_t i = 0; i < memories.size(); ++i)
-                if (kept_as[i] != Pairs::kNewPair) memories[kept_as[i]] = memories[i];
-            memories.resize(std::min<std::size_t>(memories.size(), kept));
+            close_up(states);
+            close_up(contacts.apart_until);
+            close_up(std::get<MethodPairs>(chosen.data).of_pair);
             const auto keep = [&](auto& list) {
                 std::erase_if(list, [&](const auto& item) { return gone(item.pair); });
                 for (auto& item : list) item.pair = kept_as[item.pair];
@@ -117,9 +115,9 @@ void WorldState::quarantine(std::uint32_t body)
 
 void WorldState::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular)
 {
-    const BodyStates& states = get<BodyStates>();
-    const Masses& masses = get<Masses>();
-    Velocities& velocities = get<Velocities>();
+    const auto& states = get<BodyStates>();
+    const auto& masses = get<Masses>();
+    auto& velocities = get<Velocities>();
     wake(body);
     if (states.kind[body] == BodyKind::static_) return;
     // What is locked stays locked.
@@ -138,7 +136,7 @@ void WorldState::empty_unused()
     if (!on.has(Effect::escalation)) get<OverloadedIslands>().efforts.clear();
     if (!may_escalate(settings)) get<OverloadedIslands>().forget_all();
     if (!on.meets(kEventDriven)) {
-        StepDiagnostics& diagnostics = get<StepDiagnostics>();
+        auto& diagnostics = get<StepDiagnostics>();
         diagnostics.held_groups = diagnostics.deep_pieces = 0;
         diagnostics.deepest = 0;
         get<EventDrivenContacts>() = {};
@@ -162,8 +160,8 @@ void World::remove(std::span<const BodyId> bodies)
 {
     WorldState& state = *state_;
     for (const BodyId id : bodies) state.place_of(id, "remove");
-    BodyStates& states = state.get<BodyStates>();
-    Colliders& colliders = state.get<Colliders>();
+    auto& states = state.get<BodyStates>();
+    auto& colliders = state.get<Colliders>();
     // What rested on them has to notice; and whoever takes their places next is somebody else.
     std::vector<std::uint8_t> going(state.generation.size(), 0);
     for (const BodyId id : bodies) going[id.index] = 1;
@@ -182,7 +180,7 @@ void World::remove(std::span<const BodyId> bodies)
             state.get<PairFilter>().mask[first + i] = 0;
         }
         if (count > 0) state.free_colliders[count].push_back(first);
-        PrescribedVelocities& prescribed = state.get<PrescribedVelocities>();
+        auto& prescribed = state.get<PrescribedVelocities>();
         const auto at = std::lower_bound(prescribed.body.begin(), prescribed.body.end(), body);
         if (at != prescribed.body.end() && *at == body) {
             prescribed.velocity.erase(prescribed.velocity.begin() + (at - prescribed.body.begin()));
@@ -213,7 +211,7 @@ void World::set_pose(BodyId body, const Pose& pose)
     const double length = std::sqrt(pose.orientation.squaredNorm());
     if (!holdable(pose.position) || !(std::abs(length - 1) < 1e-6))
         throw std::invalid_argument("set_pose: give a finite position and a unit quaternion");
-    Poses& poses = state_->get<Poses>();
+    auto& poses = state_->get<Poses>();
     poses.orientation[at] = Quat(pose.orientation.coeffs() / length);
     poses.position[at] = poses.orientation[at] * state_->center[at] + pose.position;
     std::vector<std::uint8_t> moved(state_->generation.size(), 0);
@@ -235,8 +233,8 @@ void World::add_impulse(BodyId body, const Vec3& impulse)
 {
     const std::uint32_t at = state_->place_of(body, "add_impulse");
     if (!impulse.allFinite()) throw std::invalid_argument("add_impulse: give finite numbers, N s");
-    const Velocities& velocities = state_->get<Velocities>();
-    const Masses& masses = state_->get<Masses>();
+    const auto& velocities = state_->get<Velocities>();
+    const auto& masses = state_->get<Masses>();
     Vec3 angular = velocities.angular[at];
     // What hangs on a pivot, about which its inertia is, turns by what reaches its center of mass.
     if (const Vec3 arm = state_->arm(at); !arm.isZero(0))

@@ -141,7 +141,7 @@ private:
     PlacedShape add_solid(const std::string& name, const VoxelsShape& voxels);
     PlacedShape add_made(const std::string& name, MadeSolid made);
     ShapeRef sized(ShapeKind kind, const double* sizes);
-    BodyId add_body(const BodyDescription& body, const PlacedShape* shape);
+    BodyId add_body(const BodyDescription& stated, const PlacedShape* shape);
     std::uint32_t take_body();
     std::uint32_t take_colliders(std::uint32_t count);
     void
