@@ -165,7 +165,8 @@ double time_visits(const SolveKernels<Real>& kernels,
     };
     const double begin = thread_seconds();
     for (int i = 0; i < kVisits; i += together)
-        constraints.wave.run(static_cast<std::size_t>(together), start.slices.size(), visit_slice);
+        constraints.scratch.wave.run(static_cast<std::size_t>(together), start.slices.size(),
+                                     visit_slice);
     return (thread_seconds() - begin) / kVisits;
 }
 

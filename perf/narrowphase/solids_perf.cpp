@@ -239,7 +239,7 @@ const Mesh& mesh_of_many(std::uint32_t triangles)
     Mesh& mesh = made[triangles];
     if (mesh.triangles.empty()) {
         TriangleSoup soup = lump(triangles, 1);
-        mesh = repair(std::move(soup.vertices), std::move(soup.triangles)).mesh;
+        mesh = repair(soup.vertices, std::move(soup.triangles)).mesh;
     }
     return mesh;
 }

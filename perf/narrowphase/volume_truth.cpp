@@ -59,7 +59,7 @@ void clip(const LongFace& plane, std::vector<LongVec>& polygon)
         const LongVec &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
         const Long low = height(from), high = height(to);
         if (low <= 0) kept.push_back(from);
-        if ((low <= 0) != (high <= 0)) kept.push_back(from + (to - from) * (low / (low - high)));
+        if ((low <= 0) != (high <= 0)) kept.emplace_back(from + (to - from) * (low / (low - high)));
     }
     polygon = std::move(kept);
 }
