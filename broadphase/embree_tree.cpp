@@ -26,10 +26,12 @@ constexpr double kAsideRatio = 1e6;
 RTCDevice device()
 {
 #ifdef THRONG_PLAIN_THREADS
-    static RTCDeviceTy* const only = rtcNewDevice("threads=1");
+    constexpr const char* kSettings = "threads=1";
 #else
-    static RTCDeviceTy* const only = rtcNewDevice(nullptr);
+    constexpr const char* kSettings = nullptr;
 #endif
+    // NOLINTNEXTLINE(misc-misplaced-const): the handle stays, the device may change
+    static const RTCDevice only = rtcNewDevice(kSettings);
     if (only == nullptr) throw std::runtime_error("embree: no device; is the processor supported?");
     return only;
 }

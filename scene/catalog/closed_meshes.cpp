@@ -34,8 +34,8 @@ TriangleSoup ball_mesh(double radius, std::uint32_t around, std::uint32_t rings)
         for (std::uint32_t i = 0; i < around; ++i) {
             const double height = -std::cos(std::numbers::pi * ring / rings);
             const double width = std::sin(std::numbers::pi * ring / rings);
-            mesh.vertices.push_back(on_circle(radius * width, i, around)
-                                    + Vec3(0, 0, radius * height));
+            mesh.vertices.emplace_back(on_circle(radius * width, i, around)
+                                       + Vec3(0, 0, radius * height));
         }
     mesh.vertices.emplace_back(0, 0, radius);
     const auto top = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
@@ -59,7 +59,7 @@ TriangleSoup torus_mesh(double ring, double tube, std::uint32_t around, std::uin
     for (std::uint32_t i = 0; i < around; ++i)
         for (std::uint32_t k = 0; k < across; ++k) {
             const Vec3 out = on_circle(1, i, around), turn = on_circle(tube, k, across);
-            mesh.vertices.push_back(out * (ring + turn.x()) + Vec3(0, 0, turn.y()));
+            mesh.vertices.emplace_back(out * (ring + turn.x()) + Vec3(0, 0, turn.y()));
         }
     close_grid(mesh, around, across);
     return mesh;

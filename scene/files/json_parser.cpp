@@ -238,7 +238,7 @@ private:
             return;
         }
         if (peek() != 'u')
-            fail(start, "wanted one of the escapes \\\" \\\\ \\/ \\b \\f \\n \\r \\t \\uXXXX");
+            fail(start, R"(wanted one of the escapes \" \\ \/ \b \f \n \r \t \uXXXX)");
         unsigned code = parse_hex(start);
         if (code >= 0xdc00 && code < 0xe000) fail(start, kLoneSurrogate);
         if (code >= 0xd800 && code < 0xdc00) {
@@ -343,7 +343,7 @@ private:
     struct Key {
         std::string_view name;
         Node node;
-        auto operator<=>(const Key&) const = default;
+        auto operator<=>(const Key&) const = default;  // NOLINT(modernize-use-nullptr): has none
     };
 
     JsonDocument& document_;

@@ -7,9 +7,9 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
 namespace throng {
 namespace {
@@ -62,7 +62,7 @@ FileContent read_file(const std::string& path, std::uint64_t limit)
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                                std::fclose);
     if (!file) {
-        content.trouble = std::strerror(errno);
+        content.trouble = std::generic_category().message(errno);
         return content;
     }
     // A pipe has no size beforehand: it is read up to the limit.
@@ -78,7 +78,7 @@ FileContent read_file(const std::string& path, std::uint64_t limit)
         if (got == 0) break;
         content.bytes.append(buffer, got);
     }
-    if (std::ferror(file.get())) content.trouble = std::strerror(errno);
+    if (std::ferror(file.get())) content.trouble = std::generic_category().message(errno);
     content.size = trouble ? content.bytes.size() : size;
     if (content.bytes.size() < expected) content.trouble = "it ends before its size";
     return content;
