@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace throng {
 namespace {
@@ -72,6 +73,16 @@ std::vector<double> leans_of(const Hull& hull)
     return lean;
 }
 
+// Number k of a face: its normal, how far it is from the center, and its lean; of what only fills
+// up a group what never leads.
+double number_of_face(const Hull& hull, std::span<const double> leans, std::size_t face, int k)
+{
+    if (face >= hull.normals.size())
+        return k == 3 ? std::numeric_limits<float>::max() : k == 4 ? 1 : 0;
+    if (k < 3) return hull.normals[face][k];
+    return k == 3 ? hull.offsets[face] - hull.normals[face].dot(hull.center) : leans[face];
+}
+
 void fill_numbers(const Hull& hull, WideHull& wide)
 {
     wide.numbers.resize(static_cast<std::size_t>(
@@ -83,17 +94,10 @@ void fill_numbers(const Hull& hull, WideHull& wide)
             const Vec3 from_center = hull.vertices[static_cast<std::size_t>(vertex)] - hull.center;
             *at++ = static_cast<float>(from_center[k]);
         }
-    const std::vector<double> lean = leans_of(hull);
+    const std::vector<double> leans = leans_of(hull);
     for (int k = 0; k < 5; ++k)
-        for (int i = 0; i < WidePolytope::whole(wide.faces); ++i) {
-            const auto face = static_cast<std::size_t>(i);
-            double number = k == 3 ? std::numeric_limits<float>::max() : k == 4 ? 1 : 0;
-            if (i < wide.faces && k < 3) number = hull.normals[face][k];
-            if (i < wide.faces && k == 3)
-                number = hull.offsets[face] - hull.normals[face].dot(hull.center);
-            if (i < wide.faces && k == 4) number = lean[face];
-            *at++ = static_cast<float>(number);
-        }
+        for (int i = 0; i < WidePolytope::whole(wide.faces); ++i)
+            *at++ = static_cast<float>(number_of_face(hull, leans, static_cast<std::size_t>(i), k));
 }
 
 }  // namespace

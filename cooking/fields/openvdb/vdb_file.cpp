@@ -256,7 +256,8 @@ Mesh true_surface(const FloatGrid& grid, const Mesh& surface)
     }
     if (kept.empty() || kept.size() == surface.triangles.size()) return surface;
     MeshResult made = build_mesh(surface.vertices, std::move(kept));
-    return made.trouble.empty() ? std::move(made.mesh) : surface;
+    if (!made.trouble.empty()) return surface;
+    return std::move(made.mesh);
 }
 
 // One layer of values far outside, all round those that say anything: what is inside goes no
