@@ -73,7 +73,10 @@ std::vector<Sample> samples()
 
 TEST(SurfacePoints, NothingOfTheSurfaceIsFurtherThanTheSpacing)
 {
-    for (const auto& [mesh, spacing] : samples()) {
+    for (const auto& sample : samples()) {
+        // Not bound to names of their own: Clang 14 lets no lambda see those.
+        const auto& mesh = sample.mesh;
+        const double spacing = sample.spacing;
         const SurfacePoints points = build_surface_points(mesh, spacing);
         ASSERT_EQ(points.spacing, spacing);
         visit_surface(mesh, 1000, 71, [&](std::uint32_t triangle, const Vec3& place) {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace throng {
@@ -33,9 +34,9 @@ TriangleSoup inward(TriangleSoup soup)
 
 bool says(const RepairedMesh& result, const std::string& what)
 {
-    for (const std::string& warning : result.warnings)
-        if (warning.find(what) != std::string::npos) return true;
-    return false;
+    return std::any_of(
+        result.warnings.begin(), result.warnings.end(),
+        [&](const std::string& warning) { return warning.find(what) != std::string::npos; });
 }
 
 TEST(MeshHealth, HasNothingToSayOfWhatIsSound)
