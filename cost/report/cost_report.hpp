@@ -66,8 +66,7 @@ void draw_front(const CostReport& report, std::ostream& out);
 void write_cost_csv(const CostReport& report, std::ostream& out);
 void write_cost_json(const CostReport& report, std::ostream& out);
 
-/// The points of a report that was written before, if they are of that state; else none. Times of
-/// another machine are left, and measured anew.
+/// The points of a report that was written before, if they are of that state; else none.
 /// Throws SceneError, with line and column, where the text is no such report.
 std::vector<Point>
 read_points(const std::string& text, const std::string& file, const std::string& state);

@@ -39,6 +39,13 @@ std::string squares_json(const Point& point)
     return '[' + windows + ']';
 }
 
+std::string times_json(const Point& point)
+{
+    std::string times;
+    for (const double time : point.times_ms) times += (times.empty() ? "" : ", ") + json_text(time);
+    return '[' + times + ']';
+}
+
 std::string settings_json(const Changes& changes)
 {
     JsonMembers settings;
@@ -54,6 +61,7 @@ std::string point_json(const Point& point)
     return members.add("errors", errors_json(point, &Point::error))
         .add("errors_at_most", errors_json(point, &Point::error_at_most))
         .add("squares", squares_json(point))
+        .add("times_ms", times_json(point))
         .add("time_ms",
              JsonMembers()
                  .add("median", point.time_ms.median)

@@ -56,11 +56,18 @@ private:
         const Node squares = member(at, "squares", JsonKind::array, "an array");
         for (Node k = json_.first(squares); k != json_.next(squares); k = json_.next(k))
             point.errors.push_back(window(k));
-        const Node time = member(at, "time_ms", JsonKind::object, "an object");
-        point.time_ms.least = json_.number(member(time, "least", JsonKind::number, "a number"));
-        point.time_ms.most = json_.number(member(time, "most", JsonKind::number, "a number"));
-        point.time_ms.median = point.time_ms.least;
-        point.time_ms.repeats = point.errors.size();
+        const Node times = member(at, "times_ms", JsonKind::array, "an array");
+        if (json_.size(times) != json_.size(squares))
+            throw json_.error(times, "wanted a time for each window");
+        double sum = 0;
+        for (Node k = json_.first(times); k != json_.next(times); k = json_.next(k)) {
+            if (json_.kind(k) != JsonKind::number) throw json_.error(k, "wanted a number");
+            point.times_ms.push_back(json_.number(k));
+            sum += json_.number(k);
+        }
+        const double mean =
+            point.times_ms.empty() ? 0 : sum / static_cast<double>(point.times_ms.size());
+        point.time_ms = {mean, mean, mean, 1};
         return point;
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace throng {
@@ -20,7 +21,14 @@ constexpr double kChanges = 0.02, kFaster = 0.95;
 // A window that takes so many times as long as the scene's own way is given up.
 constexpr double kTooSlow = 300;
 constexpr std::size_t kMostJoined = 8;  // others that are tried with steps, and steps with others
-constexpr int kTimedLengths = 3;        // windows' lengths of one time
+// Windows that a time is taken over, and the share of the patience that times may take.
+constexpr std::size_t kTimedWindows = 8;
+constexpr double kTimesShare = 0.25;
+
+double seconds_since(Clock::time_point begin)
+{
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 class Sweeper {
 public:
@@ -56,10 +64,7 @@ private:
         leave_beaten(kBeatenBy[2]);
         time_left();
     }
-    bool is_late() const
-    {
-        return std::chrono::duration<double>(Clock::now() - begin_).count() > plan_.patience;
-    }
+    bool is_late() const { return seconds_since(begin_) > plan_.patience; }
     // Not what cannot be had, nor steps of which windows hold no whole number.
     void add(const Changes& changes)
     {
@@ -95,29 +100,36 @@ private:
         if (!point.trouble.empty() || point.errors.size() >= windows) return;
         try {
             const Scene by = changed(scene_, point.changes);
-            const double most =
-                point.changes.empty() ? 0 : kTooSlow * found_.points[0].time_ms.median;
             while (point.errors.size() < windows) {
-                const WindowRun run = windows_.run(by, point.errors.size());
+                const WindowRun run = windows_.run(by, point.errors.size(), most_seconds(point));
                 point.errors.push_back(run.errors);
                 add_time(point, run.time_ms);
-                if (most > 0 && run.time_ms > most) {
-                    point.trouble = "takes more than 300 times as long as the scene as it is";
-                    return;
-                }
             }
+        } catch (const TooSlow&) {
+            point.trouble = "takes more than 300 times as long as the scene as it is";
         } catch (const std::invalid_argument& wrong) {
             point.trouble = wrong.what();
         }
     }
+    // Of the clock, that a window may take; never less than what a clock tells well.
+    double most_seconds(const Point& point) const
+    {
+        constexpr double kLeast = 1, kFrame = 1.0 / 60;  // s
+        if (point.changes.empty()) return std::numeric_limits<double>::infinity();
+        const double own = 1e-3 * found_.points[0].time_ms.median * windows_.length() / kFrame;
+        return std::max(kLeast, kTooSlow * own);
+    }
     static void add_time(Point& point, double time_ms)
     {
-        Point::Time& time = point.time_ms;
-        // Before what is left is timed in turn, the least is the steadiest.
-        time.least = time.repeats == 0 ? time_ms : std::min(time.least, time_ms);
-        time.most = std::max(time.most, time_ms);
-        time.median = time.least;
-        ++time.repeats;
+        point.times_ms.push_back(time_ms);
+        const double mean = mean_of(point.times_ms, point.times_ms.size());
+        point.time_ms = {mean, mean, mean, 1};
+    }
+    static double mean_of(const std::vector<double>& list, std::size_t count)
+    {
+        double sum = 0;
+        for (std::size_t k = 0; k < count; ++k) sum += list[k];
+        return sum / static_cast<double>(count);
     }
 
     void measure_all(std::size_t windows)
@@ -144,12 +156,17 @@ private:
         }
     }
 
+    // By another, on the windows that both were measured on.
     bool beaten(const Point& point, double by) const
     {
-        const double error = point.error(plan_.measure);
         return std::any_of(found_.points.begin(), found_.points.end(), [&](const Point& other) {
-            return other.had() && other.time_ms.median <= by * point.time_ms.median
-                && other.error(plan_.measure) <= by * error;
+            if (!other.had()) return false;
+            const std::size_t both = std::min(point.errors.size(), other.errors.size());
+            const auto error = [&](const Point& of) {
+                return rms(std::span(of.errors).first(both), plan_.measure);
+            };
+            return mean_of(other.times_ms, both) <= by * mean_of(point.times_ms, both)
+                && error(other) <= by * error(point);
         });
     }
     // The scene's own way stays, beaten or not.
@@ -200,18 +217,23 @@ private:
         return point.time_ms.median * point.error(plan_.measure);
     }
 
-    // In turn, so that a busy machine is busy for all of them.
+    // In turn, so that a busy machine is busy for all of them; in whole rounds.
     void time_left()
     {
+        const Clock::time_point begin = Clock::now();
         std::vector<std::vector<double>> times(left_.size());
         for (int repeat = 0; repeat < plan_.repeats; ++repeat) {
+            std::vector<double> round;
             for (std::size_t k = 0; k < left_.size(); ++k) {
+                if (seconds_since(begin) > kTimesShare * plan_.patience) break;
                 show(k + 1, left_.size(), point(left_[k]), "time of setting");
-                const auto window = static_cast<std::size_t>(repeat) * windows_.size()
-                    / static_cast<std::size_t>(plan_.repeats);
-                times[k].push_back(windows_.time_ms(changed(scene_, point(left_[k]).changes),
-                                                    window, kTimedLengths));
+                round.push_back(time_of(point(left_[k])));
             }
+            if (round.size() < left_.size()) {
+                found_.cut_short = found_.cut_short || repeat == 0;
+                break;
+            }
+            for (std::size_t k = 0; k < round.size(); ++k) times[k].push_back(round[k]);
         }
         for (std::size_t k = 0; k < left_.size(); ++k) {
             std::vector<double>& of = times[k];
@@ -219,6 +241,15 @@ private:
             std::sort(of.begin(), of.end());
             point(left_[k]).time_ms = {of[of.size() / 2], of.front(), of.back(), of.size()};
         }
+    }
+    double time_of(const Point& point) const
+    {
+        const Scene by = changed(scene_, point.changes);
+        const std::size_t count = std::min(kTimedWindows, windows_.size());
+        double sum = 0;
+        for (std::size_t k = 0; k < count; ++k)
+            sum += windows_.time_ms(by, k * windows_.size() / count);
+        return sum / static_cast<double>(count);
     }
 
     const Scene& scene_;

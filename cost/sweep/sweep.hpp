@@ -14,13 +14,15 @@ namespace throng {
 /// One setting, measured.
 ///
 ///   errors    of the windows it was measured on, the first of all
-///   time_ms   for each 1/60 s of the scene's time: the median, and of what it is that of
+///   times_ms  of the same windows, for each 1/60 s of the scene's time
+///   time_ms   the average over windows: as it was measured first, or once it was timed in turn the
+///             median of some repeats and what they lie between
 ///   on_front  no other setting is as fast and more exact
 ///   trouble   why it was given up; empty where it was not
 struct Point {
     Changes changes;
     std::vector<WindowErrors> errors;
-    /// Before what is left is timed in turn: of the windows, of which the least is taken.
+    std::vector<double> times_ms;
     struct Time {
         double median = 0, least = 0, most = 0;
         std::size_t repeats = 0;

@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 namespace throng {
 
@@ -18,6 +17,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kFrame = 1.0 / 60;  // s
+// Bodies from which the run that windows start from is as coarse as the scene's own: it is the
+// longest of all, and any states that the scene comes by will do.
+constexpr std::size_t kCrowd = 1000;
 // The golden ratio: windows lie unlike the beats that a scene may have.
 constexpr double kGolden = 0.6180339887498949;
 // The longest step of the run that windows start from, and of the reference, whatever the scene's
@@ -108,8 +110,11 @@ void Windows::check() const
 // States that the scene comes by, stepped finely.
 void Windows::find_starts(const Scene& scene, const WindowPlan& plan)
 {
-    const double dt = fine_;
-    World world(with(scene, reference_settings(scene.settings, kSoft, dt)), threads_);
+    const bool crowded = scene.bodies.size() > kCrowd;
+    const double dt = crowded ? scene.settings.dt : fine_;
+    Settings settings = reference_settings(scene.settings, kSoft, dt);
+    if (crowded) settings.precision = Precision::float_;
+    World world(with(scene, settings), threads_);
     touches_ = world.effects().on.has(Effect::contact);
     std::int64_t step = 0;
     for (std::size_t k = 0; k < plan.count; ++k) {
@@ -264,18 +269,21 @@ std::size_t Windows::at_rest() const
         }));
 }
 
-WindowRun Windows::run(const Scene& scene, std::size_t window) const
+WindowRun Windows::run(const Scene& scene, std::size_t window, double patience) const
 {
     World world = begun(scene, window);
     EnergyLedger ledger;
     const int steps = steps_in(length_, scene.settings.dt), skipped = steps / 3;
-    double time_ms = 0;
+    double time_ms = 0, all = 0;
     for (int step = 0; step < steps; ++step) {
         check();
         ledger.before_step(world);
         const Clock::time_point begin = Clock::now();
         world.step();
-        if (step >= skipped) time_ms += 1e3 * seconds_since(begin);
+        const double taken = seconds_since(begin);
+        all += taken;
+        if (all > patience) throw TooSlow{};
+        if (step >= skipped) time_ms += 1e3 * taken;
         ledger.after_step(world);
     }
     WindowRun run;
@@ -287,17 +295,15 @@ WindowRun Windows::run(const Scene& scene, std::size_t window) const
     return run;
 }
 
-double Windows::time_ms(const Scene& scene, std::size_t window, int lengths) const
+double Windows::time_ms(const Scene& scene, std::size_t window) const
 {
     World world = begun(scene, window);
-    const int steps = steps_in(length_, scene.settings.dt);
-    for (int step = 0; step < (steps + 2) / 3; ++step) world.step();
+    const int steps = steps_in(length_, scene.settings.dt), skipped = steps / 3;
+    for (int step = 0; step < skipped; ++step) world.step();
+    check();
     const Clock::time_point begin = Clock::now();
-    for (int step = 0; step < steps * lengths; ++step) {
-        check();
-        world.step();
-    }
-    return 1e3 * seconds_since(begin) * kFrame / (scene.settings.dt * steps * lengths);
+    for (int step = skipped; step < steps; ++step) world.step();
+    return 1e3 * seconds_since(begin) * kFrame / (scene.settings.dt * (steps - skipped));
 }
 
 }  // namespace throng

@@ -10,6 +10,7 @@
 #include "throng/scene.hpp"
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct Watch {
     std::function<bool()> ended;
 };
 struct Interrupted { };
+/// Thrown where a window takes longer than it may.
+struct TooSlow { };
 
 /// A stretch of the scene's run.
 ///
@@ -92,10 +95,13 @@ public:
     std::size_t at_rest() const;
 
     /// Goes through a window by the settings that the scene has here: the same scene but for them.
-    /// Throws std::invalid_argument where they cannot be had.
-    WindowRun run(const Scene& scene, std::size_t window) const;
-    /// The time alone, over so many windows' lengths.
-    double time_ms(const Scene& scene, std::size_t window, int lengths) const;
+    /// patience: s of the clock that its steps may take.
+    /// Throws std::invalid_argument where they cannot be had, TooSlow.
+    WindowRun run(const Scene& scene,
+                  std::size_t window,
+                  double patience = std::numeric_limits<double>::infinity()) const;
+    /// The time alone.
+    double time_ms(const Scene& scene, std::size_t window) const;
 
 private:
     void find_starts(const Scene& scene, const WindowPlan& plan);

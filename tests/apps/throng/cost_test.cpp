@@ -63,7 +63,8 @@ TEST(Cost, ResumesWhatItHasMeasured)
     folder.write("found/cost.json", "{\"points\": 3}");
     const Outcome broken = run_throng(quick(folder, {"--resume"}));
     EXPECT_EQ(broken.code, 2);
-    EXPECT_NE(broken.err.find("cost.json:1:1: error: scene: wanted the key state"), std::string::npos)
+    EXPECT_NE(broken.err.find("cost.json:1:1: error: scene: wanted the key state"),
+              std::string::npos)
         << broken.err;
     const TestFolder empty;
     const Outcome none = run_throng(quick(empty, {"--resume"}));

@@ -18,6 +18,7 @@ Point point(double time_ms, double drift, Changes changes = {{"substeps", "8"}})
     WindowErrors errors{};
     of(errors, Measure::drift) = drift * drift;
     made.errors.assign(4, errors);
+    made.times_ms.assign(4, time_ms);
     made.time_ms = {time_ms, time_ms, time_ms, 7};
     return made;
 }
@@ -41,6 +42,7 @@ TEST(Front, HasNoPlaceForWhatBlewUpOrWasLookedAtLess)
 {
     std::vector<Point> points = {point(1, INFINITY), point(2, 1e-3), point(0.5, 1e-4)};
     points[2].errors.resize(2);
+    points[2].times_ms.resize(2);
     mark_front(points, Measure::drift);
     EXPECT_FALSE(points[0].on_front);
     EXPECT_TRUE(points[1].on_front);
