@@ -38,10 +38,10 @@ MAY_SEE = {
     "perf": BELOW + ["cost", "apps", "tests"],
 }
 
-# What cost and apps see besides: records; what cooked meshes weigh and how deep two lie in one
+# What cost and apps see besides: records; fingerprints; what cooked meshes weigh and how deep two lie in one
 # another, for the cases.
 DOOR = [
-    "kernels/geometry/mass.hpp", "pipeline/queries/mesh_overlap.hpp", "pipeline/records/*",
+    "kernels/geometry/mass.hpp", "kernels/math/hash.hpp", "pipeline/queries/mesh_overlap.hpp", "pipeline/records/*",
 ]
 BEFORE_THE_DOOR = {"cost", "apps"}
 

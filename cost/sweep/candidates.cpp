@@ -16,7 +16,7 @@ constexpr std::string_view kSubsteps[] = {"1", "2", "4", "8", "16", "32"};
 
 // A value worth a try by itself, and what calls for it: none for what any scene may have.
 struct Try {
-    Change first, second;  // the second may be empty
+    Changes changes;
     Set<Effect> called_for_by;
 };
 
@@ -26,40 +26,40 @@ const std::vector<Try>& tries()
     static constexpr Set<Effect> kTouch = {contact};
     static constexpr Set<Effect> kTurns = {gyroscopic, forces, springs, attractors, pivot};
     static const std::vector<Try> all = {
-        {{"precision", "double"}, {}, {}},
-        {{"integrator", "semi_implicit"}, {}, kTurns},
-        {{"integrator", "midpoint"}, {}, kTurns},
-        {{"integrator", "splitting"}, {}, kTurns},
-        {{"integrator", "rk4"}, {}, kTurns},
-        {{"gyroscopic", "off"}, {}, {gyroscopic}},
-        {{"gyroscopic", "explicit"}, {}, {gyroscopic}},
-        {{"iterations", "2"}, {}, kTouch},
-        {{"iterations", "4"}, {}, kTouch},
-        {{"relax_iterations", "1"}, {}, kTouch},
-        {{"relax_iterations", "2"}, {}, kTouch},
-        {{"relax_iterations", "4"}, {}, kTouch},
-        {{"contact_rate", "0.1"}, {}, kTouch},
-        {{"contact_rate", "0.4"}, {}, kTouch},
-        {{"friction_at", "points"}, {}, {friction}},
-        {{"friction_cone", "pyramid"}, {}, {friction}},
-        {{"solver", "pgs"}, {}, kTouch},
-        {{"solver", "pgs"}, {"iterations", "60"}, kTouch},
-        {{"solver", "direct"}, {}, kTouch},
-        {{"response", "penalty"}, {}, kTouch},
-        {{"response", "kinematic"}, {}, kTouch},
-        {{"overlap", "back_up"}, {}, kTouch},
-        {{"overlap", "subdivide"}, {}, kTouch},
-        {{"escalation", "off"}, {}, kTouch},
-        {{"narrowphase", "gjk"}, {}, kTouch},
-        {{"narrowphase", "sat"}, {}, kTouch},
-        {{"broadphase", "embree"}, {}, kTouch},
-        {{"broadphase", "grid"}, {}, kTouch},
-        {{"broadphase", "sweep"}, {}, kTouch},
-        {{"mesh_tree", "k_dop:14"}, {}, {mesh_contact}},
-        {{"nonconvex", "parts"}, {}, kSolidContact},
-        {{"nonconvex", "spheres"}, {}, kSolidContact},
-        {{"nonconvex", "depth_image"}, {}, kSolidContact},
-        {{"nonconvex", "hull"}, {}, kSolidContact},
+        {{{"precision", "double"}}, {}},
+        {{{"integrator", "semi_implicit"}}, kTurns},
+        {{{"integrator", "midpoint"}}, kTurns},
+        {{{"integrator", "splitting"}}, kTurns},
+        {{{"integrator", "rk4"}}, kTurns},
+        {{{"gyroscopic", "off"}}, {gyroscopic}},
+        {{{"gyroscopic", "explicit"}}, {gyroscopic}},
+        {{{"iterations", "2"}}, kTouch},
+        {{{"iterations", "4"}}, kTouch},
+        {{{"relax_iterations", "1"}}, kTouch},
+        {{{"relax_iterations", "2"}}, kTouch},
+        {{{"relax_iterations", "4"}}, kTouch},
+        {{{"contact_rate", "0.1"}}, kTouch},
+        {{{"contact_rate", "0.4"}}, kTouch},
+        {{{"friction_at", "points"}}, {friction}},
+        {{{"friction_cone", "pyramid"}}, {friction}},
+        {{{"solver", "pgs"}}, kTouch},
+        {{{"solver", "pgs"}, {"iterations", "60"}}, kTouch},
+        {{{"solver", "direct"}}, kTouch},
+        {{{"response", "penalty"}}, kTouch},
+        {{{"response", "kinematic"}}, kTouch},
+        {{{"overlap", "back_up"}}, kTouch},
+        {{{"overlap", "subdivide"}}, kTouch},
+        {{{"escalation", "off"}}, kTouch},
+        {{{"narrowphase", "gjk"}}, kTouch},
+        {{{"narrowphase", "sat"}}, kTouch},
+        {{{"broadphase", "embree"}}, kTouch},
+        {{{"broadphase", "grid"}}, kTouch},
+        {{{"broadphase", "sweep"}}, kTouch},
+        {{{"mesh_tree", "k_dop:14"}}, {mesh_contact}},
+        {{{"nonconvex", "parts"}}, kSolidContact},
+        {{{"nonconvex", "spheres"}}, kSolidContact},
+        {{{"nonconvex", "depth_image"}}, kSolidContact},
+        {{{"nonconvex", "hull"}}, kSolidContact},
     };
     return all;
 }
@@ -94,8 +94,8 @@ std::vector<std::string_view> swept_dials()
 {
     std::vector<std::string_view> names = {"dt", "substeps"};
     for (const Try& each : tries())
-        if (std::find(names.begin(), names.end(), each.first.dial) == names.end())
-            names.push_back(each.first.dial);
+        if (std::find(names.begin(), names.end(), each.changes.front().dial) == names.end())
+            names.push_back(each.changes.front().dial);
     return names;
 }
 
@@ -122,11 +122,9 @@ candidates_for(const Scene& scene, const Effects& effects, std::span<const std::
         if (share != 1 && !own) add_step({dt});
     }
     for (const Try& each : tries()) {
-        if (!asked_for(each.first.dial)) continue;
+        if (!asked_for(each.changes.front().dial)) continue;
         if (!each.called_for_by.empty() && !each.called_for_by.meets(effects.on)) continue;
-        Changes changes{each.first};
-        if (!each.second.dial.empty()) changes.push_back(each.second);
-        if (does_something(scene, changes)) candidates.others.push_back(std::move(changes));
+        if (does_something(scene, each.changes)) candidates.others.push_back(each.changes);
     }
     return candidates;
 }

@@ -1,7 +1,7 @@
 // Candidates: which dials may trade error for time on a scene, and the values worth a try.
 #pragma once
 
-#include "cost/sweep/changes.hpp"
+#include "cost/changes.hpp"
 #include "throng/effects.hpp"
 
 #include <span>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace throng {
 
@@ -297,43 +298,38 @@ void mark_front(std::span<Point> points, Measure measure)
     }
 }
 
+namespace {
+
+// Of the front the one with the least `cost` among those whose `held` stays within a limit; where
+// there is none, that with the least of what is held.
+template <class Held, class Cost>
+const Point*
+best_within(std::span<const Point> points, double limit, const Held& held, const Cost& cost)
+{
+    const auto key = [&](const Point& point) {
+        const bool meets = held(point) <= limit;
+        return std::pair(!meets, meets ? cost(point) : held(point));
+    };
+    const Point* best = nullptr;
+    for (const Point& point : points)
+        if (point.on_front && (best == nullptr || key(point) < key(*best))) best = &point;
+    return best;
+}
+
+}  // namespace
+
 const Point* cheapest_within(std::span<const Point> points, Measure measure, double error)
 {
-    const Point* best = nullptr;
-    // The front's errors fall as its times rise.
-    for (const Point& point : points) {
-        if (!point.on_front) continue;
-        const bool meets = point.error_at_most(measure) <= error;
-        if (best == nullptr) {
-            best = &point;
-            continue;
-        }
-        const bool best_meets = best->error_at_most(measure) <= error;
-        const bool better = meets != best_meets ? meets
-            : meets                             ? point.time_ms.median < best->time_ms.median
-                    : point.error_at_most(measure) < best->error_at_most(measure);
-        if (better) best = &point;
-    }
-    return best;
+    return best_within(
+        points, error, [&](const Point& point) { return point.error_at_most(measure); },
+        [](const Point& point) { return point.time_ms.median; });
 }
 
 const Point* most_exact_within(std::span<const Point> points, Measure measure, double time_ms)
 {
-    const Point* best = nullptr;
-    for (const Point& point : points) {
-        if (!point.on_front) continue;
-        const bool meets = point.time_ms.median <= time_ms;
-        if (best == nullptr) {
-            best = &point;
-            continue;
-        }
-        const bool best_meets = best->time_ms.median <= time_ms;
-        const bool better = meets != best_meets ? meets
-            : meets ? point.error_at_most(measure) < best->error_at_most(measure)
-                    : point.time_ms.median < best->time_ms.median;
-        if (better) best = &point;
-    }
-    return best;
+    return best_within(
+        points, time_ms, [](const Point& point) { return point.time_ms.median; },
+        [&](const Point& point) { return point.error_at_most(measure); });
 }
 
 }  // namespace throng

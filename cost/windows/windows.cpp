@@ -1,14 +1,14 @@
 #include "cost/windows/windows.hpp"
 
+#include "cost/changes.hpp"
+#include "kernels/math/hash.hpp"
 #include "scene/names.hpp"
 #include "throng/dials.hpp"
 #include "throng/energy_ledger.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 namespace throng {
 
@@ -36,28 +36,26 @@ double seconds_since(Clock::time_point begin)
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// A way to the reference.
+// The ways to the reference.
 //
 // In short steps soft contacts are stiff, and what overlapped as a window began is driven apart,
 // the faster the shorter they are: the push limit keeps that from being all that is seen. And with
 // one iteration a substep what an impact comes to goes by the moment of the substep that it falls
 // into, however short they are.
-struct Turned {
-    std::string_view dial, value;
-};
-using Way = std::span<const Turned>;
-constexpr Turned kDirect[] = {{"solver", "direct"}, {"substeps", "1"}};
-constexpr Turned kSweeps[] = {
+const Changes kDirect = {{"solver", "direct"}, {"substeps", "1"}};
+const Changes kSweeps = {
     {"solver", "pgs"}, {"iterations", "60"}, {"substeps", "1"}, {"push_limit", "0.02"}};
-constexpr Turned kSoft[] = {
+const Changes kSoft = {
     {"iterations", "8"}, {"relax_iterations", "8"}, {"substeps", "2"}, {"push_limit", "0.02"}};
-constexpr Turned kFlight[] = {{"integrator", "rk4"}, {"substeps", "1"}};
-constexpr Way kOfContacts[] = {kDirect, kSweeps, kSoft}, kOfFlight[] = {kFlight};
+const Changes kFlight = {{"integrator", "rk4"}, {"substeps", "1"}};
+const std::vector<Changes> kOfContacts = {kDirect, kSweeps, kSoft}, kOfFlight = {kFlight};
 
 // What a scene is, and no matter of how exactly it is stepped, stays as the scene has it.
-Settings reference_settings(const Settings& own, Way way, double dt)
+Scene reference_scene(const Scene& scene, const Changes& way, double dt)
 {
-    Settings settings;
+    const Settings& own = scene.settings;
+    Scene by = scene;
+    Settings& settings = by.settings = {};
     settings.dt = dt;
     settings.precision = Precision::double_;
     settings.sleep = false;
@@ -69,22 +67,14 @@ Settings reference_settings(const Settings& own, Way way, double dt)
     settings.max_parts = own.max_parts;
     settings.friction_cone = own.friction_cone;
     settings.impact_law = own.impact_law;
-    for (const auto& [dial, value] : way) set_dial(settings, dial, value);
-    return settings;
+    return changed(by, way);
 }
 
-std::string text_of(const Settings& settings, Way way)
+std::string text_of(const Changes& way, double dt)
 {
-    std::string text = "precision=double dt=" + dial_value(settings, "dt");
-    for (const auto& [dial, value] : way) (text += ' ').append(dial).append("=").append(value);
-    return text;
-}
-
-Scene with(const Scene& scene, const Settings& settings)
-{
-    Scene changed = scene;
-    changed.settings = settings;
-    return changed;
+    Settings settings;
+    settings.dt = dt;
+    return "precision=double dt=" + dial_value(settings, "dt") + ' ' + throng::text_of(way);
 }
 
 int steps_in(double length, double dt) { return static_cast<int>(std::lround(length / dt)); }
@@ -112,9 +102,9 @@ void Windows::find_starts(const Scene& scene, const WindowPlan& plan)
 {
     const bool crowded = scene.bodies.size() > kCrowd;
     const double dt = crowded ? scene.settings.dt : fine_;
-    Settings settings = reference_settings(scene.settings, kSoft, dt);
-    if (crowded) settings.precision = Precision::float_;
-    World world(with(scene, settings), threads_);
+    Scene by = reference_scene(scene, kSoft, dt);
+    if (crowded) by.settings.precision = Precision::float_;
+    World world(by, threads_);
     touches_ = world.effects().on.has(Effect::contact);
     std::int64_t step = 0;
     for (std::size_t k = 0; k < plan.count; ++k) {
@@ -175,28 +165,24 @@ void Windows::find_reference(const Scene& scene, double wanted, double patience)
 {
     const Clock::time_point begin = Clock::now();
     struct Found {
-        Way way;
+        Changes way;
         double dt = 0, took = 0;
         std::vector<BodyStates> ends;
         WindowErrors moved{};
     };
     const auto drift_of = [](const Found& found) { return of(found.moved, Measure::drift); };
-    const auto settings_of = [&](const Found& found) {
-        return reference_settings(scene.settings, found.way, found.dt);
-    };
     const auto ends_of = [&](Found& found, double within) {
         if (watch_.show)
-            watch_.show("reference, " + text_of(settings_of(found), found.way) + ", "
+            watch_.show("reference, " + text_of(found.way, found.dt) + ", "
                         + std::to_string(windows_.size()) + " windows");
         const Clock::time_point since = Clock::now();
-        std::vector<BodyStates> ends = ends_by(with(scene, settings_of(found)), within);
+        std::vector<BodyStates> ends = ends_by(reference_scene(scene, found.way, found.dt), within);
         found.took = seconds_since(since);
         return ends;
     };
     Found best;
-    const std::span<const Way> ways =
-        touches_ ? std::span<const Way>(kOfContacts) : std::span<const Way>(kOfFlight);
-    for (const Way& way : ways) {
+    const std::vector<Changes>& ways = touches_ ? kOfContacts : kOfFlight;
+    for (const Changes& way : ways) {
         Found found{way, fine_, 0, {}, {}};
         // The last has to be had, however long it takes.
         const bool last = &way == &ways.back() && best.ends.empty();
@@ -223,21 +209,16 @@ void Windows::find_reference(const Scene& scene, double wanted, double patience)
         best = std::move(finer);
     }
     reference_.remaining = best.moved;
-    reference_.settings = text_of(settings_of(best), best.way);
+    reference_.settings = text_of(best.way, best.dt);
     for (std::size_t k = 0; k < windows_.size(); ++k)
         windows_[k].reference = std::move(best.ends[k]);
 }
 
 std::string Windows::state_hash() const
 {
-    // FNV-1a, over the bytes of all places and velocities.
-    std::uint64_t hash = 0xcbf29ce484222325u;
+    Hash hash;
     const auto add = [&](const Vec3& vector) {
-        for (int k = 0; k < 3; ++k) {
-            const auto bits = std::bit_cast<std::uint64_t>(vector[k]);
-            for (int shift = 0; shift < 64; shift += 8)
-                hash = (hash ^ ((bits >> shift) & 0xff)) * 0x100000001b3u;
-        }
+        for (int k = 0; k < 3; ++k) hash.add(vector[k]);
     };
     for (const Window& window : windows_)
         for (const BodyStates* states : {&window.start, &window.reference})
@@ -247,9 +228,7 @@ std::string Windows::state_hash() const
                 add(state.velocity);
                 add(state.spin);
             }
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-    return text;
+    return hash.text();
 }
 
 bool Windows::holds_whole_steps(double dt) const

@@ -1,4 +1,4 @@
-#include "cost/sweep/changes.hpp"
+#include "cost/changes.hpp"
 
 #include "scene/files/json_writer.hpp"
 #include "throng/dials.hpp"
