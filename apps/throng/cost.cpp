@@ -135,6 +135,7 @@ std::string written_before(const std::filesystem::path& path)
 // A third of the time is the reference's, by which all else is judged.
 void measure(const SceneArgument& argument,
              const Asked& asked,
+             const Effects& effects,
              const std::string& before,
              const Watch& watch,
              CostReport& report)
@@ -152,8 +153,7 @@ void measure(const SceneArgument& argument,
     SweepPlan plan = asked.sweep;
     if (!before.empty()) plan.known = read_points(before, "cost.json", report.state);
     plan.patience = patience / 2;
-    World world(scene, 1);
-    report.found = sweep(scene, world.effects(), windows, plan, watch);
+    report.found = sweep(scene, effects, windows, plan, watch);
     for (const std::string_view dial : {"dt", "substeps"})
         if (const auto fitted = fitted_order(scene, report.found, dial, report.measure,
                                              of(report.reference.remaining, report.measure)))
@@ -173,8 +173,10 @@ int run_cost(const Options& options)
     note_interrupts();
 
     CostReport report;
+    Effects effects;
     {
-        const World world = make_world(argument, asked.windows.threads, quiet);
+        World world = make_world(argument, asked.windows.threads, quiet);
+        effects = world.effects();
         report.bodies = world.body_count();
         report.machine = this_machine(world.threads());
     }
@@ -187,7 +189,7 @@ int run_cost(const Options& options)
         NoteLine line(!quiet);
         const Watch watch{[&](const std::string& note) { line.show(note); }, interrupted};
         try {
-            measure(argument, asked, before, watch, report);
+            measure(argument, asked, effects, before, watch, report);
         } catch (const Interrupted&) {
             return kInterrupted;
         }
