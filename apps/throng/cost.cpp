@@ -70,16 +70,14 @@ std::vector<std::string> dials_asked(const Options& options)
 {
     std::vector<std::string> dials;
     const std::vector<std::string_view> known = swept_dials();
-    std::string_view rest = options.text("--dials");
-    if (rest == "none") return {std::string(rest)};
-    while (!rest.empty()) {
-        const std::size_t comma = std::min(rest.find(','), rest.size());
-        const std::string_view name = rest.substr(0, comma);
+    const std::string_view text = options.text("--dials");
+    if (!options.has("--dials")) return dials;
+    if (text == "none") return {std::string(text)};
+    for (const std::string_view name : parts_of("--dials", text)) {
         if (std::find(known.begin(), known.end(), name) == known.end())
             throw BadInput("--dials: wanted none, " + either_of(known) + ", not "
                            + in_quotes(name));
         dials.emplace_back(name);
-        rest.remove_prefix(std::min(comma + 1, rest.size()));
     }
     return dials;
 }

@@ -145,6 +145,19 @@ void print_columns(std::span<const std::pair<std::string, std::string>> rows, st
     }
 }
 
+std::vector<std::string_view> parts_of(std::string_view option, std::string_view text)
+{
+    std::vector<std::string_view> parts;
+    while (true) {
+        const std::size_t comma = text.find(',');
+        parts.push_back(text.substr(0, comma));
+        if (parts.back().empty())
+            throw BadInput(std::string(option) + ": wanted a list such as A,B, with no empty part");
+        if (comma == std::string_view::npos) return parts;
+        text.remove_prefix(comma + 1);
+    }
+}
+
 void print_usage(const Usage& usage, std::ostream& out)
 {
     out << "usage: throng " << usage.name;

@@ -70,6 +70,9 @@ private:
 std::int64_t
 parse_whole(std::string_view what, std::string_view text, std::int64_t least, std::int64_t most);
 
+/// The parts of a list between commas. Throws BadInput for an empty one.
+std::vector<std::string_view> parts_of(std::string_view option, std::string_view text);
+
 /// Writes how a command is called, and its options in columns.
 void print_usage(const Usage& usage, std::ostream& out);
 

@@ -40,20 +40,6 @@ constexpr Option kPlanOptions[] = {
     kSetOption,
 };
 
-/// The parts of a list between commas. Throws BadInput for an empty one.
-std::vector<std::string_view> parts_of(std::string_view option, std::string_view text)
-{
-    std::vector<std::string_view> parts;
-    while (true) {
-        const std::size_t comma = text.find(',');
-        parts.push_back(text.substr(0, comma));
-        if (parts.back().empty())
-            throw BadInput(std::string(option) + ": wanted a list such as A,B, with no empty part");
-        if (comma == std::string_view::npos) return parts;
-        text.remove_prefix(comma + 1);
-    }
-}
-
 std::string_view text_or(const Options& options, std::string_view name, std::string_view standard)
 {
     return options.has(name) ? options.text(name) : standard;
