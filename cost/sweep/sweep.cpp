@@ -83,6 +83,7 @@ private:
                          [&](const Point& point) { return point.changes == changes; });
         found_.points.push_back(before == plan_.known.end() ? Point{} : *before);
         found_.points.back().changes = changes;
+        average_time(found_.points.back());
         left_.push_back(found_.points.size() - 1);
     }
     Point& point(std::size_t at) { return found_.points[at]; }
@@ -104,7 +105,8 @@ private:
             while (point.errors.size() < windows) {
                 const WindowRun run = windows_.run(by, point.errors.size(), most_seconds(point));
                 point.errors.push_back(run.errors);
-                add_time(point, run.time_ms);
+                point.times_ms.push_back(run.time_ms);
+                average_time(point);
             }
         } catch (const TooSlow&) {
             point.trouble = "takes more than 300 times as long as the scene as it is";
@@ -120,9 +122,9 @@ private:
         const double own = 1e-3 * found_.points[0].time_ms.median * windows_.length() / kFrame;
         return std::max(kLeast, kTooSlow * own);
     }
-    static void add_time(Point& point, double time_ms)
+    static void average_time(Point& point)
     {
-        point.times_ms.push_back(time_ms);
+        if (point.times_ms.empty()) return;
         const double mean = mean_of(point.times_ms, point.times_ms.size());
         point.time_ms = {mean, mean, mean, 1};
     }
@@ -276,12 +278,16 @@ SweepResult sweep(const Scene& scene,
 
 void mark_front(std::span<Point> points, Measure measure)
 {
-    std::size_t most = 0;
-    for (const Point& point : points) most = std::max(most, point.errors.size());
+    const auto how_well = [](const Point& point) {
+        return std::pair(point.errors.size(), point.time_ms.repeats);
+    };
+    std::pair<std::size_t, std::size_t> best;
+    for (const Point& point : points)
+        if (point.had()) best = std::max(best, how_well(point));
     std::vector<Point*> by_time;
     for (Point& point : points) {
         point.on_front = false;
-        if (point.had() && point.errors.size() == most && std::isfinite(point.error(measure)))
+        if (point.had() && how_well(point) == best && std::isfinite(point.error(measure)))
             by_time.push_back(&point);
     }
     std::stable_sort(by_time.begin(), by_time.end(), [&](const Point* a, const Point* b) {

@@ -49,6 +49,16 @@ TEST(Front, HasNoPlaceForWhatBlewUpOrWasLookedAtLess)
     EXPECT_FALSE(points[2].on_front);
 }
 
+TEST(Front, HasNoPlaceForATimeThatWasNotTakenInTurn)
+{
+    std::vector<Point> points = {point(1, 1e-2), point(0.9, 2e-2), point(2, 1e-3)};
+    points[1].time_ms.repeats = 1;
+    mark_front(points, Measure::drift);
+    EXPECT_TRUE(points[0].on_front);
+    EXPECT_FALSE(points[1].on_front);
+    EXPECT_TRUE(points[2].on_front);
+}
+
 TEST(Front, AdvisesTheCheapestWithinAnErrorAndTheMostExactWithinATime)
 {
     std::vector<Point> points = {point(1, 1e-2), point(2, 1e-3), point(4, 1e-4)};
