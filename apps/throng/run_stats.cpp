@@ -129,6 +129,7 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("fallbacks", stats.last.fallbacks);
     json.add("islands_escalated", stats.last.islands_escalated);
     json.add("escalation_missed", stats.last.escalation_missed);
+    json.add("escalation_work", stats.last.escalation_work);
     if (stats.settings.solver == Solver::direct)
         json.add("direct_residual", stats.last.direct_residual);
     if (stats.settings.overlap == Overlap::subdivide) json.add("deepest_m", stats.last.deepest);

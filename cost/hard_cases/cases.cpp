@@ -140,6 +140,8 @@ constexpr HardCase kCases[] = {
     {"H98", "what swings on a contact keeps its swing", case_swings, Fault::haste},
     {"H99", "what slides or rolls in a bent mesh loses what its edges take", case_bent_tracks,
      Fault::haste},
+    {"H100", "heaps that land lie still by little more than usual work", case_landed_heaps,
+     Fault::sink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -9,10 +9,10 @@ namespace throng {
 
 namespace {
 
-// Strain that a quarter of the substep brings down to kStrained; a sixteenth does up to
+// Strain that half the substep brings down to kStrained, and a quarter; a sixteenth does up to
 // kExactStrain. Finer ones are lost in the digits of float: what is yet more stubborn is solved
 // exactly, where that is small.
-constexpr double kByFour = 16 * kStrained;
+constexpr double kByTwo = 4 * kStrained, kByFour = 16 * kStrained;
 constexpr double kFinestSubstep = 5e-5;  // s
 
 // Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 8 ms
@@ -40,10 +40,12 @@ strain_of(const Islands& islands, std::size_t island, const OverloadedIslands& o
 
 }  // namespace
 
-Effort effort_for(double strain)
+Effort effort_for(double strain, bool exact)
 {
     if (!(strain > 0)) return {};
-    return strain <= kByFour ? Effort{4} : strain <= kExactStrain ? Effort{16} : Effort{16, true};
+    if (strain <= kByTwo && !exact) return {2};
+    if (strain <= kByFour) return {4};
+    return {16, strain > kExactStrain};
 }
 
 void escalate_islands(const StepContext& context,
@@ -51,7 +53,7 @@ void escalate_islands(const StepContext& context,
                       OverloadedIslands& overloaded)
 {
     overloaded.efforts.assign(islands.size(), {});
-    overloaded.escalated = overloaded.missed = 0;
+    overloaded.escalated = overloaded.missed = overloaded.work = 0;
     const auto substeps = static_cast<std::size_t>(context.substeps);
     std::size_t left = kBudget;
     for (std::size_t island = 0; island < islands.size(); ++island) {
@@ -59,19 +61,21 @@ void escalate_islands(const StepContext& context,
         if (!(strain.greatest > 0)) continue;
         const std::size_t contacts =
             islands.contact_begin[island + 1] - islands.contact_begin[island];
-        const Effort wanted = effort_for(strain.greatest);
-        Effort effort{wanted.times, wanted.direct || strain.exactly};
-        if (contacts > kExactContacts) effort.direct = false;
+        const std::size_t bodies = islands.body_begin[island + 1] - islands.body_begin[island];
+        const bool exact = may_be_exact(bodies, contacts);
+        const Effort wanted = effort_for(strain.greatest, exact);
+        Effort effort{wanted.times, exact && (wanted.direct || strain.exactly)};
         const auto cost = [&] {
             return contacts * (effort.direct ? kExactCost : substeps * (effort.times - 1u));
         };
         while (effort.times > 1
                && (cost() > left
                    || (!effort.direct && context.substep() / effort.times < kFinestSubstep))) {
-            effort.times /= 4;
+            effort.times = static_cast<std::uint8_t>(effort.times > 4 ? 4 : effort.times / 2);
             effort.direct = false;
         }
         left -= cost();
+        overloaded.work += cost();
         overloaded.efforts[island] = effort;
         overloaded.escalated += effort.times > 1 ? 1 : 0;
         overloaded.missed +=

@@ -22,11 +22,24 @@ inline bool is_overloaded(double strain) { return strain < 0 || strain > 1; }
 /// Strain beyond which the finest substeps do not do.
 inline constexpr double kExactStrain = 256 * kStrained;
 
-/// What an island of that strain needs. Strain goes with the square of the substep.
-Effort effort_for(double strain);
+/// Contacts up to which an island may be solved exactly, and contacts times bodies: of more than
+/// that only columns, which are solved in a step or two as they stand. A heap of thirty bodies
+/// takes all the steps that it may, in every step, 50 ms of them; finer substeps hold it as well.
+inline constexpr std::size_t kExactContacts = 48, kExactTangle = 256;
 
-/// Contacts up to which an island may be solved exactly.
-inline constexpr std::size_t kExactContacts = 48;
+inline bool is_column(std::size_t bodies, std::size_t contacts) { return contacts <= bodies + 1; }
+
+inline bool may_be_exact(std::size_t bodies, std::size_t contacts)
+{
+    return contacts <= kExactContacts
+        && (is_column(bodies, contacts) || contacts * bodies <= kExactTangle);
+}
+
+/// What an island of that strain needs, which may be solved exactly or not. Strain goes with the
+/// square of the substep. Twice the substeps are for those whose strain fades: a column whose load
+/// grows as it settles would be thrown by a change to four times.
+Effort effort_for(double strain, bool exact);
+
 /// What is put into a solve of an island that is escalated: what float tells of its speeds.
 inline constexpr DirectEffort kExactEffort = {.steps = 24, .enough = 1e-7, .pivots = false};
 

@@ -1,7 +1,8 @@
 // Measure strain: how much too great the loads of islands are for their contacts.
 //
-// The strain of an island is the greatest, over its contacts, of how far their load presses them in
-// over where they turn rigid; times the height of the island, in bodies above what stands still.
+// The strain of an island is the greatest, over its bodies, of how far the load that one passes on
+// presses his contacts in over where they turn rigid; times the height of the island, in bodies
+// above what stands still.
 // Loads are those that the contacts bear now, so that it does not matter how the island was solved.
 // A strain has to last, with the island at rest, before that counts as stubborn: until then what is
 // told is how far it is on the way, from 0 to 1. It is told below 0 where the next step should be
@@ -29,10 +30,13 @@ constexpr double kShare = 0.25;
 // s, in which gravity makes what still counts as rest: no impact, no walk.
 constexpr double kResting = 1.0 / 15;
 // A strain is let go once it is this much less: loads that tremble, and an impact as something was
-// set down, do not change from step to step how they are borne. Nor does what is too great to be
-// solved exactly at first, is tossed by its contacts as they turn stiffer, and bears nothing for a
-// moment: how stubborn it is fades.
-constexpr double kLasting = 3, kFading = 0.95;
+// set down, do not change from step to step how they are borne.
+constexpr double kLasting = 3;
+// Who is not solved exactly shows most as he lands, and may bear nothing for a moment, tossed by
+// contacts that turn stiffer. He begins with the finest substeps: those that were stiffened later,
+// as a load grew, would throw him. From there on what he was strained by fades, to what would not
+// have made him stubborn.
+constexpr double kFirst = 16, kFading = 0.95, kSettled = 0.85 * kStrained;
 // Overlap from which an island is not left to finer substeps, as a share of what its load makes
 // with the usual ones.
 constexpr double kDeep = 0.5;
@@ -97,40 +101,51 @@ public:
         const auto contacts = contacts_of(island);
         // Who lies on what stands still, by one contact, has nobody to wait for.
         if (contacts.size() < 2 || contacts.size() > kBatchContacts) return 0;
+        const bool exactly = may_be_exact(bodies, contacts.size());
         const double before = strain_before(island);
         // What is loaded by so little that no height makes it too much is most of what there is.
         if (before == 0 && !gives_more_than(kRelieved / double(bodies), contacts)) return 0;
-        double most = 0;
-        for (const std::uint32_t contact : contacts) most = std::max(most, give_of(contact));
+        const double most = most_borne(island);
         // Pushed apart otherwise, what was driven in is thrown.
-        if (before >= kCrushed && overlaps(contacts, kDriven)) return -kCrushed;
+        if (before >= kCrushed && exactly && overlaps(contacts, kDriven)) return -kCrushed;
         if (!(std::max(most * double(bodies), before) > kRelieved)) return 0;
         const double strain = most * height_of(island);
         const bool rests = is_resting(island);
         if (!(before > 1))
-            return rests ? begun(strain, before) : is_crushed(island) ? -kCrushed : 0;
-        const double faded =
-            contacts.size() > kExactContacts ? kFading * std::min(before, kStrained) : 0;
-        if (!(std::max(strain, faded) > kRelieved)) return 0;
-        const double lasting =
-            std::max({strain, faded, std::min({before, kLasting * strain, kExactStrain})});
-        if (!rests) return lasting;
-        // By turns it would be pushed out and sink in again.
-        if (before >= kInVain && contacts.size() <= kExactContacts) return kInVain;
-        return !is_deep(contacts) ? lasting : before > 1 ? -kInVain : -lasting;
+            return rests ? begun(strain, before, exactly) : is_crushed(island) ? -kCrushed : 0;
+        return exactly ? lasting(island, strain, before, rests) : fading(strain, before);
     }
 
 private:
+    static double fading(double strain, double before)
+    {
+        const double faded = std::max(strain, kFading * before);
+        return faded > kSettled ? faded : 0;
+    }
+
+    double lasting(std::size_t island, double strain, double before, bool rests) const
+    {
+        if (!(strain > kRelieved)) return 0;
+        const double lasted = std::max(strain, std::min({before, kLasting * strain, kExactStrain}));
+        if (!rests) return lasted;
+        // By turns it would be pushed out and sink in again.
+        if (before >= kInVain) return kInVain;
+        if (contacts_of(island).size() > kCrushedContacts && is_solved_exactly(island))
+            return lasted;
+        return is_deep(island) ? -kInVain : lasted;
+    }
+
     const Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const
     {
         return throng::contact_of(convex_, meshes_, solids_, joined_, entry);
     }
 
     // A heap that settles trembles.
-    static double begun(double strain, double before)
+    static double begun(double strain, double before, bool exactly)
     {
         const double now = before + kShare * (strain / kStrained - before);
-        return now >= 1 && strain > kStrained ? -strain : std::min(now, 1.0);
+        if (!(now >= 1 && strain > kStrained)) return std::min(now, 1.0);
+        return exactly ? -strain : kFirst * strain;
     }
 
     std::span<const std::uint32_t> contacts_of(std::size_t island) const
@@ -155,6 +170,37 @@ private:
             / double{entry.extent};
     }
 
+    // Of all bodies the most that one passes on: the second of his gives, as what presses him goes
+    // on through the others. Where it goes on by many ways, as in a heap, none of them is a column.
+    // Who has but two neighbours, or hangs on a pivot, shows it by the first. What stands still is
+    // one neighbour, of however many parts.
+    double most_borne(std::size_t island) const
+    {
+        auto& gives = overloaded_.scratch.gives;
+        const auto index = [&](std::uint32_t body) { return layout_.solver_index[body]; };
+        for (const std::uint32_t body : bodies_of(island)) gives[index(body)] = {};
+        for (const std::uint32_t place : contacts_of(island)) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            const auto give = static_cast<float>(give_of(place));
+            const std::uint32_t a = index(entry.body_a), b = index(entry.body_b);
+            if (a == Layout::kNoSolverIndex)
+                gives[b].ground += give;
+            else if (b == Layout::kNoSolverIndex)
+                gives[a].ground += give;
+            else {
+                gives[a].add(give);
+                gives[b].add(give);
+            }
+        }
+        float most = 0;
+        for (const std::uint32_t body : bodies_of(island)) {
+            auto& of = gives[index(body)];
+            if (of.ground > 0) of.add(of.ground);
+            most = std::max(most, of.count > 2 ? of.second : of.first);
+        }
+        return double{most};
+    }
+
     // Whether any contact does; give_of() without its division.
     bool gives_more_than(double least, std::span<const std::uint32_t> contacts) const
     {
@@ -177,14 +223,24 @@ private:
         return twice_energy < mass * resting_ * resting_;
     }
 
-    // Whether a contact still overlaps about as it did before it was escalated.
-    bool is_deep(std::span<const std::uint32_t> contacts) const
+    // Overlaps are of the step's start, when it had not been helped yet.
+    bool is_solved_exactly(std::size_t island) const
     {
+        const auto bodies = bodies_of(island);
+        return std::any_of(bodies.begin(), bodies.end(),
+                           [&](std::uint32_t body) { return overloaded_.of(body) < 0; });
+    }
+
+    // Whether a contact still overlaps about as the most loaded one did before it was escalated:
+    // who bears next to nothing may well overlap by more than his own load makes.
+    bool is_deep(std::size_t island) const
+    {
+        const auto contacts = contacts_of(island);
+        const double most = most_borne(island);
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
             const double overlap{contact_of(entry).overlap(entry.points)};
-            const double held = give_of(place) * rigid_overlap(double{entry.extent}, entry.points);
-            return overlap > kDeep * held;
+            return overlap > kDeep * most * rigid_overlap(double{entry.extent}, entry.points);
         });
     }
 
@@ -231,7 +287,6 @@ private:
     // Whether a contact overlaps by more than a share of the extent.
     bool overlaps(std::span<const std::uint32_t> contacts, double share) const
     {
-        if (contacts.size() > kExactContacts) return false;
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
             const double overlap{contact_of(entry).overlap(entry.points)};
@@ -314,6 +369,7 @@ void measure_strain(const StepContext& context,
     const std::size_t count = islands.size();
     overloaded.scratch.of_island.resize(count);
     overloaded.scratch.height.resize(layout.body_of_solver_index.size());
+    overloaded.scratch.gives.resize(layout.body_of_solver_index.size());
     const Gauge<Real> gauge(context, parameters, islands, layout, active, masses, velocities,
                             convex, meshes, solids, joined, overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {

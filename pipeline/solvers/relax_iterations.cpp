@@ -11,7 +11,7 @@ constexpr int kInHeaps = 1;
 // With finer substeps: contacts for each relaxing iteration, and iterations at most. With two
 // iterations columns of 50 to 100 boxes or balls that are dropped, each a little above the last,
 // won up to 0.9 of their energy of motion as they were escalated; with four, of 80 boxes still a
-// tenth.
+// tenth. They are strained by far more than what twice the substeps are for, which is heaps.
 constexpr std::uint32_t kContactsPerRelaxIteration = 12, kMostRelaxIterations = 8;
 
 // From where on a push is more than what a contact bears in a substep: friction that it made, left
@@ -33,8 +33,8 @@ int finer_relax_iterations(const SolverParameters& parameters, int substeps, con
     const int usual = relax_iterations(parameters, substeps, batch);
     if (parameters.relax_iterations > 0) return usual;
     return std::max(usual,
-                    static_cast<int>(std::min(kMostRelaxIterations,
-                                              batch.contacts / kContactsPerRelaxIteration)));
+                    static_cast<int>(std::min({kMostRelaxIterations, 2u * batch.times,
+                                               batch.contacts / kContactsPerRelaxIteration})));
 }
 
 double mean_relax_iterations(const SolverParameters& parameters, int substeps, const Layout& layout)

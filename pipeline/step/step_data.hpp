@@ -71,14 +71,28 @@ struct SplitImpulse {
 ///   strained  bodies whose strain may be above 0
 ///   efforts   [islands] of this step; empty while nobody is stubborn
 ///   escalated, missed  islands of this step that were, and that the budget did not reach
+///   work      contacts times substeps beyond the usual of this step; see StepReport
 struct OverloadedIslands {
     std::vector<float> strain;
     std::vector<std::uint32_t> strained;
     std::vector<Effort> efforts;
-    std::size_t escalated = 0, missed = 0;
+    std::size_t escalated = 0, missed = 0, work = 0;
     struct Scratch {
         std::vector<float> of_island;       // [islands] strain
         std::vector<std::uint16_t> height;  // [solver bodies] above what stands still
+        // How far loads press in a body's contacts: the greatest two of them, and all with what
+        // stands still.
+        struct Gives {
+            float first = 0, second = 0, ground = 0;
+            std::uint32_t count = 0;
+            void add(float give)
+            {
+                ++count;
+                second = std::max(second, std::min(first, give));
+                first = std::max(first, give);
+            }
+        };
+        std::vector<Gives> gives;  // [solver bodies]
     } scratch;
 
     float of(std::uint32_t body) const { return body < strain.size() ? strain[body] : 0; }

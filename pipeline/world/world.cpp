@@ -137,7 +137,8 @@ void WorldState::follow_stubborn()
     auto& overloaded = get<OverloadedIslands>();
     report.islands_escalated += overloaded.escalated;
     report.escalation_missed += overloaded.missed;
-    overloaded.escalated = overloaded.missed = 0;
+    report.escalation_work += overloaded.work;
+    overloaded.escalated = overloaded.missed = overloaded.work = 0;
     for (const std::uint32_t body : get<SleepEvents>().fell_asleep) overloaded.forget(body);
     std::uint32_t first = kNoBody;
     for (const std::uint32_t body : overloaded.strained)
