@@ -2,8 +2,8 @@
 # Check: what a change goes through before it is pushed.
 #   tools/check.sh         format, include direction, dev build, fast tests, clang-tidy on what changed
 #   tools/check.sh all     clang-tidy on everything, the other presets too, and the pages of the public
-#                          headers; fuzzes a little; then every case whole, whose time it tells, and
-#                          the fixed random scenes
+#                          headers; looks at the page of throng cost in a browser; fuzzes a little;
+#                          then every case whole, whose time it tells, and the fixed random scenes
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 cd "$root"
@@ -35,6 +35,12 @@ if [[ ${1:-} == all ]]; then
     done
     tools/docs.sh
     build_preset release
+    say "the page of throng cost, in a browser"
+    need_packages chromium-headless-shell nodejs npm
+    ./throng cost stacks:10 --minutes 0.5 --out build/page --quiet
+    npm pack --silent --pack-destination build/page axe-core >/dev/null
+    tar -xzf build/page/axe-core-*.tgz -C build/page package/axe.min.js
+    tools/check_page.py build/page/cost.html build/page/package/axe.min.js
     build_preset perf
     build_preset fuzz
     for fuzzer in build/fuzz/tests/fuzz/*_fuzz; do

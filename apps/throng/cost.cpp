@@ -39,7 +39,9 @@ constexpr Option kOptions[] = {
     kSetOption,
     kSeedOption,
     kMeshOption,
-    {"--out", "DIR", "folder of cost.json and cost.csv (default: cost-SCENE)"},
+    {"--out", "DIR",
+     "folder of the report: cost.html, a page for a browser; cost.json, cost.csv and cost.svg "
+     "(default: cost-SCENE)"},
     {"--resume", "", "takes what cost.json in that folder has of the same windows, and goes on"},
     {"--text", "", "draws the front in letters"},
     {"--quiet", "", "no progress and no warnings"},
@@ -168,6 +170,8 @@ int run_cost(const Options& options)
         options.has("--resume") ? written_before(folder / "cost.json") : std::string();
     OutputFile json("--out", (folder / "cost.json").string());
     OutputFile csv("--out", (folder / "cost.csv").string());
+    OutputFile page("--out", (folder / "cost.html").string());
+    OutputFile svg("--out", (folder / "cost.svg").string());
     note_interrupts();
 
     CostReport report;
@@ -198,7 +202,12 @@ int run_cost(const Options& options)
     json.keep();
     write_cost_csv(report, csv.stream());
     csv.keep();
-    std::cout << "all points: " << json.path() << ", " << csv.path() << std::endl;
+    write_cost_svg(report, svg.stream());
+    svg.keep();
+    write_cost_page(report, page.stream());
+    page.keep();
+    std::cout << "report: " << page.path() << "; all points: " << json.path() << ", " << csv.path()
+              << std::endl;
     return interrupted() ? kInterrupted : kDone;
 }
 

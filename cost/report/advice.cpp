@@ -12,6 +12,19 @@ std::string figure_text(double figure)
     return text.str();
 }
 
+std::string name_of(const Point& point)
+{
+    return point.changes.empty() ? "the scene as it is" : text_of(point.changes);
+}
+
+std::string words_of(const CostReport& report, const Point& point)
+{
+    const MeasureInfo& told = info(report.measure);
+    return name_of(point) + ": " + std::string(told.name) + ' '
+        + figure_text(point.error(report.measure)) + ' ' + std::string(told.unit) + ", "
+        + figure_text(point.time_ms.median) + " ms" + (point.on_front ? ", on the front" : "");
+}
+
 Advice advice_of(const CostReport& report)
 {
     const std::span<const Point> points = report.found.points;

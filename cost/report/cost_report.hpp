@@ -47,6 +47,11 @@ struct CostReport {
 /// A figure with two digits, which is what errors are known to.
 std::string figure_text(double figure);
 
+/// Its changes, or that it is the scene as it is.
+std::string name_of(const Point& point);
+/// The same with its error and time, a line long.
+std::string words_of(const CostReport& report, const Point& point);
+
 /// What is advised, and whether it is what was wished for: of no wish the most exact point.
 struct Advice {
     const Point* point = nullptr;
@@ -58,10 +63,18 @@ Advice advice_of(const CostReport& report);
 /// settle, windows in which nothing moves, a sweep cut short.
 std::vector<std::string> doubts_of(const CostReport& report);
 
+/// What is advised, ready to paste, and what it promises.
+void write_advice(const CostReport& report, std::ostream& out);
 /// The front, the advice and the doubts, a screen wide.
 void write_cost_text(const CostReport& report, std::ostream& out);
 /// The front drawn in letters: error against time, both by their logarithms.
 void draw_front(const CostReport& report, std::ostream& out);
+/// Error against time as SVG: the front, the advice and a line a dial, each point with its words.
+void write_cost_svg(const CostReport& report, std::ostream& out);
+/// The dials that have a line in it, in order.
+std::vector<std::string> dials_drawn(const CostReport& report);
+/// All of it as one HTML page that loads nothing: the advice, the chart, a table that sorts.
+void write_cost_page(const CostReport& report, std::ostream& out);
 /// A row a point, the names and units of the columns in the first.
 void write_cost_csv(const CostReport& report, std::ostream& out);
 void write_cost_json(const CostReport& report, std::ostream& out);

@@ -10,11 +10,6 @@ namespace throng {
 
 namespace {
 
-std::string name_of(const Point& point)
-{
-    return point.changes.empty() ? "the scene as it is" : text_of(point.changes);
-}
-
 std::vector<const Point*> front_of(const CostReport& report)
 {
     std::vector<const Point*> front;
@@ -37,11 +32,12 @@ void write_row(const CostReport& report, const Point& point, std::ostream& out)
         << name_of(point) << '\n';
 }
 
+}  // namespace
+
 void write_advice(const CostReport& report, std::ostream& out)
 {
     const MeasureInfo& told = info(report.measure);
     const Advice advice = advice_of(report);
-    out << '\n';
     if (advice.point == nullptr) {
         out << "no setting could be measured: see the troubles in the table of all points\n";
         return;
@@ -68,8 +64,6 @@ void write_advice(const CostReport& report, std::ostream& out)
         << (report.machine.threads == 1 ? "" : "s") << '\n';
 }
 
-}  // namespace
-
 void write_cost_text(const CostReport& report, std::ostream& out)
 {
     const MeasureInfo& told = info(report.measure);
@@ -93,6 +87,7 @@ void write_cost_text(const CostReport& report, std::ostream& out)
             << (fitted.helps.empty() ? "; none other helps"
                                      : ", the last that helps " + fitted.dial + '=' + fitted.helps)
             << ")\n";
+    out << '\n';
     write_advice(report, out);
     for (const std::string& doubt : doubts_of(report)) out << "doubt: " << doubt << '\n';
 }

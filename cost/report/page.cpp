@@ -1,0 +1,164 @@
+// Page: the report as one HTML page, from page.html.
+#include "cost/report/cost_report.hpp"
+#include "cost/report/markup.hpp"
+#include "cost/report/page_template.hpp"
+#include "scene/names.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace throng {
+
+namespace {
+
+std::string element(std::string_view name, std::string_view text)
+{
+    const std::string tag(name);
+    return '<' + tag + '>' + in_markup(text) + "</" + tag + ">\n";
+}
+
+// A cell that sorts by the whole number and shows two digits of it; empty where there is none.
+std::string cell(double figure)
+{
+    if (std::isnan(figure)) return "<td></td>";
+    return "<td data-value=\"" + number_text(figure) + "\">" + figure_text(figure) + "</td>";
+}
+
+std::string command_of(const CostReport& report, const Point& point)
+{
+    return "throng run " + report.scene
+        + (point.changes.empty() ? "" : ' ' + as_options(point.changes));
+}
+
+std::string about(const CostReport& report)
+{
+    std::ostringstream text;
+    text << report.bodies << " bodies, seed " << report.seed << "; " << report.windows
+         << " windows of " << number_text(report.window) << " s from the first "
+         << number_text(report.plan.seconds) << " s of the scene; " << report.found.points.size()
+         << " settings";
+    return in_markup(text.str());
+}
+
+std::string advice(const CostReport& report)
+{
+    std::ostringstream text;
+    write_advice(report, text);
+    return "<pre class=\"advice\">" + in_markup(text.str()) + "</pre>";
+}
+
+std::string doubts(const CostReport& report)
+{
+    std::string list;
+    for (const std::string& doubt : doubts_of(report)) list += element("li", doubt);
+    return list.empty() ? "" : "<p>To be known before it is trusted:</p>\n<ul>\n" + list + "</ul>";
+}
+
+std::string chart(const CostReport& report)
+{
+    std::ostringstream text;
+    write_cost_svg(report, text);
+    return text.str();
+}
+
+std::string heads(const CostReport& report)
+{
+    const MeasureInfo& chosen = info(report.measure);
+    std::vector<std::string> names = {
+        "setting", std::string(chosen.name) + ", " + std::string(chosen.unit),
+        "at most", "time, ms",
+        "from",    "to"};
+    for (std::size_t i = 0; i < kMeasures; ++i) {
+        const auto measure = static_cast<Measure>(i);
+        const MeasureInfo& told = info(measure);
+        if (measure != report.measure)
+            names.push_back(std::string(told.name) + ", " + std::string(told.unit));
+    }
+    names.emplace_back("front");
+    std::string row;
+    for (const std::string& name : names)
+        row += "<th scope=\"col\" aria-sort=\"none\"><button type=\"button\">" + in_markup(name)
+            + "</button></th>";
+    return row;
+}
+
+std::string row(const CostReport& report, std::size_t at)
+{
+    const Point& point = report.found.points[at];
+    std::string text = "<tr data-point=\"" + std::to_string(at) + "\" data-command=\""
+        + in_markup(command_of(report, point)) + '"' + (point.on_front ? " class=\"front\"" : "")
+        + "><td>" + in_markup(name_of(point))
+        + (point.trouble.empty() ? "" : ": " + in_markup(point.trouble)) + "</td>";
+    const auto figure = [&](double number) { text += cell(point.had() ? number : NAN); };
+    figure(point.error(report.measure));
+    figure(point.error_at_most(report.measure));
+    figure(point.time_ms.median);
+    figure(point.time_ms.least);
+    figure(point.time_ms.most);
+    for (std::size_t i = 0; i < kMeasures; ++i)
+        if (const auto measure = static_cast<Measure>(i); measure != report.measure)
+            figure(point.error(measure));
+    return text + "<td>" + (point.on_front ? "yes" : "") + "</td></tr>\n";
+}
+
+std::string rows(const CostReport& report)
+{
+    std::string text;
+    for (std::size_t at = 0; at < report.found.points.size(); ++at) text += row(report, at);
+    return text;
+}
+
+std::string how(const CostReport& report)
+{
+    const MeasureInfo& told = info(report.measure);
+    const Machine& machine = report.machine;
+    std::ostringstream reference, times;
+    reference << "Reference: " << report.reference.settings << "; still off by "
+              << figure_text(of(report.reference.remaining, report.measure)) << ' ' << told.unit
+              << '.';
+    times << "Times: the median of repeats, settings in turn, on " << machine.threads << " of "
+          << machine.cores << " cores of " << machine.processor << ", load " << machine.load
+          << ", throng " << machine.version << '.';
+    std::string text = element("p", reference.str()) + element("p", times.str()) + "<dl>\n";
+    for (std::size_t i = 0; i < kMeasures; ++i) {
+        const MeasureInfo& each = info(static_cast<Measure>(i));
+        text += element("dt", std::string(each.name) + ", " + std::string(each.unit))
+            + element("dd", each.about);
+    }
+    text += "</dl>\n";
+    for (const FittedOrder& fitted : report.orders)
+        text += element("p",
+                        "Order in " + fitted.dial + ": " + figure_text(fitted.order) + ", of "
+                            + std::to_string(fitted.points) + " values.");
+    return text;
+}
+
+std::string word_for(std::string_view place, const CostReport& report)
+{
+    if (place == "scene") return in_markup(report.scene);
+    if (place == "about") return about(report);
+    if (place == "advice") return advice(report);
+    if (place == "doubts") return doubts(report);
+    if (place == "chart") return chart(report);
+    if (place == "heads") return heads(report);
+    if (place == "rows") return rows(report);
+    if (place == "how") return how(report);
+    throw std::logic_error("page.html: nothing is called " + std::string(place));
+}
+
+}  // namespace
+
+void write_cost_page(const CostReport& report, std::ostream& out)
+{
+    std::string_view left = kPageTemplate;
+    for (;;) {
+        const std::size_t begin = left.find("{{"), end = left.find("}}");
+        if (begin == std::string_view::npos) break;
+        out << left.substr(0, begin) << word_for(left.substr(begin + 2, end - begin - 2), report);
+        left.remove_prefix(end + 2);
+    }
+    out << left;
+}
+
+}  // namespace throng

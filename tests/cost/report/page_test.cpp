@@ -1,0 +1,98 @@
+// Report: the page and the chart of a sweep hold what was found, and nothing else.
+#include "cost/report/cost_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace throng {
+namespace {
+
+Point point(double time_ms, double drift, Changes changes)
+{
+    Point made;
+    made.changes = std::move(changes);
+    WindowErrors errors{};
+    of(errors, Measure::drift) = drift * drift;
+    made.errors.assign(4, errors);
+    made.times_ms.assign(4, time_ms);
+    made.time_ms = {time_ms, 0.9 * time_ms, 1.1 * time_ms, 7};
+    return made;
+}
+
+CostReport report()
+{
+    CostReport made;
+    made.scene = "a<b>&\"c\"";
+    made.wish.error = 2e-3;
+    made.found.points = {point(1, 1e-2, {}), point(2, 1e-3, {{"substeps", "8"}}),
+                         point(4, 1e-4, {{"substeps", "16"}}), point(9, 1e-2, {{"dt", "1/120"}}),
+                         point(9, NAN, {{"solver", "pgs"}})};
+    made.found.points.emplace_back();
+    made.found.points.back().trouble = "takes <too> long";
+    mark_front(made.found.points, Measure::drift);
+    return made;
+}
+
+std::size_t count(const std::string& text, std::string_view what)
+{
+    std::size_t found = 0;
+    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+    return found;
+}
+
+TEST(CostChart, HasADotForEachErrorAndALineForEachDial)
+{
+    std::ostringstream out;
+    write_cost_svg(report(), out);
+    const std::string svg = out.str();
+    EXPECT_EQ(svg.find("<svg "), 0u);
+    EXPECT_EQ(count(svg, "data-point="), 4u) << svg;
+    EXPECT_EQ(count(svg, "<polyline class=\"dial "), 2u) << "substeps, dt";
+    EXPECT_EQ(count(svg, "<polyline class=\"front\""), 1u);
+    EXPECT_EQ(count(svg, " advised\""), 2u) << "the dot, and the one that explains it";
+    EXPECT_NE(svg.find("substeps=8: drift 0.001 m, 2 ms, on the front"), std::string::npos) << svg;
+    EXPECT_EQ(svg.find("nan"), std::string::npos) << svg;
+    EXPECT_EQ(svg.find("inf"), std::string::npos) << svg;
+}
+
+TEST(CostChart, SaysWhereNothingIsToBeDrawn)
+{
+    CostReport none = report();
+    none.found.points.resize(1);
+    none.found.points[0].errors.assign(4, WindowErrors{});
+    std::ostringstream out;
+    write_cost_svg(none, out);
+    EXPECT_NE(out.str().find("no setting has an error above 0"), std::string::npos) << out.str();
+}
+
+TEST(CostPage, HoldsAllOfItAndLoadsNothing)
+{
+    std::ostringstream out;
+    write_cost_page(report(), out);
+    const std::string page = out.str();
+    EXPECT_EQ(page.find("{{"), std::string::npos);
+    EXPECT_EQ(page.find("<b>"), std::string::npos) << "of the scene's name";
+    EXPECT_NE(page.find("a&lt;b&gt;&amp;&quot;c&quot;: what accuracy costs"), std::string::npos);
+    EXPECT_NE(page.find("takes &lt;too&gt; long"), std::string::npos);
+    EXPECT_EQ(count(page, "<tr data-point="), 6u);
+    EXPECT_NE(page.find("the cheapest within 0.002 m:\n  --set substeps=8"), std::string::npos);
+    for (const char* const loads : {" src=", "@import", "url(", "<iframe"})
+        EXPECT_EQ(page.find(loads), std::string::npos) << loads;
+    EXPECT_EQ(count(page, "href="), 1u) << "the icon that there is none";
+    EXPECT_EQ(count(page, "http"), 1u) << "what SVG is called";
+}
+
+TEST(CostPage, IsSmallForManySettings)
+{
+    CostReport many = report();
+    for (int i = 0; i < 500; ++i)
+        many.found.points.push_back(point(1 + i, 1e-2 / (1 + i), {{"substeps", "17"}}));
+    std::ostringstream out;
+    write_cost_page(many, out);
+    EXPECT_LT(out.str().size(), 1000000u);
+}
+
+}  // namespace
+}  // namespace throng
