@@ -83,6 +83,7 @@ private:
                          [&](const Point& point) { return point.changes == changes; });
         found_.points.push_back(before == plan_.known.end() ? Point{} : *before);
         found_.points.back().changes = changes;
+        found_.points.back().reference_off = windows_.reference().remaining;
         average_time(found_.points.back());
         left_.push_back(found_.points.size() - 1);
     }

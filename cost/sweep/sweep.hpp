@@ -17,6 +17,8 @@ namespace throng {
 ///   times_ms  of the same windows, for each 1/60 s of the scene's time
 ///   time_ms   the average over windows: as it was measured first, or once it was timed in turn the
 ///             median of some repeats and what they lie between
+///   reference_off  what the reference is itself off by, by measure: the true error may be as much
+///             more than the measured one
 ///   on_front  no other setting is as fast and more exact
 ///   trouble   why it was given up; empty where it was not
 struct Point {
@@ -27,11 +29,15 @@ struct Point {
         double median = 0, least = 0, most = 0;
         std::size_t repeats = 0;
     } time_ms;
+    WindowErrors reference_off{};
     bool on_front = false;
     std::string trouble;
 
     double error(Measure measure) const { return rms(errors, measure); }
-    double error_at_most(Measure measure) const { return rms_at_most(errors, measure); }
+    double error_at_most(Measure measure) const
+    {
+        return rms_at_most(errors, measure) + of(reference_off, measure);
+    }
     bool had() const { return trouble.empty() && !errors.empty(); }
 };
 

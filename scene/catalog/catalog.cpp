@@ -38,6 +38,7 @@ constexpr CatalogEntry kCatalog[] = {
     {"arch",              25,  7, 10000, "an arch of SIZE stones that nothing but friction holds",        make_arch},
     {"cradle",             5,  2, kMost, "SIZE balls in a line, one flies at the others that touch",      make_cradle},
     {"bullet_plate",     100,  1, kMost, "SIZE bullets at 1 km/s against a plate of 1 mm",                make_bullet_plate},
+    {"spring",             1,  1, kMost, "SIZE balls, each on a spring that nothing damps",               make_spring},
 };
 // clang-format on
 

@@ -85,4 +85,35 @@ Scene make_bullet_plate(int size, std::uint64_t /*seed*/)
     return scene;
 }
 
+// Balls of 1 kg, each on a spring of 100 N/m and 1 m with its other end fixed above it, let go
+// 0.2 m beside where it would hang still and as much below, each on another side. Nothing touches
+// and nothing is lost: what is off is off by the step alone, and energy tells it. Stresses the
+// integrator, and what is measured where no contact is.
+//
+// Source: the elastic pendulum; about hanging still its swings are those of a spring, sqrt(k / m),
+//         and of a pendulum, sqrt(g / (l + m g / k)).
+Scene make_spring(int size, std::uint64_t /*seed*/)
+{
+    Scene scene = begin_scene("spring", size);
+    constexpr double kStiffness = 100, kLength = 1, kMass = 1, kApart = 4;
+    const double radius = std::cbrt(kMass / (scene.materials[0].density * 4 / 3 * std::acos(-1.0)));
+    const double hung = kLength - kMass * scene.gravity.z() / kStiffness;
+    const std::uint32_t ball = add_shape(scene, "ball", SphereShape{radius});
+    Instances& balls = add_instances(scene, ball, static_cast<std::size_t>(size), false);
+    const int side = static_cast<int>(std::ceil(std::sqrt(size)));
+    for (int i = 0; i < size; ++i) {
+        Spring spring;
+        spring.b = static_cast<std::uint32_t>(i);
+        spring.at_a = Vec3(kApart * (i % side), kApart * (i / side), 0);
+        spring.stiffness = kStiffness;
+        spring.length = kLength;
+        const double way = 2.4 * i;  // rad, about the golden angle
+        const Vec3 aside = 0.2 * Vec3(std::cos(way), std::sin(way), -1);
+        const Vec3 at = spring.at_a + Vec3(0, 0, -hung) + aside;
+        scene.springs.push_back(spring);
+        add_record(balls, {at, Quat::Identity()});
+    }
+    return scene;
+}
+
 }  // namespace throng

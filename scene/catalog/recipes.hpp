@@ -43,6 +43,7 @@ Scene make_arch(int size, std::uint64_t seed);
 Scene make_dominoes(int size, std::uint64_t seed);
 Scene make_cradle(int size, std::uint64_t seed);
 Scene make_bullet_plate(int size, std::uint64_t seed);
+Scene make_spring(int size, std::uint64_t seed);
 
 // crowds.cpp
 Scene make_crowd(int size, std::uint64_t seed);

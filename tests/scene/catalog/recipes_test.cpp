@@ -229,6 +229,22 @@ TEST(Recipes, BulletsTouchThePlateAtTheKnownTime)
     }
 }
 
+TEST(Recipes, BallsOnSpringsBeginAboutWhereTheyHangStill)
+{
+    const Scene scene = make_scene("spring", 7);
+    ASSERT_EQ(scene.springs.size(), 7u);
+    for (std::size_t id = 0; id < 7; ++id) {
+        const Spring& spring = scene.springs[id];
+        const Body ball = body_at(scene, id);
+        const Vec3 still = spring.at_a - Vec3(0, 0, spring.length + 9.81 / spring.stiffness);
+        EXPECT_LT((ball.position - still).norm(), 0.3);
+        EXPECT_GT((ball.position - still).norm(), 0);
+        EXPECT_EQ(spring.b, id);
+        EXPECT_EQ(spring.damping, 0);
+        EXPECT_NEAR(4.0 / 3 * M_PI * std::pow(ball.size.x(), 3) * 1000, 1, 1e-12) << "kg";
+    }
+}
+
 TEST(Recipes, MeshesMixesSixKindsOnATerrain)
 {
     const Scene scene = make_scene("meshes", 100);
