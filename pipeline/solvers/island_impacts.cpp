@@ -34,12 +34,15 @@ void IslandSolver::add_impact(std::size_t at)
         {points_[at], at, contacts_[at].contact, contacts_[at].restitution, 0, 0});
 }
 
-// Passes of impacts, until nobody closes faster than that, m/s.
+// Passes of impacts, until nobody closes faster than that, m/s. Each takes a solve a pair: those of
+// an island that is escalated end with the steps that it has, and what still closes is stopped.
 void IslandSolver::reflect(bool in_order, int most_passes, double least_speed)
 {
     for (ImpactPoint& point : impacts_.points) point.least_speed = least_speed;
     const auto stop = [&](auto& bodies, auto& points) { solve(bodies, points); };
-    for (int pass = 0; pass < most_passes && impacts_.pass(in_order, struck_, stop); ++pass) { }
+    const auto goes_on = [&] { return effort_.pivots || left_ > 0; };
+    for (int pass = 0; pass < most_passes && goes_on() && impacts_.pass(in_order, struck_, stop);
+         ++pass) { }
     struck_impulse_.assign(contacts_.size(), 0);
     for (const ImpactPoint& point : impacts_.points) struck_impulse_[point.at] = point.impulse;
 }
