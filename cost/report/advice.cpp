@@ -56,10 +56,11 @@ std::vector<std::string> doubts_of(const CostReport& report)
         doubts.push_back("nothing moves in any of the " + std::to_string(report.windows)
                          + " windows: these figures are of bodies at rest");
     if (report.found.interrupted)
-        doubts.push_back("interrupted: this is what was found until then; --resume goes on");
+        doubts.emplace_back("interrupted: this is what was found until then; --resume goes on");
     if (report.found.cut_short)
-        doubts.push_back("time was up before all settings were looked at as closely as they should "
-                         "be; --minutes gives more");
+        doubts.emplace_back(
+            "time was up before all settings were looked at as closely as they should "
+            "be; --minutes gives more");
     return doubts;
 }
 

@@ -88,6 +88,34 @@ bool does_something(const Scene& scene, const Changes& changes)
     return unused_dials(by).empty() && !std::all_of(changes.begin(), changes.end(), is_the_same);
 }
 
+// All of them are when none is named.
+bool asked_for(std::string_view dial, std::span<const std::string> dials)
+{
+    return dials.empty() || std::find(dials.begin(), dials.end(), dial) != dials.end();
+}
+
+// Other steps, other numbers of substeps, and both at once.
+std::vector<Changes> steps_for(const Scene& scene, std::span<const std::string> dials)
+{
+    std::vector<Changes> steps;
+    const auto add = [&](const Changes& changes) {
+        if (does_something(scene, changes)) steps.push_back(changes);
+    };
+    for (const double share : kSteps) {
+        if (share != 1 && !asked_for("dt", dials)) continue;
+        const Change dt{"dt", time_text(share * scene.settings.dt)};
+        bool own = false;
+        for (const std::string_view substeps : kSubsteps) {
+            if (!asked_for("substeps", dials)) continue;
+            const Change cut{"substeps", std::string(substeps)};
+            add(share == 1 ? Changes{cut} : Changes{dt, cut});
+            own = own || dial_value(scene.settings, "substeps") == substeps;
+        }
+        if (share != 1 && !own) add({dt});
+    }
+    return steps;
+}
+
 }  // namespace
 
 std::vector<std::string_view> swept_dials()
@@ -102,27 +130,10 @@ std::vector<std::string_view> swept_dials()
 Candidates
 candidates_for(const Scene& scene, const Effects& effects, std::span<const std::string> dials)
 {
-    const auto asked_for = [&](std::string_view dial) {
-        return dials.empty() || std::find(dials.begin(), dials.end(), dial) != dials.end();
-    };
     Candidates candidates;
-    const auto add_step = [&](const Changes& changes) {
-        if (does_something(scene, changes)) candidates.steps.push_back(changes);
-    };
-    for (const double share : kSteps) {
-        if (share != 1 && !asked_for("dt")) continue;
-        const Change dt{"dt", time_text(share * scene.settings.dt)};
-        bool own = false;
-        for (const std::string_view substeps : kSubsteps) {
-            if (!asked_for("substeps")) continue;
-            const Change cut{"substeps", std::string(substeps)};
-            add_step(share == 1 ? Changes{cut} : Changes{dt, cut});
-            own = own || dial_value(scene.settings, "substeps") == substeps;
-        }
-        if (share != 1 && !own) add_step({dt});
-    }
+    candidates.steps = steps_for(scene, dials);
     for (const Try& each : tries()) {
-        if (!asked_for(each.changes.front().dial)) continue;
+        if (!asked_for(each.changes.front().dial, dials)) continue;
         if (!each.called_for_by.empty() && !each.called_for_by.meets(effects.on)) continue;
         if (does_something(scene, each.changes)) candidates.others.push_back(each.changes);
     }
