@@ -14,7 +14,7 @@
 
 namespace throng {
 
-__extension__ typedef __float128 Quad;  // no keyword of the standard, hence the first word
+__extension__ using Quad = __float128;  // no keyword of the standard, hence the first word
 
 struct QuadVec {
     Quad x = 0, y = 0, z = 0;
