@@ -1,5 +1,6 @@
 #include "cost/report/cost_report.hpp"
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -10,6 +11,12 @@ std::string figure_text(double figure)
     std::ostringstream text;
     text << std::setprecision(2) << figure;
     return text.str();
+}
+
+bool is_drawn(const Point& point, Measure measure)
+{
+    const double error = point.error(measure);
+    return point.had() && std::isfinite(error) && error > 0 && point.time_ms.median > 0;
 }
 
 std::string name_of(const Point& point)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace throng {
 
@@ -83,10 +84,16 @@ private:
     double from_, to_, low_ = INFINITY, high_ = 0;
 };
 
-bool is_drawn(const Point& point, Measure measure)
+// The dials of which a point turns one alone, in order.
+std::vector<std::string> dials_drawn(std::span<const Point* const> drawn)
 {
-    const double error = point.error(measure);
-    return point.had() && std::isfinite(error) && error > 0 && point.time_ms.median > 0;
+    std::vector<std::string> dials;
+    for (const Point* const point : drawn) {
+        if (point->changes.size() != 1) continue;
+        const std::string& dial = point->changes[0].dial;
+        if (std::find(dials.begin(), dials.end(), dial) == dials.end()) dials.push_back(dial);
+    }
+    return dials;
 }
 
 class Chart {
@@ -104,6 +111,7 @@ public:
             x_.widen();
             y_.widen();
         }
+        dials_ = dials_drawn(drawn_);
     }
 
     void write()
@@ -174,30 +182,34 @@ private:
     double x(const Point& point) const { return x_.place(point.time_ms.median); }
     double y(const Point& point) const { return y_.place(point.error(report_.measure)); }
 
-    void path(const std::string& kind, const std::vector<const Point*>& through)
+    // By time, whatever order they come in.
+    void path(const std::string& kind, std::vector<const Point*> through)
     {
         if (through.size() < 2) return;
+        std::stable_sort(through.begin(), through.end(), [](const Point* a, const Point* b) {
+            return a->time_ms.median < b->time_ms.median;
+        });
         out_ << "<polyline class=\"" << kind << "\" points=\"";
         for (const Point* const point : through)
             out_ << pixels(x(*point)) << ',' << pixels(y(*point)) << ' ';
         out_ << "\"/>\n";
     }
 
-    // A line a dial, through the points that turn that alone and the scene as it is; its name at
-    // the end that is furthest from there.
+    static std::string style_of(std::size_t dial)
+    {
+        return "dial l" + std::to_string(dial % kLines);
+    }
+
+    // A line a dial, through the points that turn that alone and the scene as it is.
     void lines()
     {
-        std::size_t style = 0;
-        for (const std::string& dial : dials_drawn(report_)) {
+        for (std::size_t dial = 0; dial < dials_.size(); ++dial) {
             std::vector<const Point*> through;
             for (const Point* const point : drawn_)
                 if (point->changes.empty()
-                    || (point->changes.size() == 1 && point->changes[0].dial == dial))
+                    || (point->changes.size() == 1 && point->changes[0].dial == dials_[dial]))
                     through.push_back(point);
-            std::stable_sort(through.begin(), through.end(), [](const Point* a, const Point* b) {
-                return a->time_ms.median < b->time_ms.median;
-            });
-            path("dial l" + std::to_string(style++ % kLines), through);
+            path(style_of(dial), std::move(through));
         }
     }
 
@@ -206,10 +218,7 @@ private:
         std::vector<const Point*> through;
         for (const Point* const point : drawn_)
             if (point->on_front) through.push_back(point);
-        std::sort(through.begin(), through.end(), [](const Point* a, const Point* b) {
-            return a->time_ms.median < b->time_ms.median;
-        });
-        path("front", through);
+        path("front", std::move(through));
     }
 
     void mark(const Point& point)
@@ -247,11 +256,9 @@ private:
         dot("advised", 7, "advised");
         dot("best", 5, "on the front");
         dot("", 3.5, "beaten");
-        std::size_t style = 0;
-        for (const std::string& dial : dials_drawn(report_)) {
-            const std::string kind = "dial l" + std::to_string(style++ % kLines);
-            line(kind.c_str(), left, y, left + 24, y);
-            row(dial);
+        for (std::size_t dial = 0; dial < dials_.size(); ++dial) {
+            line(style_of(dial).c_str(), left, y, left + 24, y);
+            row(dials_[dial]);
         }
     }
 
@@ -259,21 +266,11 @@ private:
     std::ostream& out_;
     Axis x_, y_;
     std::vector<const Point*> drawn_;
+    std::vector<std::string> dials_;  // that have a line
     const Advice advice_ = advice_of(report_);
 };
 
 }  // namespace
-
-std::vector<std::string> dials_drawn(const CostReport& report)
-{
-    std::vector<std::string> dials;
-    for (const Point& point : report.found.points) {
-        if (point.changes.size() != 1 || !is_drawn(point, report.measure)) continue;
-        const std::string& dial = point.changes[0].dial;
-        if (std::find(dials.begin(), dials.end(), dial) == dials.end()) dials.push_back(dial);
-    }
-    return dials;
-}
 
 void write_cost_svg(const CostReport& report, std::ostream& out) { Chart(report, out).write(); }
 

@@ -47,6 +47,8 @@ struct CostReport {
 /// A figure with two digits, which is what errors are known to.
 std::string figure_text(double figure);
 
+/// Whether it has a place among logarithms.
+bool is_drawn(const Point& point, Measure measure);
 /// Its changes, or that it is the scene as it is.
 std::string name_of(const Point& point);
 /// The same with its error and time, a line long.
@@ -71,8 +73,6 @@ void write_cost_text(const CostReport& report, std::ostream& out);
 void draw_front(const CostReport& report, std::ostream& out);
 /// Error against time as SVG: the front, the advice and a line a dial, each point with its words.
 void write_cost_svg(const CostReport& report, std::ostream& out);
-/// The dials that have a line in it, in order.
-std::vector<std::string> dials_drawn(const CostReport& report);
 /// All of it as one HTML page that loads nothing: the advice, the chart, a table that sorts.
 void write_cost_page(const CostReport& report, std::ostream& out);
 /// A row a point, the names and units of the columns in the first.

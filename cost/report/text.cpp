@@ -99,7 +99,7 @@ void draw_front(const CostReport& report, std::ostream& out)
     std::vector<const Point*> drawn;
     for (const Point& point : report.found.points) {
         const double error = point.error(report.measure);
-        if (!point.had() || !std::isfinite(error) || !(error > 0)) continue;
+        if (!is_drawn(point, report.measure)) continue;
         drawn.push_back(&point);
         low_time = std::min(low_time, point.time_ms.median);
         high_time = std::max(high_time, point.time_ms.median);

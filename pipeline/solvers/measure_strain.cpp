@@ -113,7 +113,7 @@ public:
         const bool rests = is_resting(island);
         if (!(before > 1))
             return rests ? begun(strain, before, exactly) : is_crushed(island) ? -kCrushed : 0;
-        return exactly ? lasting(island, strain, before, rests) : fading(strain, before);
+        return exactly ? lasting(island, strain, most, before, rests) : fading(strain, before);
     }
 
 private:
@@ -123,7 +123,7 @@ private:
         return faded > kSettled ? faded : 0;
     }
 
-    double lasting(std::size_t island, double strain, double before, bool rests) const
+    double lasting(std::size_t island, double strain, double most, double before, bool rests) const
     {
         if (!(strain > kRelieved)) return 0;
         const double lasted = std::max(strain, std::min({before, kLasting * strain, kExactStrain}));
@@ -132,7 +132,7 @@ private:
         if (before >= kInVain) return kInVain;
         if (contacts_of(island).size() > kCrushedContacts && is_solved_exactly(island))
             return lasted;
-        return is_deep(island) ? -kInVain : lasted;
+        return is_deep(island, most) ? -kInVain : lasted;
     }
 
     const Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const
@@ -233,10 +233,9 @@ private:
 
     // Whether a contact still overlaps about as the most loaded one did before it was escalated:
     // who bears next to nothing may well overlap by more than his own load makes.
-    bool is_deep(std::size_t island) const
+    bool is_deep(std::size_t island, double most) const
     {
         const auto contacts = contacts_of(island);
-        const double most = most_borne(island);
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
             const double overlap{contact_of(entry).overlap(entry.points)};

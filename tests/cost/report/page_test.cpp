@@ -1,5 +1,6 @@
 // Report: the page and the chart of a sweep hold what was found, and nothing else.
 #include "cost/report/cost_report.hpp"
+#include "tests/cost/sweep/made_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,26 +10,15 @@
 namespace throng {
 namespace {
 
-Point point(double time_ms, double drift, Changes changes)
-{
-    Point made;
-    made.changes = std::move(changes);
-    WindowErrors errors{};
-    of(errors, Measure::drift) = drift * drift;
-    made.errors.assign(4, errors);
-    made.times_ms.assign(4, time_ms);
-    made.time_ms = {time_ms, 0.9 * time_ms, 1.1 * time_ms, 7};
-    return made;
-}
-
 CostReport report()
 {
     CostReport made;
     made.scene = "a<b>&\"c\"";
     made.wish.error = 2e-3;
-    made.found.points = {point(1, 1e-2, {}), point(2, 1e-3, {{"substeps", "8"}}),
-                         point(4, 1e-4, {{"substeps", "16"}}), point(9, 1e-2, {{"dt", "1/120"}}),
-                         point(9, NAN, {{"solver", "pgs"}})};
+    made.found.points = {made_point(1, 1e-2, {}), made_point(2, 1e-3, {{"substeps", "8"}}),
+                         made_point(4, 1e-4, {{"substeps", "16"}}),
+                         made_point(9, 1e-2, {{"dt", "1/120"}}),
+                         made_point(9, NAN, {{"solver", "pgs"}})};
     made.found.points.emplace_back();
     made.found.points.back().trouble = "takes <too> long";
     mark_front(made.found.points, Measure::drift);
@@ -88,7 +78,7 @@ TEST(CostPage, IsSmallForManySettings)
 {
     CostReport many = report();
     for (int i = 0; i < 500; ++i)
-        many.found.points.push_back(point(1 + i, 1e-2 / (1 + i), {{"substeps", "17"}}));
+        many.found.points.push_back(made_point(1 + i, 1e-2 / (1 + i), {{"substeps", "17"}}));
     std::ostringstream out;
     write_cost_page(many, out);
     EXPECT_LT(out.str().size(), 1000000u);

@@ -1,5 +1,6 @@
 // Sweeps: the front, what is advised, the orders, and what is tried at all.
 #include "cost/sweep/orders.hpp"
+#include "tests/cost/sweep/made_points.hpp"
 #include "throng/catalog.hpp"
 #include "throng/dials.hpp"
 
@@ -11,18 +12,6 @@
 namespace throng {
 namespace {
 
-Point point(double time_ms, double drift, Changes changes = {{"substeps", "8"}})
-{
-    Point made;
-    made.changes = std::move(changes);
-    WindowErrors errors{};
-    of(errors, Measure::drift) = drift * drift;
-    made.errors.assign(4, errors);
-    made.times_ms.assign(4, time_ms);
-    made.time_ms = {time_ms, time_ms, time_ms, 7};
-    return made;
-}
-
 Scene scene_of(std::string_view word)
 {
     const ParsedScene parsed = parse_scene(word);
@@ -31,8 +20,8 @@ Scene scene_of(std::string_view word)
 
 TEST(Front, HoldsWhatNothingBeats)
 {
-    std::vector<Point> points = {point(1, 1e-2), point(2, 1e-3), point(2, 5e-3), point(3, 1e-3),
-                                 point(4, 1e-4)};
+    std::vector<Point> points = {made_point(1, 1e-2), made_point(2, 1e-3), made_point(2, 5e-3),
+                                 made_point(3, 1e-3), made_point(4, 1e-4)};
     mark_front(points, Measure::drift);
     const bool wanted[] = {true, true, false, false, true};
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(points[i].on_front, wanted[i]) << i;
@@ -40,7 +29,8 @@ TEST(Front, HoldsWhatNothingBeats)
 
 TEST(Front, HasNoPlaceForWhatBlewUpOrWasLookedAtLess)
 {
-    std::vector<Point> points = {point(1, INFINITY), point(2, 1e-3), point(0.5, 1e-4)};
+    std::vector<Point> points = {made_point(1, INFINITY), made_point(2, 1e-3),
+                                 made_point(0.5, 1e-4)};
     points[2].errors.resize(2);
     points[2].times_ms.resize(2);
     mark_front(points, Measure::drift);
@@ -51,7 +41,7 @@ TEST(Front, HasNoPlaceForWhatBlewUpOrWasLookedAtLess)
 
 TEST(Front, HasNoPlaceForATimeThatWasNotTakenInTurn)
 {
-    std::vector<Point> points = {point(1, 1e-2), point(0.9, 2e-2), point(2, 1e-3)};
+    std::vector<Point> points = {made_point(1, 1e-2), made_point(0.9, 2e-2), made_point(2, 1e-3)};
     points[1].time_ms.repeats = 1;
     mark_front(points, Measure::drift);
     EXPECT_TRUE(points[0].on_front);
@@ -61,7 +51,7 @@ TEST(Front, HasNoPlaceForATimeThatWasNotTakenInTurn)
 
 TEST(Front, AdvisesTheCheapestWithinAnErrorAndTheMostExactWithinATime)
 {
-    std::vector<Point> points = {point(1, 1e-2), point(2, 1e-3), point(4, 1e-4)};
+    std::vector<Point> points = {made_point(1, 1e-2), made_point(2, 1e-3), made_point(4, 1e-4)};
     mark_front(points, Measure::drift);
     EXPECT_EQ(cheapest_within(points, Measure::drift, 2e-3), &points[1]);
     EXPECT_EQ(cheapest_within(points, Measure::drift, 1e-6), &points[2]);
@@ -74,8 +64,9 @@ TEST(Orders, AreTheSlopesOfErrors)
 {
     Scene scene;
     SweepResult found;
-    found.points = {point(1, 1e-2, {}), point(2, 2.5e-3, {{"dt", "1/120"}}),
-                    point(4, 6.25e-4, {{"dt", "1/240"}}), point(8, 3e-5, {{"dt", "1/480"}})};
+    found.points = {made_point(1, 1e-2, {}), made_point(2, 2.5e-3, {{"dt", "1/120"}}),
+                    made_point(4, 6.25e-4, {{"dt", "1/240"}}),
+                    made_point(8, 3e-5, {{"dt", "1/480"}})};
     const auto fitted = fitted_order(scene, found, "dt", Measure::drift, 2e-5);
     ASSERT_TRUE(fitted);
     EXPECT_NEAR(fitted->order, 2, 1e-9);
