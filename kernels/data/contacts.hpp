@@ -233,6 +233,7 @@ struct JoinedContacts {
     struct Candidate {
         std::uint64_t pair = 0;
         std::uint32_t entry = 0;
+        // NOLINTNEXTLINE(modernize-use-nullptr): has none
         auto operator<=>(const Candidate&) const = default;
     };
     struct Scratch {
