@@ -33,6 +33,7 @@ struct Outline {
     }
     void put_next(int i, F3 corner)
     {
+        // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): every face has corners
         next_x[i] = corner.x;
         next_y[i] = corner.y;
         next_z[i] = corner.z;
