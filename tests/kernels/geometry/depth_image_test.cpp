@@ -75,7 +75,7 @@ TEST(DepthImage, RaysThroughVerticesOfATurnedMeshAreInsideWhereThePointsAre)
     for (int i = 0; i < 40; ++i) {
         const Pose pose = random.pose(0.5);
         // A ray through a vertex to the last bit: nine rays about it, its own in the middle.
-        const std::size_t vertex = static_cast<std::size_t>(random.number(0, 240));
+        const auto vertex = static_cast<std::size_t>(random.number(0, 240));
         const Vec3 at =
             pose.orientation.toRotationMatrix() * shapes.meshes[0].vertices[vertex] + pose.position;
         const RayGrid grid{1, {0, 0}, {at.x(), at.y()}, {1, 1}};

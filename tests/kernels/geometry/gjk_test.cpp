@@ -14,7 +14,6 @@
 namespace throng {
 namespace {
 
-using given::greatest_separation;
 using given::outline_of;
 using given::OutlinePair;
 using given::random_direction;
