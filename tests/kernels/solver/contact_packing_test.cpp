@@ -233,7 +233,7 @@ TEST(ContactPacking, ALaneOfNothingHasNoMassAndHoldsNothing)
             EXPECT_EQ(made.point(k).mass.at[lane], 0);
             EXPECT_EQ(made.point(k).impulse.at[lane], 0);
         }
-        for (int i = 0; i < 3; ++i) EXPECT_EQ(block.friction_mass[i].at[lane], 0);
+        for (const auto& mass : block.friction_mass) EXPECT_EQ(mass.at[lane], 0);
         EXPECT_EQ(block.sliding_mass.at[lane], 0);
         EXPECT_EQ(block.torsional_mass.at[lane], 0);
         EXPECT_EQ(block.torsional_impulse.at[lane], 0);

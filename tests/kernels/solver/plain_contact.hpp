@@ -91,10 +91,10 @@ public:
         : a(body_a), b(body_b), normal(contact.normal.template cast<double>()),
           friction_impulse(contact.friction.template cast<double>()),
           rolling_impulse(contact.rolling.template cast<double>()),
-          torsional_impulse(contact.torsional_impulse), round_a(contact.round_a),
-          round_b(contact.round_b), friction(terms.friction), restitution(terms.restitution),
-          rolling(terms.rolling_friction), bias_rate(terms.softness.bias_rate),
-          impulse_scale(terms.softness.impulse_scale), deep(terms.deep)
+          torsional_impulse(contact.torsional_impulse), round_a_(contact.round_a),
+          round_b_(contact.round_b), friction_(terms.friction), restitution_(terms.restitution),
+          rolling_(terms.rolling_friction), bias_rate_(terms.softness.bias_rate),
+          impulse_scale_(terms.softness.impulse_scale), deep_(terms.deep)
     {
         const Vec3 between = contact.center_offset.template cast<double>();
         double total = 0;
@@ -113,8 +113,8 @@ public:
         }
         held_uncut = friction_impulse;
         // What was carried over stays within the cone.
-        if (friction_impulse.norm() > friction * total)
-            friction_impulse *= friction * total / friction_impulse.norm();
+        if (friction_impulse.norm() > friction_ * total)
+            friction_impulse *= friction_ * total / friction_impulse.norm();
         // Seen from the center, points lie in the plane of the contact.
         for (Point& point : points) {
             point.off = point.arm_a - center_a;
@@ -132,7 +132,7 @@ public:
         } else if (iteration.friction_pyramid) {
             double total = 0;
             for (const Point& point : points) total += point.impulse;
-            friction_impulse = within_pyramid(friction_impulse, friction * total);
+            friction_impulse = within_pyramid(friction_impulse, friction_ * total);
         }
         apply(friction_impulse, center_a, center_b);
         apply_angular_impulse(torsional_impulse * normal);
@@ -173,7 +173,7 @@ public:
             point.friction = Vec3::Zero();
             const double speed = struck.speed_of(point);
             const double then = separation_of(point) / iteration.substep + speed + normal.dot(half);
-            if (restitution > 0 && speed < -iteration.restitution_threshold && then < 0
+            if (restitution_ > 0 && speed < -iteration.restitution_threshold && then < 0
                 && mass_of(point) > 0)
                 hits.push_back(k);
         }
@@ -205,8 +205,8 @@ public:
     /// the body; the skin round it does not.
     double separation_of(const Point& point) const
     {
-        const Vec3 core_a = center_a + point.off - round_a * normal;
-        const Vec3 core_b = center_b + point.off + round_b * normal;
+        const Vec3 core_a = center_a + point.off - round_a_ * normal;
+        const Vec3 core_b = center_b + point.off + round_b_ * normal;
         return point.separation + normal.dot(b.moved_at(core_b) - a.moved_at(core_a));
     }
 
@@ -256,14 +256,14 @@ private:
         const double separation = separation_of(point);
         point.leak = 0;
         point.bias = separation > 0 ? separation / iteration.substep : 0;
-        point.left = iteration.restitutions && !iteration.use_bias && restitution > 0
+        point.left = iteration.restitutions && !iteration.use_bias && restitution_ > 0
             && speed_of(point) < -iteration.restitution_threshold;
         if (separation > 0 || !iteration.use_bias) return;
         // Three points share a load: they may go three times as deep before they turn rigid.
-        const double turns_rigid = deep * (overlapping >= 3 ? 3 : 1);
-        const double depth = deep > 0 ? -separation / turns_rigid : 0;
-        point.leak = impulse_scale * std::clamp(2 - depth, 0.0, 1.0);
-        point.bias = std::max(bias_rate * separation, -iteration.push_limit);
+        const double turns_rigid = deep_ * (overlapping >= 3 ? 3 : 1);
+        const double depth = deep_ > 0 ? -separation / turns_rigid : 0;
+        point.leak = impulse_scale_ * std::clamp(2 - depth, 0.0, 1.0);
+        point.bias = std::max(bias_rate_ * separation, -iteration.push_limit);
     }
     void push(Point& point)
     {
@@ -314,7 +314,7 @@ private:
             change += stopped.points[k].impulse * (stopped.speed_of(stopped.points[k]) - came);
         }
         for (const std::size_t k : hits) {
-            points[k].impulse = stopped.points[k].impulse * (1 + restitution) * in / change;
+            points[k].impulse = stopped.points[k].impulse * (1 + restitution_) * in / change;
             apply(points[k].impulse * normal, points[k].arm_a, points[k].arm_b);
         }
     }
@@ -340,7 +340,7 @@ private:
         if (iteration.has_rolling_friction && turning.trace() > 0) {
             const Vec3 before = rolling_impulse;
             rolling_impulse -= (b.spin - a.spin) / turning.trace();
-            const double most = rolling * total;
+            const double most = rolling_ * total;
             if (rolling_impulse.norm() > most) rolling_impulse *= most / rolling_impulse.norm();
             apply_angular_impulse(rolling_impulse - before);
         }
@@ -350,15 +350,15 @@ private:
             const double mass = 1 / normal.dot(turning * normal);
             torsional_impulse -= mass * normal.dot(b.spin - a.spin);
             torsional_impulse =
-                std::clamp(torsional_impulse, -friction * lever_arm, friction * lever_arm);
+                std::clamp(torsional_impulse, -friction_ * lever_arm, friction_ * lever_arm);
             apply_angular_impulse((torsional_impulse - before) * normal);
         }
-        apply_friction(iteration, Vec3::Zero(), friction * total, friction_impulse);
+        apply_friction(iteration, Vec3::Zero(), friction_ * total, friction_impulse);
     }
     void grip_each(const PlainIteration& iteration)
     {
         for (Point& point : points)
-            apply_friction(iteration, point.off, friction * point.impulse, point.friction);
+            apply_friction(iteration, point.off, friction_ * point.impulse, point.friction);
         add_up_friction();
     }
     void add_up_friction()
@@ -385,7 +385,7 @@ private:
         const double rest = torsional_impulse - normal.dot(middle.cross(friction_impulse));
         const double turn = spread > 1e-3 * load * extent ? rest / spread : 0;
         for (Point& point : points) {
-            const double most = friction * point.impulse;
+            const double most = friction_ * point.impulse;
             Vec3 share = Vec3::Zero();
             if (load > 0)
                 share = point.impulse
@@ -435,8 +435,8 @@ private:
         apply(plane * (after - before), arm_a, arm_b);
     }
 
-    double round_a, round_b;
-    double friction, restitution, rolling, bias_rate, impulse_scale, deep;
+    double round_a_, round_b_;
+    double friction_, restitution_, rolling_, bias_rate_, impulse_scale_, deep_;
 };
 
 }  // namespace throng::given

@@ -4,6 +4,7 @@
 #include "tests/kernels/solver/plain_contact.hpp"
 #include "tests/kernels/solver/random_contacts.hpp"
 #include "tests/kernels/solver/random_iteration.hpp"
+#include "tests/support/same_bytes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +19,7 @@ using given::PlainIteration;
 using given::random_block;
 using given::random_iteration;
 using given::run_all;
+using given::same_bytes;
 
 template <class Real>
 PlainContact plain_contact(const BlockCase<Real>& made, std::size_t lane)
@@ -298,7 +300,7 @@ void check_limits(double slack)
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             for (int k = 0; k < block.points; ++k)
                 ASSERT_GE(made.point(k).impulse.at[lane], 0) << "seed " << seed;
-            const double friction = double{block.friction.at[lane]};
+            const auto friction = double{block.friction.at[lane]};
             const double load = plain[lane].held_by, lever_arm = plain[lane].held_at;
             const double f = std::hypot(double{block.friction_impulse[0].at[lane]},
                                         double{block.friction_impulse[1].at[lane]});
@@ -322,12 +324,6 @@ TEST(SolveContacts, ContactsNeverPullAndFrictionStaysInItsCone)
 {
     check_limits<float>(1e-5);
     check_limits<double>(1e-13);
-}
-
-template <class T>
-bool same_bytes(const T& x, const T& y)
-{
-    return std::memcmp(&x, &y, sizeof(T)) == 0;
 }
 
 template <class Real>

@@ -2,11 +2,11 @@
 #include "kernels/math/rotation.hpp"
 #include "kernels/solver/solver_bodies.hpp"
 #include "tests/kernels/solver/random_contacts.hpp"
+#include "tests/support/same_bytes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <random>
 
 namespace throng {
@@ -72,9 +72,8 @@ void check_kernel(const SolveKernels<Real>& kernels, double tolerance)
                                         static_cast<Real>(kHalf));
         solve_kernels_of<Real>("scalar")->update_surface_velocity(
             narrow.view(), given::kPlace, given::kPlace + 1, static_cast<Real>(kHalf));
-        ASSERT_EQ(std::memcmp(&narrow.constraints.surface_velocities[given::kPlace], &surface,
-                              sizeof surface),
-                  0);
+        ASSERT_TRUE(
+            given::same_bytes(narrow.constraints.surface_velocities[given::kPlace], surface));
         for (std::size_t lane = 0; lane < kBlock; ++lane) {
             const auto turn_of_axis = [&](std::int32_t body, const Vec3& arm) {
                 const auto place = static_cast<std::size_t>(body);
