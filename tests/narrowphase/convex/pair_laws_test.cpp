@@ -26,9 +26,9 @@ const char* name_of(ShapeKind kind)
     return kNames[static_cast<std::size_t>(kind)];
 }
 
-void PrintTo(const KindPair& kinds, std::ostream* out)
+std::ostream& operator<<(std::ostream& out, const KindPair& kinds)
 {
-    *out << name_of(kinds.a) << "_" << name_of(kinds.b);
+    return out << name_of(kinds.a) << "_" << name_of(kinds.b);
 }
 
 ShapeRef add_random(Shapes& shapes, ShapeKind kind, std::mt19937& random)

@@ -1,6 +1,7 @@
 // Scene file, written: what is written reads back to the same bits.
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/shapes/level_set.hpp"
+#include "tests/support/same_bytes.hpp"
 #include "throng/catalog.hpp"
 #include "throng/scene_file.hpp"
 #include "throng/world.hpp"
@@ -137,9 +138,7 @@ TEST_F(WriteScene, ReadsBackToTheSameBits)
     const Scene a = full_scene();
     write_scene(a, path("a.json"));
     const Scene b = read_scene(path("a.json"));
-    const auto same = [](const auto& x, const auto& y) {
-        return std::memcmp(&x, &y, sizeof x) == 0;
-    };
+    const auto same = [](const auto& x, const auto& y) { return given::same_bytes(x, y); };
     EXPECT_TRUE(same(a.gravity, b.gravity));
     EXPECT_TRUE(same(a.wind, b.wind));
     EXPECT_EQ(a.settings.dt, b.settings.dt);
