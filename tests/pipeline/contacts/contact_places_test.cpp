@@ -189,7 +189,7 @@ struct Row {
     World world;
     std::vector<BodyId> balls;
 
-    explicit Row(std::initializer_list<double> places) : world(Settings{})
+    Row(std::initializer_list<double> places) : world(Settings{})
     {
         given::SceneOf made;
         for (const double x : places) made.ball(0.5, Vec3(x, 0, 0));

@@ -7,7 +7,18 @@
 namespace throng {
 namespace {
 
-using namespace given;
+using given::box_on_a_lift;
+using given::carried;
+using given::energy_of;
+using given::hash_after;
+using given::heap_of_balls;
+using given::least_separation;
+using given::place_of;
+using given::row_of_balls;
+using given::SceneOf;
+using given::stack_of_boxes;
+using given::tumbling_boxes;
+using given::velocity_of;
 
 constexpr double kGravity = 9.81;
 

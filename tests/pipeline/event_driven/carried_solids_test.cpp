@@ -11,7 +11,15 @@
 namespace throng {
 namespace {
 
-using namespace given;
+using given::block_under;
+using given::carried;
+using given::energy_of;
+using given::hash_after;
+using given::mesh_of;
+using given::place_of;
+using given::SceneOf;
+using given::velocity_of;
+using given::voxels_of;
 
 constexpr double kDt = 0.01;
 

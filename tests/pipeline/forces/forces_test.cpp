@@ -11,7 +11,12 @@
 namespace throng {
 namespace {
 
-using namespace test;
+using test::add_body;
+using test::add_crate;
+using test::add_floor;
+using test::empty_scene;
+using test::energy;
+using test::spring_between;
 
 TEST(Forces, AConstantOneGivesAParabolaAndATorqueASpin)
 {

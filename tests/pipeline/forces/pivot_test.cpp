@@ -10,7 +10,11 @@
 namespace throng {
 namespace {
 
-using namespace test;
+using test::add_body;
+using test::add_crate;
+using test::add_floor;
+using test::empty_scene;
+using test::energy;
 
 TEST(Pivot, APendulumSwingsByItsMomentAboutThePivot)
 {
@@ -63,8 +67,8 @@ TEST(Pivot, WhatIsNotSymmetricSwingsAsExactlyAsEachMethodsOrder)
         for (const auto& [integrator, order] :
              {std::pair(Integrator::midpoint, 2), std::pair(Integrator::splitting, 2),
               std::pair(Integrator::rk4, 4)}) {
-            const auto error = [&](double substep) {
-                return wanted.angularDistance(after_swinging(integrator, rotation, substep));
+            const auto error = [&, by = integrator](double substep) {
+                return wanted.angularDistance(after_swinging(by, rotation, substep));
             };
             const double coarse = error(2e-3), fine = error(1e-3);
             EXPECT_LT(fine, order == 2 ? 1e-3 : 1e-6) << int(integrator);

@@ -10,7 +10,12 @@
 namespace throng {
 namespace {
 
-using namespace test;
+using test::add_body;
+using test::add_crate;
+using test::add_floor;
+using test::empty_scene;
+using test::energy;
+using test::spring_between;
 
 // A crate on a smooth floor, 0.1 m along a spring; without a substep that it flies.
 double widest_swing(Scene scene, double stiffness, int steps)

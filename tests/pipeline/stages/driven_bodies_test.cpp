@@ -11,7 +11,7 @@
 namespace throng {
 namespace {
 
-using namespace given;
+using given::SceneOf;
 
 constexpr double kSpeed = 1.4, kMass = 80, kFriction = 0.5;
 

@@ -22,9 +22,9 @@ constexpr CatalogScene kScenes[] = {{"pile", 300},   {"spheres", 300}, {"hulls",
                                     {"stacks", 100}, {"tumbler", 200}, {"crowd", 200},
                                     {"meshes", 100}};
 
-void PrintTo(const CatalogScene& scene, std::ostream* out)
+std::ostream& operator<<(std::ostream& out, const CatalogScene& scene)
 {
-    *out << scene.name << "_" << scene.size;
+    return out << scene.name << "_" << scene.size;
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
