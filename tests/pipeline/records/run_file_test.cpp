@@ -16,7 +16,7 @@ namespace {
 
 /// A file of one test, gone in the end.
 class RunFileTest : public testing::Test {
-protected:
+public:
     RunFileTest()
         : path_((std::filesystem::temp_directory_path()
                  / ("throng_run_file_" + std::to_string(::getpid()) + ".h5"))
@@ -24,6 +24,7 @@ protected:
     { }
     ~RunFileTest() override { std::filesystem::remove(path_); }
 
+protected:
     std::string path_;
 };
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -87,11 +88,10 @@ TEST(Trace, StagesLieWithinTheirStepAndBlocksWithinTheirStage)
     const std::vector<Bar> bars = bars_of(trace);
     const auto within = [&](const Bar& inner, const char* kind, const std::string& name) {
         constexpr double kRounded = 0.002;  // us
-        for (const Bar& bar : bars)
-            if (bar.kind == kind && (name.empty() || bar.name == name)
-                && bar.begin <= inner.begin + kRounded && inner.end <= bar.end + kRounded)
-                return true;
-        return false;
+        return std::any_of(bars.begin(), bars.end(), [&](const Bar& bar) {
+            return bar.kind == kind && (name.empty() || bar.name == name)
+                && bar.begin <= inner.begin + kRounded && inner.end <= bar.end + kRounded;
+        });
     };
     int blocks = 0;
     for (const Bar& bar : bars) {
