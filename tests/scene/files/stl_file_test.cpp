@@ -195,7 +195,7 @@ TEST(StlFile, AreMeshesOfScenes)
         "shapes": {"b": {"mesh": {"file": "block.stl", "scale": 0.5}}},
         "bodies": [{"shape": "b"}]})",
                                         "s.json", "in", reader);
-    const MeshShape& mesh = std::get<MeshShape>(scene.shapes[0].shape);
+    const auto& mesh = std::get<MeshShape>(scene.shapes[0].shape);
     EXPECT_EQ(mesh.vertices.size(), 8u);
     EXPECT_EQ(mesh.vertices[0].cwiseAbs(), Vec3(0.25, 0.125, 1));
 }
