@@ -30,7 +30,7 @@ TEST(MakeSolid, FarFromItsOriginAMeshIsMadeAboutItsMiddle)
     EXPECT_EQ(away.at, -far);
     EXPECT_EQ(away.mass.center, near.mass.center - far);
     EXPECT_EQ(away.mass.volume, near.mass.volume);
-    const Solid &a = std::get<Solid>(near.shape), &b = std::get<Solid>(away.shape);
+    const auto &a = std::get<Solid>(near.shape), &b = std::get<Solid>(away.shape);
     EXPECT_EQ(a.points.x, b.points.x);
     EXPECT_EQ(a.field.values, b.field.values);
 }
