@@ -142,6 +142,7 @@ constexpr HardCase kCases[] = {
      Fault::haste},
     {"H100", "heaps that land lie still by little more than usual work", case_landed_heaps,
      Fault::sink},
+    {"H101", "what tumbles beside a wall keeps energy and momentum", case_near_walls, Fault::whirl},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -1,5 +1,6 @@
 // Free flight, written once over the width of the machine's registers.
 #include "kernels/dynamics/flight.hpp"
+#include "kernels/math/gyroscopic_theta.hpp"
 #include "kernels/simd/lane_rows.hpp"
 #include "kernels/simd/lane_vectors.hpp"
 
@@ -55,6 +56,7 @@ struct Spin {
     L uneven;    // not 0 for those that precess
     L energy;    // twice
     L momentum;  // its square
+    L time;      // s, of a substep
     L fastest;   // greatest square of a turn of one substep
 
     void square()
@@ -74,6 +76,7 @@ struct Spin {
         square();
         fastest = 0.0;
         uneven = unevenly;
+        time = h;
         if (!precesses) return;
         for (int k = 0; k < 3; ++k) {
             const L difference = moment[(k + 2) % 3] - moment[(k + 1) % 3];
@@ -84,20 +87,22 @@ struct Spin {
         weigh();
     }
 
-    // One Newton step of w' = w - h w' x I w' / I, its 3x3 system solved by hand: with r the ratios
-    // the matrix is 1 on the diagonal and r1 w3, r1 w2 and so on beside it. Then its momentum back
-    // or, where that is less, its energy; see after_gyroscopic_torque().
+    // One Newton step of w' = w - h w" x I w" / I, w" at theta of the time, its 3x3 system solved
+    // by hand: with r the ratios the matrix is 1 on the diagonal and r1 w3, r1 w2 and so on, times
+    // theta, beside it. Then its momentum back or, where that is less, its energy; see
+    // after_gyroscopic_torque().
     void precess()
     {
-        const L product = w[0] * w[1] * w[2];
-        const L determinant = L(1.0) + triple * product
-            - (pair[0] * squares[0] + pair[1] * squares[1] + pair[2] * squares[2]);
+        const L theta = gyroscopic_theta(L((squares[0] + squares[1] + squares[2]) * (time * time)));
+        const L theta2 = theta * theta, product = w[0] * w[1] * w[2];
+        const L determinant = L(1.0) + triple * product * (theta2 * theta)
+            - (pair[0] * squares[0] + pair[1] * squares[1] + pair[2] * squares[2]) * theta2;
         const L inverse = L(1.0) / determinant;
         L change[3];
         for (int k = 0; k < 3; ++k) {
             const int i = (k + 1) % 3, j = (k + 2) % 3;
-            const L across = w[i] * w[j] * (L(1.0) + pair[k] * squares[k]);
-            const L along = w[k] * (ratio[i] * squares[j] + ratio[j] * squares[i]);
+            const L across = w[i] * w[j] * (L(1.0) + pair[k] * squares[k] * theta2);
+            const L along = w[k] * (ratio[i] * squares[j] + ratio[j] * squares[i]) * theta;
             // Nothing at all for those that spin evenly, not even a zero of another sign.
             change[k] = select(uneven > L(0.0), ratio[k] * inverse * (across - along), L(0.0));
         }

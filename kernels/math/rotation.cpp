@@ -1,5 +1,7 @@
 #include "kernels/math/rotation.hpp"
 
+#include "kernels/math/gyroscopic_theta.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -152,12 +154,13 @@ Vec3 after_gyroscopic_torque_local(const Vec3& w, const Sym3& inertia, double ti
 {
     const Vec3 momentum = times(inertia, w);
     const Vec3 residual = time * w.cross(momentum);
-    // Column k of the matrix is I e + time (w x I e - I w x e), with e the unit vector along k.
+    const double ahead = time * gyroscopic_theta(time * time * w.squaredNorm());
+    // Column k of the matrix is I e + ahead (w x I e - I w x e), with e the unit vector along k.
     const Vec3 x(inertia.xx, inertia.xy, inertia.xz), y(inertia.xy, inertia.yy, inertia.yz),
         z(inertia.xz, inertia.yz, inertia.zz);
-    const Vec3 a = x + time * (w.cross(x) - Vec3(0, momentum.z(), -momentum.y()));
-    const Vec3 b = y + time * (w.cross(y) - Vec3(-momentum.z(), 0, momentum.x()));
-    const Vec3 c = z + time * (w.cross(z) - Vec3(momentum.y(), -momentum.x(), 0));
+    const Vec3 a = x + ahead * (w.cross(x) - Vec3(0, momentum.z(), -momentum.y()));
+    const Vec3 b = y + ahead * (w.cross(y) - Vec3(-momentum.z(), 0, momentum.x()));
+    const Vec3 c = z + ahead * (w.cross(z) - Vec3(momentum.y(), -momentum.x(), 0));
     const Vec3 change = solved(a, b, c, residual), momentum_change = times(inertia, change);
     const Vec3 after = w - change, momentum_after = momentum - momentum_change;
     const Vec3 both = momentum + momentum_after;

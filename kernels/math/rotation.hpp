@@ -17,12 +17,14 @@ Real furthest_moved(const Vec3T<Real>& shift, const QuatT<Real>& turn, Real radi
 /// every axis stays as it is, to the last bit.
 Sym3 in_world_axes(const Sym3& local, const Quat& orientation);
 
-/// Angular velocity after the gyroscopic torque has acted for a time: one Newton step of implicit
-/// Euler in body axes, brought back to the length that the angular momentum had or, where that is
-/// less, to the energy. So it gains neither and, but where it turns by radians in that time, loses
-/// one of them at most, by first order in time.
+/// Angular velocity after the gyroscopic torque has acted for a time: one Newton step of Euler's
+/// equation in body axes, which takes the torque of gyroscopic_theta() of the time, brought back to
+/// the length that the angular momentum had or, where that is less, to the energy. So it gains
+/// neither and, but where it turns by radians in that time, loses one of them at most, by third
+/// order in time.
 ///
-/// Source: Catto, Numerical Methods (GDC 2015), for the step.
+/// Source: Catto, Numerical Methods (GDC 2015), for a Newton step of implicit Euler, which this is
+///         for fast spins.
 Vec3 after_gyroscopic_torque(const Vec3& angular_velocity,
                              const Sym3& inertia_local,
                              const Quat& orientation,

@@ -1,4 +1,5 @@
 // Solver bodies through a substep, written once over the width of the machine's registers.
+#include "kernels/math/gyroscopic_theta.hpp"
 #include "kernels/solver/solve_lanes.hpp"
 
 #include <limits>
@@ -33,7 +34,7 @@ L gained_back(L before, L after, L lost)
         / (select(falls, after, before - lost) + least);
 }
 
-// One Newton step of the implicit Euler equation of a free top, which then has its momentum back
+// One Newton step of the Euler equation of a free top, which then has its momentum back
 // or, where that is less, its energy; see after_gyroscopic_torque().
 template <class L>
 V3<L> after_implicit(const Inertia<L>& inertia, const V3<L>& w, L time)
@@ -41,14 +42,15 @@ V3<L> after_implicit(const Inertia<L>& inertia, const V3<L>& w, L time)
     using Real = typename L::Number;
     const V3<L> m = inertia * w;
     const V3<L> residual = cross(w, m) * time;
-    // Columns of inertia + time (w x inertia - m x).
+    const L ahead = time * gyroscopic_theta(L(time * time * dot(w, w)));
+    // Columns of inertia + ahead (w x inertia - m x).
     const V3<L> column_x{inertia.xx, inertia.xy, inertia.xz};
     const V3<L> column_y{inertia.xy, inertia.yy, inertia.yz};
     const V3<L> column_z{inertia.xz, inertia.yz, inertia.zz};
     const L zero = Real(0);
-    const V3<L> x = column_x + (cross(w, column_x) - V3<L>{zero, m.z, -m.y}) * time;
-    const V3<L> y = column_y + (cross(w, column_y) - V3<L>{-m.z, zero, m.x}) * time;
-    const V3<L> z = column_z + (cross(w, column_z) - V3<L>{m.y, -m.x, zero}) * time;
+    const V3<L> x = column_x + (cross(w, column_x) - V3<L>{zero, m.z, -m.y}) * ahead;
+    const V3<L> y = column_y + (cross(w, column_y) - V3<L>{-m.z, zero, m.x}) * ahead;
+    const V3<L> z = column_z + (cross(w, column_z) - V3<L>{m.y, -m.x, zero}) * ahead;
     const V3<L> yz = cross(y, z);
     const L determinant = dot(x, yz);
     const L sound = abs(determinant);
