@@ -154,8 +154,8 @@ private:
 void judge_random_pairs(CaseBench& bench, MethodTally& tally)
 {
     Random random(37);
-    Score score(bench, "1e5 random pairs");
-    for (int i = 0; i < kShapes; ++i) {
+    Score score(bench, bench.brief() ? "2e4 random pairs" : "1e5 random pairs");
+    for (int i = 0; i < (bench.brief() ? kShapes / 5 : kShapes); ++i) {
         const bool boxes = i % 2 == 0;
         const Stated a = boxes ? random_box(random) : stated(random_hull(random, 6 + i % 11));
         const Stated b = i % 3 == 0 ? random_box(random) : stated(random_hull(random, 5 + i % 7));
