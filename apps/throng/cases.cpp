@@ -1,5 +1,5 @@
 // Cases: runs the hard cases that throng claims, and prints each figure beside its bound. A program
-// of its own, which `throng cases` becomes.
+// of its own, which `throng cases` becomes, and `throng cost` where it is given a case.
 #include "cost/hard_cases/cases.hpp"
 
 #include "apps/throng/commands.hpp"
@@ -201,7 +201,7 @@ void list_cases(std::ostream& out)
 }
 
 const Command kCases = {kCasesUsage, run_cases, list_cases};
-const Command* const kCommands[] = {&kCases};
+const Command* const kCommands[] = {&kCases, &kCostOfCase};
 
 }  // namespace
 }  // namespace throng

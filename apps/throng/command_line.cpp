@@ -85,8 +85,9 @@ void check_environment()
         std::cout.flush();
         ::execv((folder / program).c_str(), passed.data());
     }
-    throw BadInput("the command " + in_quotes(arguments.front()) + " is a program of its own, "
-                   + program + ", which is not beside this one; build that target, or install it");
+    throw BadInput(in_quotes(std::string(arguments.front()) + ' ' + std::string(arguments.back()))
+                   + " is for a program of its own, " + program
+                   + ", which is not beside this one; build that target, or install it");
 }
 
 int run_command(Commands commands, std::span<const std::string_view> arguments)
@@ -102,7 +103,7 @@ int run_command(Commands commands, std::span<const std::string_view> arguments)
             return kDone;
         }
         const Command& command = find_command(commands, arguments[1]);
-        if (command.program != nullptr)
+        if (command.program != nullptr && command.by_program == nullptr)
             become(command.program, std::array{command.usage.name, std::string_view("--help")});
         print_help_of(command);
         return kDone;
@@ -112,9 +113,12 @@ int run_command(Commands commands, std::span<const std::string_view> arguments)
         return kDone;
     }
     const Command& command = find_command(commands, first);
-    if (command.program != nullptr) become(command.program, arguments);
+    if (command.program != nullptr && command.by_program == nullptr)
+        become(command.program, arguments);
     const Options options(command.usage, arguments.subspan(1));
     if (!options.wants_help()) {
+        if (command.program != nullptr && command.by_program(options))
+            become(command.program, arguments);
         check_environment();
         return command.run(options);
     }

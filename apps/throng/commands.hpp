@@ -12,12 +12,17 @@ inline constexpr int kDone = 0, kCaseFailed = 1, kBadInput = 2, kFault = 3, kInt
 struct Command {
     Usage usage;
     int (*run)(const Options& options) = nullptr;
-    void (*more_help)(std::ostream& out) = nullptr;  // what follows the options; may be null
-    const char* program = nullptr;                   // that this command is; null: this one
+    void (*more_help)(std::ostream& out) = nullptr;        // what follows the options; may be null
+    const char* program = nullptr;                         // that this command is; null: this one
+    bool (*by_program)(const Options& options) = nullptr;  // when it is; null: always
 };
 
-extern const Command kRun, kExplain, kScene, kCost, kBench;
-extern const Usage kCasesUsage;
+extern const Command kRun, kExplain, kScene, kCost, kCostOfCase, kBench;
+extern const Usage kCasesUsage, kCostUsage;
+
+/// Whether the word that `cost` was given is a hard case's, of which the program of the cases
+/// knows more.
+bool asks_for_case(const Options& options);
 
 /// What main() does: runs the command that the words ask for, and answers with the exit code.
 int run_program(std::span<const Command* const> commands, int count, char** words);

@@ -5,6 +5,7 @@
 // cases.cpp.
 #pragma once
 
+#include "cost/changes.hpp"
 #include "throng/convex_query.hpp"
 #include "throng/impact_query.hpp"
 #include "throng/volume_query.hpp"
@@ -15,6 +16,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace throng {
@@ -64,13 +66,28 @@ enum class Fault : std::uint8_t {
 /// How much of a case is run: all of it, or what a test has time for.
 enum class Extent : std::uint8_t { brief, whole };
 
+/// A run that a case has come to the end of.
+///
+///   scene      as it was run
+///   duration   s that the case's own steps add up to, had the run not been ended early
+///   simulated  s that its steps did
+///   steps_ms   ms of the clock that they took
+///   lost       bodies that were quarantined
+struct CaseRun {
+    const Scene& scene;
+    double duration = 0, simulated = 0, steps_ms = 0;
+    std::size_t lost = 0;
+};
+
 /// Who waits for a case: sees each line as soon as it is there, and may want no more of them.
 struct CaseListener {
     std::function<void(const CaseResult&)> line = [](const CaseResult&) {};
-    std::function<bool()> enough = [] { return false; };  // asked after every step and question
+    /// Asked after every step, question and line.
+    std::function<bool()> enough = [] { return false; };
     /// Keeps an energy ledger of every run by the default dials (but for dt and sleep), and adds a
     /// line at the case's end: the worst of them.
     bool energy = false;
+    std::function<void(const CaseRun&)> ran = [](const CaseRun&) {};
 };
 
 /// What a case runs on: it makes the worlds, so that settings and faults reach all of them.
@@ -90,6 +107,10 @@ public:
     int threads() const { return threads_; }
     /// For runs to come.
     void use_threads(int threads) { threads_ = threads; }
+    /// Turns these dials in every scene that the case runs from now on, whatever it had set itself.
+    /// A run takes as long as it would by the case's own step. What cannot be had together is
+    /// thrown as std::invalid_argument where the case runs.
+    void force(Changes changes) { forced_ = std::move(changes); }
 
     /// A scene with the bench's settings, ready to be filled.
     Scene scene() const;
@@ -188,8 +209,11 @@ private:
     void report_energy();
     // Throws Stopped.
     void stop_where_enough() const;
+    // As it is run: by the dials that are forced, with the fault.
+    Scene as_run(const Scene& scene) const;
 
     Settings settings_;
+    Changes forced_;
     Fault fault_;
     int threads_;
     Extent extent_;
@@ -222,7 +246,8 @@ struct HardCase {
     std::string_view name;
     std::string_view about;
     void (*run)(CaseBench& bench);
-    Fault shown_by;  // a fault that makes it fail
+    Fault shown_by;           // a fault that makes it fail
+    bool asks_alone = false;  // asks methods about shapes, and steps no world
 };
 
 /// All cases, in the order of their numbers.

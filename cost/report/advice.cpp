@@ -1,4 +1,5 @@
 #include "cost/report/cost_report.hpp"
+#include "scene/names.hpp"
 
 #include <cmath>
 #include <iomanip>
@@ -13,23 +14,51 @@ std::string figure_text(double figure)
     return text.str();
 }
 
-bool is_drawn(const Point& point, Measure measure)
+bool is_drawn(const Point& point, std::size_t measure)
 {
     const double error = point.error(measure);
     return point.had() && std::isfinite(error) && error > 0 && point.time_ms.median > 0;
 }
 
-std::string name_of(const Point& point)
+std::string name_of_own(const CostReport& report)
 {
-    return point.changes.empty() ? "the scene as it is" : text_of(point.changes);
+    return report.of_case ? "the case as it is" : "the scene as it is";
+}
+
+std::string name_of(const CostReport& report, const Point& point)
+{
+    return point.changes.empty() ? name_of_own(report) : text_of(point.changes);
 }
 
 std::string words_of(const CostReport& report, const Point& point)
 {
-    const MeasureInfo& told = info(report.measure);
-    return name_of(point) + ": " + std::string(told.name) + ' '
-        + figure_text(point.error(report.measure)) + ' ' + std::string(told.unit) + ", "
+    return name_of(report, point) + ": " + report.told().name + ' '
+        + with_unit(figure_text(point.error(report.measure)), report.told()) + ", "
         + figure_text(point.time_ms.median) + " ms" + (point.on_front ? ", on the front" : "");
+}
+
+std::string command_of(const CostReport& report, const Point& point)
+{
+    const Changes all = joined(report.given, point.changes);
+    return report.command + (all.empty() ? "" : ' ' + as_options(all));
+}
+
+std::string trials_of(const CostReport& report)
+{
+    if (!report.of_case)
+        return std::to_string(report.windows) + " windows of " + number_text(report.window)
+            + " s from the first " + number_text(report.plan.seconds) + " s of the scene";
+    const CaseLine& line = *report.of_case;
+    return "the line \"" + line.setting + ": " + report.told().name + "\", of "
+        + std::to_string(line.runs) + (line.runs == 1 ? " run, " : " runs, ")
+        + number_text(std::round(1e6 * line.seconds) / 1e6) + " s";
+}
+
+std::string reference_of(const CostReport& report)
+{
+    if (report.of_case) return "the case's own exact answer";
+    return report.reference.settings + "; still off by "
+        + with_unit(figure_text(of(report.reference.remaining, report.measure)), report.told());
 }
 
 Advice advice_of(const CostReport& report)
@@ -48,10 +77,9 @@ Advice advice_of(const CostReport& report)
 std::vector<std::string> doubts_of(const CostReport& report)
 {
     std::vector<std::string> doubts;
-    const MeasureInfo& told = info(report.measure);
     const double remaining = of(report.reference.remaining, report.measure);
-    const std::string off = figure_text(remaining) + ' ' + std::string(told.unit);
-    if (!report.reference.settles)
+    const std::string off = with_unit(figure_text(remaining), report.told());
+    if (!report.of_case && !report.reference.settles)
         doubts.push_back("the reference does not settle: halving its step moved it by " + off
                          + ", no less than the time before; errors of that size cannot be told "
                            "apart. A shorter --window lets bodies part less");
@@ -59,7 +87,7 @@ std::vector<std::string> doubts_of(const CostReport& report)
         doubts.push_back("the reference is itself off by about " + off
                          + ", which is too near to the error that is wanted; --minutes gives it "
                            "more time");
-    if (report.at_rest == report.windows)
+    if (!report.of_case && report.at_rest == report.windows)
         doubts.push_back("nothing moves in any of the " + std::to_string(report.windows)
                          + " windows: these figures are of bodies at rest");
     if (report.found.interrupted)

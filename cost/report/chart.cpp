@@ -116,10 +116,10 @@ public:
 
     void write()
     {
-        const MeasureInfo& told = info(report_.measure);
         out_ << "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart\" viewBox=\"0 0 " << kWidth
              << ' ' << kHeight << "\" role=\"group\" aria-label=\"" << in_markup(report_.scene)
-             << ": " << told.name << " against time, " << drawn_.size() << " settings\">\n"
+             << ": " << in_markup(report_.told().name) << " against time, " << drawn_.size()
+             << " settings\">\n"
              << kStyle << "<rect class=\"paper\" width=\"" << kWidth << "\" height=\"" << kHeight
              << "\"/>\n";
         if (drawn_.empty()) {
@@ -161,12 +161,10 @@ private:
         }
         line("axis", kLeft, bottom, right, bottom);
         line("axis", kLeft, kTop, kLeft, bottom);
-        const MeasureInfo& told = info(report_.measure);
         text("middle", (kLeft + right) / 2, kHeight - 12, "time, ms for each 1/60 s of the scene");
-        const std::string words = std::string(told.name) + ", " + std::string(told.unit);
         out_ << "<text aria-hidden=\"true\" text-anchor=\"middle\" transform=\"translate(16 "
-             << pixels((kTop + bottom) / 2) << ") rotate(-90)\">" << in_markup(words)
-             << "</text>\n";
+             << pixels((kTop + bottom) / 2) << ") rotate(-90)\">"
+             << in_markup(label_of(report_.told())) << "</text>\n";
     }
 
     void wish()
@@ -252,7 +250,7 @@ private:
                  << "\" cy=\"" << pixels(y) << "\" r=\"" << radius << "\"/>\n";
             row(words);
         };
-        dot("own", 7, "the scene as it is");
+        dot("own", 7, name_of_own(report_));
         dot("advised", 7, "advised");
         dot("best", 5, "on the front");
         dot("", 3.5, "beaten");

@@ -1,9 +1,10 @@
-// Cost report: what a sweep of a scene has to say, for people and for programs.
+// Cost report: what a sweep of a scene or of a hard case has to say, for people and for programs.
 #pragma once
 
 #include "cost/sweep/orders.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <ostream>
 
 namespace throng {
@@ -25,34 +26,61 @@ struct Machine {
     double load = 0;
 };
 
+/// The line of a hard case whose figure is the error.
+///
+///   about    what the case shows
+///   setting  of the line, as the case calls it
+///   runs     that lead to it, of so many seconds of simulated time
+struct CaseLine {
+    std::string about, setting;
+    std::size_t runs = 0;
+    double seconds = 0;
+};
+
 /// What was measured, and on what.
 ///
-///   state  fingerprint of the scene as it begins and of where the reference has the windows end:
-///          points of another are none of this report
+///   scene    its name, or that of the case
+///   state    fingerprint of the scene as it begins and of where the reference has the windows end,
+///            or of the case's line: points of another are none of this report
+///   command  that runs it as it was measured, but for `given`, the dials that were set for all of
+///   it of_case  of a case; seed, plan, window, windows and at_rest are of a scene alone
 struct CostReport {
-    std::string scene, state;
+    std::string scene, state, command;
+    Changes given;
     std::uint64_t seed = 0;
     std::size_t bodies = 0;
     Machine machine;
+    std::optional<CaseLine> of_case;
     WindowPlan plan;
     double window = 0;  // s
     std::size_t windows = 0, at_rest = 0;
-    Measure measure = Measure::drift;
+    std::vector<Quantity> quantities = WindowTrials::of_windows();
+    std::size_t measure = 0;
     ReferenceInfo reference;
     Wish wish;
     SweepResult found;
     std::vector<FittedOrder> orders;
+
+    /// What the error is of.
+    const Quantity& told() const { return quantities[measure]; }
 };
 
 /// A figure with two digits, which is what errors are known to.
 std::string figure_text(double figure);
 
 /// Whether it has a place among logarithms.
-bool is_drawn(const Point& point, Measure measure);
-/// Its changes, or that it is the scene as it is.
-std::string name_of(const Point& point);
+bool is_drawn(const Point& point, std::size_t measure);
+/// Of no change: the scene, or the case, as it is.
+std::string name_of_own(const CostReport& report);
+/// Its changes, or that there are none.
+std::string name_of(const CostReport& report, const Point& point);
 /// The same with its error and time, a line long.
 std::string words_of(const CostReport& report, const Point& point);
+/// What runs it: a command, ready to paste.
+std::string command_of(const CostReport& report, const Point& point);
+/// What it was measured on, and against what.
+std::string trials_of(const CostReport& report);
+std::string reference_of(const CostReport& report);
 
 /// What is advised, and whether it is what was wished for: of no wish the most exact point.
 struct Advice {
@@ -65,6 +93,8 @@ Advice advice_of(const CostReport& report);
 /// settle, windows in which nothing moves, a sweep cut short.
 std::vector<std::string> doubts_of(const CostReport& report);
 
+/// The front and what it began from, a row a setting.
+void write_front(const CostReport& report, std::ostream& out);
 /// What is advised, ready to paste, and what it promises.
 void write_advice(const CostReport& report, std::ostream& out);
 /// The front, the advice and the doubts, a screen wide.
@@ -79,9 +109,16 @@ void write_cost_page(const CostReport& report, std::ostream& out);
 void write_cost_csv(const CostReport& report, std::ostream& out);
 void write_cost_json(const CostReport& report, std::ostream& out);
 
-/// The points of a report that was written before, if they are of that state; else none.
+/// A report that was written before, but for its orders.
 /// Throws SceneError, with line and column, where the text is no such report.
+CostReport read_report(const std::string& text, const std::string& file);
+/// Its points, if they are of the state of this one, and of the dials given here; else none.
 std::vector<Point>
-read_points(const std::string& text, const std::string& file, const std::string& state);
+read_points(const std::string& text, const std::string& file, const CostReport& report);
+
+/// Two reports side by side: what they are of and on, the front and the advice of each, and what
+/// error and time of the same settings come to in the second beside the first. Says where they are
+/// of different things, so that their figures cannot be compared.
+void write_comparison(const CostReport& a, const CostReport& b, std::ostream& out);
 
 }  // namespace throng

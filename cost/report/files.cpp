@@ -16,27 +16,27 @@ std::string in_csv(std::string_view text)
     return quoted + '"';
 }
 
-std::string errors_json(const Point& point, double (Point::*error)(Measure) const)
+std::string errors_json(const std::vector<Quantity>& quantities,
+                        const Point& point,
+                        double (Point::*error)(std::size_t) const)
 {
     JsonMembers errors;
-    for (std::size_t i = 0; i < kMeasures; ++i) {
-        const auto measure = static_cast<Measure>(i);
-        errors.add(info(measure).name, (point.*error)(measure));
-    }
+    for (std::size_t i = 0; i < quantities.size(); ++i)
+        errors.add(quantities[i].name, (point.*error)(i));
     return errors.text();
 }
 
-// Of each window, of each measure: what averages are taken of.
-std::string squares_json(const Point& point)
+// Of each trial, of each quantity: what averages are taken of.
+std::string squares_json(const std::vector<Quantity>& quantities, const Point& point)
 {
-    std::string windows;
-    for (const WindowErrors& window : point.errors) {
+    std::string trials;
+    for (const Errors& trial : point.errors) {
         std::string squares;
-        for (const double square : window)
-            squares += (squares.empty() ? "" : ", ") + json_text(square);
-        windows += (windows.empty() ? "[" : ", [") + squares + ']';
+        for (std::size_t i = 0; i < quantities.size(); ++i)
+            squares += (squares.empty() ? "" : ", ") + json_text(of(trial, i));
+        trials += (trials.empty() ? "[" : ", [") + squares + ']';
     }
-    return '[' + windows + ']';
+    return '[' + trials + ']';
 }
 
 std::string times_json(const Point& point)
@@ -53,14 +53,14 @@ std::string settings_json(const Changes& changes)
     return settings.text();
 }
 
-std::string point_json(const Point& point)
+std::string point_json(const std::vector<Quantity>& quantities, const Point& point)
 {
     JsonMembers members;
     members.add("settings", settings_json(point.changes));
     if (!point.trouble.empty()) return members.add_text("trouble", point.trouble).text();
-    return members.add("errors", errors_json(point, &Point::error))
-        .add("errors_at_most", errors_json(point, &Point::error_at_most))
-        .add("squares", squares_json(point))
+    return members.add("errors", errors_json(quantities, point, &Point::error))
+        .add("errors_at_most", errors_json(quantities, point, &Point::error_at_most))
+        .add("squares", squares_json(quantities, point))
         .add("times_ms", times_json(point))
         .add("time_ms",
              JsonMembers()
@@ -89,18 +89,39 @@ std::string advice_json(const CostReport& report)
     return JsonMembers()
         .add("point", place)
         .add("meets", json_text(advice.meets))
-        .add_text("options", as_options(advice.point->changes))
+        .add_text("options", as_options(joined(report.given, advice.point->changes)))
+        .add_text("command", command_of(report, *advice.point))
         .text();
 }
 
-std::string units_json()
+std::string units_json(const std::vector<Quantity>& quantities)
 {
     JsonMembers units;
-    for (std::size_t i = 0; i < kMeasures; ++i) {
-        const MeasureInfo& told = info(static_cast<Measure>(i));
-        units.add_text(told.name, told.unit);
-    }
+    for (const Quantity& each : quantities) units.add_text(each.name, each.unit);
     return units.text();
+}
+
+// What is a word stands as it is; a case's quantities are sentences.
+std::string head_in_csv(const std::string& head)
+{
+    return head.find_first_of(" ,\"") == std::string::npos ? head : in_csv(head);
+}
+
+// What the report is of: a scene and its windows, or a case and its line.
+void add_trials(const CostReport& report, JsonMembers& all)
+{
+    if (!report.of_case) {
+        all.add("windows", static_cast<double>(report.windows))
+            .add("windows_at_rest", static_cast<double>(report.at_rest))
+            .add("window_s", report.window)
+            .add("seconds", report.plan.seconds);
+        return;
+    }
+    const CaseLine& line = *report.of_case;
+    all.add_text("about", line.about)
+        .add_text("line", line.setting)
+        .add("runs", static_cast<double>(line.runs))
+        .add("seconds", line.seconds);
 }
 
 }  // namespace
@@ -108,18 +129,15 @@ std::string units_json()
 void write_cost_csv(const CostReport& report, std::ostream& out)
 {
     out << "setting";
-    for (std::size_t i = 0; i < kMeasures; ++i) {
-        const MeasureInfo& told = info(static_cast<Measure>(i));
-        out << ',' << told.name << '_' << told.unit << ',' << told.name << "_at_most_" << told.unit;
-    }
-    out << ",windows,time_ms,time_least_ms,time_most_ms,repeats,on_front,trouble\n";
+    for (const Quantity& told : report.quantities)
+        out << ',' << head_in_csv(told.name + '_' + told.unit) << ','
+            << head_in_csv(told.name + "_at_most_" + told.unit);
+    out << ',' << (report.of_case ? "trials" : "windows")
+        << ",time_ms,time_least_ms,time_most_ms,repeats,on_front,trouble\n";
     for (const Point& point : report.found.points) {
         out << in_csv(text_of(point.changes));
-        for (std::size_t i = 0; i < kMeasures; ++i) {
-            const auto measure = static_cast<Measure>(i);
-            out << ',' << number_text(point.error(measure)) << ','
-                << number_text(point.error_at_most(measure));
-        }
+        for (std::size_t i = 0; i < report.quantities.size(); ++i)
+            out << ',' << number_text(point.error(i)) << ',' << number_text(point.error_at_most(i));
         const Point::Time& time = point.time_ms;
         out << ',' << point.errors.size() << ',' << number_text(time.median) << ','
             << number_text(time.least) << ',' << number_text(time.most) << ',' << time.repeats
@@ -131,8 +149,10 @@ void write_cost_json(const CostReport& report, std::ostream& out)
 {
     const Machine& machine = report.machine;
     JsonMembers all;
-    all.add_text("scene", report.scene)
-        .add("seed", static_cast<double>(report.seed))
+    all.add_text(report.of_case ? "case" : "scene", report.scene);
+    if (!report.of_case) all.add("seed", static_cast<double>(report.seed));
+    all.add_text("command", report.command)
+        .add("given", settings_json(report.given))
         .add("bodies", static_cast<double>(report.bodies))
         .add("machine",
              JsonMembers()
@@ -141,17 +161,15 @@ void write_cost_json(const CostReport& report, std::ostream& out)
                  .add("threads", machine.threads)
                  .add("load", machine.load)
                  .add_text("throng", machine.version)
-                 .text())
-        .add("windows", static_cast<double>(report.windows))
-        .add("windows_at_rest", static_cast<double>(report.at_rest))
-        .add("window_s", report.window)
-        .add("seconds", report.plan.seconds)
-        .add_text("measure", info(report.measure).name)
-        .add("units", units_json())
+                 .text());
+    add_trials(report, all);
+    all.add_text("measure", report.told().name)
+        .add("units", units_json(report.quantities))
         .add_text("state", report.state)
         .add("reference",
              JsonMembers()
-                 .add_text("settings", report.reference.settings)
+                 .add_text("settings",
+                           report.of_case ? reference_of(report) : report.reference.settings)
                  .add("remaining", of(report.reference.remaining, report.measure))
                  .add("settles", json_text(report.reference.settles))
                  .text())
@@ -173,7 +191,9 @@ void write_cost_json(const CostReport& report, std::ostream& out)
         .add("advice", advice_json(report))
         .add("doubts",
              array(doubts_of(report), [](const std::string& doubt) { return json_text(doubt); }))
-        .add("points", array(report.found.points, point_json));
+        .add("points", array(report.found.points, [&](const Point& point) {
+                 return point_json(report.quantities, point);
+             }));
     out << all.text() << '\n';
 }
 

@@ -25,19 +25,13 @@ std::string cell(double figure)
     return "<td data-value=\"" + number_text(figure) + "\">" + figure_text(figure) + "</td>";
 }
 
-std::string command_of(const CostReport& report, const Point& point)
-{
-    return "throng run " + report.scene
-        + (point.changes.empty() ? "" : ' ' + as_options(point.changes));
-}
-
 std::string about(const CostReport& report)
 {
     std::ostringstream text;
-    text << report.bodies << " bodies, seed " << report.seed << "; " << report.windows
-         << " windows of " << number_text(report.window) << " s from the first "
-         << number_text(report.plan.seconds) << " s of the scene; " << report.found.points.size()
-         << " settings";
+    if (report.of_case) text << report.of_case->about << "; ";
+    text << report.bodies << (report.bodies == 1 ? " body" : " bodies");
+    if (!report.of_case) text << ", seed " << report.seed;
+    text << "; " << trials_of(report) << "; " << report.found.points.size() << " settings";
     return in_markup(text.str());
 }
 
@@ -62,19 +56,22 @@ std::string chart(const CostReport& report)
     return text.str();
 }
 
+// What is bounded by what other runs may come to.
+std::string bars(const CostReport& report)
+{
+    return report.of_case
+        ? ""
+        : "; the\nthin bar of a dot on the front reaches to the error that 19 of 20 "
+          "runs like this stay within";
+}
+
 std::string heads(const CostReport& report)
 {
-    const MeasureInfo& chosen = info(report.measure);
-    std::vector<std::string> names = {
-        "setting", std::string(chosen.name) + ", " + std::string(chosen.unit),
-        "at most", "time, ms",
-        "from",    "to"};
-    for (std::size_t i = 0; i < kMeasures; ++i) {
-        const auto measure = static_cast<Measure>(i);
-        const MeasureInfo& told = info(measure);
-        if (measure != report.measure)
-            names.push_back(std::string(told.name) + ", " + std::string(told.unit));
-    }
+    std::vector<std::string> names = {"setting", label_of(report.told())};
+    if (!report.of_case) names.emplace_back("at most");
+    names.insert(names.end(), {"time, ms", "from", "to"});
+    for (std::size_t i = 0; i < report.quantities.size(); ++i)
+        if (i != report.measure) names.push_back(label_of(report.quantities[i]));
     names.emplace_back("front");
     std::string row;
     for (const std::string& name : names)
@@ -88,17 +85,16 @@ std::string row(const CostReport& report, std::size_t at)
     const Point& point = report.found.points[at];
     std::string text = "<tr data-point=\"" + std::to_string(at) + "\" data-command=\""
         + in_markup(command_of(report, point)) + '"' + (point.on_front ? " class=\"front\"" : "")
-        + "><td>" + in_markup(name_of(point))
+        + "><td>" + in_markup(name_of(report, point))
         + (point.trouble.empty() ? "" : ": " + in_markup(point.trouble)) + "</td>";
     const auto figure = [&](double number) { text += cell(point.had() ? number : NAN); };
     figure(point.error(report.measure));
-    figure(point.error_at_most(report.measure));
+    if (!report.of_case) figure(point.error_at_most(report.measure));
     figure(point.time_ms.median);
     figure(point.time_ms.least);
     figure(point.time_ms.most);
-    for (std::size_t i = 0; i < kMeasures; ++i)
-        if (const auto measure = static_cast<Measure>(i); measure != report.measure)
-            figure(point.error(measure));
+    for (std::size_t i = 0; i < report.quantities.size(); ++i)
+        if (i != report.measure) figure(point.error(i));
     return text + "<td>" + (point.on_front ? "yes" : "") + "</td></tr>\n";
 }
 
@@ -111,21 +107,15 @@ std::string rows(const CostReport& report)
 
 std::string how(const CostReport& report)
 {
-    const MeasureInfo& told = info(report.measure);
     const Machine& machine = report.machine;
-    std::ostringstream reference, times;
-    reference << "Reference: " << report.reference.settings << "; still off by "
-              << figure_text(of(report.reference.remaining, report.measure)) << ' ' << told.unit
-              << '.';
+    std::ostringstream times;
     times << "Times: the median of repeats, settings in turn, on " << machine.threads << " of "
           << machine.cores << " cores of " << machine.processor << ", load " << machine.load
           << ", throng " << machine.version << '.';
-    std::string text = element("p", reference.str()) + element("p", times.str()) + "<dl>\n";
-    for (std::size_t i = 0; i < kMeasures; ++i) {
-        const MeasureInfo& each = info(static_cast<Measure>(i));
-        text += element("dt", std::string(each.name) + ", " + std::string(each.unit))
-            + element("dd", each.about);
-    }
+    std::string text = element("p", "Reference: " + reference_of(report) + '.')
+        + element("p", times.str()) + "<dl>\n";
+    for (const Quantity& each : report.quantities)
+        text += element("dt", label_of(each)) + element("dd", each.about);
     text += "</dl>\n";
     for (const FittedOrder& fitted : report.orders)
         text += element("p",
@@ -141,6 +131,7 @@ std::string word_for(std::string_view place, const CostReport& report)
     if (place == "advice") return advice(report);
     if (place == "doubts") return doubts(report);
     if (place == "chart") return chart(report);
+    if (place == "bars") return bars(report);
     if (place == "heads") return heads(report);
     if (place == "rows") return rows(report);
     if (place == "how") return how(report);

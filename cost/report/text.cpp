@@ -20,23 +20,39 @@ std::vector<const Point*> front_of(const CostReport& report)
     return front;
 }
 
+// A case tells the same in every run: there is no error at most.
 void write_row(const CostReport& report, const Point& point, std::ostream& out)
 {
     const double spread = point.time_ms.median > 0
         ? 100 * (point.time_ms.most - point.time_ms.least) / point.time_ms.median
         : 0;
     out << (point.on_front ? "  " : " -") << std::setw(9)
-        << figure_text(point.error(report.measure)) << std::setw(10)
-        << figure_text(point.error_at_most(report.measure)) << std::setw(10)
-        << figure_text(point.time_ms.median) << std::setw(7) << std::lround(spread) << " %  "
-        << name_of(point) << '\n';
+        << figure_text(point.error(report.measure)) << std::setw(10);
+    if (!report.of_case) out << figure_text(point.error_at_most(report.measure)) << std::setw(10);
+    out << figure_text(point.time_ms.median) << std::setw(7) << std::lround(spread) << " %  "
+        << name_of(report, point) << '\n';
+}
+
+std::string promise_of(const CostReport& report, const Point& point)
+{
+    const double error = point.error(report.measure);
+    const std::string name = report.told().name + ' ';
+    if (report.of_case) return name + with_unit(number_text(error), report.told());
+    return name + with_unit(figure_text(error), report.told())
+        + ", in 19 of 20 runs like this at most "
+        + with_unit(figure_text(point.error_at_most(report.measure)), report.told());
 }
 
 }  // namespace
 
+void write_front(const CostReport& report, std::ostream& out)
+{
+    out << "    error" << (report.of_case ? "" : "   at most") << "   time ms  spread  setting\n";
+    for (const Point* const point : front_of(report)) write_row(report, *point, out);
+}
+
 void write_advice(const CostReport& report, std::ostream& out)
 {
-    const MeasureInfo& told = info(report.measure);
     const Advice advice = advice_of(report);
     if (advice.point == nullptr) {
         out << "no setting could be measured: see the troubles in the table of all points\n";
@@ -48,37 +64,32 @@ void write_advice(const CostReport& report, std::ostream& out)
         out << (advice.meets ? "the most exact within " : "nothing is within ") << wish.time_ms
             << " ms" << (advice.meets ? ":\n" : "; the cheapest that was found:\n");
     else if (wish.error > 0)
-        out << (advice.meets ? "the cheapest within " : "nothing is within ") << wish.error << ' '
-            << told.unit << (advice.meets ? ":\n" : "; the most exact that was found:\n");
+        out << (advice.meets ? "the cheapest within " : "nothing is within ")
+            << with_unit(number_text(wish.error), report.told())
+            << (advice.meets ? ":\n" : "; the most exact that was found:\n");
     else
         out << "the most exact that was found:\n";
-    out << "  " << (point.changes.empty() ? "the scene as it is" : as_options(point.changes))
-        << '\n';
-    if (!point.changes.empty()) out << "  " << as_settings(point.changes) << '\n';
-    out << "  " << told.name << ' ' << figure_text(point.error(report.measure)) << ' ' << told.unit
-        << ", in 19 of 20 runs like this at most "
-        << figure_text(point.error_at_most(report.measure)) << ' ' << told.unit << "; "
-        << figure_text(point.time_ms.median) << " ms for each 1/60 s ("
-        << figure_text(point.time_ms.least) << " to " << figure_text(point.time_ms.most) << " of "
-        << point.time_ms.repeats << ") on " << report.machine.threads << " thread"
-        << (report.machine.threads == 1 ? "" : "s") << '\n';
+    const Changes all = joined(report.given, point.changes);
+    out << "  " << (all.empty() ? name_of_own(report) : as_options(all)) << '\n';
+    if (!all.empty()) out << "  " << as_settings(all) << '\n';
+    out << "  " << promise_of(report, point) << "; " << figure_text(point.time_ms.median)
+        << " ms for each 1/60 s (" << figure_text(point.time_ms.least) << " to "
+        << figure_text(point.time_ms.most) << " of " << point.time_ms.repeats << ") on "
+        << report.machine.threads << " thread" << (report.machine.threads == 1 ? "" : "s") << '\n';
 }
 
 void write_cost_text(const CostReport& report, std::ostream& out)
 {
-    const MeasureInfo& told = info(report.measure);
-    out << report.scene << ", " << report.bodies << " bodies, " << report.windows << " windows of "
-        << number_text(report.window) << " s, from " << number_text(report.plan.seconds)
-        << " s of the scene\n"
-        << "reference: " << report.reference.settings << "; still off by "
-        << figure_text(of(report.reference.remaining, report.measure)) << ' ' << told.unit << '\n'
+    const Quantity& told = report.told();
+    out << report.scene << ", " << report.bodies << (report.bodies == 1 ? " body, " : " bodies, ")
+        << trials_of(report) << '\n'
+        << "reference: " << reference_of(report) << '\n'
         << "machine: " << report.machine.processor << ", " << report.machine.threads << " of "
         << report.machine.cores << " cores, load " << report.machine.load << "; throng "
         << report.machine.version << "\n\n"
-        << told.name << ": " << told.about << ", " << told.unit
-        << "; time: ms for each 1/60 s of the scene\n"
-        << "    error   at most   time ms  spread  setting\n";
-    for (const Point* const point : front_of(report)) write_row(report, *point, out);
+        << told.name << ": " << told.about << (told.unit == "1" ? "" : ", " + told.unit)
+        << "; time: ms for each 1/60 s of the scene\n";
+    write_front(report, out);
     out << "settings on the front, of " << report.found.points.size()
         << " tried; with - one that others beat\n";
     for (const FittedOrder& fitted : report.orders)
@@ -122,8 +133,7 @@ void draw_front(const CostReport& report, std::ostream& out)
     for (const Point* const point : drawn)
         if (point->on_front) draw(*point, 'o');
     draw(report.found.points[0], '@');
-    const MeasureInfo& told = info(report.measure);
-    out << '\n' << told.name << ", " << told.unit << '\n';
+    out << '\n' << label_of(report.told()) << '\n';
     for (int row = 0; row < kHeight; ++row)
         out << std::setw(9)
             << (row == 0                 ? figure_text(high)
@@ -135,7 +145,7 @@ void draw_front(const CostReport& report, std::ostream& out)
     out << std::string(11, ' ') << left
         << std::string(static_cast<std::size_t>(kWidth) - left.size() - right.size(), ' ') << right
         << "  ms\n"
-        << std::string(11, ' ') << "o on the front   . beaten   @ the scene as it is\n";
+        << std::string(11, ' ') << "o on the front   . beaten   @ " << name_of_own(report) << '\n';
 }
 
 }  // namespace throng

@@ -21,7 +21,7 @@ struct Placed {
 std::optional<FittedOrder> fitted_order(const Scene& scene,
                                         const SweepResult& found,
                                         std::string_view dial,
-                                        Measure measure,
+                                        std::size_t measure,
                                         double floor)
 {
     std::vector<Placed> placed;

@@ -25,7 +25,7 @@ struct FittedOrder {
 std::optional<FittedOrder> fitted_order(const Scene& scene,
                                         const SweepResult& found,
                                         std::string_view dial,
-                                        Measure measure,
+                                        std::size_t measure,
                                         double floor);
 
 }  // namespace throng

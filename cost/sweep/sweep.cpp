@@ -13,17 +13,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Windows of each round; what is left is measured on all.
-constexpr std::size_t kFirstWindows = 4, kMoreWindows = 10;
+// Trials of each round; what is left is measured on all.
+constexpr std::size_t kFirstTrials = 4, kMoreTrials = 10;
+// Of the patience that the first look at all of them may take: what did well has to be joined, too.
+constexpr double kFirstShare = 0.6;
 // Another has to be so much better in both time and error for a point to be left, round by round.
 constexpr double kBeatenBy[] = {0.6, 0.75, 0.9};
-// Values that change a scene's error by less, and make it no faster, do nothing here.
+// Values that change the error by less, and make it no faster, do nothing here.
 constexpr double kChanges = 0.02, kFaster = 0.95;
-// A window that takes so many times as long as the scene's own way is given up.
+// A trial that takes so many times as long as with no change is given up.
 constexpr double kTooSlow = 300;
+constexpr double kFrame = 1.0 / 60;     // s
+constexpr double kLeast = 1;            // s of the clock
 constexpr std::size_t kMostJoined = 8;  // others that are tried with steps, and steps with others
-// Windows that a time is taken over, and the share of the patience that times may take.
-constexpr std::size_t kTimedWindows = 8;
+// Trials that a time is taken over, and the share of the patience that times may take.
+constexpr std::size_t kTimedTrials = 8;
 constexpr double kTimesShare = 0.25;
 
 double seconds_since(Clock::time_point begin)
@@ -33,8 +37,8 @@ double seconds_since(Clock::time_point begin)
 
 class Sweeper {
 public:
-    Sweeper(const Scene& scene, const Windows& windows, const SweepPlan& plan, const Watch& watch)
-        : scene_(scene), windows_(windows), plan_(plan), watch_(watch), begin_(Clock::now())
+    Sweeper(const Trials& trials, const SweepPlan& plan, const Watch& watch)
+        : trials_(trials), plan_(plan), watch_(watch), begin_(Clock::now())
     { }
 
     SweepResult run(const Candidates& candidates)
@@ -55,22 +59,28 @@ private:
         for (const Changes& each : candidates.steps) add(each);
         steps_end_ = found_.points.size();
         for (const Changes& each : candidates.others) add(each);
-        measure_all(kFirstWindows);
+        measure_all(kFirstTrials, kFirstShare);
         join();
-        measure_all(kFirstWindows);
+        measure_all(kFirstTrials, 1);
         leave_beaten(kBeatenBy[0]);
-        measure_left(kMoreWindows);
+        measure_left(kMoreTrials);
         leave_beaten(kBeatenBy[1]);
-        measure_left(windows_.size());
+        measure_left(trials_.size());
         leave_beaten(kBeatenBy[2]);
-        time_left();
+        take_times();
     }
-    bool is_late() const { return seconds_since(begin_) > plan_.patience; }
-    // Not what cannot be had, nor steps of which windows hold no whole number.
+    double time_left(double share = 1) const
+    {
+        return share * plan_.patience - seconds_since(begin_);
+    }
+    // Not what cannot be had, nor steps of which trials hold no whole number.
     void add(const Changes& changes)
     {
+        const bool turns_dt = std::any_of(changes.begin(), changes.end(),
+                                          [](const Change& each) { return each.dial == "dt"; });
         try {
-            if (!windows_.holds_whole_steps(changed(scene_, changes).settings.dt)) return;
+            const double dt = changed(trials_.scene(), changes).settings.dt;
+            if (turns_dt && !trials_.holds_whole_steps(dt)) return;
         } catch (const std::invalid_argument&) {
             return;
         }
@@ -83,7 +93,7 @@ private:
                          [&](const Point& point) { return point.changes == changes; });
         found_.points.push_back(before == plan_.known.end() ? Point{} : *before);
         found_.points.back().changes = changes;
-        found_.points.back().reference_off = windows_.reference().remaining;
+        found_.points.back().reference_off = trials_.reference_off();
         average_time(found_.points.back());
         left_.push_back(found_.points.size() - 1);
     }
@@ -96,32 +106,41 @@ private:
                         + ": " + (point.changes.empty() ? "as it is" : text_of(point.changes)));
     }
 
-    // The scene's own way first, by whose time the others are too slow.
-    void measure(Point& point, std::size_t windows)
+    // That of no change first, by whose time the others are too slow.
+    void measure(Point& point, std::size_t trials, double share = 1)
     {
-        windows = std::min(windows, windows_.size());
-        if (!point.trouble.empty() || point.errors.size() >= windows) return;
+        trials = std::min(trials, trials_.size());
+        if (!point.trouble.empty()) return;
+        const double too_slow = most_seconds(point);
+        double left = 0;
         try {
-            const Scene by = changed(scene_, point.changes);
-            while (point.errors.size() < windows) {
-                const WindowRun run = windows_.run(by, point.errors.size(), most_seconds(point));
+            while (point.errors.size() < trials) {
+                left = point.changes.empty() ? too_slow : std::max(kLeast, time_left(share));
+                const Trial run =
+                    trials_.run(point.changes, point.errors.size(), std::min(too_slow, left));
                 point.errors.push_back(run.errors);
                 point.times_ms.push_back(run.time_ms);
                 average_time(point);
             }
         } catch (const TooSlow&) {
-            point.trouble = "takes more than 300 times as long as the scene as it is";
+            if (left < too_slow)
+                found_.cut_short = true;
+            else
+                point.trouble = "takes more than 300 times as long as with no change";
         } catch (const std::invalid_argument& wrong) {
             point.trouble = wrong.what();
         }
     }
-    // Of the clock, that a window may take; never less than what a clock tells well.
+    // Of the clock, that a trial may take; never less than what a clock tells well.
     double most_seconds(const Point& point) const
     {
-        constexpr double kLeast = 1, kFrame = 1.0 / 60;  // s
         if (point.changes.empty()) return std::numeric_limits<double>::infinity();
-        const double own = 1e-3 * found_.points[0].time_ms.median * windows_.length() / kFrame;
-        return std::max(kLeast, kTooSlow * own);
+        return std::max(kLeast, kTooSlow * seconds_of(found_.points[0]));
+    }
+    // Of the clock, that a trial takes.
+    double seconds_of(const Point& point) const
+    {
+        return 1e-3 * point.time_ms.median * trials_.length() / kFrame;
     }
     static void average_time(Point& point)
     {
@@ -136,31 +155,42 @@ private:
         return sum / static_cast<double>(count);
     }
 
-    void measure_all(std::size_t windows)
+    // Substeps that a second takes: what the work goes by most of all.
+    double substeps_of(const Point& point) const
     {
-        const std::size_t count = found_.points.size();
-        for (std::size_t at = 0; at < count; ++at) {
-            if (at > 0 && is_late()) {
+        const Settings settings = changed(trials_.scene(), point.changes).settings;
+        return settings.substeps / settings.dt;
+    }
+    // After that of no change the cheap ones come first: where time is up, it is the dearest that
+    // are missing.
+    void measure_all(std::size_t trials, double share)
+    {
+        std::vector<std::pair<double, std::size_t>> turns;
+        for (std::size_t at = 0; at < found_.points.size(); ++at)
+            turns.emplace_back(at == 0 ? 0 : substeps_of(point(at)), at);
+        std::sort(turns.begin(), turns.end());
+        for (std::size_t k = 0; k < turns.size(); ++k) {
+            if (k > 0 && time_left(share) < 0) {
                 found_.cut_short = true;
                 break;
             }
-            show(at + 1, count, point(at), "setting");
-            measure(point(at), windows);
+            show(k + 1, turns.size(), point(turns[k].second), "setting");
+            measure(point(turns[k].second), trials, share);
         }
     }
-    void measure_left(std::size_t windows)
+    void measure_left(std::size_t trials)
     {
         for (std::size_t k = 0; k < left_.size(); ++k) {
-            if (is_late()) {
+            if (time_left() < 0) {
                 found_.cut_short = true;
                 return;
             }
             show(k + 1, left_.size(), point(left_[k]), "nearer look, setting");
-            measure(point(left_[k]), windows);
+            measure(point(left_[k]), trials);
         }
     }
 
-    // By another, on the windows that both were measured on.
+    // By another, on the trials that both were measured on.
     bool beaten(const Point& point, double by) const
     {
         return std::any_of(found_.points.begin(), found_.points.end(), [&](const Point& other) {
@@ -173,7 +203,7 @@ private:
                 && error(other) <= by * error(point);
         });
     }
-    // The scene's own way stays, beaten or not.
+    // That of no change stays, beaten or not.
     void leave_beaten(double by)
     {
         std::erase_if(left_, [&](std::size_t at) {
@@ -181,7 +211,7 @@ private:
         });
     }
 
-    // Whether a value by itself does the scene any good, or no more harm than it saves.
+    // Whether a value by itself does any good, or no more harm than it saves.
     bool is_worth_more(const Point& point) const
     {
         const Point& own = found_.points[0];
@@ -222,14 +252,15 @@ private:
     }
 
     // In turn, so that a busy machine is busy for all of them; in whole rounds.
-    void time_left()
+    void take_times()
     {
         const Clock::time_point begin = Clock::now();
         std::vector<std::vector<double>> times(left_.size());
         for (int repeat = 0; repeat < plan_.repeats; ++repeat) {
             std::vector<double> round;
             for (std::size_t k = 0; k < left_.size(); ++k) {
-                if (seconds_since(begin) > kTimesShare * plan_.patience) break;
+                const double takes = seconds_of(point(left_[k])) * static_cast<double>(timed());
+                if (seconds_since(begin) + takes > kTimesShare * plan_.patience) break;
                 show(k + 1, left_.size(), point(left_[k]), "time of setting");
                 round.push_back(time_of(point(left_[k])));
             }
@@ -246,18 +277,16 @@ private:
             point(left_[k]).time_ms = {of[of.size() / 2], of.front(), of.back(), of.size()};
         }
     }
+    std::size_t timed() const { return std::min(kTimedTrials, trials_.size()); }
     double time_of(const Point& point) const
     {
-        const Scene by = changed(scene_, point.changes);
-        const std::size_t count = std::min(kTimedWindows, windows_.size());
         double sum = 0;
-        for (std::size_t k = 0; k < count; ++k)
-            sum += windows_.time_ms(by, k * windows_.size() / count);
-        return sum / static_cast<double>(count);
+        for (std::size_t k = 0; k < timed(); ++k)
+            sum += trials_.time_ms(point.changes, k * trials_.size() / timed());
+        return sum / static_cast<double>(timed());
     }
 
-    const Scene& scene_;
-    const Windows& windows_;
+    const Trials& trials_;
     const SweepPlan& plan_;
     const Watch& watch_;
     Clock::time_point begin_;
@@ -268,16 +297,14 @@ private:
 
 }  // namespace
 
-SweepResult sweep(const Scene& scene,
-                  const Effects& effects,
-                  const Windows& windows,
-                  const SweepPlan& plan,
-                  const Watch& watch)
+SweepResult
+sweep(const Trials& trials, const Effects& effects, const SweepPlan& plan, const Watch& watch)
 {
-    return Sweeper(scene, windows, plan, watch).run(candidates_for(scene, effects, plan.dials));
+    const Candidates candidates = candidates_for(trials.scene(), effects, plan.dials);
+    return Sweeper(trials, plan, watch).run(candidates);
 }
 
-void mark_front(std::span<Point> points, Measure measure)
+void mark_front(std::span<Point> points, std::size_t measure)
 {
     const auto how_well = [](const Point& point) {
         return std::pair(point.errors.size(), point.time_ms.repeats);
@@ -325,14 +352,14 @@ best_within(std::span<const Point> points, double limit, const Held& held, const
 
 }  // namespace
 
-const Point* cheapest_within(std::span<const Point> points, Measure measure, double error)
+const Point* cheapest_within(std::span<const Point> points, std::size_t measure, double error)
 {
     return best_within(
         points, error, [&](const Point& point) { return point.error_at_most(measure); },
         [](const Point& point) { return point.time_ms.median; });
 }
 
-const Point* most_exact_within(std::span<const Point> points, Measure measure, double time_ms)
+const Point* most_exact_within(std::span<const Point> points, std::size_t measure, double time_ms)
 {
     return best_within(
         points, time_ms, [](const Point& point) { return point.time_ms.median; },

@@ -31,7 +31,7 @@ double angle_between(const Quat& a, const Quat& b)
 
 }  // namespace
 
-const MeasureInfo& info(Measure measure) { return kInfo[static_cast<std::size_t>(measure)]; }
+const MeasureInfo& info(Measure measure) { return kInfo[place_of(measure)]; }
 
 std::array<std::string_view, kMeasures> measure_names()
 {
@@ -48,7 +48,7 @@ Measure measure_named(std::string_view name)
                                 + in_quotes(name));
 }
 
-void compare(const BodyStates& states, const BodyStates& reference, WindowErrors& errors)
+void compare(const BodyStates& states, const BodyStates& reference, Errors& errors)
 {
     double drift = 0, turn = 0, velocity = 0;
     std::size_t bodies = 0;
@@ -73,33 +73,33 @@ void compare(const BodyStates& states, const BodyStates& reference, WindowErrors
     put(Measure::velocity, velocity);
 }
 
-double rms(std::span<const WindowErrors> windows, Measure measure)
+double rms(std::span<const Errors> trials, std::size_t place)
 {
-    if (windows.empty()) return 0;
+    if (trials.empty()) return 0;
     double sum = 0;
-    for (const WindowErrors& window : windows) sum += of(window, measure);
-    return std::sqrt(sum / static_cast<double>(windows.size()));
+    for (const Errors& trial : trials) sum += of(trial, place);
+    return std::sqrt(sum / static_cast<double>(trials.size()));
 }
 
-double rms_at_most(std::span<const WindowErrors> windows, Measure measure)
+double rms_at_most(std::span<const Errors> trials, std::size_t place)
 {
-    const double at = rms(windows, measure);
-    if (windows.size() < 2 || !std::isfinite(at)) return at;
+    const double at = rms(trials, place);
+    if (trials.size() < 2 || !std::isfinite(at)) return at;
     std::mt19937_64 engine(1);
     std::vector<double> drawn(kDraws);
-    const std::size_t count = windows.size();
+    const std::size_t count = trials.size();
     double sum = 0, squares = 0;
     for (double& each : drawn) {
         double total = 0;
-        for (std::size_t i = 0; i < count; ++i) total += of(windows[engine() % count], measure);
+        for (std::size_t i = 0; i < count; ++i) total += of(trials[engine() % count], place);
         each = std::sqrt(total / static_cast<double>(count));
         sum += each;
         squares += each * each;
     }
-    const auto place = drawn.begin() + static_cast<std::ptrdiff_t>(kShare * kDraws);
-    std::nth_element(drawn.begin(), place, drawn.end());
+    const auto bound = drawn.begin() + static_cast<std::ptrdiff_t>(kShare * kDraws);
+    std::nth_element(drawn.begin(), bound, drawn.end());
     const double mean = sum / kDraws;
-    return *place + 0.5 * std::sqrt(std::max(0.0, squares / kDraws - mean * mean));
+    return *bound + 0.5 * std::sqrt(std::max(0.0, squares / kDraws - mean * mean));
 }
 
 }  // namespace throng

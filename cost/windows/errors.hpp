@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace throng {
 
@@ -18,6 +19,8 @@ namespace throng {
 ///   energy    J, that the window's steps made from nothing, by the energy ledger
 enum class Measure : std::uint8_t { drift, turn, velocity, overlap, energy };
 inline constexpr std::size_t kMeasures = 5;
+/// Its place among the errors of a window.
+constexpr std::size_t place_of(Measure measure) { return static_cast<std::size_t>(measure); }
 
 struct MeasureInfo {
     std::string_view name, unit, about;
@@ -28,30 +31,33 @@ std::array<std::string_view, kMeasures> measure_names();
 /// Throws std::invalid_argument, which names what there is.
 Measure measure_named(std::string_view name);
 
-/// The squares of a window's errors, averaged over its bodies where they are of bodies: the root of
-/// their average over windows is what is told.
-using WindowErrors = std::array<double, kMeasures>;
+/// The squares of errors, by place of what is measured; averaged over bodies where they are of
+/// bodies. The root of their average over trials is what is told. What was never put in is 0.
+using Errors = std::vector<double>;
 
-inline double& of(WindowErrors& errors, Measure measure)
+inline double& of(Errors& errors, std::size_t place)
 {
-    return errors[static_cast<std::size_t>(measure)];
+    if (errors.size() <= place) errors.resize(place + 1);
+    return errors[place];
 }
-inline double of(const WindowErrors& errors, Measure measure)
+inline double of(const Errors& errors, std::size_t place)
 {
-    return errors[static_cast<std::size_t>(measure)];
+    return place < errors.size() ? errors[place] : 0;
 }
+inline double& of(Errors& errors, Measure measure) { return of(errors, place_of(measure)); }
+inline double of(const Errors& errors, Measure measure) { return of(errors, place_of(measure)); }
 
 /// Puts in drift, turn and velocity: infinite where a body was lost on the way.
-void compare(const BodyStates& states, const BodyStates& reference, WindowErrors& errors);
+void compare(const BodyStates& states, const BodyStates& reference, Errors& errors);
 
-/// The root of the average of one measure over windows.
-double rms(std::span<const WindowErrors> windows, Measure measure);
+/// The root of the average over trials of what has that place.
+double rms(std::span<const Errors> trials, std::size_t place);
 
-/// What rms() stays below in 19 of 20 other choices of as many windows like these: by drawing from
-/// them again and again (bootstrap), always in the same way.
+/// What rms() stays below in 19 of 20 other choices of as many trials like these: by drawing from
+/// them again and again (bootstrap), always in the same way. Of one trial it is rms() itself.
 ///
 /// Source: Efron and Tibshirani, An introduction to the bootstrap (1993), chapter 13; with half a
 ///         standard error more, as drawing from few tells their spread too small.
-double rms_at_most(std::span<const WindowErrors> windows, Measure measure);
+double rms_at_most(std::span<const Errors> trials, std::size_t place);
 
 }  // namespace throng

@@ -148,14 +148,13 @@ std::vector<BodyStates> Windows::ends_by(const Scene& scene, double patience) co
     return ends;
 }
 
-WindowErrors Windows::moved(const std::vector<BodyStates>& from,
-                            const std::vector<BodyStates>& to) const
+Errors Windows::moved(const std::vector<BodyStates>& from, const std::vector<BodyStates>& to) const
 {
-    std::vector<WindowErrors> windows(to.size());
+    std::vector<Errors> windows(to.size());
     for (std::size_t k = 0; k < to.size(); ++k) compare(from[k], to[k], windows[k]);
-    WindowErrors all{};
+    Errors all{};
     for (const Measure each : {Measure::drift, Measure::turn, Measure::velocity})
-        of(all, each) = rms(windows, each);
+        of(all, each) = rms(windows, place_of(each));
     return all;
 }
 
@@ -168,7 +167,7 @@ void Windows::find_reference(const Scene& scene, double wanted, double patience)
         Changes way;
         double dt = 0, took = 0;
         std::vector<BodyStates> ends;
-        WindowErrors moved{};
+        Errors moved{};
     };
     const auto drift_of = [](const Found& found) { return of(found.moved, Measure::drift); };
     const auto ends_of = [&](Found& found, double within) {

@@ -55,7 +55,7 @@ struct Window {
 ///   time_ms  of its steps, for each 1/60 s of the scene's time; without the first third of them,
 ///            which find their contacts anew
 struct WindowRun {
-    WindowErrors errors{};
+    Errors errors{};
     double time_ms = 0;
 };
 
@@ -67,7 +67,7 @@ struct WindowRun {
 ///   settles    each halving moved the ends by less than the one before
 struct ReferenceInfo {
     std::string settings;
-    WindowErrors remaining{};
+    Errors remaining{};
     bool settles = false;
 };
 
@@ -107,8 +107,7 @@ private:
     void find_starts(const Scene& scene, const WindowPlan& plan);
     void find_reference(const Scene& scene, double wanted, double patience);
     std::vector<BodyStates> ends_by(const Scene& scene, double patience) const;
-    WindowErrors moved(const std::vector<BodyStates>& from,
-                       const std::vector<BodyStates>& to) const;
+    Errors moved(const std::vector<BodyStates>& from, const std::vector<BodyStates>& to) const;
     World begun(const Scene& scene, std::size_t window) const;
     void check() const;
 

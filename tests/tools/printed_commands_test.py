@@ -28,8 +28,9 @@ CHEAP_CASES = {"H17", "H18", "H23", "H32", "H41", "H77"}
 PLACEHOLDERS = {"SCENE": "pile:20", "FILE": "out.json", "METHOD": "gjk", "WAY": "voxels",
                 "STEPS": "3", "NAME": "pile", "DIAL": "substeps", "VALUE": "2", "COMMAND": "run",
                 "N": "3"}
+CASE = re.compile(r"H\d+|pairs")
 # Options that stand alone; all others have a value behind them.
-FLAGS = {"--schema", "--resume", "--text", "--quiet", "--energy", "--help", "--version"}
+FLAGS = {"--schema", "--resume", "--compare", "--text", "--quiet", "--energy", "--help", "--version"}
 # Options that are made less: at most so much, and added where they are not there.
 LESS = {"run": {"--steps": 3}, "explain": {}, "scene": {}, "cases": {},
         "cost": {"--windows": 2, "--seconds": 1},
@@ -71,6 +72,8 @@ def filled(word):
 def smaller(words):
     """The same command on less."""
     command, less = words[0], dict(LESS[words[0]])
+    if command == "cost" and ("--compare" in words or CASE.fullmatch(words[1])):
+        less = {}  # nothing is cut into windows
     out, rest = [command], list(words[1:])
     while rest:
         word = rest.pop(0)
@@ -104,6 +107,13 @@ class PrintedCommands(unittest.TestCase):
 
     def tearDown(self):
         self.folder.cleanup()
+
+    def write_reports(self, names):
+        answered(["cost", "stacks:10", "--windows", "2", "--seconds", "1", "--dials", "none",
+                  "--out", "made"], self.folder.name)
+        folder = pathlib.Path(self.folder.name)
+        for name in names:
+            (folder / name).write_text((folder / "made" / "cost.json").read_text())
 
     def all_commands(self):
         for path, text in PAGES.items():
@@ -141,7 +151,7 @@ class PrintedCommands(unittest.TestCase):
                         self.assertIn(scene[1], scenes)
                     if before in ("--set", "--vary"):
                         self.assertIn(filled(word).split("=")[0], dials)
-                    if words[0] == "cases" and re.fullmatch(r"H\d+", word):
+                    if words[0] in ("cases", "cost") and CASE.fullmatch(word):
                         self.assertIn(word, cases)
 
     def test_each_runs(self):
@@ -163,6 +173,8 @@ class PrintedCommands(unittest.TestCase):
                 if tuple(short) in done:
                     continue
                 done.add(tuple(short))
+                if "--compare" in short:
+                    self.write_reports(word for word in short if word.endswith(".json"))
                 with self.subTest(page=str(path.relative_to(ROOT)), command=" ".join(words)):
                     answered(short, self.folder.name)
         self.assertGreater(len(done), 15)

@@ -1,10 +1,13 @@
 // Cost: what the command answers, writes and refuses.
+#include "scene/catalog/closed_meshes.hpp"
+#include "scene/files/mesh_file.hpp"
 #include "tests/apps/throng/command.hpp"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
+#include <sstream>
 #include <thread>
 
 namespace throng {
@@ -70,6 +73,106 @@ TEST(Cost, ResumesWhatItHasMeasured)
     const Outcome none = run_throng(quick(empty, {"--resume"}));
     EXPECT_EQ(none.code, 2);
     EXPECT_NE(none.err.find("--resume: there is no "), std::string::npos) << none.err;
+}
+
+// Of the page, the command of the last setting.
+std::string last_command(const std::string& page)
+{
+    const std::string key = "data-command=\"";
+    const auto at = page.rfind(key) + key.size();
+    return page.substr(at, page.find('"', at) - at);
+}
+
+TEST(Cost, PrintsCommandsThatRunWhatWasMeasured)
+{
+    const TestFolder folder;
+    const TriangleSoup ring = torus_mesh(2, 0.5, 16, 8);
+    const std::string file = folder.write("a ring.obj", mesh_text({ring.vertices, ring.triangles}));
+    const Outcome said =
+        run_throng({"cost",       "knots:2",   "--seed",     "5",     "--mesh",
+                    file,         "--set",     "substeps=2", "--dt",  "1/120",
+                    "--windows",  "2",         "--seconds",  "0.1",   "--dials",
+                    "iterations", "--minutes", "0.2",        "--out", folder / "found"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(last_command(folder.read("found/cost.html"))
+                  .find("throng run knots:2 --seed 5 --mesh '" + file
+                        + "' --set substeps=2 --set dt=1/120 --set iterations="),
+              0u)
+        << folder.read("found/cost.html");
+}
+
+TEST(Cost, OfACaseIsItsOwnError)
+{
+    const TestFolder folder;
+    const std::vector<std::string> words = {"cost",    "h3",          "--error", "1e-3",
+                                            "--dials", "dt,substeps", "--out",   folder / "found"};
+    const Outcome said = run_throng(words);
+    ASSERT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(said.out.find("H3, 1 body, the line \"by default, dt=1/60: axis from the answer\""),
+              0u)
+        << said.out;
+    const auto at = said.out.find("the cheapest within 0.001:\n  --set ");
+    ASSERT_NE(at, std::string::npos) << said.out;
+    // The setting that is named has the figure that is promised, wherever it is set.
+    const std::string json = folder.read("found/cost.json"), key = "\"command\": \"";
+    const auto begin = json.rfind(key) + key.size();
+    std::istringstream command(json.substr(begin, json.find('"', begin) - begin));
+    std::vector<std::string> again;
+    for (std::string word; command >> word;) again.push_back(word);
+    ASSERT_EQ(again.front(), "throng") << json;
+    again.erase(again.begin());
+    again.insert(again.end(), {"--out", folder / "again"});
+    const Outcome once_more = run_throng(again);
+    ASSERT_EQ(once_more.code, 0) << once_more.err;
+    const auto promise = [](const std::string& text) {
+        const auto figure = text.find("  axis from the answer ");
+        return text.substr(figure, text.find(';', figure) - figure);
+    };
+    EXPECT_EQ(promise(said.out), promise(once_more.out));
+
+    std::vector<std::string> resumed = words;
+    resumed.emplace_back("--resume");
+    EXPECT_EQ(run_throng(resumed).code, 0);
+}
+
+TEST(Cost, OfACaseRefusesWhatItHasNot)
+{
+    const TestFolder folder;
+    const std::pair<std::vector<std::string>, const char*> wrongs[] = {
+        {{"cost", "H3", "--seed", "2"}, "--seed: a case has none; it is for scenes"},
+        {{"cost", "H3", "--window", "1"}, "--window: a case has none; it is for scenes"},
+        {{"cost", "H3", "--measure", "drift"},
+         "H3 has no line of \"drift\" that comes from runs; there are axis from the answer; "},
+        {{"cost", "H29"}, "H29 asks methods about shapes and steps no world"},
+        {{"cost", "H0"}, "there is no case \"H0\"; there are: H1, H2"},
+        {{"cost", "H3", "H4"}, "cost: one word too many: \"H4\""},
+    };
+    for (auto [words, wanted] : wrongs) {
+        words.insert(words.end(), {"--out", folder / "found"});
+        const Outcome said = run_throng(words);
+        EXPECT_EQ(said.code, 2) << wanted;
+        EXPECT_NE(said.err.find(wanted), std::string::npos) << said.err;
+    }
+}
+
+TEST(Cost, ComparesTwoReports)
+{
+    const TestFolder folder;
+    ASSERT_EQ(run_throng(quick(folder, {"--error", "1"})).code, 0);
+    const std::string report = folder / "found/cost.json";
+    const Outcome same = run_throng({"cost", "--compare", report, report});
+    EXPECT_EQ(same.code, 0) << same.err;
+    EXPECT_EQ(same.out.find("A: " + report + "\nB: " + report + "\n"), 0u) << same.out;
+    EXPECT_EQ(same.out.find("comparable"), std::string::npos) << same.out;
+    EXPECT_NE(same.out.find("the same settings, with o"), std::string::npos);
+
+    const std::string bad = folder.write("bad.json", "{\n \"state\": 3}");
+    const Outcome refused = run_throng({"cost", "--compare", report, bad});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("bad.json:2:11: error: state: wanted a text"), std::string::npos)
+        << refused.err;
+    EXPECT_EQ(run_throng({"cost", "--compare", report}).code, 2);
+    EXPECT_EQ(run_throng({"cost", "--compare", report, folder / "none.json"}).code, 2);
 }
 
 TEST(Cost, AnInterruptKeepsWhatWasFound)

@@ -85,6 +85,32 @@ TEST(CaseBench, ALedgerIsKeptOfRunsByDefaultWhereItIsWanted)
     EXPECT_EQ(run_case(falls).size(), 2U);
 }
 
+TEST(CaseBench, ForcedDialsReachEveryRunForAsLongAsTheCaseWanted)
+{
+    const HardCase falls = case_that([](CaseBench& bench) {
+        Scene scene = falling_ball(bench, -9.81);
+        for (const double dt : {0.1, 0.05}) {
+            scene.settings.dt = dt;
+            bench.inspect(scene, [](const World& world) { EXPECT_EQ(world.settings().dt, 0.025); });
+            bench.run(scene, 1, [](World&, double) { return true; });
+        }
+    });
+    std::vector<double> steps, times;
+    CaseListener listener;
+    listener.ran = [&](const CaseRun& run) {
+        EXPECT_EQ(run.scene.settings.substeps, 7);
+        steps.push_back(run.scene.settings.dt);
+        times.push_back(run.simulated);
+        EXPECT_EQ(run.duration, 1);
+        EXPECT_GT(run.steps_ms, 0);
+    };
+    CaseBench bench({}, Fault::none, 1, Extent::whole, listener);
+    bench.force({{"dt", "0.025"}, {"substeps", "7"}});
+    bench.run(falls);
+    EXPECT_EQ(steps, (std::vector<double>{0.025, 0.025}));
+    EXPECT_EQ(times, (std::vector<double>{1, 1}));
+}
+
 // Ten steps, of which a line each is told.
 void tell_ten_steps(CaseBench& bench)
 {

@@ -31,8 +31,13 @@ constexpr bool kOneThread = false;
 
 TEST_P(HardCases, KeepsItsBounds)
 {
-    const std::vector<CaseResult> results = run(GetParam());
+    std::size_t runs = 0;
+    CaseListener listener;
+    listener.ran = [&](const CaseRun&) { ++runs; };
+    const std::vector<CaseResult> results =
+        run_case(GetParam(), {}, Fault::none, 1, Extent::brief, listener);
     ASSERT_FALSE(results.empty());
+    EXPECT_EQ(runs == 0, GetParam().asks_alone);
     for (const CaseResult& result : results) {
         EXPECT_NE(result.verdict, Verdict::fail) << told(result);
         EXPECT_TRUE(result.verdict == Verdict::pass || !result.why.empty()) << told(result);

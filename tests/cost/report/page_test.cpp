@@ -21,7 +21,7 @@ CostReport report()
                          made_point(9, NAN, {{"solver", "pgs"}})};
     made.found.points.emplace_back();
     made.found.points.back().trouble = "takes <too> long";
-    mark_front(made.found.points, Measure::drift);
+    mark_front(made.found.points, kDrift);
     return made;
 }
 
@@ -51,7 +51,7 @@ TEST(CostChart, SaysWhereNothingIsToBeDrawn)
 {
     CostReport none = report();
     none.found.points.resize(1);
-    none.found.points[0].errors.assign(4, WindowErrors{});
+    none.found.points[0].errors.assign(4, Errors{});
     std::ostringstream out;
     write_cost_svg(none, out);
     EXPECT_NE(out.str().find("no setting has an error above 0"), std::string::npos) << out.str();

@@ -22,7 +22,7 @@ TEST(Front, HoldsWhatNothingBeats)
 {
     std::vector<Point> points = {made_point(1, 1e-2), made_point(2, 1e-3), made_point(2, 5e-3),
                                  made_point(3, 1e-3), made_point(4, 1e-4)};
-    mark_front(points, Measure::drift);
+    mark_front(points, kDrift);
     const bool wanted[] = {true, true, false, false, true};
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(points[i].on_front, wanted[i]) << i;
 }
@@ -33,7 +33,7 @@ TEST(Front, HasNoPlaceForWhatBlewUpOrWasLookedAtLess)
                                  made_point(0.5, 1e-4)};
     points[2].errors.resize(2);
     points[2].times_ms.resize(2);
-    mark_front(points, Measure::drift);
+    mark_front(points, kDrift);
     EXPECT_FALSE(points[0].on_front);
     EXPECT_TRUE(points[1].on_front);
     EXPECT_FALSE(points[2].on_front);
@@ -43,7 +43,7 @@ TEST(Front, HasNoPlaceForATimeThatWasNotTakenInTurn)
 {
     std::vector<Point> points = {made_point(1, 1e-2), made_point(0.9, 2e-2), made_point(2, 1e-3)};
     points[1].time_ms.repeats = 1;
-    mark_front(points, Measure::drift);
+    mark_front(points, kDrift);
     EXPECT_TRUE(points[0].on_front);
     EXPECT_FALSE(points[1].on_front);
     EXPECT_TRUE(points[2].on_front);
@@ -52,12 +52,12 @@ TEST(Front, HasNoPlaceForATimeThatWasNotTakenInTurn)
 TEST(Front, AdvisesTheCheapestWithinAnErrorAndTheMostExactWithinATime)
 {
     std::vector<Point> points = {made_point(1, 1e-2), made_point(2, 1e-3), made_point(4, 1e-4)};
-    mark_front(points, Measure::drift);
-    EXPECT_EQ(cheapest_within(points, Measure::drift, 2e-3), &points[1]);
-    EXPECT_EQ(cheapest_within(points, Measure::drift, 1e-6), &points[2]);
-    EXPECT_EQ(most_exact_within(points, Measure::drift, 3), &points[1]);
-    EXPECT_EQ(most_exact_within(points, Measure::drift, 0.5), &points[0]);
-    EXPECT_EQ(cheapest_within({}, Measure::drift, 1), nullptr);
+    mark_front(points, kDrift);
+    EXPECT_EQ(cheapest_within(points, kDrift, 2e-3), &points[1]);
+    EXPECT_EQ(cheapest_within(points, kDrift, 1e-6), &points[2]);
+    EXPECT_EQ(most_exact_within(points, kDrift, 3), &points[1]);
+    EXPECT_EQ(most_exact_within(points, kDrift, 0.5), &points[0]);
+    EXPECT_EQ(cheapest_within({}, kDrift, 1), nullptr);
 }
 
 TEST(Orders, AreTheSlopesOfErrors)
@@ -67,12 +67,12 @@ TEST(Orders, AreTheSlopesOfErrors)
     found.points = {made_point(1, 1e-2, {}), made_point(2, 2.5e-3, {{"dt", "1/120"}}),
                     made_point(4, 6.25e-4, {{"dt", "1/240"}}),
                     made_point(8, 3e-5, {{"dt", "1/480"}})};
-    const auto fitted = fitted_order(scene, found, "dt", Measure::drift, 2e-5);
+    const auto fitted = fitted_order(scene, found, "dt", kDrift, 2e-5);
     ASSERT_TRUE(fitted);
     EXPECT_NEAR(fitted->order, 2, 1e-9);
     EXPECT_EQ(fitted->points, 3u) << "what is near the reference's own error tells none";
     EXPECT_EQ(fitted->helps, "1/480");
-    EXPECT_FALSE(fitted_order(scene, found, "substeps", Measure::drift, 0));
+    EXPECT_FALSE(fitted_order(scene, found, "substeps", kDrift, 0));
 }
 
 TEST(Changes, AreWrittenAsTheyAreRead)
@@ -118,7 +118,7 @@ TEST(SettingsSweep, MeasuresTheFrontOnAllWindowsAndItsTimesInTurn)
     SweepPlan plan;
     plan.dials = {"substeps", "contact_rate"};
     plan.repeats = 3;
-    const SweepResult found = sweep(scene, world.effects(), windows, plan, {});
+    const SweepResult found = sweep(WindowTrials(scene, windows), world.effects(), plan, {});
     EXPECT_FALSE(found.cut_short);
     EXPECT_TRUE(found.points.front().changes.empty());
     std::size_t front = 0;
@@ -133,7 +133,7 @@ TEST(SettingsSweep, MeasuresTheFrontOnAllWindowsAndItsTimesInTurn)
     const auto error_of = [&](const Changes& changes) {
         const auto at = std::find_if(found.points.begin(), found.points.end(),
                                      [&](const Point& p) { return p.changes == changes; });
-        return at == found.points.end() ? NAN : at->error(Measure::drift);
+        return at == found.points.end() ? NAN : at->error(kDrift);
     };
     EXPECT_LT(error_of({{"substeps", "32"}}), 0.1 * error_of({}));
 }
@@ -145,7 +145,7 @@ TEST(SettingsSweep, SaysWhereItHadNoTime)
     const Windows windows(scene, {1, 0.1, 2, 1}, 0, 5, {});
     SweepPlan plan;
     plan.patience = 0;
-    const SweepResult found = sweep(scene, world.effects(), windows, plan, {});
+    const SweepResult found = sweep(WindowTrials(scene, windows), world.effects(), plan, {});
     EXPECT_TRUE(found.cut_short);
     EXPECT_TRUE(found.points.front().had());
 }

@@ -23,7 +23,7 @@ TEST(Errors, AreMeanSquaresOverBodies)
     states[0].center += Vec3(0, 3, 0);
     states[1].velocity += Vec3(0, 0, 2);
     states[1].pose.orientation = Quat(Eigen::AngleAxisd(0.4, Vec3::UnitX()));
-    WindowErrors errors{};
+    Errors errors;
     compare(states, reference, errors);
     EXPECT_DOUBLE_EQ(of(errors, Measure::drift), 9.0 / 2);
     EXPECT_DOUBLE_EQ(of(errors, Measure::velocity), 4.0 / 2);
@@ -35,7 +35,7 @@ TEST(Errors, AreTheSameForAQuaternionOfTheOtherSign)
     const BodyStates reference = two_bodies();
     BodyStates states = reference;
     states[0].pose.orientation.coeffs() *= -1;
-    WindowErrors errors{};
+    Errors errors;
     compare(states, reference, errors);
     EXPECT_EQ(of(errors, Measure::turn), 0);
 }
@@ -45,7 +45,7 @@ TEST(Errors, OfABodyThatIsLostAreInfinite)
     const BodyStates reference = two_bodies();
     BodyStates states = reference;
     states[1].counts = false;
-    WindowErrors errors{};
+    Errors errors;
     compare(states, reference, errors);
     EXPECT_TRUE(std::isinf(of(errors, Measure::drift)));
 }
@@ -56,7 +56,7 @@ TEST(Errors, LeaveOutWhoIsNotDynamicInTheReference)
     reference[1].counts = false;
     BodyStates states = reference;
     states[1].center += Vec3(7, 0, 0);
-    WindowErrors errors{};
+    Errors errors;
     compare(states, reference, errors);
     EXPECT_EQ(of(errors, Measure::drift), 0);
 }
@@ -67,8 +67,8 @@ TEST(Errors, OfOtherWindowsAreAtMostWhatIsTold)
     // there are, some 5 may be worse than what one choice tells.
     std::uint64_t state = 1;
     const auto drawn = [&] {
-        std::vector<WindowErrors> windows(24);
-        for (WindowErrors& window : windows) {
+        std::vector<Errors> windows(24);
+        for (Errors& window : windows) {
             state = state * 6364136223846793005u + 1442695040888963407u;
             const double share = static_cast<double>(state >> 11) * 0x1p-53;
             of(window, Measure::drift) = share < 0.1 ? 100 : 1 + share;
@@ -77,8 +77,8 @@ TEST(Errors, OfOtherWindowsAreAtMostWhatIsTold)
     };
     int worse = 0;
     for (int round = 0; round < 200; ++round) {
-        const double promised = rms_at_most(drawn(), Measure::drift);
-        worse += rms(drawn(), Measure::drift) > promised ? 1 : 0;
+        const double promised = rms_at_most(drawn(), place_of(Measure::drift));
+        worse += rms(drawn(), place_of(Measure::drift)) > promised ? 1 : 0;
     }
     EXPECT_LE(worse, 40);
     EXPECT_GE(worse, 2);

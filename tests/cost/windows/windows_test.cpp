@@ -5,11 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <tuple>
 
 namespace throng {
 namespace {
@@ -65,13 +61,11 @@ TEST(Windows, OfAStackAtRestAreSolvedExactly)
 
 TEST(Windows, ErrorsAreTheSameBitsOnAnyNumberOfThreads)
 {
-    using Bits = std::array<std::uint64_t, std::tuple_size_v<WindowErrors>>;
     const Scene scene = scene_of("pile:10");
     const Windows one(scene, {2, 0.1, 2, 1}, 1, 1000, {}),
         three(scene, {2, 0.1, 2, 3}, 1, 1000, {});
     for (std::size_t k = 0; k < one.size(); ++k) {
-        const WindowErrors a = one.run(scene, k).errors, b = three.run(scene, k).errors;
-        EXPECT_EQ(std::bit_cast<Bits>(a), std::bit_cast<Bits>(b)) << k;
+        EXPECT_EQ(one.run(scene, k).errors, three.run(scene, k).errors) << k;
     }
 }
 

@@ -1,0 +1,185 @@
+#include "apps/throng/cost_options.hpp"
+
+#include "apps/throng/interrupt.hpp"
+#include "apps/throng/progress.hpp"
+#include "apps/throng/scene_argument.hpp"
+#include "scene/names.hpp"
+#include "throng/dials.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+namespace throng {
+namespace {
+
+constexpr double kStandardMinutes = 4;
+
+// A number above 0, or the default where the option was not given.
+double positive(const Options& options, std::string_view name, double standard)
+{
+    if (!options.has(name)) return standard;
+    const double number = parse_number(options.text(name));
+    if (!(number > 0))
+        throw BadInput(std::string(name) + ": wanted a number above 0, not "
+                       + in_quotes(options.text(name)));
+    return number;
+}
+
+std::vector<std::string> dials_asked(const Options& options)
+{
+    std::vector<std::string> dials;
+    const std::vector<std::string_view> known = swept_dials();
+    const std::string_view text = options.text("--dials");
+    if (!options.has("--dials")) return dials;
+    if (text == "none") return {std::string(text)};
+    for (const std::string_view name : parts_of("--dials", text)) {
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            throw BadInput("--dials: wanted none, " + either_of(known) + ", not "
+                           + in_quotes(name));
+        dials.emplace_back(name);
+    }
+    return dials;
+}
+
+std::string folder_asked(const Options& options, const std::string& name)
+{
+    std::filesystem::path folder(options.text("--out"));
+    if (folder.empty()) folder = "cost-" + name;
+    std::error_code trouble;
+    std::filesystem::create_directories(folder, trouble);
+    if (!std::filesystem::is_directory(folder))
+        throw BadInput("--out: " + in_quotes(folder.string())
+                       + (trouble ? ": " + trouble.message() : " is no folder"));
+    return folder.string();
+}
+
+std::string file_in(const std::string& folder, const char* name)
+{
+    return (std::filesystem::path(folder) / name).string();
+}
+
+std::string written_before(const Options& options, const std::string& path)
+{
+    if (!options.has("--resume")) return {};
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw BadInput("--resume: there is no " + in_quotes(path)
+                       + " to go on from; leave the option out the first time");
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+CostOptions read_cost_options(const Options& options)
+{
+    CostOptions asked;
+    if (options.has("--error") && options.has("--within"))
+        throw BadInput("--within: wanted either that or --error");
+    asked.wish.error = positive(options, "--error", 0);
+    asked.wish.time_ms = positive(options, "--within", 0);
+    asked.windows.length = positive(options, "--window", asked.windows.length);
+    asked.windows.seconds = positive(options, "--seconds", asked.windows.seconds);
+    asked.windows.count = static_cast<std::size_t>(
+        options.whole("--windows", static_cast<std::int64_t>(asked.windows.count), 2, 1000));
+    asked.windows.threads = threads_asked(options);
+    asked.sweep.dials = dials_asked(options);
+    asked.sweep.patience = 60 * positive(options, "--minutes", kStandardMinutes);
+    return asked;
+}
+
+std::string_view word_measured(const Options& options)
+{
+    if (options.words().size() > 1)
+        throw BadInput("cost: one word too many: " + in_quotes(options.words()[1])
+                       + "; two reports are compared by --compare");
+    return options.words().front();
+}
+
+Changes changes_given(const Options& options)
+{
+    // A scene without anything, for what dials take.
+    Scene scene;
+    set_dials(scene, options);
+    Changes given;
+    for (const std::string& dial : scene.dials_set)
+        given.push_back({dial, dial_value(scene.settings, dial)});
+    return given;
+}
+
+std::string in_shell(std::string_view word)
+{
+    const auto is_plain = [](char letter) {
+        return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z')
+            || (letter >= '0' && letter <= '9')
+            || std::string_view("_./:=+,@%-").find(letter) != std::string_view::npos;
+    };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return std::string(word);
+    std::string quoted = "'";
+    for (const char letter : word) quoted += letter == '\'' ? "'\\''" : std::string(1, letter);
+    return quoted + '\'';
+}
+
+CostFolder::CostFolder(const Options& options, const std::string& name)
+    : folder_(folder_asked(options, name)),
+      before_(written_before(options, file_in(folder_, "cost.json"))),
+      json_("--out", file_in(folder_, "cost.json")), csv_("--out", file_in(folder_, "cost.csv")),
+      page_("--out", file_in(folder_, "cost.html")), svg_("--out", file_in(folder_, "cost.svg"))
+{ }
+
+void CostFolder::take_known(const CostReport& report, SweepPlan& plan) const
+{
+    if (!before_.empty()) plan.known = read_points(before_, "cost.json", report);
+}
+
+void CostFolder::write(const CostReport& report)
+{
+    write_cost_json(report, json_.stream());
+    write_cost_csv(report, csv_.stream());
+    write_cost_page(report, page_.stream());
+    write_cost_svg(report, svg_.stream());
+    for (OutputFile* const file : {&json_, &csv_, &page_, &svg_}) file->keep();
+}
+
+std::string CostFolder::told() const
+{
+    return "report: " + page_.path() + "; all points: " + json_.path() + ", " + csv_.path();
+}
+
+void sweep_into(CostReport& report,
+                const Trials& trials,
+                const Effects& effects,
+                const SweepPlan& plan,
+                const Watch& watch)
+{
+    report.found = sweep(trials, effects, plan, watch);
+    for (const std::string_view dial : {"dt", "substeps"})
+        if (const auto fitted = fitted_order(trials.scene(), report.found, dial, report.measure,
+                                             of(report.reference.remaining, report.measure)))
+            report.orders.push_back(*fitted);
+}
+
+int report_cost(const Options& options,
+                CostReport& report,
+                CostFolder& folder,
+                const std::function<void(const Watch&)>& measure)
+{
+    {
+        NoteLine line(!options.has("--quiet"));
+        const Watch watch{[&](const std::string& note) { line.show(note); }, interrupted};
+        try {
+            measure(watch);
+        } catch (const Interrupted&) {
+            return kInterrupted;
+        }
+    }
+    write_cost_text(report, std::cout);
+    if (options.has("--text")) draw_front(report, std::cout);
+    folder.write(report);
+    std::cout << folder.told() << std::endl;
+    return interrupted() ? kInterrupted : kDone;
+}
+
+}  // namespace throng
