@@ -110,8 +110,17 @@ int run_cost(const Options& options)
     });
 }
 
+void tell_of_cases(std::ostream& out)
+{
+    out << "\nA CASE is a hard case by its name, as H3 is; `throng cases --help` lists them. Its "
+           "error is\n"
+           "the figure of its first line that comes from a run, against its exact answer. It has "
+           "no\n"
+           "windows, seed or mesh; --set and --dt are put upon all that it runs.\n";
+}
+
 }  // namespace
 
-const Command kCost = {kCostUsage, run_cost, nullptr, "throng_cases", asks_for_case};
+const Command kCost = {kCostUsage, run_cost, tell_of_cases, "throng_cases", asks_for_case};
 
 }  // namespace throng

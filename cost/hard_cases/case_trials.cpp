@@ -59,18 +59,20 @@ CaseTrials::CaseTrials(const HardCase& which, const CasePlan& plan, const Watch&
     if (!plan_.quantity.empty()) brief = go({}, Extent::brief, plan_.patience / 2);
     own_ = go({}, Extent::whole, std::max(1.0, plan_.patience - seconds_since(begin)));
     const auto is_alike = [&](const Found& other) {
-        return other.has_line && own_.has_line && other.line.setting == own_.line.setting
+        return other.has_line && other.line.setting == own_.line.setting
             && other.line.figure == own_.line.figure && other.durations == own_.durations;
     };
-    if (is_alike(brief)) {
+    if (own_.has_line) {
+        if (!is_alike(brief)) return;
         extent_ = Extent::brief;
         own_ = std::move(brief);
+        return;
     }
-    if (own_.has_line) return;
     for (const std::string& each : brief.quantities) add_once(own_.quantities, each);
+    const bool is_listed = !plan_.quantity.empty() && !own_.quantities.empty();
+    if (own_.is_late && (!is_listed || brief.has_line)) throw TooSlow{};
     const std::string name(which.name);
-    if (own_.is_late && (plan_.quantity.empty() || own_.quantities.empty())) throw TooSlow{};
-    if (plan_.quantity.empty() || own_.quantities.empty())
+    if (!is_listed)
         throw std::invalid_argument(name + " has no line that comes from runs"
                                     + (own_.skipped.empty() ? "" : ": " + listed(own_.skipped)));
     throw std::invalid_argument(name + " has no line of " + in_quotes(plan_.quantity)

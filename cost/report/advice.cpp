@@ -1,6 +1,7 @@
 #include "cost/report/cost_report.hpp"
 #include "scene/names.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -18,6 +19,17 @@ bool is_drawn(const Point& point, std::size_t measure)
 {
     const double error = point.error(measure);
     return point.had() && std::isfinite(error) && error > 0 && point.time_ms.median > 0;
+}
+
+std::string undrawn_of(const CostReport& report)
+{
+    const std::span<const Point> points = report.found.points;
+    const auto count = std::count_if(points.begin(), points.end(), [&](const Point& point) {
+        return point.had() && !is_drawn(point, report.measure);
+    });
+    if (count == 0) return {};
+    return std::to_string(count) + (count == 1 ? " setting" : " settings")
+        + " whose error is 0 or beyond all bounds, not drawn for want of a logarithm";
 }
 
 std::string name_of_own(const CostReport& report)

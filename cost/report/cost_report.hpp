@@ -70,6 +70,8 @@ std::string figure_text(double figure);
 
 /// Whether it has a place among logarithms.
 bool is_drawn(const Point& point, std::size_t measure);
+/// How many were measured and have none, in a sentence; empty where all have one.
+std::string undrawn_of(const CostReport& report);
 /// Of no change: the scene, or the case, as it is.
 std::string name_of_own(const CostReport& report);
 /// Its changes, or that there are none.

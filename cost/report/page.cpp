@@ -53,6 +53,9 @@ std::string chart(const CostReport& report)
 {
     std::ostringstream text;
     write_cost_svg(report, text);
+    const std::string undrawn = undrawn_of(report);
+    if (!undrawn.empty())
+        text << "<figcaption class=\"soft\">" << in_markup(undrawn) << "</figcaption>\n";
     return text.str();
 }
 

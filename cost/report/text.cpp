@@ -146,6 +146,8 @@ void draw_front(const CostReport& report, std::ostream& out)
         << std::string(static_cast<std::size_t>(kWidth) - left.size() - right.size(), ' ') << right
         << "  ms\n"
         << std::string(11, ' ') << "o on the front   . beaten   @ " << name_of_own(report) << '\n';
+    const std::string undrawn = undrawn_of(report);
+    if (!undrawn.empty()) out << std::string(11, ' ') << undrawn << '\n';
 }
 
 }  // namespace throng

@@ -68,6 +68,8 @@ TEST(CostPage, HoldsAllOfItAndLoadsNothing)
     EXPECT_NE(page.find("takes &lt;too&gt; long"), std::string::npos);
     EXPECT_EQ(count(page, "<tr data-point="), 6u);
     EXPECT_NE(page.find("the cheapest within 0.002 m:\n  --set substeps=8"), std::string::npos);
+    EXPECT_NE(page.find("1 setting whose error is 0 or beyond all bounds, not drawn"),
+              std::string::npos);
     for (const char* const loads : {" src=", "@import", "url(", "<iframe"})
         EXPECT_EQ(page.find(loads), std::string::npos) << loads;
     EXPECT_EQ(count(page, "href="), 1u) << "the icon that there is none";
