@@ -85,8 +85,9 @@ void check_environment()
         std::cout.flush();
         ::execv((folder / program).c_str(), passed.data());
     }
-    throw BadInput(in_quotes(std::string(arguments.front()) + ' ' + std::string(arguments.back()))
-                   + " is for a program of its own, " + program
+    std::string asked = "throng";
+    for (const std::string_view word : arguments) asked += ' ' + std::string(word);
+    throw BadInput(in_quotes(asked) + " is for a program of its own, " + program
                    + ", which is not beside this one; build that target, or install it");
 }
 

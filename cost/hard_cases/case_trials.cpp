@@ -94,18 +94,18 @@ CaseTrials::Found CaseTrials::go(const Changes& changes, Extent extent, double p
     bool told = false, ended = false;  // of the runs so far; by who waits
     CaseListener listener;
     listener.ran = [&](const CaseRun& run) {
-        found.simulated += run.simulated;
+        found.all_seconds += run.simulated;
         // A line is of the runs since the line before, or of the same as that.
         if (std::exchange(told, false)) {
             found.scene.reset();
             found.durations.clear();
-            found.steps_ms = found.steps = 0;
+            found.steps_ms = found.seconds = 0;
             found.lost = false;
         }
         if (!found.scene) found.scene = run.scene;
         found.durations.push_back(run.duration);
         found.steps_ms += run.steps_ms;
-        found.steps += run.simulated;
+        found.seconds += run.simulated;
         found.lost = found.lost || run.lost > 0;
     };
     listener.line = [&](const CaseResult& line) {
@@ -139,7 +139,7 @@ Trial CaseTrials::trial_of(const Found& found) const
     const double figure = found.line.figure;
     const bool is_lost = found.lost || std::isnan(figure);
     const double error = is_lost ? INFINITY : std::max(0.0, figure);
-    return {{error * error}, found.steps > 0 ? found.steps_ms * kFrame / found.steps : 0};
+    return {{error * error}, found.seconds > 0 ? found.steps_ms * kFrame / found.seconds : 0};
 }
 
 Trial CaseTrials::run(const Changes& changes, std::size_t /*trial*/, double patience) const

@@ -38,11 +38,11 @@ public:
     const CaseResult& line() const { return own_.line; }
     /// That lead to the line, and s of simulated time that they go through together.
     std::size_t runs() const { return own_.durations.size(); }
-    double seconds() const { return own_.steps; }
+    double seconds() const { return own_.seconds; }
 
     const Scene& scene() const override { return *own_.scene; }
     std::size_t size() const override { return 1; }
-    double length() const override { return own_.simulated; }
+    double length() const override { return own_.all_seconds; }
     std::vector<Quantity> quantities() const override;
     const Errors& reference_off() const override { return exact_; }
     std::string state_hash() const override;
@@ -55,11 +55,12 @@ private:
     struct Found {
         bool has_line = false, is_late = false;
         CaseResult line;
-        std::optional<Scene> scene;      // of the first run that led to the line
-        std::vector<double> durations;   // s, of those runs
-        double steps_ms = 0, steps = 0;  // ms of the clock and s simulated, of those runs
-        double simulated = 0;            // s, of all runs
-        bool lost = false;               // a body, in those runs
+        std::optional<Scene> scene;     // of the first run that led to the line
+        std::vector<double> durations;  // s, of those runs
+        double steps_ms = 0;            // of the clock, of the steps of those runs
+        double seconds = 0;             // simulated, of those runs
+        double all_seconds = 0;         // simulated, of all runs
+        bool lost = false;              // a body, in those runs
         std::vector<std::string> quantities, skipped;
     };
     Found go(const Changes& changes, Extent extent, double patience) const;
