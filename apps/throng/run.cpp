@@ -96,12 +96,29 @@ struct Outputs {
     TraceOption trace;
 };
 
-// The ledger looks on before and after each step, where there is one; no time is taken of that.
+/// Who looks on before and after each step, where somebody wants to know; no time is taken of that.
+struct Onlookers {
+    std::optional<EnergyLedger> energy;
+    std::optional<ErrorEstimate> error;
+
+    void before_step(const World& world)
+    {
+        if (energy) energy->before_step(world);
+        if (error) error->before_step(world);
+    }
+    void after_step(const World& world)
+    {
+        if (energy) energy->after_step(world);
+        if (error) error->after_step(world);
+    }
+    StepError last_error() const { return error ? error->last() : StepError{}; }
+};
+
 StepTimes run_steps(World& world,
                     std::int64_t steps,
                     RunFrames& frames,
                     Outputs& outputs,
-                    std::optional<EnergyLedger>& ledger,
+                    Onlookers& onlookers,
                     bool quiet)
 {
     using Clock = std::chrono::steady_clock;
@@ -113,9 +130,9 @@ StepTimes run_steps(World& world,
         frames.close();
         outputs.discard();
     });
-    frames.step_done(0, false);
+    frames.step_done(0, {}, false);
     while (done < steps && !interrupted()) {
-        if (ledger) ledger->before_step(world);
+        onlookers.before_step(world);
         trace.begin_step(static_cast<std::uint64_t>(done) + 1);
         guard.begin_step();
         const auto begin = Clock::now();
@@ -123,12 +140,12 @@ StepTimes run_steps(World& world,
         const std::chrono::duration<double, std::milli> taken = Clock::now() - begin;
         guard.end_step();
         trace.end_step();
-        if (ledger) ledger->after_step(world);
+        onlookers.after_step(world);
         times.add(taken.count(), world.stages());
-        frames.step_done(++done, false);
+        frames.step_done(++done, onlookers.last_error(), false);
         progress.show(done, world.report().bodies_awake);
     }
-    frames.step_done(done, true);
+    frames.step_done(done, onlookers.last_error(), true);
     return times;
 }
 
@@ -207,19 +224,22 @@ int run(const Options& options)
 
     const std::int64_t every =
         every_asked > 0 ? every_asked : standard_every(steps, world.body_count());
-    std::optional<EnergyLedger> ledger;
+    Onlookers onlookers;
     // Who sees neither stats nor warnings spends nothing on them.
-    if (outputs.stats.asked_for() || !quiet) ledger.emplace();
+    if (outputs.stats.asked_for() || !quiet) onlookers.energy.emplace();
     RunFrames frames(outputs.frames, argument, world, every);
-    StepTimes times = run_steps(world, steps, frames, outputs, ledger, quiet);
+    if (outputs.stats.asked_for() || frames.asked_for() || !quiet) onlookers.error.emplace();
+    StepTimes times = run_steps(world, steps, frames, outputs, onlookers, quiet);
 
     RunStats stats = collect_stats(world, std::move(times));
     stats.scene = argument.label;
     stats.seed = argument.seed;
     stats.warnings = world.warnings();
-    if (ledger) {
-        stats.energy = *ledger;
-        const std::string warning = energy_warning(*ledger);
+    if (onlookers.error)
+        stats.error = {onlookers.error->rms(), onlookers.last_error(), onlookers.error->worst()};
+    if (onlookers.energy) {
+        stats.energy = *onlookers.energy;
+        const std::string warning = energy_warning(stats.energy);
         if (!quiet && !warning.empty()) std::cerr << "warning: " << warning << '\n';
         if (!warning.empty()) stats.warnings.push_back(warning);
     }

@@ -31,11 +31,11 @@ void RunFrames::attempt(Write write)
     }
 }
 
-void RunFrames::step_done(std::int64_t step, bool last)
+void RunFrames::step_done(std::int64_t step, const StepError& error, bool last)
 {
     const bool wanted = last ? step != written_ : step % every_ == 0;
     if (!writer_ || !trouble_.empty() || !wanted) return;
-    attempt([&] { writer_->write_frame(world_); });
+    attempt([&] { writer_->write_frame(world_, error); });
     written_ = step;
 }
 

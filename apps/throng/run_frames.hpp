@@ -18,8 +18,9 @@ public:
               const SceneArgument& argument,
               const World& world,
               std::int64_t every);
-    /// After a step; the last one is a frame whatever its number.
-    void step_done(std::int64_t step, bool last);
+    /// After a step, of which this is told; the last one is a frame whatever its number.
+    void step_done(std::int64_t step, const StepError& error, bool last);
+    bool asked_for() const { return writer_.has_value(); }
     /// Closes the file. Answers what went wrong since it was begun, and what is there, or nothing.
     std::string close();
 

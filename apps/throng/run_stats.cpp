@@ -38,6 +38,12 @@ std::string stages_json(const StepTimes& times)
         + ']';
 }
 
+// Its number, or null.
+std::string body_json(BodyId body)
+{
+    return body.index == kNone ? "null" : std::to_string(body.index);
+}
+
 double peak_memory_mb()
 {
     struct rusage usage = {};
@@ -120,6 +126,14 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
              '[' + std::to_string(stats.energy.from_step()) + ", "
                  + std::to_string(stats.energy.to_step()) + ']');
     json.add("greatest_kinetic_energy_j", stats.energy.greatest_kinetic());
+    json.add("step_error_m",
+             JsonMembers()
+                 .add("rms", stats.error.rms)
+                 .add("last", stats.error.last.rms)
+                 .add("greatest", stats.error.worst.greatest)
+                 .add("greatest_step", std::to_string(stats.error.worst.step))
+                 .add("greatest_body", body_json(stats.error.worst.worst))
+                 .text());
     json.add("warnings", '[' + joined(stats.warnings, ", ", json_string) + ']');
     json.add("momentum", json_text(stats.measures.momentum));
     json.add("angular_momentum", json_text(stats.measures.angular_momentum));
@@ -154,6 +168,7 @@ void write_summary(const RunStats& stats, std::ostream& out)
         << "\nrealtime_factor: " << rounded(stats.realtime_factor())
         << "\ncontacts: " << stats.last.contacts
         << "\nmax_overlap_m: " << rounded(stats.measures.greatest_overlap)
+        << "\nstep_error_m: " << rounded(stats.error.rms)
         << "\nkinetic_energy_j: " << rounded(stats.measures.kinetic_energy)
         << "\nbodies_awake: " << stats.last.bodies_awake
         << "\nbodies_quarantined: " << stats.bodies_quarantined

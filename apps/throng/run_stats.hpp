@@ -3,6 +3,7 @@
 
 #include "apps/throng/step_times.hpp"
 #include "throng/energy_ledger.hpp"
+#include "throng/error_estimate.hpp"
 
 #include <ostream>
 #include <string>
@@ -21,6 +22,10 @@ struct RunStats {
     StepReport last;
     Measures measures;
     EnergyLedger energy;
+    struct OfSteps {
+        double rms = 0;  // m, over all
+        StepError last, worst;
+    } error;
     std::vector<std::string> warnings;  // of what bodies lost as they were made, and of energy
     std::string state_hash;
     double peak_rss_mb = 0;

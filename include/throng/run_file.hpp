@@ -16,6 +16,10 @@
 //   /frames/orientation       [F, N, 4] w, x, y, z, of the body's own frame, float
 //   /frames/velocity          [F, N, 3] of the center of mass, float
 //   /frames/angular_velocity  [F, N, 3] float
+//   /frames/error, greatest_error  [F] m, what the last step before was about off by, rms over
+//   bodies
+//                             and at most; 0 where nobody estimated it (error_estimate.hpp)
+//   /frames/worst_body        [F] whose that was, by its place among the N; 4294967295: nobody's
 //
 // `time` grows last, so its length is the number of frames that are whole. What was written is
 // flushed every second or so: after a crash all but the last moments can be read. Room on the disk
@@ -24,6 +28,7 @@
 // no longer does so at exit.
 #pragma once
 
+#include "throng/error_estimate.hpp"
 #include "throng/world.hpp"
 
 #include <memory>
@@ -57,8 +62,9 @@ public:
     RunFile(RunFile&&) noexcept;
     RunFile& operator=(RunFile&&) noexcept;
 
-    /// Adds the world as it is now. After this has failed there are no more frames.
-    void write_frame(const World& world);
+    /// Adds the world as it is now, and what its last step was about off by. After this has failed
+    /// there are no more frames.
+    void write_frame(const World& world, const StepError& error = {});
     /// Writes what is left and closes the file; where a frame has failed, closes it with those that
     /// are whole.
     void close();

@@ -7,6 +7,7 @@
 #include "throng/dials.hpp"
 #include "throng/effects.hpp"
 #include "throng/energy_ledger.hpp"
+#include "throng/error_estimate.hpp"
 #include "throng/final_csv.hpp"
 #include "throng/force_field.hpp"
 #include "throng/impact_query.hpp"

@@ -307,11 +307,14 @@ struct Frames {
                            H5T_NATIVE_FLOAT,
                            {count, 3},
                            {cut.frames, cut.bodies, 3}),
+          error(owner, "error", "m", H5T_NATIVE_DOUBLE, {}, {1024}),
+          greatest_error(owner, "greatest_error", "m", H5T_NATIVE_DOUBLE, {}, {1024}),
+          worst_body(owner, "worst_body", "1", H5T_NATIVE_UINT32, {}, {1024}),
           step(owner, "step", "1", H5T_NATIVE_UINT64, {}, {1024}),
           time(owner, "time", "s", H5T_NATIVE_DOUBLE, {}, {1024})
     { }
 
-    void add(const World& world, const std::vector<BodyId>& bodies)
+    void add(const World& world, const std::vector<BodyId>& bodies, const StepError& told)
     {
         const auto append = [](const auto& from, auto& to) {
             using Number = typename std::remove_reference_t<decltype(to)>::value_type;
@@ -325,6 +328,11 @@ struct Frames {
             append(world.velocity(body), velocity.waiting);
             append(world.angular_velocity(body), angular_velocity.waiting);
         }
+        error.waiting.push_back(told.rms);
+        greatest_error.waiting.push_back(told.greatest);
+        const auto worst = std::find(bodies.begin(), bodies.end(), told.worst);
+        worst_body.waiting.push_back(
+            worst == bodies.end() ? kNone : static_cast<std::uint32_t>(worst - bodies.begin()));
         const std::uint64_t steps = world.report().step;
         step.waiting.push_back(steps);
         time.waiting.push_back(static_cast<double>(steps) * world.settings().dt);
@@ -340,6 +348,9 @@ struct Frames {
         orientation.write(written, more);
         velocity.write(written, more);
         angular_velocity.write(written, more);
+        error.write(written, more);
+        greatest_error.write(written, more);
+        worst_body.write(written, more);
         step.write(written, more);
         time.write(written, more);
         written += more;
@@ -348,6 +359,8 @@ struct Frames {
     Cut cut;
     Track<double> position;
     Track<float> orientation, velocity, angular_velocity;
+    Track<double> error, greatest_error;
+    Track<std::uint32_t> worst_body;
     Track<std::uint64_t> step;
     Track<double> time;
     hsize_t written = 0;
@@ -424,9 +437,9 @@ struct RunFile::Inside {
         flush();
     }
 
-    void add(const World& world)
+    void add(const World& world, const StepError& error)
     {
-        frames->add(world, bodies);
+        frames->add(world, bodies, error);
         const bool stale = Clock::now() - flushed > std::chrono::seconds(1);
         if (frames->chunk_is_full() || stale) write();
         if (stale) flush();
@@ -479,12 +492,12 @@ RunFile::~RunFile()
 RunFile::RunFile(RunFile&&) noexcept = default;
 RunFile& RunFile::operator=(RunFile&&) noexcept = default;
 
-void RunFile::write_frame(const World& world)
+void RunFile::write_frame(const World& world, const StepError& error)
 {
     if (!inside_ || inside_->failed) throw RunFileError("cannot write a frame: the file is closed");
     const Silence silence;
     try {
-        inside_->add(world);
+        inside_->add(world, error);
     } catch (const RunFileError&) {
         inside_->failed = true;
         throw;

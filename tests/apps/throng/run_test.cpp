@@ -62,6 +62,9 @@ TEST(RunStats, HoldTheFieldsOfTheContract)
     EXPECT_EQ(stats.size(at("energy_gained_steps")), 2u);
     EXPECT_EQ(stats.size(at("momentum")), 3u);
     EXPECT_EQ(stats.size(at("angular_momentum")), 3u);
+    EXPECT_EQ(stats.size(at("step_error_m")), 5u);
+    for (const char* key : {"rms", "last", "greatest"})
+        EXPECT_GT(stats.number(stats.find(at("step_error_m"), key)), 0) << key;
     EXPECT_EQ(stats.size(at("ms_per_step")), 4u);
     for (const char* key : {"mean", "median", "p99", "greatest"})
         EXPECT_GT(stats.number(stats.find(at("ms_per_step"), key)), 0) << key;

@@ -80,7 +80,8 @@ TEST_F(RunFileTest, HoldsEveryFrame)
     std::vector<double> positions;
     std::vector<float> turns;
     const auto add = [&] {
-        file.write_frame(world);
+        const double error = 1e-3 * static_cast<double>(world.report().step);
+        file.write_frame(world, {world.report().step, error, 2 * error, world.bodies()[7]});
         for (const BodyId body : world.bodies()) {
             const Pose pose = world.pose(body);
             positions.insert(positions.end(), pose.position.data(), pose.position.data() + 3);
@@ -110,6 +111,12 @@ TEST_F(RunFileTest, HoldsEveryFrame)
     EXPECT_EQ(time.values.back(), (kFrames - 1) * world.settings().dt);
     EXPECT_EQ(read_array<std::uint64_t>(path_, "/frames/step", H5T_NATIVE_UINT64).values.back(),
               kFrames - 1);
+    const double last = 1e-3 * static_cast<double>(kFrames - 1);
+    EXPECT_EQ(read_array<double>(path_, "/frames/error", H5T_NATIVE_DOUBLE).values.back(), last);
+    EXPECT_EQ(read_array<double>(path_, "/frames/greatest_error", H5T_NATIVE_DOUBLE).values.back(),
+              2 * last);
+    EXPECT_EQ(read_array<std::uint32_t>(path_, "/frames/worst_body", H5T_NATIVE_UINT32).values,
+              std::vector<std::uint32_t>(kFrames, 7));
 
     EXPECT_EQ(read_text(path_, "/", "throng"), "1.2.3");
     EXPECT_EQ(read_text(path_, "/", "scene"), "pile:20");
