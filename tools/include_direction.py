@@ -58,7 +58,7 @@ INSIDE = {
     "scene": [".", "shapes", "rules", "files", "catalog"],
     "pipeline": ["step", "forces", "contacts", "stages", "solvers", "event_driven", "world", "queries",
                  "records", "."],
-    "cost": [".", "windows", "sweep", "report", "hard_cases"],
+    "cost": [".", "answers", "windows", "sweep", "report", "hard_cases"],
     "apps": ["peers", "throng", "."],
     "apps/throng": [".", "bench"],
 }

@@ -36,8 +36,10 @@ public:
 
     btCollisionShape* of_body(const PeerBody& body)
     {
-        if (body.shapes == 1 && scene_.shapes[body.first_shape].is_centered())
-            return plain(scene_.shapes[body.first_shape]);
+        const PeerShape& first = scene_.shapes[body.first_shape];
+        // A plane is none that a compound could have; its offset is its own.
+        if (body.shapes == 1 && first.kind == ShapeKind::plane) return plane(first);
+        if (body.shapes == 1 && first.is_centered()) return plain(first);
         auto& compound = *new btCompoundShape;
         kept_.emplace_back(&compound);
         for (std::uint32_t k = 0; k < body.shapes; ++k) {
@@ -59,6 +61,13 @@ private:
             kept_.emplace_back(known);
         }
         return known;
+    }
+
+    btCollisionShape* plane(const PeerShape& shape)
+    {
+        kept_.emplace_back(new btStaticPlaneShape(vector_of(shape.size),
+                                                  number(shape.size.dot(shape.local.position))));
+        return kept_.back().get();
     }
 
     btCollisionShape* make(const PeerShape& shape) const
@@ -112,6 +121,7 @@ public:
             if (stated.motion == Motion::kinematic) move(*bodies_[i], stated, dt);
             if (stated.drive[0] || stated.drive[1] || stated.drive[2])
                 drive(*bodies_[i], stated.drive);
+            bodies_[i]->applyCentralForce(vector_of(stated.force));
         }
         world_.stepSimulation(number(dt), 0);
     }

@@ -79,6 +79,8 @@ public:
     void step(double dt) override
     {
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            const Vec3& force = scene_.bodies[i].force;
+            if (!force.isZero(0)) dBodyAddForce(bodies_[i], force.x(), force.y(), force.z());
             const auto& wanted = scene_.bodies[i].drive;
             if (!wanted[0] && !wanted[1] && !wanted[2]) continue;
             const dReal* now = dBodyGetLinearVel(bodies_[i]);
@@ -141,7 +143,7 @@ private:
             if (bounce > 0) {
                 surface.mode |= dContactBounce;
                 surface.bounce = bounce;
-                surface.bounce_vel = 1;
+                surface.bounce_vel = 0;  // however slow it comes
             }
             dJointID joint = dJointCreateContact(ode.world_, ode.joints_, &contacts[i]);
             dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
@@ -155,8 +157,10 @@ private:
         bodies_.push_back(body);
         for (std::uint32_t k = 0; k < stated.shapes; ++k) {
             const PeerShape& shape = scene_.shapes[stated.first_shape + k];
-            dGeomID geom = make(shape);
+            const bool is_plane = shape.kind == ShapeKind::plane && body == nullptr;
+            dGeomID geom = is_plane ? make_plane(stated, shape) : make(shape);
             dGeomSetData(geom, const_cast<PeerBody*>(&stated));
+            if (is_plane) continue;
             if (body == nullptr) {
                 const Pose placed = stated.pose * shape.local;
                 dGeomSetPosition(geom, placed.position.x(), placed.position.y(),
@@ -191,6 +195,14 @@ private:
                            turn.yz);
         dBodySetMass(body, &mass);
         return body;
+    }
+
+    // It is where it is in the world, and cannot be put elsewhere.
+    dGeomID make_plane(const PeerBody& stated, const PeerShape& shape)
+    {
+        const Vec3 normal = stated.pose.orientation * (shape.local.orientation * shape.size);
+        const Vec3 point = (stated.pose * shape.local).position;
+        return dCreatePlane(space_, normal.x(), normal.y(), normal.z(), normal.dot(point));
     }
 
     dGeomID make(const PeerShape& shape)

@@ -7,9 +7,9 @@ namespace throng::perf {
 
 void refuse_shape(const char* engine, ShapeKind kind)
 {
-    constexpr const char* kNames[kShapeKinds] = {"a sphere", "a capsule", "a cylinder",
-                                                 "a box",    "a hull",    "a plane",
-                                                 "a mesh",   "a triangle"};
+    constexpr const char* kNames[kShapeKinds] = {"a sphere", "a capsule",  "a cylinder",
+                                                 "a box",    "a hull",     "a plane",
+                                                 "a mesh",   "a triangle", "a solid"};
     throw std::invalid_argument(std::string(engine) + ": is not given "
                                 + kNames[static_cast<int>(kind)] + " here");
 }

@@ -40,7 +40,7 @@ void set_from_line(Scene& scene,
                    std::string_view name,
                    std::string_view value);
 
-/// Sets the dials that --set and --dt of the line name. Throws BadInput.
+/// Sets the dials that --set of the line names. Throws BadInput.
 void set_dials(Scene& scene, const Options& options);
 
 /// The world of the scene; what it lost on the way goes to stderr, unless quiet. Throws BadInput

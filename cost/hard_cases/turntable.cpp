@@ -3,6 +3,7 @@
 // A block at radius r on a disc that turns at w stays with it when w^2 r is at most mu g. A tower
 // of planks laid crosswise stands as long as one cares to look.
 #include "cost/hard_cases/hard_cases.hpp"
+#include "throng/catalog.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
 
@@ -109,31 +110,15 @@ Tower crosswise(const CaseBench& bench)
     return {parts.scene(), 2 * layers * mass * kGravity, (2 * layers - 2) * half.z()};
 }
 
-// The published tower: on each of six floors eight planks across and nine along them, four on the
-// right and five on the left, whose ends lie on half of a plank's width and no more. Its friction
-// is not published; this is what the engine that it was written for has where none is set.
+// The tower that engines were compared by. It has come down once its last plank is below the bottom
+// of that floor.
 Tower published()
 {
-    constexpr int kFloors = 6, kAcross = 8;
-    constexpr double kMass = 10, kHigh = 0.1, kPitch = 0.2, kThick = 0.05;
-    SceneParts parts({});
-    const std::uint32_t material = parts.material(0.8);
-    parts.plane(material, Vec3::UnitZ(), 0);
-    const auto add = [&](const Vec3& size, double x, double y, double z) {
-        parts.box(material, kMass, size / 2, {Vec3(x, y, z), Quat::Identity()});
-    };
-    for (int floor = 0; floor < kFloors; ++floor) {
-        const double low = (2 * floor + 0.5) * kHigh, upper = low + kHigh;
-        for (int i = 0; i < kAcross; ++i)
-            add(Vec3(kThick, kPitch + kThick, kHigh), i * kPitch, 0, low);
-        const Vec3 along(kPitch, kThick, kHigh);
-        for (const double pitches : {0.5, 2.5, 4.5, 6.5})
-            add(along, pitches * kPitch, -kPitch / 2, upper);
-        for (const double pitches : {1.5, 3.5, 5.5, 0.5, 6.5})
-            add(along, pitches * kPitch, kPitch / 2, upper);
-    }
-    return {parts.scene(), kFloors * (2 * kAcross + 1) * kMass * kGravity,
-            2 * kHigh * (kFloors - 1)};
+    Tower tower{make_scene("kapla", 102)};
+    for (const BodyDescription& body : tower.scene.bodies)
+        tower.weight += body.mass.value_or(0) * kGravity;
+    tower.falls = tower.scene.bodies.back().position.z() - 0.15;
+    return tower;
 }
 
 // How it stood: for so many steps, m of the plank that moved most, and by how much the floor's

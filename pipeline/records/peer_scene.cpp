@@ -39,6 +39,9 @@ PeerShape peer_shape(const Shapes& shapes, ShapeRef shape, const Pose& local)
     case ShapeKind::hull:
         made.hull = shape.index;
         break;
+    case ShapeKind::plane:
+        made.size = shapes.planes[shape.index].normal;
+        break;
     default:
         break;  // the engine says that it cannot
     }
@@ -90,6 +93,7 @@ PeerScene peer_scene(const World& world, const Scene& scene)
     for_each_stated(scene, [&](const BodyDescription& stated) {
         PeerBody& body = made.bodies[at++];
         body.lock_rotation = stated.lock_rotation;
+        body.force = stated.force;
         body.drive = stated.drive_velocity;
     });
     return made;

@@ -14,7 +14,7 @@ namespace throng {
 /// A shape as a body wears it.
 struct PeerShape {
     ShapeKind kind = ShapeKind::sphere;
-    Vec3 size = Vec3::Zero();  // half extents of a box; else radius and half length
+    Vec3 size = Vec3::Zero();  // half extents of a box, normal of a plane; else radius, half length
     std::uint32_t hull = 0;    // place in PeerScene::hulls, of a hull
     Pose local;                // from the center of mass, body axes
 
@@ -35,6 +35,7 @@ struct PeerBody {
     Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
     double friction = 0, restitution = 0;
     bool lock_rotation = false;
+    Vec3 force = Vec3::Zero();                   // N, world axes, at the center of mass, constant
     std::array<std::optional<double>, 3> drive;  // m/s, set before every step where given
     std::uint32_t first_shape = 0, shapes = 0;
 };

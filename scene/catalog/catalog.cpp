@@ -39,6 +39,11 @@ constexpr CatalogEntry kCatalog[] = {
     {"cradle",             5,  2, kMost, "SIZE balls in a line, one flies at the others that touch",      make_cradle},
     {"bullet_plate",     100,  1, kMost, "SIZE bullets at 1 km/s against a plate of 1 mm",                make_bullet_plate},
     {"spring",             1,  1, kMost, "SIZE balls, each on a spring that nothing damps",               make_spring},
+    {"rolling",           25,  1, kMost, "SIZE balls on a box that a force pulls along (SimBenchmark)",   make_rolling},
+    {"bouncing",          49,  1, kMost, "SIZE balls that bounce and lose nothing (SimBenchmark)",        make_bouncing},
+    {"ball_cube",        216,  1, kMost, "SIZE balls in a cube that comes apart (SimBenchmark's 666)",    make_ball_cube},
+    {"elastic_ball_cube", 216, 1, kMost, "SIZE balls in a cube from 1 m up that lose nothing (elastic 666)", make_elastic_ball_cube},
+    {"kapla",            102,  1, kMost, "a tower of SIZE planks, 17 to a floor (SimBenchmark's Kapla)",  make_kapla},
 };
 // clang-format on
 

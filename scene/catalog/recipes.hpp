@@ -45,6 +45,13 @@ Scene make_cradle(int size, std::uint64_t seed);
 Scene make_bullet_plate(int size, std::uint64_t seed);
 Scene make_spring(int size, std::uint64_t seed);
 
+// simbenchmark.cpp
+Scene make_rolling(int size, std::uint64_t seed);
+Scene make_bouncing(int size, std::uint64_t seed);
+Scene make_ball_cube(int size, std::uint64_t seed);
+Scene make_elastic_ball_cube(int size, std::uint64_t seed);
+Scene make_kapla(int size, std::uint64_t seed);
+
 // crowds.cpp
 Scene make_crowd(int size, std::uint64_t seed);
 

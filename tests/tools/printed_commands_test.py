@@ -30,6 +30,7 @@ PLACEHOLDERS = {"SCENE": "pile:20", "FILE": "out.json", "METHOD": "gjk", "WAY": 
                 "N": "3"}
 CASE = re.compile(r"H\d+|pairs")
 # Options that stand alone; all others have a value behind them.
+FLAGS_OF = {"bench": {"--error"}}
 FLAGS = {"--schema", "--resume", "--compare", "--text", "--quiet", "--energy", "--help", "--version"}
 # Options that are made less: at most so much, and added where they are not there.
 LESS = {"run": {"--steps": 3}, "explain": {}, "scene": {}, "cases": {},
@@ -79,7 +80,7 @@ def smaller(words):
         word = rest.pop(0)
         if word.startswith("--"):
             out.append(word)
-            if word not in FLAGS:
+            if word not in FLAGS and word not in FLAGS_OF.get(command, ()):
                 value = rest.pop(0)
                 if word in less or word in CAPPED:
                     most = less.pop(word, CAPPED.get(word))

@@ -16,6 +16,7 @@ namespace {
 using bench::Case;
 using bench::EngineKind;
 using bench::Plan;
+using bench::PlannedScene;
 
 std::vector<Option> all_options()
 {
@@ -49,11 +50,11 @@ int run_bench(const Options& options)
 {
     Plan plan = bench::read_plan(options);
     if (options.has("--trace")
-        && plan.scenes.size() * plan.sizes.size() * plan.threads.size()
+        && planned_scenes(plan, 1).size() * plan.threads.size()
                 * std::max<std::size_t>(1, plan.varied.values.size())
             != 1)
         throw BadInput("--trace: is of one run; give one scene, one of --sizes, one of --threads "
-                       "and no more than one value to --vary");
+                       "and no more than one value to --dt and --vary");
     const MeshOption mesh(options);
     for (const CatalogEntry* entry : plan.scenes) mesh.check(*entry);
     plan.mesh = mesh.file();
@@ -69,25 +70,25 @@ int run_bench(const Options& options)
     const bool tables = !json.is_stdout() && !trace.file().is_stdout();
     if (tables) bench::print_heading(plan, std::cout);
 
-    const auto runs =
-        static_cast<std::int64_t>(plan.scenes.size() * plan.sizes.size() * kinds.size())
-        * plan.repeats;
-    Progress progress(runs * plan.steps, true);
+    const std::vector<PlannedScene> planned = planned_scenes(plan, unused.settings.dt);
+    std::int64_t steps = 0;
+    for (const PlannedScene& one : planned) steps += one.steps;
+    const std::int64_t runs = plan.repeats + (plan.errors ? 1 : 0);
+    Progress progress(static_cast<std::int64_t>(kinds.size()) * runs * steps, true);
     std::int64_t steps_done = 0;
     std::vector<Case> cases;
     bool agree = true;
-    for (const CatalogEntry* entry : plan.scenes)
-        for (const int size : plan.sizes) {
-            if (interrupted()) break;
-            Scene scene = mesh.make(*entry, size, plan.seed);
-            scene.settings.sleep = false;  // what has come to rest is to be timed, too
-            set_dials(scene, options);
-            cases.push_back(
-                bench::run_case(plan, *entry, size, scene, kinds, progress, steps_done));
-            progress.clear();
-            if (tables) bench::print_case(plan, cases.back(), std::cout);
-            agree = agree && bench::hashes_agree(cases.back());
-        }
+    for (const PlannedScene& one : planned) {
+        if (interrupted()) break;
+        Scene scene = mesh.make(*one.entry, one.size, plan.seed);
+        scene.settings.sleep = false;  // what has come to rest is to be timed, too
+        set_dials(scene, options);
+        scene.settings.dt = one.dt;
+        cases.push_back(bench::run_case(plan, one, scene, kinds, progress, steps_done));
+        progress.clear();
+        if (tables) bench::print_case(plan, cases.back(), std::cout);
+        agree = agree && bench::hashes_agree(cases.back());
+    }
     if (tables) bench::print_growth(bench::growth_of(cases), std::cout);
     if (json.asked_for()) bench::write_json(plan, cases, !interrupted(), json.stream());
     json.keep();

@@ -31,6 +31,7 @@ public:
     {
         return varied_ ? quality_of(given_, peer_states(world_)) : quality_of(given_, world_);
     }
+    std::vector<PeerState> states() const override { return peer_states(world_); }
     std::vector<StageReport> stages() const override { return world_.stages(); }
     std::string state_hash() const override { return world_.state_hash(); }
     std::size_t state_bytes() const override { return world_.memory_bytes(); }

@@ -3,6 +3,7 @@
 
 #include "apps/throng/bench/quality.hpp"
 #include "apps/throng/trace_option.hpp"
+#include "pipeline/records/peer_scene.hpp"
 
 #include <functional>
 #include <memory>
@@ -18,6 +19,8 @@ public:
     /// Points of contact in the last step.
     virtual std::size_t contacts() const = 0;
     virtual Quality judge() = 0;
+    /// Of every body, in the scene's order.
+    virtual std::vector<PeerState> states() const = 0;
     /// Those of throng alone; empty for others.
     virtual std::vector<StageReport> stages() const { return {}; }
     virtual std::string state_hash() const { return {}; }

@@ -152,6 +152,7 @@ Figure figure_of(const Case& made, const std::vector<const Run*>& runs)
         over(runs, [](const Run& run) { return run.resident_bytes; }).most / bodies;
     figure.stages = stages_of(runs);
     figure.quality = first.quality;
+    figure.error = first.error;
     figure.state_hash = first.state_hash;
     return figure;
 }
@@ -227,6 +228,7 @@ growth_of_scene(const std::vector<const Case*>& cases, const std::string& settin
 {
     Growth made;
     made.scene = cases.front()->scene->name;
+    made.dt = cases.front()->dt;
     made.setting = setting;
     made.threads = threads;
     std::vector<const Run*> runs(cases.size());
@@ -277,14 +279,16 @@ bool hashes_agree(const Case& made)
 std::vector<Growth> growth_of(const std::vector<Case>& cases)
 {
     std::vector<Growth> all;
-    std::set<std::tuple<const CatalogEntry*, std::string, int>> done;  // scene, setting, threads
+    // Scene, dt, setting, threads.
+    std::set<std::tuple<const CatalogEntry*, double, std::string, int>> done;
     for (const Case& one : cases)
         for (const Run& run : one.runs) {
             if (run.engine != "throng") continue;
-            if (!done.emplace(one.scene, run.setting, run.threads).second) continue;
+            if (!done.emplace(one.scene, one.dt, run.setting, run.threads).second) continue;
             std::vector<const Case*> sizes;
             for (const Case& other : cases)
-                if (other.scene == one.scene && calmest(other, run.setting, run.threads) != nullptr)
+                if (other.scene == one.scene && other.dt == one.dt
+                    && calmest(other, run.setting, run.threads) != nullptr)
                     sizes.push_back(&other);
             if (sizes.size() > 1) all.push_back(growth_of_scene(sizes, run.setting, run.threads));
         }

@@ -43,6 +43,7 @@ struct Figure {
     std::vector<StageFigure> stages;
     std::vector<Comparison> against;  // peers; for more threads than one also throng on one
     Quality quality;
+    double error = 0;  // see Run
     std::string state_hash;
 };
 
@@ -56,6 +57,7 @@ bool hashes_agree(const Case& made);
 /// processor's time, of more by the clock.
 struct Growth {
     std::string scene, setting;
+    double dt = 0;  // s
     int threads = 1;
     std::size_t steps = 0;  // that all sizes have done
     std::vector<std::size_t> bodies;

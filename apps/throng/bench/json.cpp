@@ -5,6 +5,7 @@
 #include "apps/throng/bench/report.hpp"
 #include "apps/throng/json_lines.hpp"
 #include "apps/throng/this_machine.hpp"
+#include "cost/answers/answers.hpp"
 #include "scene/files/json_writer.hpp"
 #include "throng/version.hpp"
 
@@ -81,6 +82,7 @@ std::string json_of(const Figure& figure)
         .add("heap_bytes_per_body", figure.heap_bytes)
         .add("resident_bytes_per_body", figure.resident_bytes)
         .add("quality", json_of(figure.quality))
+        .add("error", figure.error)
         .add_text("state_hash", figure.state_hash)
         .add("against", array(figure.against, [](const Comparison& c) { return json_of(c); }));
     if (!figure.stages.empty())
@@ -117,10 +119,13 @@ std::string json_of(const Case& made)
     JsonMembers all;
     all.add_text("scene", made.scene->name)
         .add("size", made.size)
+        .add("dt", made.dt)
         .add("bodies", number(made.bodies))
         .add("bodies_dynamic", number(made.bodies_dynamic))
         .add("complete", std::string(made.complete ? "true" : "false"))
         .add("hashes_agree", std::string(hashes_agree(made) ? "true" : "false"));
+    if (const SceneAnswer* const answer = find_answer(made.scene->name))
+        all.add_text("error_of", answer->quantity).add_text("error_unit", answer->unit);
     const perf::Budget* const budget = perf::find_budget(made.scene->name);
     if (budget != nullptr && made.size == perf::kBudgetSize) {
         JsonMembers parts;
@@ -142,6 +147,7 @@ std::string json_of(const Growth& growth)
     return JsonMembers()
         .add_text("scene", growth.scene)
         .add_text("setting", growth.setting)
+        .add("dt", growth.dt)
         .add("threads", growth.threads)
         .add("steps", number(growth.steps))
         .add("bodies", array(growth.bodies, [](std::size_t n) { return std::to_string(n); }))
@@ -177,7 +183,7 @@ void write_json(const Plan& plan, const std::vector<Case>& cases, bool complete,
                  .add_text("lanes", lane_width())
                  .text());
     json.add("sleep", json_string("off"));
-    json.add("steps", static_cast<std::uint64_t>(plan.steps));
+    if (plan.steps > 0) json.add("steps", static_cast<std::uint64_t>(plan.steps));
     json.add("repeats", static_cast<std::uint64_t>(plan.repeats));
     json.add("max_seconds", plan.max_seconds);
     json.add("seed", plan.seed);

@@ -25,6 +25,7 @@ public:
     void step() override { peer_->step(dt_); }
     std::size_t contacts() const override { return peer_->contacts(); }
     Quality judge() override { return quality_of(scene_, peer_->states()); }
+    std::vector<PeerState> states() const override { return peer_->states(); }
     std::string settings() const override { return peer_->settings(); }
 
 private:

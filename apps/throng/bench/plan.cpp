@@ -2,7 +2,9 @@
 #include "apps/throng/bench/plan.hpp"
 
 #include "apps/throng/scene_argument.hpp"
+#include "cost/answers/answers.hpp"
 #include "scene/names.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,10 +23,19 @@ constexpr std::string_view kKnownPeers[] = {"bullet", "ode"};
 constexpr Option kPlanOptions[] = {
     {"--scenes", "A,B",
      "scenes of the catalogue (default pile,spheres,hulls,wall,pyramid,stacks,tumbler,crowd,"
-     "sparse)"},
-    {"--sizes", "N,M", "sizes of each scene (default 1000,10000,100000)"},
+     "sparse; with --error all that have an answer)"},
+    {"--sizes", "N,M",
+     "sizes of each scene (default 1000,10000,100000; with --error the scene's own)"},
+    {"--dt", "S,T",
+     "steps, s, as numbers or fractions, each a run of its own (default: the scene's)"},
+    {"--error", "",
+     "how far every engine is from the scene's answer, beside its times: of rolling, bouncing, "
+     "ball_cube and elastic_ball_cube, in the unit and for the time of SimBenchmark; others have "
+     "no answer and are refused"},
     {"--threads", "N,M", "numbers of threads, 1 to 1024 (default: 1 and all cores)"},
-    {"--steps", "N", "steps of each run, from 1; the same first steps for all (default 200)"},
+    {"--steps", "N",
+     "steps of each run, from 1; the same first steps for all (default 200; with --error for as "
+     "long as the answer is followed)"},
     {"--repeat", "K", "runs of each engine, from worlds made anew (default 2)"},
     {"--max-seconds", "S",
      "an engine stops a run after so long; what is compared is then the steps that both have done "
@@ -117,6 +128,40 @@ double seconds_of(std::string_view text)
     return seconds;
 }
 
+std::vector<double> dts_of(std::string_view text)
+{
+    std::vector<double> dts;
+    if (text.empty()) return dts;
+    for (const std::string_view part : parts_of("--dt", text)) {
+        Scene unused;
+        set_from_line(unused, "--dt", "dt", part);
+        if (std::find(dts.begin(), dts.end(), unused.settings.dt) != dts.end())
+            throw BadInput("--dt: " + in_quotes(part) + " is given twice");
+        dts.push_back(unused.settings.dt);
+    }
+    return dts;
+}
+
+std::string scenes_with_answers(std::string_view between)
+{
+    std::string names;
+    for (const SceneAnswer& answer : scene_answers())
+        names += (names.empty() ? std::string() : std::string(between)) + std::string(answer.scene);
+    return names;
+}
+
+void check_answers(const Plan& plan)
+{
+    for (const CatalogEntry* scene : plan.scenes)
+        if (find_answer(scene->name) == nullptr)
+            throw BadInput("--error: " + std::string(scene->name)
+                           + " has no answer to be held against; give --scenes some of "
+                           + scenes_with_answers(", "));
+    // Peers would go by the scene's own, and be told as if they were compared.
+    if (plan.varied.dial == "dt")
+        throw BadInput("--vary: dt would be throng's alone; with --error give --dt its values");
+}
+
 void check_sizes(const Plan& plan)
 {
     for (const CatalogEntry* scene : plan.scenes)
@@ -134,18 +179,40 @@ std::span<const Option> plan_options() { return kPlanOptions; }
 Plan read_plan(const Options& options)
 {
     Plan plan;
-    plan.scenes = scenes_of(text_or(options, "--scenes", kStandardScenes));
-    plan.sizes = numbers_of("--sizes", text_or(options, "--sizes", kStandardSizes), 10'000'000);
+    plan.errors = options.has("--error");
+    const std::string standard_scenes =
+        plan.errors ? scenes_with_answers(",") : std::string(kStandardScenes);
+    plan.scenes = scenes_of(text_or(options, "--scenes", standard_scenes));
+    if (!plan.errors || options.has("--sizes"))
+        plan.sizes = numbers_of("--sizes", text_or(options, "--sizes", kStandardSizes), 10'000'000);
+    plan.dts = dts_of(options.text("--dt"));
     plan.threads = numbers_of("--threads", text_or(options, "--threads", all_cores()), 1024);
     plan.peers_asked_for = options.has("--peers");
     plan.peers = peers_of(text_or(options, "--peers", "bullet,ode"));
     plan.varied = variation_of(options.text("--vary"));
-    plan.steps = options.whole("--steps", kStandardSteps, 1, kMostBenchSteps);
+    if (!plan.errors || options.has("--steps"))
+        plan.steps = options.whole("--steps", kStandardSteps, 1, kMostBenchSteps);
     plan.repeats = static_cast<int>(options.whole("--repeat", 2, 1, 1000));
     plan.max_seconds = seconds_of(text_or(options, "--max-seconds", kStandardSeconds));
     plan.seed = seed_asked(options);
     check_sizes(plan);
+    if (plan.errors) check_answers(plan);
     return plan;
+}
+
+std::vector<PlannedScene> planned_scenes(const Plan& plan, double standard_dt)
+{
+    std::vector<PlannedScene> planned;
+    const std::vector<double> dts = plan.dts.empty() ? std::vector<double>{standard_dt} : plan.dts;
+    for (const CatalogEntry* entry : plan.scenes)
+        for (const int size :
+             plan.sizes.empty() ? std::vector<int>{entry->default_size} : plan.sizes)
+            for (const double dt : dts) {
+                std::int64_t steps = plan.steps;
+                if (steps == 0) steps = std::llround(find_answer(entry->name)->time / dt);
+                planned.push_back({entry, size, dt, std::max<std::int64_t>(1, steps)});
+            }
+    return planned;
 }
 
 }  // namespace throng::bench

@@ -15,13 +15,24 @@ struct Variation {
     std::vector<std::string> values;
 };
 
+/// A scene as all engines step it.
+struct PlannedScene {
+    const CatalogEntry* entry = nullptr;
+    int size = 0;
+    double dt = 0;           // s
+    std::int64_t steps = 0;  // at most
+};
+
 struct Plan {
     std::vector<const CatalogEntry*> scenes;
-    std::vector<int> sizes, threads;  // ascending, each once
+    std::vector<int> sizes;    // ascending, each once; none: each scene's own
+    std::vector<int> threads;  // likewise
+    std::vector<double> dts;   // s, in the order given; none: the scenes' own
     std::vector<std::string> peers;
     Variation varied;
     bool peers_asked_for = false;  // by name; else those that are there
-    std::int64_t steps = 0;
+    bool errors = false;           // told beside the times
+    std::int64_t steps = 0;        // 0: for as long as each scene's answer is followed
     int repeats = 0;
     double max_seconds = 0;  // an engine may take in all for one scene of one size
     std::uint64_t seed = 0;
@@ -33,5 +44,8 @@ std::span<const Option> plan_options();
 
 /// Throws BadInput, which says what was wanted.
 Plan read_plan(const Options& options);
+
+/// All that is to be run, scene by scene. Where no step was asked for it is `standard_dt`.
+std::vector<PlannedScene> planned_scenes(const Plan& plan, double standard_dt);
 
 }  // namespace throng::bench

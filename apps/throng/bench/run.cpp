@@ -3,6 +3,7 @@
 
 #include "apps/throng/bench/memory.hpp"
 #include "apps/throng/interrupt.hpp"
+#include "cost/answers/answers.hpp"
 
 #include <chrono>
 #include <ctime>
@@ -24,8 +25,9 @@ double milliseconds(clockid_t clock)
 /// An engine on its way.
 class Contestant {
 public:
-    Contestant(const EngineKind& kind, const Scene& scene, int repeat)
-        : cpu_clock_(kind.threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID)
+    Contestant(const EngineKind& kind, const Scene& scene, int repeat, std::int64_t steps)
+        : steps_(steps),
+          cpu_clock_(kind.threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID)
     {
         run_.engine = kind.name;
         run_.setting = kind.setting;
@@ -42,7 +44,7 @@ public:
 
     bool is_done(const Plan& plan) const
     {
-        return static_cast<std::int64_t>(run_.steps()) >= plan.steps
+        return static_cast<std::int64_t>(run_.steps()) >= steps_
             || spent_ms_ >= plan.max_seconds * 1e3;
     }
 
@@ -100,6 +102,7 @@ private:
     }
 
     Run run_;
+    std::int64_t steps_;  // at most
     clockid_t cpu_clock_;
     MemoryGrowth memory_;
     double spent_ms_ = 0;
@@ -115,28 +118,47 @@ void count_bodies(const Scene& scene, Case& made)
         made.bodies_dynamic += group.common.motion == Motion::dynamic ? group.count() : 0;
 }
 
+/// Runs an engine once more, for as many steps, and tells how far it is from the answer.
+template <class After>
+double error_of(const SceneAnswer& answer,
+                const Scene& scene,
+                const EngineKind& kind,
+                std::size_t steps,
+                const After& after)
+{
+    const std::unique_ptr<Engine> engine = kind.make(scene);
+    RunError error(answer, scene);
+    for (std::size_t step = 1; step <= steps && !interrupted(); ++step) {
+        engine->step();
+        error.add(static_cast<double>(step) * scene.settings.dt, engine->states());
+        after();
+    }
+    return error.mean();
+}
+
 }  // namespace
 
 Case run_case(const Plan& plan,
-              const CatalogEntry& entry,
-              int size,
+              const PlannedScene& planned,
               const Scene& scene,
               std::span<const EngineKind> kinds,
               Progress& progress,
               std::int64_t& steps_done)
 {
     Case made;
-    made.scene = &entry;
-    made.size = size;
+    made.scene = planned.entry;
+    made.size = planned.size;
+    made.dt = scene.settings.dt;
     count_bodies(scene, made);
-    const std::string label = std::string(entry.name) + ':' + std::to_string(size);
+    const std::string label = std::string(planned.entry->name) + ':' + std::to_string(planned.size);
     const std::int64_t begin = steps_done;
     std::int64_t share = 0;
     for (int repeat = 0; repeat < plan.repeats && !interrupted(); ++repeat) {
         trim_memory();
         std::vector<Contestant> contestants;
         contestants.reserve(kinds.size());
-        for (const EngineKind& kind : kinds) contestants.emplace_back(kind, scene, repeat);
+        for (const EngineKind& kind : kinds)
+            contestants.emplace_back(kind, scene, repeat, planned.steps);
         bool going = true;
         while (going && !interrupted()) {
             going = false;
@@ -153,8 +175,15 @@ Case run_case(const Plan& plan,
         for (Contestant& contestant : contestants)
             made.runs.push_back(contestant.finish(label, last));
         // Those that ran out of time are done all the same.
-        share += static_cast<std::int64_t>(kinds.size()) * plan.steps;
+        share += static_cast<std::int64_t>(kinds.size()) * planned.steps;
         steps_done = begin + share;
+    }
+    for (std::size_t i = 0; plan.errors && i < kinds.size() && !interrupted(); ++i) {
+        Run& run = made.runs[i];  // of the first repeat
+        run.error = error_of(*find_answer(planned.entry->name), scene, kinds[i], run.steps(), [&] {
+            progress.show(++steps_done, label + ", error of " + name_of(run.engine, run.setting));
+        });
+        steps_done = begin + (share += planned.steps);
     }
     made.complete = !interrupted();
     return made;

@@ -5,6 +5,8 @@
 #include "apps/throng/bench/plan.hpp"
 #include "apps/throng/progress.hpp"
 
+#include <limits>
+
 namespace throng::bench {
 
 struct StageRun {
@@ -20,6 +22,8 @@ struct Run {
     std::vector<std::size_t> contacts;
     std::vector<StageRun> stages;
     Quality quality;  // of the first repeat; the others end alike, and judging takes long
+    /// From the scene's answer, in its unit; NaN where it was not asked for. Of the first repeat.
+    double error = std::numeric_limits<double>::quiet_NaN();
     double make_ms = 0;
     double state_bytes = 0, heap_bytes = 0, resident_bytes = 0;
 
@@ -30,16 +34,18 @@ struct Run {
 struct Case {
     const CatalogEntry* scene = nullptr;
     int size = 0;
+    double dt = 0;  // s
     std::size_t bodies = 0, bodies_dynamic = 0;
     std::vector<Run> runs;
     bool complete = true;  // nobody interrupted it
 };
 
 /// Runs them: in each repeat every engine gets a fresh world, and they take turns of some steps, so
-/// that whatever else the machine does meets all alike. Stops early where interrupted.
+/// that whatever else the machine does meets all alike. Errors are taken after that, in passes of
+/// their own over as many steps, so that no step waits for who looks on. Stops early where
+/// interrupted.
 Case run_case(const Plan& plan,
-              const CatalogEntry& entry,
-              int size,
+              const PlannedScene& planned,
               const Scene& scene,
               std::span<const EngineKind> kinds,
               Progress& progress,

@@ -1,6 +1,7 @@
 // Table: a benchmark's figures for people, in columns that programs can read, too.
 #include "apps/throng/bench/budget.hpp"
 #include "apps/throng/bench/report.hpp"
+#include "cost/answers/answers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -48,10 +49,17 @@ std::string times_of(const Figure& figure,
 }
 
 // What an engine took and how it compares.
-void print_times(const Plan& plan, const std::vector<Figure>& figures, std::ostream& out)
+void print_times(const Plan& plan,
+                 const Case& made,
+                 const std::vector<Figure>& figures,
+                 std::ostream& out)
 {
     Row head = {"engine", "threads", "steps",   "ms/step",    "median",   "p99",
                 "cpu_ms", "spread",  "ns/body", "ns/contact", "contacts", "speedup"};
+    constexpr std::ptrdiff_t kErrorAt = 4;
+    if (plan.errors)
+        head.insert(head.begin() + kErrorAt,
+                    {"cpu_s", "error_" + std::string(find_answer(made.scene->name)->unit)});
     for (const std::string& peer : plan.peers)
         head.insert(head.end(), {"x_" + peer, "cpu_x_" + peer});
     std::vector<Row> rows = {head};
@@ -68,6 +76,10 @@ void print_times(const Plan& plan, const std::vector<Figure>& figures, std::ostr
                    figure.ns_a_contact > 0 ? text_of(figure.ns_a_contact) : "-",
                    text_of(figure.contacts, "%.0f"),
                    times_of(figure, "throng")};
+        if (plan.errors)
+            row.insert(row.begin() + kErrorAt,
+                       {text_of(figure.cpu_ms * static_cast<double>(figure.steps) / 1e3),
+                        std::isnan(figure.error) ? "-" : text_of(figure.error, "%.3g")});
         for (const std::string& peer : plan.peers) {
             row.push_back(times_of(figure, peer));
             row.push_back(times_of(figure, peer, &Comparison::cpu_times));
@@ -156,15 +168,23 @@ void print_heading(const Plan& plan, std::ostream& out)
            "same\ngeometry for all; shared_volume is that of pairs, of the volume of the bodies "
            "that "
            "are meshes.\n";
+    if (!plan.errors) return;
+    out << "\nError: mean over the steps, from the end of each, of\n";
+    for (const SceneAnswer& answer : scene_answers())
+        out << "  " << answer.scene << ": " << answer.quantity << ", " << answer.unit << ", for "
+            << answer.time << " s\n";
+    out << "An engine whose time is up before (--max-seconds) is told of the steps that it did.\n";
 }
 
 void print_case(const Plan& plan, const Case& made, std::ostream& out)
 {
     const std::vector<Figure> figures = figures_of(made);
     out << '\n'
-        << made.scene->name << ':' << made.size << "  " << made.bodies_dynamic << " dynamic bodies"
-        << (made.complete ? "" : ", interrupted") << '\n';
-    print_times(plan, figures, out);
+        << made.scene->name << ':' << made.size
+        << (plan.dts.empty() ? std::string() : ", dt " + text_of(made.dt) + " s") << "  "
+        << made.bodies_dynamic << " dynamic bodies" << (made.complete ? "" : ", interrupted")
+        << '\n';
+    print_times(plan, made, figures, out);
     out << '\n';
     print_states(figures, out);
     print_all_stages(made, figures, out);
@@ -178,16 +198,16 @@ void print_growth(const std::vector<Growth>& all, std::ostream& out)
            "contact (of a\nbody, where little touches) from one size to the next, each while a "
            "body "
            "has as many contacts.\n";
-    std::vector<Row> rows = {{"scene", "threads", "steps", "exponent", "from", "to", "per",
+    std::vector<Row> rows = {{"scene", "dt", "threads", "steps", "exponent", "from", "to", "per",
                               "ns_from", "ns_to", "ratio", "contacts_from", "contacts_to"}};
     for (const Growth& growth : all)
         for (const Growth::EqualState& step : growth.steps_up)
-            rows.push_back({name_of(growth.scene, growth.setting), std::to_string(growth.threads),
-                            std::to_string(growth.steps), text_of(growth.exponent, "%.3f"),
-                            std::to_string(step.small), std::to_string(step.large),
-                            step.by_contact ? "contact" : "body", text_of(step.ns_small),
-                            text_of(step.ns_large), text_of(step.ratio(), "%.3f"),
-                            text_of(step.contacts_small, "%.2f"),
+            rows.push_back({name_of(growth.scene, growth.setting), text_of(growth.dt),
+                            std::to_string(growth.threads), std::to_string(growth.steps),
+                            text_of(growth.exponent, "%.3f"), std::to_string(step.small),
+                            std::to_string(step.large), step.by_contact ? "contact" : "body",
+                            text_of(step.ns_small), text_of(step.ns_large),
+                            text_of(step.ratio(), "%.3f"), text_of(step.contacts_small, "%.2f"),
                             text_of(step.contacts_large, "%.2f")});
     print_rows(rows, out);
 }

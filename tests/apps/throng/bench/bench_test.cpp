@@ -116,6 +116,58 @@ TEST(Bench, PeersFallAsThrongDoes)
     if (peers == 0) GTEST_SKIP() << "no other engine was there when this was built";
 }
 
+TEST(Bench, ErrorsAreToldBesideTimes)
+{
+    const TestFolder folder;
+    const Outcome done = run_throng({"bench",     "--error",
+                                     "--scenes",  "rolling",
+                                     "--threads", "1",
+                                     "--dt",      "1e-2,1/500",
+                                     "--steps",   "50",
+                                     "--repeat",  "1",
+                                     "--set",     "solver=direct",
+                                     "--set",     "precision=double",
+                                     "--set",     "substeps=1",
+                                     "--set",     "integrator=semi_implicit",
+                                     "--json",    folder / "b.json"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    for (const char* words : {"\nrolling:25, dt 0.01 s ", "\nrolling:25, dt 0.002 s ", "cpu_s",
+                              "error_m2/s2", "squared error of the velocities"})
+        EXPECT_NE(done.out.find(words), std::string::npos) << words << " is not in " << done.out;
+    const Json json(folder.read("b.json"));
+    const std::vector<Node> cases = json.items(json.at("cases"));
+    ASSERT_EQ(cases.size(), 2u);
+    EXPECT_EQ(json.number(cases[0], "dt"), 0.01);
+    EXPECT_EQ(json.text(cases[0], "error_unit"), "m2/s2");
+    for (const Node one : cases)
+        for (const Node figure : json.items(json.at(one, "figures"))) {
+            const double error = json.number(figure, "error");
+            const std::string engine = json.text(figure, "engine");
+            EXPECT_GE(error, 0) << engine;
+            // A box that nobody pulls would be 0.046 m2/s2 off in half a second.
+            EXPECT_LT(error, engine == "throng" ? 1e-18 : 0.2) << engine;
+        }
+}
+
+// Of every scene, for as long as its answer is followed unless told otherwise.
+TEST(Bench, ErrorsAreOfAllScenesThatHaveAnAnswer)
+{
+    const TestFolder folder;
+    const Outcome done =
+        run_throng({"bench", "--error", "--sizes", "8", "--threads", "1", "--dt", "0.1", "--repeat",
+                    "1", "--peers", "none", "--json", folder / "b.json"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    const Json json(folder.read("b.json"));
+    const double steps[] = {40, 200, 100, 100};
+    const std::vector<Node> cases = json.items(json.at("cases"));
+    ASSERT_EQ(cases.size(), 4u);
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        for (const Node figure : json.items(json.at(cases[i], "figures"))) {
+            EXPECT_EQ(json.number(figure, "steps"), steps[i]);
+            EXPECT_GE(json.number(figure, "error"), 0);
+        }
+}
+
 // Both ends are judged by the same geometry.
 TEST(Bench, ValuesOfADialRunSideBySide)
 {

@@ -61,6 +61,21 @@ TEST(PeerScene, ACrowdIsDrivenAndMayNotTurn)
     EXPECT_EQ(given.shapes.back().kind, ShapeKind::capsule);
 }
 
+TEST(PeerScene, ForcesAndPlanesAreGiven)
+{
+    Scene scene = make_scene("rolling", 4);
+    auto& ground = std::get<PlaneShape>(scene.shapes[scene.bodies[0].shape].shape);
+    ground.normal = Vec3(0, 0.6, 0.8);
+    ground.offset = -20;
+    const PeerScene given = peer_scene(World(scene), scene);
+    EXPECT_EQ(given.bodies[1].force, scene.bodies[1].force);
+    EXPECT_EQ(given.bodies[2].force, Vec3::Zero());
+    const PeerShape& plane = given.shapes[given.bodies[0].first_shape];
+    EXPECT_EQ(plane.kind, ShapeKind::plane);
+    EXPECT_TRUE(plane.size.isApprox(Vec3(0, 0.6, 0.8), 1e-12));
+    EXPECT_NEAR(plane.size.dot(plane.local.position), -20, 1e-12);
+}
+
 TEST(PeerScene, AHullHasItsTrianglesOutward)
 {
     const Scene scene = make_scene("hulls", 10);
