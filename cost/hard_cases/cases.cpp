@@ -140,6 +140,8 @@ constexpr HardCase kCases[] = {
     {"H100", "heaps that land lie still by little more than usual work", case_landed_heaps,
      Fault::sink},
     {"H101", "what tumbles beside a wall keeps energy and momentum", case_near_walls, Fault::whirl},
+    {"H102", "SimBenchmark's tasks, with no more error than any engine published there",
+     case_simbenchmark, Fault::haste},
     {"H103", "what a step is told to be off by is what it is off by", case_step_errors,
      Fault::modesty},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,

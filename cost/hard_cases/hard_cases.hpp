@@ -109,6 +109,7 @@ void case_swings(CaseBench& bench);             // H98, swings.cpp
 void case_bent_tracks(CaseBench& bench);        // H99, bent_tracks.cpp
 void case_landed_heaps(CaseBench& bench);       // H100, landed_heaps.cpp
 void case_near_walls(CaseBench& bench);         // H101, near_walls.cpp
+void case_simbenchmark(CaseBench& bench);       // H102, simbenchmark.cpp
 void case_step_errors(CaseBench& bench);        // H103, step_errors.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.

@@ -144,6 +144,9 @@ constexpr OtherFault kOtherFaults[] = {
     {"H24", Fault::grip, "stays: wrong outcomes"},
     {"H24", Fault::skew, "off its straight way"},
     {"H76", Fault::whirl, "fastest spin"},
+    {"H102", Fault::friction, "mean squared error of the velocities"},
+    {"H102", Fault::restitution, "mean squared error of the energy"},
+    {"H102", Fault::sink, "mean squared overlaps, added up"},
 };
 // clang-format on
 
