@@ -26,6 +26,14 @@ bool anybody_differs(const StepContext& context)
         && (!falls_by_kicks(context.integrator) || context.effects.meets(kForces));
 }
 
+// Whether a body has its velocity from an integrator. Who has not flown yet, and is at a contact,
+// may rest there: half a fall less would have friction hold him with half his weight at first.
+bool has_flown(const Flights& flights, std::uint32_t body)
+{
+    return body < flights.memory.size()
+        && !flights.memory[body].shown_orientation.coeffs().isZero(0);
+}
+
 }  // namespace
 
 void lag_velocities(const StepContext& context,
@@ -41,7 +49,7 @@ void lag_velocities(const StepContext& context,
         if (flights.lags[body] != 0 || !(masses.inverse_mass[body] > 0)
             || !differs(context, forces, body))
             continue;
-        velocities.linear[body] -= half_fall(context);
+        if (has_flown(flights, body)) velocities.linear[body] -= half_fall(context);
         flights.lags[body] = 1;
     }
 }

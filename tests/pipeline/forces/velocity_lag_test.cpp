@@ -73,5 +73,25 @@ TEST(VelocityLag, LeavesWhoRestsAtRest)
     }
 }
 
+// A box at rest that a constant force pulls over the floor: friction has all of its weight at once.
+TEST(VelocityLag, WhoIsPulledFromRestIsHeldByAllOfHisWeight)
+{
+    for (const Integrator integrator :
+         {Integrator::auto_, Integrator::semi_implicit, Integrator::midpoint, Integrator::rk4}) {
+        Scene scene = bouncing(integrator);
+        scene.materials[0] = {"m", 1000, 0.4, 0, 0};
+        scene.shapes[1] = {"box", BoxShape{Vec3(1, 1, 0.1)}};
+        scene.settings.dt = 0.01;
+        BodyDescription& box = scene.bodies[1];
+        box.position.z() = 0.1;
+        box.mass = 10;
+        box.force = Vec3(60, 0, 0);
+        World world(scene);
+        world.step(60);
+        const double speed = 0.6 * (6 - 0.4 * world.gravity().norm());
+        EXPECT_NEAR(world.velocity(world.bodies()[1]).x(), speed, 1e-4) << int(integrator);
+    }
+}
+
 }  // namespace
 }  // namespace throng
