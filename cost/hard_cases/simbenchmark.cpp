@@ -27,24 +27,14 @@ struct Way {
     void (*set)(Settings& settings);
 };
 
-// By other integrators a body that a force pulls over the ground is told with the speed of a
-// substep on.
-void solve_at_once(Settings& settings)
-{
-    ask_exactly(settings);
-    settings.integrator = Integrator::semi_implicit;
-}
-
 const Way kDefault = {"", [](Settings&) {}};
-const Way kDirect = {"solver=direct, integrator=semi_implicit, precision=double, substeps=1",
-                     solve_at_once};
-const Way kFortyIterations = {
-    "solver=pgs, iterations=40, integrator=semi_implicit, precision=double, substeps=1",
-    [](Settings& settings) {
-        solve_at_once(settings);
-        settings.solver = Solver::pgs;
-        settings.iterations = 40;
-    }};
+const Way kDirect = {"solver=direct, precision=double, substeps=1", ask_exactly};
+const Way kFortyIterations = {"solver=pgs, iterations=40, precision=double, substeps=1",
+                              [](Settings& settings) {
+                                  ask_exactly(settings);
+                                  settings.solver = Solver::pgs;
+                                  settings.iterations = 40;
+                              }};
 // The step is cut at every touch. With the tolerance by default, 1e-4, one impact in many comes in
 // so slowly that it is taken for rest.
 const Way kBackUp = {
