@@ -28,10 +28,10 @@ window.addEventListener("load", async () => {
   said.wider = document.documentElement.scrollWidth - document.documentElement.clientWidth;
   const [way] = performance.getEntriesByType("navigation");
   said.ms = way.domContentLoadedEventEnd - way.responseEnd;
-  const heads = [...document.querySelectorAll("th")];
+  const heads = [...document.querySelectorAll("#settings th")];
   const time = heads.findIndex((head) => head.textContent.startsWith("time"));
   heads[time].querySelector("button").click();
-  const times = [...document.querySelectorAll("tbody tr")]
+  const times = [...document.querySelectorAll("#settings tbody tr")]
     .map((row) => row.cells[time].dataset.value).filter((text) => text).map(Number);
   said.sorted = heads[time].getAttribute("aria-sort") === "ascending"
     && times.length > 1 && times.every((value, at) => at === 0 || times[at - 1] <= value);

@@ -102,7 +102,7 @@ Changes changes_given(const Options& options)
 {
     // A scene without anything, for what dials take.
     Scene scene;
-    set_dials(scene, options);
+    set_dials_and_dt(scene, options);
     Changes given;
     for (const std::string& dial : scene.dials_set)
         given.push_back({dial, dial_value(scene.settings, dial)});
@@ -159,6 +159,10 @@ void sweep_into(CostReport& report,
         if (const auto fitted = fitted_order(trials.scene(), report.found, dial, report.measure,
                                              of(report.reference.remaining, report.measure)))
             report.orders.push_back(*fitted);
+    if (report.found.interrupted) return;
+    report.stages = trials.stage_times({});
+    if (const Advice advice = advice_of(report); advice.point != nullptr)
+        report.advised_stages = trials.stage_times(advice.point->changes);
 }
 
 int report_cost(const Options& options,

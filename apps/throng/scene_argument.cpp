@@ -51,8 +51,7 @@ SceneArgument read_scene_argument(const Options& options)
         }
     }
     argument.scene.cache_folder = default_cache_folder().string();
-    set_dials(argument.scene, options);
-    if (options.has("--dt")) set_from_line(argument.scene, "--dt", "dt", options.text("--dt"));
+    set_dials_and_dt(argument.scene, options);
     return argument;
 }
 
@@ -75,6 +74,12 @@ void set_dials(Scene& scene, const Options& options)
             throw BadInput("--set: wanted DIAL=VALUE, not " + in_quotes(setting));
         set_from_line(scene, "--set", setting.substr(0, equals), setting.substr(equals + 1));
     }
+}
+
+void set_dials_and_dt(Scene& scene, const Options& options)
+{
+    set_dials(scene, options);
+    if (options.has("--dt")) set_from_line(scene, "--dt", "dt", options.text("--dt"));
 }
 
 World make_world(const SceneArgument& argument, int threads, bool quiet)

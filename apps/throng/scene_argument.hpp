@@ -42,6 +42,8 @@ void set_from_line(Scene& scene,
 
 /// Sets the dials that --set of the line names. Throws BadInput.
 void set_dials(Scene& scene, const Options& options);
+/// The same, and --dt, where that is one step and no list of them.
+void set_dials_and_dt(Scene& scene, const Options& options);
 
 /// The world of the scene; what it lost on the way goes to stderr, unless quiet. Throws BadInput
 /// when it is impossible.

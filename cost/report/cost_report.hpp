@@ -44,6 +44,7 @@ struct CaseLine {
 ///            or of the case's line: points of another are none of this report
 ///   command  that runs it as it was measured, but for `given`, the dials that were set for all of
 ///   it of_case  of a case; seed, plan, window, windows and at_rest are of a scene alone
+///   stages, advised_stages  time by stage with no change, and by the advice; none of a case
 struct CostReport {
     std::string scene, state, command;
     Changes given;
@@ -60,6 +61,7 @@ struct CostReport {
     Wish wish;
     SweepResult found;
     std::vector<FittedOrder> orders;
+    std::vector<StageTime> stages, advised_stages;
 
     /// What the error is of.
     const Quantity& told() const { return quantities[measure]; }

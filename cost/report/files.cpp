@@ -107,6 +107,13 @@ std::string head_in_csv(const std::string& head)
     return head.find_first_of(" ,\"") == std::string::npos ? head : in_csv(head);
 }
 
+std::string stages_json(const std::vector<StageTime>& stages)
+{
+    JsonMembers times;
+    for (const StageTime& each : stages) times.add(each.name, each.time_ms);
+    return times.text();
+}
+
 // What the report is of: a scene and its windows, or a case and its line.
 void add_trials(const CostReport& report, JsonMembers& all)
 {
@@ -183,6 +190,8 @@ void write_cost_json(const CostReport& report, std::ostream& out)
                            .add_text("last_that_helps", fitted.helps)
                            .text();
                    }))
+        .add("stages_ms", stages_json(report.stages))
+        .add("advised_stages_ms", stages_json(report.advised_stages))
         .add("wish",
              JsonMembers()
                  .add("error", report.wish.error)

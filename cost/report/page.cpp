@@ -127,6 +127,33 @@ std::string how(const CostReport& report)
     return text;
 }
 
+double time_of(const std::vector<StageTime>& stages, std::string_view name)
+{
+    for (const StageTime& each : stages)
+        if (each.name == name) return each.time_ms;
+    return NAN;
+}
+
+// In the order of the step, what the advice alone has at the end; nothing where nobody timed them.
+std::string stages(const CostReport& report)
+{
+    if (report.stages.empty()) return "";
+    std::vector<std::string_view> names;
+    for (const StageTime& each : report.stages) names.push_back(each.name);
+    for (const StageTime& each : report.advised_stages)
+        if (std::isnan(time_of(report.stages, each.name))) names.push_back(each.name);
+    std::string text =
+        "<section aria-labelledby=\"stages\"><h2 id=\"stages\">Time by stage</h2>\n"
+        "<p class=\"soft\">ms for each 1/60 s; where the step runs on several threads, of all of "
+        "them.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"table of "
+        "stages\">\n<table class=\"stages\">\n<thead><tr><th scope=\"col\">stage</th>"
+        "<th scope=\"col\">as it is</th><th scope=\"col\">advised</th></tr></thead>\n<tbody>\n";
+    for (const std::string_view name : names)
+        text += "<tr><td>" + in_markup(name) + "</td>" + cell(time_of(report.stages, name))
+            + cell(time_of(report.advised_stages, name)) + "</tr>\n";
+    return text + "</tbody>\n</table>\n</div>\n</section>";
+}
+
 std::string word_for(std::string_view place, const CostReport& report)
 {
     if (place == "scene") return in_markup(report.scene);
@@ -137,6 +164,7 @@ std::string word_for(std::string_view place, const CostReport& report)
     if (place == "bars") return bars(report);
     if (place == "heads") return heads(report);
     if (place == "rows") return rows(report);
+    if (place == "stages") return stages(report);
     if (place == "how") return how(report);
     throw std::logic_error("page.html: nothing is called " + std::string(place));
 }

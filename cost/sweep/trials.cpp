@@ -27,6 +27,11 @@ double WindowTrials::time_ms(const Changes& changes, std::size_t trial) const
     return windows_.time_ms(changed(scene_, changes), trial);
 }
 
+std::vector<StageTime> WindowTrials::stage_times(const Changes& changes) const
+{
+    return windows_.stage_times(changed(scene_, changes));
+}
+
 std::vector<Quantity> WindowTrials::of_windows()
 {
     std::vector<Quantity> all;

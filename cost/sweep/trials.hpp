@@ -53,6 +53,8 @@ public:
     virtual Trial run(const Changes& changes, std::size_t trial, double patience) const = 0;
     /// The time alone, ms for each 1/60 s.
     virtual double time_ms(const Changes& changes, std::size_t trial) const = 0;
+    /// That of each stage of the step; none where the steps are somebody else's.
+    virtual std::vector<StageTime> stage_times(const Changes& /*changes*/) const { return {}; }
 };
 
 /// The windows of a scene, both of which it needs to stay.
@@ -69,6 +71,7 @@ public:
     bool holds_whole_steps(double dt) const override { return windows_.holds_whole_steps(dt); }
     Trial run(const Changes& changes, std::size_t trial, double patience) const override;
     double time_ms(const Changes& changes, std::size_t trial) const override;
+    std::vector<StageTime> stage_times(const Changes& changes) const override;
 
     /// What is measured of windows, in the order of Measure.
     static std::vector<Quantity> of_windows();

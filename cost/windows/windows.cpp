@@ -26,10 +26,11 @@ constexpr double kGolden = 0.6180339887498949;
 // own: settings that are compared on two scenes alike but for their step see the same windows.
 constexpr double kFine = 1.0 / 480;  // s
 constexpr int kMostHalvings = 7;
-constexpr double kEnough = 0.1;    // of the error that is wanted
-constexpr double kNearer = 0.75;   // what a halving has to bring the change down to
-constexpr double kMoves = 1e-6;    // m
-constexpr double kNothing = 1e-9;  // m, below which the ends did not move
+constexpr double kEnough = 0.1;           // of the error that is wanted
+constexpr double kNearer = 0.75;          // what a halving has to bring the change down to
+constexpr double kMoves = 1e-6;           // m
+constexpr double kNothing = 1e-9;         // m, below which the ends did not move
+constexpr std::size_t kStageWindows = 8;  // that stages are timed in
 
 double seconds_since(Clock::time_point begin)
 {
@@ -282,6 +283,34 @@ double Windows::time_ms(const Scene& scene, std::size_t window) const
     const Clock::time_point begin = Clock::now();
     for (int step = skipped; step < steps; ++step) world.step();
     return 1e3 * seconds_since(begin) * kFrame / (scene.settings.dt * (steps - skipped));
+}
+
+std::vector<StageTime> Windows::stage_times(const Scene& scene) const
+{
+    std::vector<StageTime> stages;
+    const std::size_t count = std::min(kStageWindows, windows_.size());
+    const int steps = steps_in(length_, scene.settings.dt), skipped = steps / 3;
+    const double share =
+        kFrame / (scene.settings.dt * (steps - skipped) * static_cast<double>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+        World world = begun(scene, k * windows_.size() / count);
+        for (int step = 0; step < steps; ++step) {
+            check();
+            world.step();
+            if (step < skipped) continue;
+            // Stages come with what calls for them, and go.
+            for (const StageReport& of : world.stages()) {
+                const auto found =
+                    std::find_if(stages.begin(), stages.end(),
+                                 [&](const StageTime& each) { return each.name == of.name; });
+                if (found == stages.end())
+                    stages.push_back({std::string(of.name), share * of.time_ms});
+                else
+                    found->time_ms += share * of.time_ms;
+            }
+        }
+    }
+    return stages;
 }
 
 }  // namespace throng

@@ -71,6 +71,12 @@ struct ReferenceInfo {
     bool settles = false;
 };
 
+/// What a stage of the step takes, ms for each 1/60 s of the scene's time.
+struct StageTime {
+    std::string name;
+    double time_ms = 0;
+};
+
 class Windows {
 public:
     /// Runs the scene and the reference. `wanted` is an error in metres a tenth of which is enough
@@ -102,6 +108,8 @@ public:
                   double patience = std::numeric_limits<double>::infinity()) const;
     /// The time alone.
     double time_ms(const Scene& scene, std::size_t window) const;
+    /// Of each stage, in the order of the step, on the average over some windows.
+    std::vector<StageTime> stage_times(const Scene& scene) const;
 
 private:
     void find_starts(const Scene& scene, const WindowPlan& plan);

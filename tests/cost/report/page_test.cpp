@@ -57,6 +57,28 @@ TEST(CostChart, SaysWhereNothingIsToBeDrawn)
     EXPECT_NE(out.str().find("no setting has an error above 0"), std::string::npos) << out.str();
 }
 
+TEST(CostPage, HasTheTimeOfEachStageWhereTheyWereTimed)
+{
+    CostReport made = report();
+    const auto page_of = [&] {
+        std::ostringstream out;
+        write_cost_page(made, out);
+        return out.str();
+    };
+    EXPECT_EQ(page_of().find("Time by stage"), std::string::npos);
+    made.stages = {{"find_pairs", 0.25}, {"relax", 0.5}};
+    made.advised_stages = {{"find_pairs", 0.125}, {"solve_direct", 2}};
+    const std::string page = page_of();
+    EXPECT_NE(page.find("<tr><td>find_pairs</td><td data-value=\"0.25\">0.25</td>"
+                        "<td data-value=\"0.125\">0.12</td></tr>"),
+              std::string::npos)
+        << page;
+    EXPECT_NE(page.find("<tr><td>relax</td><td data-value=\"0.5\">0.5</td><td></td></tr>"),
+              std::string::npos);
+    EXPECT_NE(page.find("<tr><td>solve_direct</td><td></td><td data-value=\"2\">2</td></tr>"),
+              std::string::npos);
+}
+
 TEST(CostPage, HoldsAllOfItAndLoadsNothing)
 {
     std::ostringstream out;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace throng {
@@ -89,6 +90,19 @@ TEST(Windows, EndWhereSomebodyWantsThemTo)
 {
     const Watch watch{{}, [] { return true; }};
     EXPECT_THROW(Windows(falling_ball(), {1, 0.1, 2, 1}, 0, 1, watch), Interrupted);
+}
+
+TEST(Windows, TimeEachStageOfTheStep)
+{
+    const Scene scene = scene_of("pile:10");
+    const Windows windows(scene, {2, 0.1, 2, 1}, 1, 1000, {});
+    const std::vector<StageTime> stages = windows.stage_times(scene);
+    for (const char* name : {"find_pairs", "collide_convex", "solve_soft_step"}) {
+        const auto found = std::find_if(stages.begin(), stages.end(),
+                                        [&](const StageTime& each) { return each.name == name; });
+        ASSERT_NE(found, stages.end()) << name;
+        EXPECT_GT(found->time_ms, 0) << name;
+    }
 }
 
 }  // namespace
