@@ -14,9 +14,7 @@ namespace throng {
 
 /// Which line, and how the case is run for it.
 ///
-///   quantity  of the line, the first of which is measured; empty: of the first line that comes
-///   from
-///             runs
+///   quantity  of the line, the first of which is measured; empty: that of the first from runs
 ///   given     dials that all of it is run by, whatever the case sets itself
 ///   threads   that run the steps; 0: all cores
 ///   patience  s of the clock that looking for the line may take

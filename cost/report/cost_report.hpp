@@ -39,11 +39,12 @@ struct CaseLine {
 
 /// What was measured, and on what.
 ///
-///   scene    its name, or that of the case
-///   state    fingerprint of the scene as it begins and of where the reference has the windows end,
-///            or of the case's line: points of another are none of this report
-///   command  that runs it as it was measured, but for `given`, the dials that were set for all of
-///   it of_case  of a case; seed, plan, window, windows and at_rest are of a scene alone
+///   scene     its name, or that of the case
+///   state     fingerprint of the scene as it begins and of where the reference has the windows
+///             end, or of the case's line: points of another are none of this report
+///   command   that runs it as it was measured, but for `given`
+///   given     the dials that were set for all of it
+///   of_case   of a case; seed, plan, window, windows and at_rest are of a scene alone
 ///   stages, advised_stages  time by stage with no change, and by the advice; none of a case
 struct CostReport {
     std::string scene, state, command;
