@@ -6,9 +6,7 @@
 #include "scene/names.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 
 namespace throng {
 namespace {
@@ -58,11 +56,9 @@ std::string command_for(const Options& options)
 
 std::string read_file(std::string_view path)
 {
-    std::ifstream file(std::string(path), std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file.good() && text.empty())
-        throw BadInput("--compare: " + in_quotes(path) + " cannot be read");
-    return text;
+    const std::optional<std::string> text = text_of_file(std::string(path));
+    if (!text) throw BadInput("--compare: " + in_quotes(path) + " cannot be read");
+    return *text;
 }
 
 int compare_reports(const Options& options)

@@ -64,14 +64,21 @@ std::string file_in(const std::string& folder, const char* name)
 std::string written_before(const Options& options, const std::string& path)
 {
     if (!options.has("--resume")) return {};
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
+    const std::optional<std::string> text = text_of_file(path);
+    if (!text)
         throw BadInput("--resume: there is no " + in_quotes(path)
                        + " to go on from; leave the option out the first time");
-    return {std::istreambuf_iterator<char>(file), {}};
+    return *text;
 }
 
 }  // namespace
+
+std::optional<std::string> text_of_file(const std::string& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return std::nullopt;
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+}
 
 CostOptions read_cost_options(const Options& options)
 {

@@ -6,6 +6,8 @@
 #include "cost/report/cost_report.hpp"
 
 #include <functional>
+#include <optional>
+#include <string>
 
 namespace throng {
 
@@ -26,6 +28,9 @@ Changes changes_given(const Options& options);
 
 /// A word as a shell takes it: in quotes where it has to be.
 std::string in_shell(std::string_view word);
+
+/// What a file holds; nothing where it cannot be read.
+std::optional<std::string> text_of_file(const std::string& path);
 
 /// The folder of a report, with its files opened, and what an earlier run left there.
 class CostFolder {

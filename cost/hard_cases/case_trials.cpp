@@ -1,10 +1,10 @@
 #include "cost/hard_cases/case_trials.hpp"
 
+#include "cost/clock.hpp"
 #include "kernels/math/hash.hpp"
 #include "scene/names.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -13,15 +13,6 @@
 namespace throng {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-constexpr double kFrame = 1.0 / 60;  // s
-
-double seconds_since(Clock::time_point begin)
-{
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 void add_once(std::vector<std::string>& list, const std::string& text)
 {
@@ -53,7 +44,7 @@ CaseTrials::CaseTrials(const HardCase& which, const CasePlan& plan, const Watch&
     : which_(which), plan_(plan), watch_(watch)
 {
     if (which.asks_alone) throw std::invalid_argument(refusal_of(which));
-    const Clock::time_point begin = Clock::now();
+    const WallClock::time_point begin = WallClock::now();
     // Lines that come late in a case may come soon in a brief one; the first comes at once in both.
     Found brief;
     if (!plan_.quantity.empty()) brief = go({}, Extent::brief, plan_.patience / 2);
@@ -89,7 +80,7 @@ bool CaseTrials::is_wanted(const CaseResult& line) const
 
 CaseTrials::Found CaseTrials::go(const Changes& changes, Extent extent, double patience) const
 {
-    const Clock::time_point begin = Clock::now();
+    const WallClock::time_point begin = WallClock::now();
     Found found;
     bool told = false, ended = false;  // of the runs so far; by who waits
     CaseListener listener;

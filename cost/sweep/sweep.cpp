@@ -1,7 +1,8 @@
 #include "cost/sweep/sweep.hpp"
 
+#include "cost/clock.hpp"
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -10,8 +11,6 @@
 namespace throng {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Trials of each round; what is left is measured on all.
 constexpr std::size_t kFirstTrials = 4, kMoreTrials = 10;
@@ -23,22 +22,16 @@ constexpr double kBeatenBy[] = {0.6, 0.75, 0.9};
 constexpr double kChanges = 0.02, kFaster = 0.95;
 // A trial that takes so many times as long as with no change is given up.
 constexpr double kTooSlow = 300;
-constexpr double kFrame = 1.0 / 60;     // s
 constexpr double kLeast = 1;            // s of the clock
 constexpr std::size_t kMostJoined = 8;  // others that are tried with steps, and steps with others
 // Trials that a time is taken over, and the share of the patience that times may take.
 constexpr std::size_t kTimedTrials = 8;
 constexpr double kTimesShare = 0.25;
 
-double seconds_since(Clock::time_point begin)
-{
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 class Sweeper {
 public:
     Sweeper(const Trials& trials, const SweepPlan& plan, const Watch& watch)
-        : trials_(trials), plan_(plan), watch_(watch), begin_(Clock::now())
+        : trials_(trials), plan_(plan), watch_(watch), begin_(WallClock::now())
     { }
 
     SweepResult run(const Candidates& candidates)
@@ -254,7 +247,7 @@ private:
     // In turn, so that a busy machine is busy for all of them; in whole rounds.
     void take_times()
     {
-        const Clock::time_point begin = Clock::now();
+        const WallClock::time_point begin = WallClock::now();
         std::vector<std::vector<double>> times(left_.size());
         for (int repeat = 0; repeat < plan_.repeats; ++repeat) {
             std::vector<double> round;
@@ -289,7 +282,7 @@ private:
     const Trials& trials_;
     const SweepPlan& plan_;
     const Watch& watch_;
-    Clock::time_point begin_;
+    WallClock::time_point begin_;
     SweepResult found_;
     std::size_t steps_end_ = 0;      // of the points of steps, from the second on
     std::vector<std::size_t> left_;  // points that nothing beats by far

@@ -1,22 +1,19 @@
 #include "cost/windows/windows.hpp"
 
 #include "cost/changes.hpp"
+#include "cost/clock.hpp"
 #include "kernels/math/hash.hpp"
 #include "scene/names.hpp"
 #include "throng/dials.hpp"
 #include "throng/energy_ledger.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace throng {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr double kFrame = 1.0 / 60;  // s
 // Bodies from which the run that windows start from is as coarse as the scene's own: it is the
 // longest of all, and any states that the scene comes by will do.
 constexpr std::size_t kCrowd = 1000;
@@ -31,11 +28,6 @@ constexpr double kNearer = 0.75;          // what a halving has to bring the cha
 constexpr double kMoves = 1e-6;           // m
 constexpr double kNothing = 1e-9;         // m, below which the ends did not move
 constexpr std::size_t kStageWindows = 8;  // that stages are timed in
-
-double seconds_since(Clock::time_point begin)
-{
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 // The ways to the reference.
 //
@@ -135,7 +127,7 @@ World Windows::begun(const Scene& scene, std::size_t window) const
 // Empty where they are not there in time.
 std::vector<BodyStates> Windows::ends_by(const Scene& scene, double patience) const
 {
-    const Clock::time_point begin = Clock::now();
+    const WallClock::time_point begin = WallClock::now();
     std::vector<BodyStates> ends;
     for (std::size_t k = 0; k < windows_.size(); ++k) {
         World world = begun(scene, k);
@@ -163,7 +155,7 @@ Errors Windows::moved(const std::vector<BodyStates>& from, const std::vector<Bod
 // where they are.
 void Windows::find_reference(const Scene& scene, double wanted, double patience)
 {
-    const Clock::time_point begin = Clock::now();
+    const WallClock::time_point begin = WallClock::now();
     struct Found {
         Changes way;
         double dt = 0, took = 0;
@@ -175,7 +167,7 @@ void Windows::find_reference(const Scene& scene, double wanted, double patience)
         if (watch_.show)
             watch_.show("reference, " + text_of(found.way, found.dt) + ", "
                         + std::to_string(windows_.size()) + " windows");
-        const Clock::time_point since = Clock::now();
+        const WallClock::time_point since = WallClock::now();
         std::vector<BodyStates> ends = ends_by(reference_scene(scene, found.way, found.dt), within);
         found.took = seconds_since(since);
         return ends;
@@ -257,7 +249,7 @@ WindowRun Windows::run(const Scene& scene, std::size_t window, double patience) 
     for (int step = 0; step < steps; ++step) {
         check();
         ledger.before_step(world);
-        const Clock::time_point begin = Clock::now();
+        const WallClock::time_point begin = WallClock::now();
         world.step();
         const double taken = seconds_since(begin);
         all += taken;
@@ -280,7 +272,7 @@ double Windows::time_ms(const Scene& scene, std::size_t window) const
     const int steps = steps_in(length_, scene.settings.dt), skipped = steps / 3;
     for (int step = 0; step < skipped; ++step) world.step();
     check();
-    const Clock::time_point begin = Clock::now();
+    const WallClock::time_point begin = WallClock::now();
     for (int step = skipped; step < steps; ++step) world.step();
     return 1e3 * seconds_since(begin) * kFrame / (scene.settings.dt * (steps - skipped));
 }

@@ -13,9 +13,8 @@ namespace throng {
 /// Of one step.
 ///
 ///   step      steps done when it ended; 0: none was seen
-///   rms       m, over dynamic bodies that are awake and sound, of where it may have put their
-///   centers
-///             of mass too far
+///   rms       m, over dynamic bodies that are awake and sound, of how far it may have put their
+///             centers of mass from where they should be
 ///   greatest  m, of any of them
 ///   worst     whose that is; of index kNone where there is nobody
 struct StepError {
@@ -31,12 +30,11 @@ struct StepError {
 /// has a share of what they stop besides, as they give way.
 ///
 /// It is made to be rather too great than too small: beside exact ends it is less than half of the
-/// truth in 3 % of steps, and 8 times the truth in half of them (docs/accuracy.md, H103). It knows
-/// nothing of what a scene leaves out, of shapes that are not what they stand for, nor of how
-/// errors add up over steps.
+/// truth in 2 % of steps, and more than 7 times the truth in half of them (docs/accuracy.md, H103).
+/// It knows nothing of what a scene leaves out, of shapes that are not what they stand for, nor of
+/// how errors add up over steps.
 ///
-/// Source: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (1993), II.4, for
-/// the
+/// Source: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (1993), II.4: the
 ///         difference of two rules as the error of the lesser.
 class ErrorEstimate {
 public:

@@ -16,9 +16,9 @@
 //   /frames/orientation       [F, N, 4] w, x, y, z, of the body's own frame, float
 //   /frames/velocity          [F, N, 3] of the center of mass, float
 //   /frames/angular_velocity  [F, N, 3] float
-//   /frames/error, greatest_error  [F] m, what the last step before was about off by, rms over
-//   bodies
-//                             and at most; 0 where nobody estimated it (error_estimate.hpp)
+//   /frames/error             [F] m, rms over bodies, what the last step before was about off by
+//   /frames/greatest_error    [F] m, of any body; 0 where nobody estimated it, as is the one above
+//                             (error_estimate.hpp)
 //   /frames/worst_body        [F] whose that was, by its place among the N; 4294967295: nobody's
 //
 // `time` grows last, so its length is the number of frames that are whole. What was written is

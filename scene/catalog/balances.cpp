@@ -9,16 +9,6 @@ namespace throng {
 
 namespace {
 
-BodyDescription ground(Scene& scene)
-{
-    BodyDescription body;
-    body.name = "ground";
-    body.shape = add_shape(scene, "ground", PlaneShape{});
-    body.material = 0;
-    body.motion = Motion::static_;
-    return body;
-}
-
 // Cards of 0.4 x 0.25 m and 2 mm thick, leaning 25 degrees from upright.
 const Vec3 kHalfCard(0.2, 0.125, 0.001);  // along the card, its width, its thickness
 constexpr double kLean = 25 * std::numbers::pi / 180;
@@ -39,7 +29,7 @@ Scene make_card_house(int size, std::uint64_t /*seed*/)
     Scene scene = begin_scene("card_house", size);
     scene.materials[0].name = "card";
     scene.materials[0].friction = 0.7;
-    scene.bodies.push_back(ground(scene));
+    add_ground(scene);
 
     // A leaning card reaches this far from its center, sideways and up.
     const double sideways = kHalfCard.x() * std::sin(kLean) + kHalfCard.z() * std::cos(kLean);
@@ -81,7 +71,7 @@ Scene make_card_house(int size, std::uint64_t /*seed*/)
 Scene make_arch(int size, std::uint64_t /*seed*/)
 {
     Scene scene = begin_scene("arch", size);
-    scene.bodies.push_back(ground(scene));
+    add_ground(scene);
     scene.bodies.reserve(static_cast<std::size_t>(size) + 1);
 
     const double half_thickness = 0.5, half_width = 0.5;

@@ -15,12 +15,7 @@ namespace throng {
 Scene make_dominoes(int size, std::uint64_t /*seed*/)
 {
     Scene scene = begin_scene("dominoes", size);
-    BodyDescription ground;
-    ground.name = "ground";
-    ground.shape = add_shape(scene, "ground", PlaneShape{});
-    ground.material = 0;
-    ground.motion = Motion::static_;
-    scene.bodies.push_back(std::move(ground));
+    add_ground(scene);
 
     const Vec3 half(0.125, 0.25, 0.5);
     const double spacing = 0.75;

@@ -46,6 +46,16 @@ TriangleSoup fitted(TriangleSoup mesh, double size)
     return mesh;
 }
 
+void add_ground(Scene& scene)
+{
+    BodyDescription ground;
+    ground.name = "ground";
+    ground.shape = add_shape(scene, "ground", PlaneShape{});
+    ground.material = 0;
+    ground.motion = Motion::static_;
+    scene.bodies.push_back(std::move(ground));
+}
+
 BodyDescription&
 add_static_box(Scene& scene, std::string_view name, const Vec3& position, const Vec3& half_extents)
 {

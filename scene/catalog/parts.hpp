@@ -30,6 +30,9 @@ MeshShape mesh_shape(TriangleSoup mesh);
 /// there. Vertices of no triangle do not count. The triangles must not all lie in one point.
 TriangleSoup fitted(TriangleSoup mesh, double size);
 
+/// Adds the plane z = 0 with all below it, static, of the scene's first material.
+void add_ground(Scene& scene);
+
 /// Adds a static box with a shape of its own; both get the name.
 BodyDescription&
 add_static_box(Scene& scene, std::string_view name, const Vec3& position, const Vec3& half_extents);

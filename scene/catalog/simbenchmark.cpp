@@ -20,12 +20,7 @@ Scene begin_on_plane(std::string_view name, int size, double friction, double re
     Scene scene = begin_scene(name, size);
     scene.materials[0].friction = friction;
     scene.materials[0].restitution = restitution;
-    BodyDescription ground;
-    ground.name = "ground";
-    ground.shape = add_shape(scene, "ground", PlaneShape{});
-    ground.material = 0;
-    ground.motion = Motion::static_;
-    scene.bodies.push_back(std::move(ground));
+    add_ground(scene);
     return scene;
 }
 

@@ -2,6 +2,7 @@
 #include "kernels/math/rotation.hpp"
 #include "tests/support/dice.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "tests/support/watched.hpp"
 #include "throng/energy_ledger.hpp"
 #include "throng/world.hpp"
 
@@ -123,13 +124,7 @@ TEST(FastBodies, AreHeldWithTheEnergyTheyHad)
 // What a run makes, as a share of its greatest motion.
 double share_made(const Scene& scene, int steps)
 {
-    World world(scene);
-    EnergyLedger ledger;
-    for (int step = 0; step < steps; ++step) {
-        ledger.before_step(world);
-        world.step();
-        ledger.after_step(world);
-    }
+    const auto ledger = given::watched<EnergyLedger>(scene, steps);
     return ledger.gained() / ledger.greatest_kinetic();
 }
 

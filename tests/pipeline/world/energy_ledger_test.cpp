@@ -2,6 +2,7 @@
 #include "throng/energy_ledger.hpp"
 
 #include "tests/support/small_scenes.hpp"
+#include "tests/support/watched.hpp"
 #include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
@@ -13,23 +14,7 @@ namespace throng {
 namespace {
 
 using given::SceneOf;
-
-EnergyLedger keep(World& world, int steps)
-{
-    EnergyLedger ledger;
-    for (int i = 0; i < steps; ++i) {
-        ledger.before_step(world);
-        world.step();
-        ledger.after_step(world);
-    }
-    return ledger;
-}
-
-EnergyLedger keep(const Scene& scene, int steps)
-{
-    World world(scene);
-    return keep(world, steps);
-}
+using given::watched;
 
 // A ball on a spring to the world, drawn out by half a metre: 12.5 J, 1.6 swings a second.
 Scene swing(Integrator integrator)
@@ -56,7 +41,7 @@ TEST(EnergyLedger, TellsWhatAnUnstableIntegratorAdds)
         return now.kinetic_energy + now.potential_energy;
     };
     const double before = energy();
-    const EnergyLedger ledger = keep(world, 120);
+    const EnergyLedger ledger = watched<EnergyLedger>(world, 120);
     EXPECT_GT(energy(), 2 * before);
     EXPECT_NEAR(ledger.gained(), energy() - before, 1e-9 * energy());
     EXPECT_EQ(ledger.from_step(), 0u);
@@ -67,10 +52,10 @@ TEST(EnergyLedger, CountsASwingOnceHoweverOftenItComes)
 {
     // A symplectic step's energy swings by the share of a radian that a substep is, to first order.
     const double share = 10.0 / 240;
-    const EnergyLedger ledger = keep(swing(Integrator::semi_implicit), 600);
+    const EnergyLedger ledger = watched<EnergyLedger>(swing(Integrator::semi_implicit), 600);
     EXPECT_GT(ledger.gained(), 0);
     EXPECT_LT(ledger.gained(), 12.5 * share * (1 + share));
-    EXPECT_LT(keep(swing(Integrator::rk4), 600).gained(), 1e-6 * 12.5);
+    EXPECT_LT(watched<EnergyLedger>(swing(Integrator::rk4), 600).gained(), 1e-6 * 12.5);
 }
 
 TEST(EnergyLedger, TellsWhatOverlapThrowsApart)
@@ -106,7 +91,7 @@ TEST(EnergyLedger, TellsNothingOfWindThatDrivesWhatGoesRoundAPivot)
             ball.mass = mass;
             ball.linear_drag = 0.4;
             World world(made.scene);
-            const EnergyLedger ledger = keep(world, 60);
+            const EnergyLedger ledger = watched<EnergyLedger>(world, 60);
             EXPECT_GT(ledger.greatest_kinetic(), 1e-3);
             EXPECT_LE(ledger.gained(), 1e-3 * ledger.greatest_kinetic()) << wind << ' ' << mass;
         }
@@ -124,7 +109,7 @@ TEST(EnergyLedger, TellsNothingOfWhoTipsOverByCarriedGroups)
             BodyDescription& tips = made.body(rod, Vec3(0, 0, 0.066 * std::cos(lean) + 0.0065));
             tips.orientation = Quat(Eigen::AngleAxisd(lean, Vec3::UnitX()));
             tips.angular_velocity = Vec3(3, 1, 0);
-            const EnergyLedger ledger = keep(made.scene, 60);
+            const EnergyLedger ledger = watched<EnergyLedger>(made.scene, 60);
             EXPECT_LE(ledger.gained(), 3e-3 * ledger.greatest_kinetic())
                 << int(overlap) << ' ' << lean;
         }
@@ -145,7 +130,7 @@ TEST(EnergyLedger, TellsNothingOfWhoIsHeldOnItsWayByWhateverItIsDrawn)
                 bar.mass = 1;
                 if (drawn == 1) bar.force = Vec3(0, 0, -pull);
                 if (drawn == 2) made.scene.attractors.push_back({Vec3(0, 0, -1e4), 1e8 * pull});
-                const EnergyLedger ledger = keep(made.scene, 120);
+                const EnergyLedger ledger = watched<EnergyLedger>(made.scene, 120);
                 EXPECT_LE(ledger.gained(), 3e-3 * ledger.greatest_kinetic())
                     << drawn << ' ' << spin << ' ' << pull;
             }
@@ -167,7 +152,7 @@ TEST(EnergyLedger, TellsNothingOfPenaltySpringsInHoweverManySubsteps)
             drum.orientation = Quat(Eigen::AngleAxisd(0.4 * i, Vec3(1, 0.3 * i, 0).normalized()));
             drum.angular_velocity = Vec3(3, 2 - i, 1);
         }
-        const EnergyLedger ledger = keep(made.scene, 720);
+        const EnergyLedger ledger = watched<EnergyLedger>(made.scene, 720);
         EXPECT_LE(ledger.gained(), 1e-2 * ledger.greatest_kinetic()) << substeps;
     }
 }
@@ -188,7 +173,7 @@ TEST(EnergyLedger, TellsNothingOfForcesAndOfWhatMovesByItself)
     world.set_force_field([](const FieldPlace& place) {
         return Wrench{Vec3(0, place.mass, 0), Vec3(place.mass, 0, 0)};
     });
-    const EnergyLedger ledger = keep(world, 200);
+    const EnergyLedger ledger = watched<EnergyLedger>(world, 200);
     // The pull of the attractor is taken at the beginning of a substep, like gravity: what that
     // makes wrong goes with its change in a substep, here a millionth.
     EXPECT_LT(ledger.gained(), 1e-4 * ledger.greatest_kinetic());
@@ -196,7 +181,7 @@ TEST(EnergyLedger, TellsNothingOfForcesAndOfWhatMovesByItself)
 
     // A drum of what moves by itself, walkers and all.
     for (const char* name : {"tumbler", "crowd"}) {
-        const EnergyLedger driven = keep(make_scene(name, 40), 120);
+        const EnergyLedger driven = watched<EnergyLedger>(make_scene(name, 40), 120);
         EXPECT_LT(driven.gained(), 0.01 * driven.greatest_kinetic()) << name;
     }
 }
@@ -206,7 +191,7 @@ TEST(EnergyLedger, TellsNothingOfAHeapThatFallsAndRests)
     for (const double restitution : {0.0, 0.8}) {
         Scene scene = make_scene("pile", 60);
         for (Material& material : scene.materials) material.restitution = restitution;
-        const EnergyLedger ledger = keep(scene, 300);
+        const EnergyLedger ledger = watched<EnergyLedger>(scene, 300);
         EXPECT_LT(ledger.gained(), 0.01 * ledger.greatest_kinetic());
     }
 }
@@ -219,7 +204,7 @@ TEST(EnergyLedger, TellsNothingOfABallThatBouncesForEver)
         made.ball(0.5, Vec3(0, 0, 2));
         made.scene.materials.front().restitution = 1;
         made.scene.settings.substeps = substeps;
-        const EnergyLedger ledger = keep(made.scene, 300);
+        const EnergyLedger ledger = watched<EnergyLedger>(made.scene, 300);
         EXPECT_LT(ledger.gained(), 1e-4 * ledger.greatest_kinetic()) << substeps;
         EXPECT_LT(std::abs(ledger.net()), 0.02 * ledger.greatest_kinetic()) << substeps;
     }
@@ -230,7 +215,7 @@ TEST(EnergyLedger, TellsNothingOfBuildingsThatSinkIntoTheirContactsAndComeBack)
     for (const char* name : {"stacks", "wall", "pyramid"}) {
         Scene scene = make_scene(name, 100);
         scene.settings.sleep = false;
-        const EnergyLedger ledger = keep(scene, 200);
+        const EnergyLedger ledger = watched<EnergyLedger>(scene, 200);
         EXPECT_LT(ledger.gained(), 0.01 * ledger.greatest_kinetic()) << name;
     }
 }

@@ -2,6 +2,7 @@
 #include "throng/error_estimate.hpp"
 
 #include "tests/support/small_scenes.hpp"
+#include "tests/support/watched.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,23 +12,7 @@ namespace throng {
 namespace {
 
 using given::SceneOf;
-
-ErrorEstimate kept(World& world, int steps)
-{
-    ErrorEstimate estimate;
-    for (int i = 0; i < steps; ++i) {
-        estimate.before_step(world);
-        world.step();
-        estimate.after_step(world);
-    }
-    return estimate;
-}
-
-ErrorEstimate kept(const Scene& scene, int steps)
-{
-    World world(scene);
-    return kept(world, steps);
-}
+using given::watched;
 
 TEST(ErrorEstimate, TellsNothingBeforeAStepAndOfNobody)
 {
@@ -35,7 +20,7 @@ TEST(ErrorEstimate, TellsNothingBeforeAStepAndOfNobody)
     EXPECT_EQ(ErrorEstimate().rms(), 0);
     SceneOf made;
     made.floor();
-    const ErrorEstimate estimate = kept(made.scene, 3);
+    const ErrorEstimate estimate = watched<ErrorEstimate>(made.scene, 3);
     EXPECT_EQ(estimate.last().step, 3u);
     EXPECT_EQ(estimate.last().greatest, 0);
     EXPECT_EQ(estimate.last().worst.index, kNone);
@@ -46,7 +31,7 @@ TEST(ErrorEstimate, OfUniformMotionIsNothing)
     SceneOf made;
     made.scene.gravity = Vec3::Zero();
     made.ball(0.5, Vec3(1, 2, 3)).velocity = Vec3(3, 0, 1);
-    EXPECT_LE(kept(made.scene, 10).rms(), 1e-14);
+    EXPECT_LE(watched<ErrorEstimate>(made.scene, 10).rms(), 1e-14);
 }
 
 // What falls is put g dt h / 2 too low, h a substep: a kick first, then the way.
@@ -59,7 +44,7 @@ TEST(ErrorEstimate, OfFallingIsNoLessThanItsError)
             made.scene.settings.substeps = substeps;
             made.ball(0.5, Vec3(0, 0, 100));
             const double error = 9.81 * dt * dt / substeps / 2;
-            const double told = kept(made.scene, 5).rms();
+            const double told = watched<ErrorEstimate>(made.scene, 5).rms();
             EXPECT_GE(told, error) << dt << ' ' << substeps;
             EXPECT_LE(told, 10 * error) << dt << ' ' << substeps;
         }
@@ -80,7 +65,7 @@ TEST(ErrorEstimate, OfASwingFallsWithTheStep)
         spring.stiffness = 100;
         spring.length = 1;
         made.scene.springs.push_back(spring);
-        return kept(made.scene, static_cast<int>(1 / dt)).rms();
+        return watched<ErrorEstimate>(made.scene, static_cast<int>(1 / dt)).rms();
     };
     EXPECT_NEAR(told(1.0 / 120, 4) / told(1.0 / 240, 4), 8, 0.8);
     EXPECT_GT(told(1.0 / 120, 2), 3 * told(1.0 / 120, 4));
@@ -94,7 +79,7 @@ TEST(ErrorEstimate, NamesWhoIsStruck)
     made.scene.bodies[4].position.z() = 0.62;
     made.scene.bodies[4].velocity = Vec3(0, 0, -8);
     World world(made.scene);
-    const ErrorEstimate estimate = kept(world, 2);
+    const ErrorEstimate estimate = watched<ErrorEstimate>(world, 2);
     EXPECT_EQ(estimate.worst().worst, world.bodies()[4]);
     EXPECT_GT(estimate.worst().greatest, 0.01);
     EXPECT_GE(estimate.worst().greatest, estimate.worst().rms);
@@ -104,7 +89,7 @@ TEST(ErrorEstimate, IsTheSameBitsOnAnyNumberOfThreads)
 {
     const Scene scene = given::mixed_scene();
     World one(scene, 1), three(scene, 3);
-    const ErrorEstimate a = kept(one, 30), b = kept(three, 30);
+    const ErrorEstimate a = watched<ErrorEstimate>(one, 30), b = watched<ErrorEstimate>(three, 30);
     EXPECT_GT(a.rms(), 0);
     EXPECT_EQ(a.rms(), b.rms());
     EXPECT_EQ(a.worst().greatest, b.worst().greatest);
