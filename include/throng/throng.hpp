@@ -3,6 +3,7 @@
 
 #include "throng/box3.hpp"
 #include "throng/catalog.hpp"
+#include "throng/contact_check.hpp"
 #include "throng/convex_query.hpp"
 #include "throng/dials.hpp"
 #include "throng/effects.hpp"
@@ -13,6 +14,7 @@
 #include "throng/impact_query.hpp"
 #include "throng/level_set.hpp"
 #include "throng/math.hpp"
+#include "throng/momentum_ledger.hpp"
 #include "throng/queries.hpp"
 #include "throng/report.hpp"
 #include "throng/rotation.hpp"

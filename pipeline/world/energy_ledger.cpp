@@ -1,7 +1,6 @@
 #include "throng/energy_ledger.hpp"
 
 #include "kernels/dynamics/energy.hpp"
-#include "kernels/dynamics/integrators.hpp"
 #include "kernels/parallel/disjoint_sets.hpp"
 #include "pipeline/world/world_state.hpp"
 
@@ -31,20 +30,6 @@ bool moves_by_itself(const WorldState& state, std::uint32_t body)
     if (states.kind[body] != BodyKind::kinematic) return false;
     const auto& velocities = state.get<Velocities>();
     return !velocities.linear[body].isZero(0) || !velocities.angular[body].isZero(0);
-}
-
-// s, by which a velocity is behind its place. Kicked, then moved, a body has in each place the
-// velocity of half a substep before: beside the height of that time its energy stays what it is,
-// beside that of now it is less on the way down than on the way up, and whoever bounces would seem
-// to win by it. So has who touches something, see velocity_lag.hpp.
-double lag_of(const WorldState& state, std::uint32_t body)
-{
-    const auto& context = state.get<StepContext>();
-    if (context.effects.meets(kEventDriven)) return 0;
-    const Integrator integrator = context.integrator;
-    const bool kicked = integrator == Integrator::semi_implicit
-        || (integrator == Integrator::auto_ && !state.get<Forces>().act_on(body));
-    return kicked || state.get<Flights>().lags_of(body) ? context.substep() / 2 : 0;
 }
 
 // W, the most that drag in the wind gives at a velocity between two.
@@ -126,7 +111,7 @@ void EnergyLedger::Inside::look(const World& world, Look& look) const
         of.velocity = state.velocity(body);
         of.spin = velocities.angular[body];
         of.kinetic = kinetic_energy_of(body, masses, poses, velocities);
-        const Vec3 then = of.place - lag_of(state, body) * of.velocity;
+        const Vec3 then = of.place - state.velocity_lag(body) * of.velocity;
         of.potential =
             attraction_of(forces, masses, poses, body, state.get<StepContext>().substep())
             - masses.mass[body] * gravity.dot(then);

@@ -2,11 +2,11 @@
 
 #include "broadphase/margins.hpp"
 #include "kernels/dynamics/rigid_motion.hpp"
-#include "kernels/solver/contact_packing.hpp"
 #include "kernels/solver/direct/direct.hpp"
 #include "pipeline/solvers/escalation.hpp"
 #include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/step/step_table.hpp"
+#include "pipeline/world/contact_impulses.hpp"
 #include "pipeline/world/force_builder.hpp"
 #include "pipeline/world/world_state.hpp"
 #include "scene/names.hpp"
@@ -27,33 +27,6 @@ void check_settings(const Settings& settings, const char* caller)
     scene.settings = settings;
     if (const std::string trouble = check_scene(scene); !trouble.empty())
         throw std::invalid_argument(std::string(caller) + ": " + trouble);
-}
-
-// N s, what the impacts of the last step gave a body. Islands that the direct solver took have it
-// among what their contacts hold.
-template <class Real>
-Vec3 impacts_on(std::uint32_t body,
-                const Layout& layout,
-                const ActiveContacts& active,
-                const ContactConstraints<Real>& constraints)
-{
-    Vec3 impulse = Vec3::Zero();
-    if (constraints.restitutions.empty()) return impulse;
-    for (const Batch& batch : layout.batches) {
-        if (batch.direct) continue;
-        const Slice &first = layout.slices[batch.first_slice],
-                    &last = layout.slices[batch.first_slice + batch.slices - 1];
-        for (std::size_t i = first.first_contact; i < last.first_contact + last.contacts; ++i) {
-            const auto& entry = active.entries[layout.contacts[i]];
-            if (entry.body_a != body && entry.body_b != body) continue;
-            const std::size_t lane = layout.lane[i];
-            const Vec3 on_b =
-                impact_impulse(constraints, lane / kBlock, static_cast<int>(lane % kBlock))
-                    .template cast<double>();
-            impulse += entry.body_b == body ? on_b : Vec3(-on_b);
-        }
-    }
-    return impulse;
 }
 
 }  // namespace
@@ -221,6 +194,15 @@ void WorldState::warn_of_cuts(int cuts)
         + " s, so each is cut in " + std::to_string(cuts)
         + (cuts >= kMostPenaltyCuts ? ", and contacts give way as far as that bears" : "")
         + "; take substeps=" + std::to_string(settings.substeps * cuts) + ", or auto");
+}
+
+double WorldState::velocity_lag(std::uint32_t body) const
+{
+    const auto& context = get<StepContext>();
+    if (context.effects.meets(kEventDriven)) return 0;
+    const bool kicked = context.integrator == Integrator::semi_implicit
+        || (context.integrator == Integrator::auto_ && !get<Forces>().act_on(body));
+    return kicked || get<Flights>().lags_of(body) ? context.substep() / 2 : 0;
 }
 
 Vec3 WorldState::arm(std::uint32_t body) const
@@ -458,37 +440,6 @@ Mat3 World::rotation_matrix(BodyId body) const
                 : orientation.toRotationMatrix();
 }
 
-namespace {
-
-// What all contacts do to a body, in the order of their lists.
-template <class Real, class Data>
-Vec3 impulse_of_contacts(std::uint32_t body, const Data& data)
-{
-    Vec3 impulse = Vec3::Zero();
-    const auto& colliders = std::get<Colliders>(data);
-    const auto& pairs = std::get<Pairs>(data);
-    const auto add = [&](std::size_t pair, const auto& contact) {
-        const bool is_a = colliders.body[first_of(pairs.keys[pair])] == body;
-        const bool is_b = colliders.body[second_of(pairs.keys[pair])] == body;
-        if (!is_a && !is_b) return;
-        Vec3 on_b = contact.friction.template cast<double>();
-        for (int k = 0; k < contact.count; ++k)
-            on_b += contact.normal.template cast<double>()
-                * double{contact.points[static_cast<std::size_t>(k)].impulse};
-        impulse += is_b ? on_b : Vec3(-on_b);
-    };
-    const auto& convex = std::get<ConvexContacts<Real>>(data);
-    for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
-        if (const Contact<Real>* contact = convex.at(i)) add(i, *contact);
-    for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
-        if (entry.contact.count > 0) add(entry.pair, entry.contact);
-    for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
-        if (entry.contact.count > 0) add(entry.pair, entry.contact);
-    return impulse;
-}
-
-}  // namespace
-
 Vec3 World::contact_force(BodyId body) const
 {
     const std::uint32_t at = state_->place_of(body, "contact_force");
@@ -499,18 +450,9 @@ Vec3 World::contact_force(BodyId body) const
         return at < force.size() ? force[at] : Vec3(Vec3::Zero());
     }
     Vec3 impulse = Vec3::Zero();
-    std::visit(
-        [&](const auto& chosen) {
-            using Real =
-                std::conditional_t<std::is_same_v<std::decay_t<decltype(chosen)>, Step<float>>,
-                                   float, double>;
-            const auto& data = chosen.data;
-            impulse = impulse_of_contacts<Real>(at, data);
-            if (state_->effects.on.has(Effect::restitution))
-                impulse += impacts_on(at, std::get<Layout>(data), std::get<ActiveContacts>(data),
-                                      std::get<ContactConstraints<Real>>(data));
-        },
-        state_->step);
+    for_each_contact_impulse(*state_, [&](std::uint32_t a, std::uint32_t b, const Vec3& on_b) {
+        if (a == at || b == at) impulse += b == at ? on_b : Vec3(-on_b);
+    });
     return impulse / substep;
 }
 

@@ -79,6 +79,11 @@ struct WorldState {
     Vec3 center_of_mass(std::uint32_t body) const;
     Vec3 velocity(std::uint32_t body) const;
     Vec3 arm(std::uint32_t body) const;  // from its position there, world axes
+    /// s, by which its velocity is behind its place. Kicked, then moved, a body has in each place
+    /// the velocity of half a substep before: beside the height of that time its energy stays what
+    /// it is, beside that of now it is less on the way down than on the way up, and whoever bounces
+    /// would seem to win by it. So has who touches something, see velocity_lag.hpp.
+    double velocity_lag(std::uint32_t body) const;
 
     /// A body by its number and name, for what is told of it.
     std::string called(std::uint32_t body) const;

@@ -1,0 +1,66 @@
+// Contact impulses: what the contacts of the last step did to bodies, whichever list they are in.
+#pragma once
+
+#include "kernels/solver/contact_packing.hpp"
+#include "pipeline/world/world_state.hpp"
+
+namespace throng {
+
+/// Calls for every contact of the lists, in their order: its two bodies, and what it did to the
+/// second over the last substep, N s, friction included. Then, where anything bounces, for every
+/// contact's impacts of the whole step; those of islands that the direct solver took are among what
+/// their contacts hold.
+template <class Real, class Each>
+void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const Each& each)
+{
+    const auto& colliders = std::get<Colliders>(data);
+    const auto& pairs = std::get<Pairs>(data);
+    const auto add = [&](std::size_t pair, const Contact<Real>& contact) {
+        Vec3 on_b = contact.friction.template cast<double>();
+        for (int k = 0; k < contact.count; ++k)
+            on_b += contact.normal.template cast<double>()
+                * double{contact.points[static_cast<std::size_t>(k)].impulse};
+        each(colliders.body[first_of(pairs.keys[pair])],
+             colliders.body[second_of(pairs.keys[pair])], on_b);
+    };
+    const auto& convex = std::get<ConvexContacts<Real>>(data);
+    for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
+        if (const Contact<Real>* contact = convex.at(i)) add(i, *contact);
+    for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
+        if (entry.contact.count > 0) add(entry.pair, entry.contact);
+    for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
+        if (entry.contact.count > 0) add(entry.pair, entry.contact);
+
+    const auto& constraints = std::get<ContactConstraints<Real>>(data);
+    if (!may_bounce || constraints.restitutions.empty()) return;
+    const auto& layout = std::get<Layout>(data);
+    const auto& active = std::get<ActiveContacts>(data);
+    for (const Batch& batch : layout.batches) {
+        if (batch.direct) continue;
+        const Slice &first = layout.slices[batch.first_slice],
+                    &last = layout.slices[batch.first_slice + batch.slices - 1];
+        for (std::size_t i = first.first_contact; i < last.first_contact + last.contacts; ++i) {
+            const auto& entry = active.entries[layout.contacts[i]];
+            const std::size_t lane = layout.lane[i];
+            const Vec3 on_b =
+                impact_impulse(constraints, lane / kBlock, static_cast<int>(lane % kBlock))
+                    .template cast<double>();
+            each(entry.body_a, entry.body_b, on_b);
+        }
+    }
+}
+
+/// The same of a world.
+template <class Each>
+void for_each_contact_impulse(const WorldState& state, const Each& each)
+{
+    std::visit(
+        [&](const auto& chosen) {
+            using Real = typename std::decay_t<decltype(chosen)>::Number;
+            for_each_contact_impulse<Real>(chosen.data, state.effects.on.has(Effect::restitution),
+                                           each);
+        },
+        state.step);
+}
+
+}  // namespace throng
