@@ -14,8 +14,9 @@ constexpr Option kOptions[] = {
     {"--within", "MS",
      "names the most exact setting that takes at most so long for each 1/60 s of the scene"},
     {"--measure", "M",
-     "the error, of a scene: drift, m; turn, rad; velocity, m/s; overlap, m; energy, J (default "
-     "drift); of a case: a quantity of its lines (default: that of the first)"},
+     "the error, of a scene: drift, m; turn, rad; velocity, m/s; overlap, m; energy, J; momentum, "
+     "N s; complementarity, m/s; friction_cone, m/s; missed_contacts and force_error, shares "
+     "(default drift); of a case: a quantity of its lines (default: that of the first)"},
     {"--dials", "A,B",
      "tries values of these dials alone; none: measures the scene as it is (default: all that may "
      "matter here)"},

@@ -91,7 +91,14 @@ std::vector<std::string> doubts_of(const CostReport& report)
     std::vector<std::string> doubts;
     const double remaining = of(report.reference.remaining, report.measure);
     const std::string off = with_unit(figure_text(remaining), report.told());
-    if (!report.of_case && !report.reference.settles)
+    const bool none_errs = std::all_of(
+        report.found.points.begin(), report.found.points.end(),
+        [&](const Point& point) { return !point.had() || point.error(report.measure) == 0; });
+    if (none_errs && advice_of(report).point != nullptr && report.found.points.size() > 1)
+        doubts.push_back("no setting has any error: nothing that " + report.told().name
+                         + " is of happens here, or all of them get it right");
+    // What no reference is asked for is not off by it.
+    if (!report.of_case && !report.reference.settles && remaining > 0)
         doubts.push_back("the reference does not settle: halving its step moved it by " + off
                          + ", no less than the time before; errors of that size cannot be told "
                            "apart. A shorter --window lets bodies part less");

@@ -2,6 +2,7 @@
 #include "cost/report/cost_report.hpp"
 #include "scene/files/json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,6 +15,13 @@ public:
     Reader(const std::string& text, const std::string& file) : json_(text, file) { }
 
     bool is_of(const std::string& state) const { return text(kTop, "state") == state; }
+    // Of an older report, whose measures were others, points cannot be taken.
+    bool has(const std::vector<Quantity>& quantities) const
+    {
+        const std::vector<Quantity> told = units();
+        return std::equal(told.begin(), told.end(), quantities.begin(), quantities.end(),
+                          [](const Quantity& a, const Quantity& b) { return a.name == b.name; });
+    }
 
     // Dials that were set for all of it; none where a report is older than they are told.
     Changes given() const
@@ -119,17 +127,21 @@ private:
     }
 
     // Their units by their names, in the order of errors.
-    void read_quantities(CostReport& report) const
+    std::vector<Quantity> units() const
     {
+        std::vector<Quantity> quantities;
         const Node units = member(kTop, "units", JsonKind::object, "an object");
-        report.quantities.clear();
         for (Node key = json_.first(units); key != json_.next(units);) {
             const Node unit = key + 1;
             if (json_.kind(unit) != JsonKind::string) throw json_.error(unit, "wanted a text");
-            report.quantities.push_back(
-                {std::string(json_.text(key)), std::string(json_.text(unit)), {}});
+            quantities.push_back({std::string(json_.text(key)), std::string(json_.text(unit)), {}});
             key = json_.next(unit);
         }
+        return quantities;
+    }
+    void read_quantities(CostReport& report) const
+    {
+        report.quantities = units();
         const std::string measure = text(kTop, "measure");
         const auto is_measure = [&](const Quantity& each) { return each.name == measure; };
         while (report.measure < report.quantities.size()
@@ -202,7 +214,8 @@ std::vector<Point>
 read_points(const std::string& text, const std::string& file, const CostReport& report)
 {
     const Reader reader(text, file);
-    const bool goes_on = reader.is_of(report.state) && reader.given() == report.given;
+    const bool goes_on = reader.is_of(report.state) && reader.given() == report.given
+        && reader.has(report.quantities);
     return goes_on ? reader.points(report.quantities.size()) : std::vector<Point>{};
 }
 

@@ -18,6 +18,13 @@ constexpr MeasureInfo kInfo[kMeasures] = {
     {"velocity", "m/s", "how far their velocities are from the reference's"},
     {"overlap", "m", "the greatest depth to which two shapes overlap at a window's end"},
     {"energy", "J", "what a window's steps made from nothing"},
+    {"momentum", "N s", "what bodies that nothing holds were given from nothing"},
+    {"complementarity", "m/s",
+     "the most by which a contact pushes what parts, or lets what is in go on"},
+    {"friction_cone", "m/s",
+     "the most by which friction leaves its cone, or does not oppose a slip"},
+    {"missed_contacts", "1", "the share of pairs that touch for which there was no contact"},
+    {"force_error", "1", "what is left of the forces on what rests, over its weight"},
 };
 
 constexpr int kDraws = 1000;

@@ -17,8 +17,25 @@ namespace throng {
 ///   velocity  m/s, of the centers' velocities from the reference's
 ///   overlap   m, the greatest at the window's end, of any two shapes
 ///   energy    J, that the window's steps made from nothing, by the energy ledger
-enum class Measure : std::uint8_t { drift, turn, velocity, overlap, energy };
-inline constexpr std::size_t kMeasures = 5;
+///   momentum  N s, likewise, by the momentum ledger
+///   complementarity  m/s, of contacts in the window's last step: see ContactResiduals
+///   friction_cone    m/s, likewise, of friction
+///   missed_contacts  share of the pairs that touch at the window's end that the last step had no
+///                    contact for
+///   force_error      share of its weight that is left of the forces on what rests
+enum class Measure : std::uint8_t {
+    drift,
+    turn,
+    velocity,
+    overlap,
+    energy,
+    momentum,
+    complementarity,
+    friction_cone,
+    missed_contacts,
+    force_error
+};
+inline constexpr std::size_t kMeasures = 10;
 /// Its place among the errors of a window.
 constexpr std::size_t place_of(Measure measure) { return static_cast<std::size_t>(measure); }
 

@@ -2,6 +2,7 @@
 
 #include "cost/changes.hpp"
 #include "cost/clock.hpp"
+#include "cost/windows/laws.hpp"
 #include "kernels/math/hash.hpp"
 #include "scene/names.hpp"
 #include "throng/dials.hpp"
@@ -99,6 +100,8 @@ void Windows::find_starts(const Scene& scene, const WindowPlan& plan)
     if (crowded) by.settings.precision = Precision::float_;
     World world(by, threads_);
     touches_ = world.effects().on.has(Effect::contact);
+    if (touches_)
+        geometry_ = std::make_unique<World>(reference_scene(scene, kSoft, fine_), threads_);
     std::int64_t step = 0;
     for (std::size_t k = 0; k < plan.count; ++k) {
         const double part = static_cast<double>(k) * kGolden;
@@ -240,15 +243,33 @@ std::size_t Windows::at_rest() const
         }));
 }
 
+// Of a run that lost a body there is nothing good to tell.
+void Windows::measure_laws(const World& world, std::size_t window, Errors& errors) const
+{
+    const Window& of_window = windows_[window];
+    if (std::isinf(of(errors, Measure::drift))) {
+        for (const Measure each :
+             {Measure::momentum, Measure::complementarity, Measure::friction_cone,
+              Measure::missed_contacts, Measure::force_error})
+            of(errors, each) = std::numeric_limits<double>::infinity();
+        return;
+    }
+    of(errors, Measure::missed_contacts) = geometry_ ? missed_squared(world, *geometry_) : 0;
+    of(errors, Measure::force_error) =
+        force_squared(world, resting(of_window.start, of_window.reference));
+}
+
 WindowRun Windows::run(const Scene& scene, std::size_t window, double patience) const
 {
     World world = begun(scene, window);
     EnergyLedger ledger;
+    LawWatch laws;
     const int steps = steps_in(length_, scene.settings.dt), skipped = steps / 3;
     double time_ms = 0, all = 0;
     for (int step = 0; step < steps; ++step) {
         check();
         ledger.before_step(world);
+        laws.before_step(world, step == steps - 1);
         const WallClock::time_point begin = WallClock::now();
         world.step();
         const double taken = seconds_since(begin);
@@ -256,12 +277,15 @@ WindowRun Windows::run(const Scene& scene, std::size_t window, double patience) 
         if (all > patience) throw TooSlow{};
         if (step >= skipped) time_ms += 1e3 * taken;
         ledger.after_step(world);
+        laws.after_step(world, step == steps - 1);
     }
     WindowRun run;
     compare(states_of(world), windows_[window].reference, run.errors);
     const double overlap = world.measure().greatest_overlap, energy = ledger.gained();
     of(run.errors, Measure::overlap) = overlap * overlap;
     of(run.errors, Measure::energy) = energy * energy;
+    laws.put_into(run.errors);
+    measure_laws(world, window, run.errors);
     run.time_ms = time_ms * kFrame / (scene.settings.dt * (steps - skipped));
     return run;
 }

@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -118,11 +119,15 @@ private:
     Errors moved(const std::vector<BodyStates>& from, const std::vector<BodyStates>& to) const;
     World begun(const Scene& scene, std::size_t window) const;
     void check() const;
+    void measure_laws(const World& world, std::size_t window, Errors& errors) const;
 
     std::vector<Window> windows_;
     double length_ = 0, fine_ = 0;  // s; of the step that is halved first
     int threads_ = 0;
     bool touches_ = false;  // anything may touch anything
+    // Of the same bodies, put where a run has them, to look at their geometry: what it is before
+    // does not matter. None where nothing touches.
+    std::unique_ptr<World> geometry_;
     ReferenceInfo reference_;
     Watch watch_;
 };

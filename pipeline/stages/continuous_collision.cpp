@@ -504,8 +504,11 @@ private:
         const double falling = down.dot(velocity);
         const double gained = 2 * pulled.dot(held - poses_.position[body]);
         if (!(gained < 0 || falling < 0)) return;
-        const double left = std::sqrt(std::max(0.0, falling * falling + gained));
-        velocity += (std::copysign(left, falling) - falling) * down;
+        const double left = falling * falling + gained;
+        velocity += (std::copysign(std::sqrt(std::max(0.0, left)), falling) - falling) * down;
+        // What it has not got along its pull goes from the rest of its motion.
+        if (left < 0 && masses_.inverse_mass[body] > 0)
+            take_back_energy(body, -0.5 * masses_.mass[body] * left);
     }
 
     // J, of what pulls at the middle of one that goes round a pivot.

@@ -39,6 +39,25 @@ TEST(Cost, NamesASettingReadyToPaste)
     EXPECT_NE(csv.find("\"dt=1/30\","), std::string::npos) << csv;
 }
 
+TEST(Cost, AsksForEachMeasure)
+{
+    const std::pair<const char*, const char*> measures[] = {
+        {"momentum", "momentum: what bodies that nothing holds were given from nothing, N s;"},
+        {"complementarity", " m/s, in 19 of 20 runs like this at most "},
+        {"friction_cone", " m/s, in 19 of 20 runs like this at most "},
+        {"missed_contacts", "doubt: no setting has any error: "},
+        {"force_error", "force_error: what is left of the forces on what rests, over its weight;"},
+    };
+    for (const auto& [measure, told] : measures) {
+        const TestFolder folder;
+        const Outcome said = run_throng(quick(folder, {"--measure", measure}));
+        ASSERT_EQ(said.code, 0) << said.err;
+        EXPECT_NE(said.out.find(told), std::string::npos) << measure << ": " << said.out;
+        EXPECT_NE(folder.read("found/cost.json").find("\"measure\": \"" + std::string(measure)),
+                  std::string::npos);
+    }
+}
+
 TEST(Cost, MarksWhatOnlyComesNear)
 {
     const TestFolder folder;
@@ -193,7 +212,9 @@ TEST(Cost, RefusesWithWhatWasWanted)
 {
     const TestFolder folder;
     const std::pair<std::vector<std::string>, const char*> wrongs[] = {
-        {{"--measure", "drft"}, "--measure: wanted drift, turn, velocity, overlap or energy"},
+        {{"--measure", "drft"},
+         "--measure: wanted drift, turn, velocity, overlap, energy, momentum, complementarity, "
+         "friction_cone, missed_contacts or force_error, not "},
         {{"--error", "-1"}, "--error: wanted a number above 0"},
         {{"--error", "1", "--within", "1"}, "--within: wanted either that or --error"},
         {{"--window", "x"}, "--window: wanted a number above 0"},

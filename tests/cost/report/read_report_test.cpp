@@ -104,6 +104,9 @@ TEST(ReadReport, KnowsPointsOfTheSameStateAndDialsAlone)
     other = report;
     other.given = {};
     EXPECT_TRUE(read_points(json_of(report), "a.json", other).empty());
+    other = report;
+    other.quantities.pop_back();
+    EXPECT_TRUE(read_points(json_of(report), "a.json", other).empty()) << "of fewer measures";
 }
 
 // As they were written before commands and given dials were told.
