@@ -1,6 +1,7 @@
 // Cost report: what a sweep of a scene or of a hard case has to say, for people and for programs.
 #pragma once
 
+#include "cost/sweep/idle_dials.hpp"
 #include "cost/sweep/orders.hpp"
 
 #include <cstdint>
@@ -100,7 +101,8 @@ std::vector<std::string> doubts_of(const CostReport& report);
 
 /// The front and what it began from, a row a setting.
 void write_front(const CostReport& report, std::ostream& out);
-/// What is advised, ready to paste, and what it promises.
+/// What is advised, ready to paste, what it promises, its other errors, and which dials made no
+/// difference.
 void write_advice(const CostReport& report, std::ostream& out);
 /// The front, the advice and the doubts, a screen wide.
 void write_cost_text(const CostReport& report, std::ostream& out);

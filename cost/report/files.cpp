@@ -94,6 +94,13 @@ std::string advice_json(const CostReport& report)
         .text();
 }
 
+std::string words_json(const std::vector<std::string>& words)
+{
+    std::string all;
+    for (const std::string& word : words) all += (all.empty() ? "" : ", ") + json_text(word);
+    return '[' + all + ']';
+}
+
 std::string units_json(const std::vector<Quantity>& quantities)
 {
     JsonMembers units;
@@ -136,9 +143,12 @@ void add_trials(const CostReport& report, JsonMembers& all)
 void write_cost_csv(const CostReport& report, std::ostream& out)
 {
     out << "setting";
-    for (const Quantity& told : report.quantities)
-        out << ',' << head_in_csv(told.name + '_' + told.unit) << ','
-            << head_in_csv(told.name + "_at_most_" + told.unit);
+    for (const Quantity& told : report.quantities) {
+        std::string unit = told.unit;
+        std::replace(unit.begin(), unit.end(), ' ', '_');
+        out << ',' << head_in_csv(told.name + '_' + unit) << ','
+            << head_in_csv(told.name + "_at_most_" + unit);
+    }
     out << ',' << (report.of_case ? "trials" : "windows")
         << ",time_ms,time_least_ms,time_most_ms,repeats,on_front,trouble\n";
     for (const Point& point : report.found.points) {
@@ -198,6 +208,7 @@ void write_cost_json(const CostReport& report, std::ostream& out)
                  .add("time_ms", report.wish.time_ms)
                  .text())
         .add("advice", advice_json(report))
+        .add("idle_dials", words_json(idle_dials(report.found.points, report.measure)))
         .add("doubts",
              array(doubts_of(report), [](const std::string& doubt) { return json_text(doubt); }))
         .add("points", array(report.found.points, [&](const Point& point) {

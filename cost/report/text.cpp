@@ -43,6 +43,34 @@ std::string promise_of(const CostReport& report, const Point& point)
         + with_unit(figure_text(point.error_at_most(report.measure)), report.told());
 }
 
+// As many as fit into lines of a screen.
+void write_wrapped(const std::string& head,
+                   const std::vector<std::string>& items,
+                   std::ostream& out)
+{
+    constexpr std::size_t kWidth = 80;
+    std::string line = head;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const std::string item = items[i] + (i + 1 < items.size() ? "," : "");
+        if (line.size() + 1 + item.size() > kWidth) {
+            out << line << '\n';
+            line = std::string(head.find_first_not_of(' ') + 2, ' ');
+        }
+        line += (line.back() == ' ' ? "" : " ") + item;
+    }
+    out << line << '\n';
+}
+
+void write_other_errors(const CostReport& report, const Point& point, std::ostream& out)
+{
+    std::vector<std::string> others;
+    for (std::size_t i = 0; i < report.quantities.size(); ++i)
+        if (i != report.measure)
+            others.push_back(report.quantities[i].name + ' '
+                             + with_unit(figure_text(point.error(i)), report.quantities[i]));
+    if (!others.empty()) write_wrapped("  besides:", others, out);
+}
+
 }  // namespace
 
 void write_front(const CostReport& report, std::ostream& out)
@@ -76,6 +104,9 @@ void write_advice(const CostReport& report, std::ostream& out)
         << " ms for each 1/60 s (" << figure_text(point.time_ms.least) << " to "
         << figure_text(point.time_ms.most) << " of " << point.time_ms.repeats << ") on "
         << report.machine.threads << " thread" << (report.machine.threads == 1 ? "" : "s") << '\n';
+    write_other_errors(report, point, out);
+    const std::vector<std::string> idle = idle_dials(report.found.points, report.measure);
+    if (!idle.empty()) write_wrapped("did not matter here, errors alike:", idle, out);
 }
 
 void write_cost_text(const CostReport& report, std::ostream& out)

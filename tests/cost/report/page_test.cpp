@@ -98,6 +98,39 @@ TEST(CostPage, HoldsAllOfItAndLoadsNothing)
     EXPECT_EQ(count(page, "http"), 1u) << "what SVG is called";
 }
 
+TEST(CostPage, TellsOtherErrorsOfTheAdviceAndWhichDialsDidNotMatter)
+{
+    CostReport made = report();
+    made.found.points.push_back(made_point(3, 1e-2, {{"broadphase", "grid"}}));
+    for (Errors& errors : made.found.points[1].errors) {
+        of(errors, Measure::momentum) = 0.25;
+        of(errors, Measure::missed_contacts) = 0.04;
+    }
+    std::ostringstream page, text, json, csv;
+    write_cost_page(made, page);
+    write_cost_text(made, text);
+    write_cost_json(made, json);
+    write_cost_csv(made, csv);
+    for (const std::string& told : {page.str(), text.str()}) {
+        EXPECT_NE(told.find("momentum 0.5 N s, "), std::string::npos) << told;
+        EXPECT_NE(told.find("missed_contacts 0.2, "), std::string::npos) << told;
+        EXPECT_NE(told.find("\ndid not matter here, errors alike: dt, broadphase\n"),
+                  std::string::npos)
+            << told;
+    }
+    EXPECT_NE(json.str().find("\"idle_dials\": [\"dt\", \"broadphase\"]"), std::string::npos)
+        << json.str();
+    EXPECT_NE(json.str().find("\"momentum\": 0.5"), std::string::npos);
+    const std::string heads = csv.str().substr(0, csv.str().find('\n'));
+    for (const char* const head :
+         {"momentum_N_s", "complementarity_m/s", "friction_cone_m/s", "missed_contacts_1",
+          "missed_contacts_at_most_1", "force_error_1"})
+        EXPECT_NE(heads.find(std::string(",") + head + ','), std::string::npos) << heads;
+    std::istringstream lines(text.str());
+    for (std::string line; std::getline(lines, line);)
+        EXPECT_LE(line.find("besides:") == std::string::npos ? 0 : line.size(), 80u) << line;
+}
+
 TEST(CostPage, IsSmallForManySettings)
 {
     CostReport many = report();

@@ -1,4 +1,5 @@
 // Sweeps: the front, what is advised, the orders, and what is tried at all.
+#include "cost/sweep/idle_dials.hpp"
 #include "cost/sweep/orders.hpp"
 #include "tests/cost/sweep/made_points.hpp"
 #include "throng/catalog.hpp"
@@ -103,6 +104,30 @@ TEST(Candidates, AreOfDialsThatDoSomething)
     const Candidates few = candidates_for(scene, world.effects(), dials);
     EXPECT_TRUE(few.others.empty());
     EXPECT_EQ(few.steps.size(), 5u) << "all but the scene's own";
+}
+
+TEST(IdleDials, AreThoseThatChangeNoErrorWhereverTheyAreTurned)
+{
+    std::vector<Point> points = {
+        made_point(1, 2, {}),
+        made_point(2, 2, {{"broadphase", "grid"}}),
+        made_point(3, 2, {{"broadphase", "sweep"}}),
+        made_point(2, 1, {{"substeps", "8"}}),
+        made_point(2, 1, {{"substeps", "8"}, {"broadphase", "grid"}}),
+        made_point(2, 2, {{"iterations", "2"}}),
+        made_point(2, 3, {{"solver", "pgs"}}),
+        made_point(2, 2.5, {{"solver", "pgs"}, {"iterations", "60"}}),
+    };
+    points.emplace_back();
+    points.back().changes = {{"broadphase", "embree"}};
+    points.back().trouble = "cannot be had";
+    EXPECT_EQ(idle_dials(points, kDrift), std::vector<std::string>{"broadphase"})
+        << "iterations alone do nothing, with pgs they do";
+    of(points[2].errors[3], kDrift) += 1e-9;
+    EXPECT_TRUE(idle_dials(points, kDrift).empty()) << "in one window of four";
+    for (Point& point : points)
+        for (Errors& errors : point.errors) of(errors, kDrift) = 0;
+    EXPECT_TRUE(idle_dials(points, kDrift).empty()) << "nothing errs at all";
 }
 
 TEST(Candidates, KnowTheirDials)
