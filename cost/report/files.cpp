@@ -26,24 +26,27 @@ std::string errors_json(const std::vector<Quantity>& quantities,
     return errors.text();
 }
 
+// In one line.
+template <class List, class Text>
+std::string row_json(const List& list, const Text& text)
+{
+    std::string all;
+    for (const auto& item : list) all += (all.empty() ? "" : ", ") + text(item);
+    return '[' + all + ']';
+}
+
+std::string numbers_json(const std::vector<double>& numbers)
+{
+    return row_json(numbers, [](double number) { return json_text(number); });
+}
+
 // Of each trial, of each quantity: what averages are taken of.
 std::string squares_json(const std::vector<Quantity>& quantities, const Point& point)
 {
-    std::string trials;
-    for (const Errors& trial : point.errors) {
-        std::string squares;
-        for (std::size_t i = 0; i < quantities.size(); ++i)
-            squares += (squares.empty() ? "" : ", ") + json_text(of(trial, i));
-        trials += (trials.empty() ? "[" : ", [") + squares + ']';
-    }
-    return '[' + trials + ']';
-}
-
-std::string times_json(const Point& point)
-{
-    std::string times;
-    for (const double time : point.times_ms) times += (times.empty() ? "" : ", ") + json_text(time);
-    return '[' + times + ']';
+    return row_json(point.errors, [&](Errors trial) {
+        trial.resize(quantities.size());  // what was never put in is 0
+        return numbers_json(trial);
+    });
 }
 
 std::string settings_json(const Changes& changes)
@@ -61,7 +64,7 @@ std::string point_json(const std::vector<Quantity>& quantities, const Point& poi
     return members.add("errors", errors_json(quantities, point, &Point::error))
         .add("errors_at_most", errors_json(quantities, point, &Point::error_at_most))
         .add("squares", squares_json(quantities, point))
-        .add("times_ms", times_json(point))
+        .add("times_ms", numbers_json(point.times_ms))
         .add("time_ms",
              JsonMembers()
                  .add("median", point.time_ms.median)
@@ -92,13 +95,6 @@ std::string advice_json(const CostReport& report)
         .add_text("options", as_options(joined(report.given, advice.point->changes)))
         .add_text("command", command_of(report, *advice.point))
         .text();
-}
-
-std::string words_json(const std::vector<std::string>& words)
-{
-    std::string all;
-    for (const std::string& word : words) all += (all.empty() ? "" : ", ") + json_text(word);
-    return '[' + all + ']';
 }
 
 std::string units_json(const std::vector<Quantity>& quantities)
@@ -208,7 +204,9 @@ void write_cost_json(const CostReport& report, std::ostream& out)
                  .add("time_ms", report.wish.time_ms)
                  .text())
         .add("advice", advice_json(report))
-        .add("idle_dials", words_json(idle_dials(report.found.points, report.measure)))
+        .add("idle_dials",
+             row_json(idle_dials(report.found.points, report.measure),
+                      [](const std::string& dial) { return json_text(dial); }))
         .add("doubts",
              array(doubts_of(report), [](const std::string& doubt) { return json_text(doubt); }))
         .add("points", array(report.found.points, [&](const Point& point) {

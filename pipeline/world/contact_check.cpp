@@ -298,9 +298,10 @@ std::vector<Vec3> unbalanced_forces(const World& world)
         const std::vector<Vec3>& force = state.get<EventDrivenContacts>().force;
         std::copy_n(force.begin(), std::min(force.size(), left.size()), left.begin());
     } else if (time > 0)
-        for_each_contact_impulse(state, [&](std::uint32_t a, std::uint32_t b, const Vec3& on_b) {
-            left[a] -= on_b / time;
-            left[b] += on_b / time;
+        for_each_contact_impulse(state, [&](std::uint32_t a, std::uint32_t b, const auto& on_b) {
+            const Vec3 force = on_b() / time;
+            left[a] -= force;
+            left[b] += force;
         });
     for (std::uint32_t body = 0; body < left.size(); ++body) {
         const bool is_dragged = body < forces.linear_drag.size() && forces.linear_drag[body] != 0;

@@ -6,20 +6,23 @@
 
 namespace throng {
 
-/// Calls for every contact of the lists, in their order: its two bodies, and what it did to the
-/// second over the last substep, N s, friction included. Then, where anything bounces, for every
-/// contact's impacts of the whole step; those of islands that the direct solver took are among what
-/// their contacts hold.
+/// Calls for every contact of the lists, in their order: its two bodies, and a function that adds
+/// up what it did to the second over the last substep, N s, friction included. Then, where anything
+/// bounces, for every contact's impacts of the whole step; those of islands that the direct solver
+/// took are among what their contacts hold.
 template <class Real, class Each>
 void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const Each& each)
 {
     const auto& colliders = std::get<Colliders>(data);
     const auto& pairs = std::get<Pairs>(data);
     const auto add = [&](std::size_t pair, const Contact<Real>& contact) {
-        Vec3 on_b = contact.friction.template cast<double>();
-        for (int k = 0; k < contact.count; ++k)
-            on_b += contact.normal.template cast<double>()
-                * double{contact.points[static_cast<std::size_t>(k)].impulse};
+        const auto on_b = [&] {
+            Vec3 impulse = contact.friction.template cast<double>();
+            for (int k = 0; k < contact.count; ++k)
+                impulse += contact.normal.template cast<double>()
+                    * double{contact.points[static_cast<std::size_t>(k)].impulse};
+            return impulse;
+        };
         each(colliders.body[first_of(pairs.keys[pair])],
              colliders.body[second_of(pairs.keys[pair])], on_b);
     };
@@ -42,9 +45,10 @@ void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const
         for (std::size_t i = first.first_contact; i < last.first_contact + last.contacts; ++i) {
             const auto& entry = active.entries[layout.contacts[i]];
             const std::size_t lane = layout.lane[i];
-            const Vec3 on_b =
-                impact_impulse(constraints, lane / kBlock, static_cast<int>(lane % kBlock))
+            const auto on_b = [&]() -> Vec3 {
+                return impact_impulse(constraints, lane / kBlock, static_cast<int>(lane % kBlock))
                     .template cast<double>();
+            };
             each(entry.body_a, entry.body_b, on_b);
         }
     }

@@ -1,8 +1,7 @@
 #include "throng/energy_ledger.hpp"
 
 #include "kernels/dynamics/energy.hpp"
-#include "kernels/parallel/disjoint_sets.hpp"
-#include "pipeline/world/world_state.hpp"
+#include "pipeline/world/tied_bodies.hpp"
 
 #include <algorithm>
 #include <array>
@@ -131,15 +130,8 @@ void EnergyLedger::Inside::join_groups(const World& world)
 {
     const WorldState& state = state_of(world);
     const auto& states = state.get<BodyStates>();
-    const auto count = static_cast<std::uint32_t>(states.kind.size());
-    sets_.reset(count);
-    for (std::uint32_t body = 0; body < count; ++body) sets_.add(body);
-    const auto join = [&](std::uint32_t a, std::uint32_t b) {
-        if (a != kNoBody && b != kNoBody && states.dynamic(a) && states.dynamic(b))
-            sets_.join(a, b);
-    };
-    for (const auto& entry : state.get<ActiveContacts>().entries) join(entry.body_a, entry.body_b);
-    for (const SpringForce& spring : state.get<Forces>().springs) join(spring.a, spring.b);
+    join_tied_bodies(
+        state, [&](std::uint32_t body) { return states.dynamic(body); }, sets_);
 }
 
 void EnergyLedger::Inside::mark_groups(const World& world)

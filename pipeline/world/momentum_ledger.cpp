@@ -1,7 +1,6 @@
 #include "throng/momentum_ledger.hpp"
 
-#include "kernels/parallel/disjoint_sets.hpp"
-#include "pipeline/world/world_state.hpp"
+#include "pipeline/world/tied_bodies.hpp"
 
 #include <vector>
 
@@ -79,18 +78,11 @@ bool MomentumLedger::Inside::is_held(const WorldState& state, std::uint32_t body
 
 void MomentumLedger::Inside::join_groups(const WorldState& state)
 {
-    const auto count = static_cast<std::uint32_t>(state.get<BodyStates>().kind.size());
-    sets_.reset(count);
-    for (std::uint32_t body = 0; body < count; ++body) sets_.add(body);
-    const auto join = [&](std::uint32_t a, std::uint32_t b) {
-        if (a != kNoBody && b != kNoBody && is_here(state, a) && is_here(state, b))
-            sets_.join(a, b);
-    };
-    for (const auto& entry : state.get<ActiveContacts>().entries) join(entry.body_a, entry.body_b);
-    for (const SpringForce& spring : state.get<Forces>().springs) join(spring.a, spring.b);
+    join_tied_bodies(
+        state, [&](std::uint32_t body) { return is_here(state, body); }, sets_);
     if (!state.get<StepContext>().effects.meets(kEventDriven)) return;
     std::uint32_t first = kNoBody;
-    for (std::uint32_t body = 0; body < count; ++body) {
+    for (std::uint32_t body = 0; body < state.get<BodyStates>().kind.size(); ++body) {
         if (!is_here(state, body)) continue;
         if (first == kNoBody) first = body;
         sets_.join(first, body);

@@ -450,8 +450,11 @@ Vec3 World::contact_force(BodyId body) const
         return at < force.size() ? force[at] : Vec3(Vec3::Zero());
     }
     Vec3 impulse = Vec3::Zero();
-    for_each_contact_impulse(*state_, [&](std::uint32_t a, std::uint32_t b, const Vec3& on_b) {
-        if (a == at || b == at) impulse += b == at ? on_b : Vec3(-on_b);
+    for_each_contact_impulse(*state_, [&](std::uint32_t a, std::uint32_t b, const auto& on_b) {
+        if (b == at)
+            impulse += on_b();
+        else if (a == at)
+            impulse -= on_b();
     });
     return impulse / substep;
 }
