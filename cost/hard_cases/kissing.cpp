@@ -27,7 +27,10 @@ struct Kiss {
 const Kiss kKisses[] = {
     {"face", exponential(Vec3(0.3, 0, 0)), 1},
     {"edge", exponential(Vec3(0.2, 0, 0)) * exponential(Vec3(0, 0, kEighthTurn)), std::sqrt(2.0)},
-    {"corner", exponential(Vec3(0.1, 0, 0)) * Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3(-1, 0, 0)),
+    // From (1, 1, 1) to (-1, 0, 0), the shortest way.
+    {"corner",
+     exponential(Vec3(0.1, 0, 0))
+         * exponential(Vec3(0, -1, 1).normalized() * std::acos(-1 / std::sqrt(3.0))),
      std::sqrt(3.0)},
 };
 const Quat kPoses[] = {Quat::Identity(), exponential(Vec3(0.4, -0.7, 0.2)),

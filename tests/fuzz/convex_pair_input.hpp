@@ -5,6 +5,7 @@
 #pragma once
 
 #include "cooking/hulls/hull.hpp"
+#include "kernels/math/turn_between.hpp"
 #include "narrowphase/alternatives/convex_methods.hpp"
 #include "throng/scene.hpp"
 
@@ -154,7 +155,7 @@ inline Quat turn_of(FuzzBytes& bytes, const ConvexPair& pair)
         if (const PolytopePair* both = pair.polytopes()) {
             const Vec3& of_a = both->a.normals[bytes.byte() % both->a.normals.size()];
             const Vec3& of_b = both->b.normals[bytes.byte() % both->b.normals.size()];
-            turn = Quat::FromTwoVectors(of_b, -of_a);
+            turn = turn_between(of_b, -of_a);
         }
         break;
     default:

@@ -4,6 +4,7 @@
 
 #include "cost/hard_cases/broken_pairs.hpp"
 #include "kernels/geometry/separating_axes.hpp"
+#include "kernels/math/turn_between.hpp"
 #include "narrowphase/alternatives/convex_methods.hpp"
 #include "tests/support/polyhedra.hpp"
 
@@ -64,7 +65,7 @@ inline PolytopeCase face_to_face(const Shapes& prisms, RandomShapes& random)
     const PolytopeView b = view_of(prisms.hulls[pair.b.index]);
     const Vec3 face_a = any_normal(prisms.hulls[pair.a.index]);
     const Vec3 face_b = any_normal(prisms.hulls[pair.b.index]);
-    pair.b_in_a = {face_a * 0.3 + random.vector(-0.2, 0.2), Quat::FromTwoVectors(face_b, -face_a)};
+    pair.b_in_a = {face_a * 0.3 + random.vector(-0.2, 0.2), turn_between(face_b, -face_a)};
     Vec3 normal;
     pair.clearance = polytope_separation(a, b, pair.b_in_a, &normal);
     if (pair.clearance < 0) {

@@ -246,7 +246,7 @@ double solved(const Mesh& mesh, std::size_t triangle, const LocalRay& ray)
     const auto& [a, b, c] = mesh.triangles[triangle];
     Mat3 m;
     m << mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a], -ray.along;
-    const Vec3 x = m.fullPivLu().solve(ray.from - mesh.vertices[a]);
+    const Vec3 x = m.inverse() * (ray.from - mesh.vertices[a]);
     const bool hit = x[0] >= 0 && x[1] >= 0 && x[0] + x[1] <= 1 && x[2] >= 0 && x[2] <= ray.longest;
     return hit ? x[2] : kInfinity;
 }

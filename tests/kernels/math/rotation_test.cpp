@@ -2,6 +2,8 @@
 // torque against what it may never do.
 #include "kernels/math/rotation.hpp"
 
+#include "kernels/math/turn_between.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -161,6 +163,28 @@ TEST(Turned, KeepsUnitLengthOverAMillionTurns)
     const Vec3 spin = random_vector(random, 20);
     for (int i = 0; i < 1000000; ++i) q = turned(q, spin, 1.0 / 240);
     EXPECT_NEAR(q.norm(), 1, 3e-16);
+}
+
+TEST(TurnBetween, TakesOneToTheOtherByTheLeastTurnHoweverOppositeTheyAre)
+{
+    std::mt19937_64 random(9);
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 from = random_vector(random, 1);
+        // Anything; then ever nearer to the same and to the opposite direction, and those
+        // themselves.
+        Vec3 to = random_vector(random, 2);
+        if (i % 4 != 0) {
+            const double off = i % 40 < 4 ? 0 : std::pow(10.0, -(i % 20));
+            to = (i % 2 == 0 ? from : -from) + off * to;
+        }
+        const Quat turn = turn_between(from, to);
+        const Vec3 a = from.normalized(), b = to.normalized();
+        ASSERT_NEAR(turn.squaredNorm(), 1, 2e-15) << i;
+        ASSERT_LE((turn * a - b).norm(), 1e-14) << i;
+        // The axis is across both and the angle at most half a turn: no other turn is less.
+        ASSERT_LE(std::abs(turn.vec().dot(a)), 1e-15) << i;
+        ASSERT_GE(turn.w(), 0) << i;
+    }
 }
 
 TEST(InWorldAxes, AgreesWithTheBodySeenFromInside)

@@ -6,13 +6,33 @@
 #include "kernels/data/contacts.hpp"
 #include "kernels/solver/contact_packing.hpp"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace throng::given {
+
+/// The solution of a few equations, rows of coefficients that end with the right side: by
+/// elimination with the greatest pivot of a column. Eigen's would take each file that includes this
+/// seconds more.
+inline std::vector<double> solved_by_elimination(std::vector<std::vector<double>> rows)
+{
+    const std::size_t count = rows.size();
+    for (std::size_t at = 0; at < count; ++at) {
+        std::size_t pivot = at;
+        for (std::size_t k = at + 1; k < count; ++k)
+            if (std::abs(rows[k][at]) > std::abs(rows[pivot][at])) pivot = k;
+        std::swap(rows[at], rows[pivot]);
+        for (std::size_t k = 0; k < count; ++k) {
+            const double share = k == at ? 0 : rows[k][at] / rows[at][at];
+            for (std::size_t i = at; i <= count; ++i) rows[k][i] -= share * rows[at][i];
+        }
+    }
+    std::vector<double> solution;
+    for (std::size_t at = 0; at < count; ++at) solution.push_back(rows[at][count] / rows[at][at]);
+    return solution;
+}
 
 /// A body as a textbook has it. Where nothing turns, it has neither spin nor inertia.
 struct PlainBody {
@@ -278,24 +298,22 @@ private:
     // a full system of equations; only where nobody pulls. A rigid point gives way by a little.
     void solve_normals_as_block()
     {
-        const auto count = static_cast<Eigen::Index>(points.size());
-        Eigen::MatrixXd system(count, count);
-        Eigen::VectorXd right(count);
-        for (Eigen::Index i = 0; i < count; ++i) {
-            const Point& at = points[static_cast<std::size_t>(i)];
+        const std::size_t count = points.size();
+        std::vector<std::vector<double>> system(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Point& at = points[i];
             const double keep = at.left ? 0 : mass_of(at) * (1 - at.leak);
-            for (Eigen::Index k = 0; k < count; ++k)
-                system(i, k) = keep * answer_at(at, points[static_cast<std::size_t>(k)]);
-            system(i, i) += std::max(at.leak, double{0.03f});
-            right[i] = -keep * (speed_of(at) + at.bias) - at.leak * at.impulse;
+            for (const Point& other : points) system[i].push_back(keep * answer_at(at, other));
+            system[i][i] += std::max(at.leak, double{0.03f});
+            system[i].push_back(-keep * (speed_of(at) + at.bias) - at.leak * at.impulse);
         }
-        Eigen::VectorXd more = system.fullPivLu().solve(right);
-        for (Eigen::Index i = 0; i < count; ++i)
-            if (points[static_cast<std::size_t>(i)].left) more[i] = 0;
-        for (Eigen::Index i = 0; i < count; ++i)
-            if (points[static_cast<std::size_t>(i)].impulse + more[i] < 0) return;
-        for (Eigen::Index i = 0; i < count; ++i) {
-            Point& at = points[static_cast<std::size_t>(i)];
+        std::vector<double> more = solved_by_elimination(std::move(system));
+        for (std::size_t i = 0; i < count; ++i)
+            if (points[i].left) more[i] = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            if (points[i].impulse + more[i] < 0) return;
+        for (std::size_t i = 0; i < count; ++i) {
+            Point& at = points[i];
             at.impulse += more[i];
             apply(more[i] * normal, at.arm_a, at.arm_b);
         }

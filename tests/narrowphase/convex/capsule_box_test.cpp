@@ -1,3 +1,4 @@
+#include "kernels/math/turn_between.hpp"
 #include "tests/narrowphase/convex/round_pairs.hpp"
 
 namespace throng {
@@ -45,7 +46,7 @@ Placement placed(const Capsule& capsule, const Vec3& box, const Vec3& middle, co
     pair.b = kBox;
     pair.shapes.capsules = {capsule};
     pair.shapes.boxes = {{box}};
-    const Quat turn = Quat::FromTwoVectors(along, Vec3(0, 0, 1));
+    const Quat turn = turn_between(along, Vec3(0, 0, 1));
     pair.b_in_a = {-(turn * middle), turn};
     return pair;
 }

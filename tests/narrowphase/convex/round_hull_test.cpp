@@ -1,4 +1,5 @@
 #include "cooking/hulls/hull.hpp"
+#include "kernels/math/turn_between.hpp"
 #include "tests/narrowphase/convex/round_pairs.hpp"
 
 namespace throng {
@@ -108,7 +109,7 @@ TEST(RoundHull, CapsuleLyingOnAHullTouchesAsOnTheBoxThatItIs)
     }
     for (int i = 0; i < 300; ++i) {
         const double angle = uniform(random, 0, 7);
-        const Quat turn = Quat::FromTwoVectors(
+        const Quat turn = turn_between(
             Vec3(std::cos(angle), std::sin(angle), uniform(random, -0.02, 0.02)).normalized(),
             Vec3(0, 0, 1));
         const Vec3 middle(uniform(random, -1, 1), uniform(random, -0.5, 0.5), 0.5);

@@ -1,5 +1,6 @@
 #include "cooking/repair/build_mesh.hpp"
 #include "kernels/geometry/mesh.hpp"
+#include "kernels/math/turn_between.hpp"
 #include "narrowphase/dispatch.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "tests/support/dice.hpp"
@@ -368,7 +369,7 @@ TEST(MeshPairs, WhatIsApartDoesNotOverlapHoweverFarTheReach)
         SCOPED_TRACE("seed 36, pose " + std::to_string(i));
         // Through the hole, within a cylinder that is.
         const Vec3 lean(random.number(-0.2, 0.2), random.number(-0.2, 0.2), 1);
-        const Quat turn = Quat::FromTwoVectors(Vec3::UnitZ(), lean)
+        const Quat turn = turn_between(Vec3::UnitZ(), lean)
             * Quat(Eigen::AngleAxisd(random.number(-3, 3), Vec3::UnitZ()));
         const Pose pose{random.number(-0.5, 0.5) * lean.normalized(), turn};
         double widest = 0;
@@ -446,7 +447,7 @@ TEST(MeshPairs, WhatLeansOverAPeakIsNoDeeperThanItLies)
         shapes.boxes = {{{random.number(0.5, 2), random.number(0.5, 2), random.number(0.5, 2)}}};
         const Vec3 up(random.number(-0.06, 0.06), random.number(-0.06, 0.06), 1);
         Pose pose{{random.number(-0.3, 0.3), random.number(-0.3, 0.3), 0},
-                  Quat::FromTwoVectors(Vec3::UnitZ(), up)
+                  turn_between(Vec3::UnitZ(), up)
                       * Quat(Eigen::AngleAxisd(random.number(-3, 3), Vec3::UnitZ()))};
         double low = 0, high = 5;
         while (high - low > 1e-9) {

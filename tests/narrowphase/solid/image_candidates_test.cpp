@@ -3,6 +3,7 @@
 
 #include "cooking/repair/build_mesh.hpp"
 #include "kernels/geometry/image_views.hpp"
+#include "kernels/math/turn_between.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "tests/support/polyhedra.hpp"
 
@@ -147,7 +148,7 @@ TEST(ImageCandidates, ACornerInAFaceIsPushedOutOfTheFace)
     const Shapes shapes = boxes();
     const Vec3 tip(0.5, 0.4, 0.3);
     // The box stands on its corner, 0.1 deep.
-    const Quat turn = Quat::FromTwoVectors(tip, Vec3(0.05, 0.02, -1));
+    const Quat turn = turn_between(tip, Vec3(0.05, 0.02, -1));
     const double lowest = (turn * tip).z();
     const std::vector<ContactCandidate> candidates =
         candidate(shapes, {ShapeKind::box, 0}, {{0.1, 0.2, 0.2 - 0.1 - lowest}, turn});

@@ -1,5 +1,6 @@
 // Polytopes by the wide kernels: against the plain arithmetic of double, at every size and width.
 #include "kernels/geometry/separating_axes.hpp"
+#include "kernels/math/turn_between.hpp"
 #include "narrowphase/convex/wide/hull_kernels.hpp"
 #include "narrowphase/convex/wide_shapes.hpp"
 #include "tests/support/polyhedra.hpp"
@@ -120,8 +121,8 @@ TEST(WideHull, TellsWhoTouchesHoweverLittleAnAxisLeads)
         const Quat tilt(1, random.number(-1e-2, 1e-2), random.number(-1e-2, 1e-2), 0);
         if (i % 4 < 2)
             pose.orientation = tilt.normalized()
-                * Quat::FromTwoVectors(b.normals[static_cast<std::size_t>(i) % b.normals.size()],
-                                       -a.normals.back());
+                * turn_between(b.normals[static_cast<std::size_t>(i) % b.normals.size()],
+                               -a.normals.back());
         pose = parted_by(a, b, pose, beyond > 0 ? speculative_margin + beyond : beyond);
         const double exact = polytope_separation(a, b, pose, nullptr);
         const auto coarse =
