@@ -17,7 +17,6 @@ namespace {
 
 using openvdb::FloatGrid;
 using openvdb::FloatTree;
-constexpr int kCells = VoxelBricks::kCells;
 
 // The mesh as OpenVDB takes it, in voxels from the grid's first value.
 struct GridMesh {
@@ -57,8 +56,10 @@ std::vector<FieldSeed> seeds_of(const FloatGrid& grid, const VoxelBricks& laid)
         for (auto value = leaf->cbeginValueOn(); value; ++value) {
             const openvdb::Coord at = value.getCoord();
             bool held = true;
-            for (int k = 0; k < 3; ++k)
-                held &= at[k] >= 0 && at[k] <= laid.bricks[static_cast<std::size_t>(k)] * kCells;
+            for (int k = 0; k < 3; ++k) {
+                const int bricks = laid.bricks[static_cast<std::size_t>(k)];
+                held &= at[k] >= 0 && at[k] <= bricks * VoxelBricks::kCells;
+            }
             if (held)
                 seeds.push_back({{at[0], at[1], at[2]}, *value * static_cast<float>(laid.voxel)});
         }
