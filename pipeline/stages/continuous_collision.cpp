@@ -8,23 +8,21 @@
 //
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
-#include "kernels/dynamics/energy.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/ccd/time_of_impact.hpp"
+#include "pipeline/forces/held_energy.hpp"
 #include "pipeline/step/fast_bodies.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <queue>
 #include <span>
 
 namespace throng {
-
 namespace {
 
 constexpr std::size_t kPairs = 8;        // a block: some 20 microseconds of work
@@ -85,11 +83,10 @@ public:
                         Poses& poses,
                         Velocities& velocities,
                         FastBodies& fast)
-        : context_(context), parameters_(parameters), gravity_(context.gravity),
-          substep_(context.substep()), shapes_(shapes), colliders_(colliders), surfaces_(surfaces),
-          filter_(filter), forces_(forces), masses_(masses), bounds_(bounds), pairs_(pairs),
-          states_(states), followed_(followed), on_meshes_(on_meshes), poses_(poses),
-          velocities_(velocities), fast_(fast)
+        : context_(context), parameters_(parameters), shapes_(shapes), colliders_(colliders),
+          surfaces_(surfaces), filter_(filter), bounds_(bounds), pairs_(pairs), states_(states),
+          followed_(followed), on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
+          fast_(fast), held_energy_(context, forces, masses, states, poses, velocities)
     { }
 
     void run(const std::vector<std::uint32_t>& woke)
@@ -124,18 +121,6 @@ private:
         return placed * local.inverse();
     }
 
-    // Most are: neither fast candidates as the step began nor fast as it ended.
-    bool surely_slow(std::uint32_t body) const
-    {
-        if (colliders_.count[body] != 1) return false;
-        const std::uint32_t at = colliders_.begin[body];
-        const double inner = colliders_.inner_extent[at], dt = context_.dt;
-        const double turned = velocities_.angular[body].squaredNorm() * dt * dt;
-        return bounds_.speculative_margin[at] <= kFastCandidateMargin * inner
-            && 4 * velocities_.linear[body].squaredNorm() * dt * dt <= inner * inner
-            && turned <= kSmallTurn * kSmallTurn && !strays(colliders_, at, turned);
-    }
-
     // Round all of a collider's way.
     Box3 box_of_way(std::uint32_t at) const
     {
@@ -158,7 +143,7 @@ private:
     bool went_far(std::uint32_t body) const
     {
         if (colliders_.count[body] == 0 || states_.kind[body] == BodyKind::removed) return false;
-        if (surely_slow(body)) return false;
+        if (is_surely_slow(colliders_, bounds_, velocities_, body, context_.dt)) return false;
         const Pose before = began(body);
         const double length = (poses_.position[body] - before.position).norm();
         const double angle = velocities_.angular[body].norm() * context_.dt;
@@ -166,13 +151,7 @@ private:
         const Vec3 half_turn = (before.orientation.conjugate() * poses_.orientation[body]).vec();
         const double square = std::max(angle * angle, 4 * half_turn.squaredNorm());
         if (!(length > 0 || square > 0) || !std::isfinite(length)) return false;
-        for (std::uint32_t k = 0; k < colliders_.count[body]; ++k) {
-            const std::uint32_t at = colliders_.begin[body] + k;
-            const double inner = colliders_.inner_extent[at];
-            const double turning = inner > 0 ? way_of_turning(colliders_, at, angle) : 0;
-            if (length + turning > inner || strays(colliders_, at, square)) return true;
-        }
-        return false;
+        return may_have_passed(colliders_, body, length, angle, square);
     }
 
     // Ascending: those that were known to be fast before, and those that a blow made so.
@@ -473,115 +452,13 @@ private:
             .restitution;
     }
 
-    // m/s2, of the wind where it drives the body on: what it brakes is lost.
-    Vec3 wind_on(std::uint32_t body) const
-    {
-        if (body >= forces_.linear_drag.size()) return Vec3::Zero();
-        const Vec3& velocity = velocities_.linear[body];
-        const Vec3 past = forces_.wind - velocity;
-        if (!(past.dot(velocity) > 0)) return Vec3::Zero();
-        return masses_.inverse_mass[body] * forces_.linear_drag[body] * past;
-    }
-
-    // m/s2, of what pulls alike all along its way: gravity, wind and what pushes it.
-    Vec3 acceleration_of(std::uint32_t body) const
-    {
-        Vec3 pull = gravity_ + wind_on(body);
-        if (body < forces_.force.size()) pull += masses_.inverse_mass[body] * forces_.force[body];
-        return pull;
-    }
-
-    // Who is kept from the rest of its way has not fallen down it: what its pull gave it for that
-    // goes, also where it has been thrown back by the end of it, and what it took comes back. Else
-    // who is held high bounces higher than it fell.
-    void take_back_fall(std::uint32_t body, const Vec3& held)
-    {
-        const Vec3 pulled = acceleration_of(body);
-        const double pull = pulled.norm();
-        if (!(pull > 0) || !states_.dynamic(body)) return;
-        const Vec3 down = pulled / pull;
-        Vec3& velocity = velocities_.linear[body];
-        const double falling = down.dot(velocity);
-        const double gained = 2 * pulled.dot(held - poses_.position[body]);
-        if (!(gained < 0 || falling < 0)) return;
-        const double left = falling * falling + gained;
-        velocity += (std::copysign(std::sqrt(std::max(0.0, left)), falling) - falling) * down;
-        // What it has not got along its pull goes from the rest of its motion.
-        if (left < 0 && masses_.inverse_mass[body] > 0)
-            take_back_energy(body, -0.5 * masses_.mass[body] * left);
-    }
-
-    // J, of what pulls at the middle of one that goes round a pivot.
-    double hanging_energy_of(std::uint32_t body) const
-    {
-        if (!forces_.on_pivot(body)) return 0;
-        const Vec3 middle = poses_.at(body) * forces_.pivot_to_center_of(body);
-        return attraction_of(forces_, masses_, poses_, body, substep_)
-            - masses_.mass[body] * gravity_.dot(middle);
-    }
-
-    // Nor has its weight turned it down that way about a pivot. One that has not so much gives what
-    // it has: what pressed it in has stopped it, and it is held all the same.
-    void take_back_swing(std::uint32_t body, double gained)
-    {
-        if (!take_back_energy(body, std::max(0.0, gained))) velocities_.angular[body] *= 0;
-    }
-
-    // J, of what attractors have given up for one that is on no pivot.
-    double attraction_energy_of(std::uint32_t body) const
-    {
-        if (forces_.attractors.empty() || forces_.on_pivot(body)) return 0;
-        return attraction_of(forces_, masses_, poses_, body, substep_);
-    }
-
-    // J, of its motion; below 0 it is given. False for one that has not so much, which keeps it.
-    bool take_back_energy(std::uint32_t body, double gained)
-    {
-        if (gained == 0) return true;
-        const double had = kinetic_energy_of(body, masses_, poses_, velocities_);
-        if (had < gained) return false;
-        if (!(had > 0)) return true;
-        const double kept = std::sqrt(1 - gained / had);
-        velocities_.linear[body] *= kept;
-        velocities_.angular[body] *= kept;
-        return true;
-    }
-
+    // Where what goes by itself carries who rides on it, it lifts and lowers him: his fall is from
+    // where he would have been there.
     void hold_at(const Way& way, const Pose& end)
     {
-        const Pose went = poses_.at(way.body);
-        const Vec3 velocity = velocities_.linear[way.body], spin = velocities_.angular[way.body];
-        const double before = springs_energy_of(way.body, forces_, poses_);
-        const double attracted = attraction_energy_of(way.body);
-        const double hung = hanging_energy_of(way.body);
-        // What goes by itself lifts and lowers who rides on it: there it is where he would have
-        // been.
         const bool driven = way.rides != kNoBody && !states_.dynamic(way.rides);
-        take_back_fall(way.body, driven ? pose_on(way, way.since).position : end.position);
-        poses_.position[way.body] = end.position;
-        turn_back(way.body, end.orientation.normalized());
-        take_back_swing(way.body, hanging_energy_of(way.body) - hung);
-        // Nor have its springs drawn it down that way: what they hold the more for it goes. And
-        // attractors have given up another amount. One that has not so much is left to contacts.
-        const double drawn = std::max(0.0, springs_energy_of(way.body, forces_, poses_) - before)
-            + (attraction_energy_of(way.body) - attracted);
-        if (take_back_energy(way.body, drawn)) return fast_.held.push_back(way.body);
-        poses_.position[way.body] = went.position;
-        poses_.orientation[way.body] = went.orientation;
-        velocities_.linear[way.body] = velocity;
-        velocities_.angular[way.body] = spin;
-    }
-
-    // What does not turn as far as it would have keeps the spin that it has in its own axes: its
-    // inertia is in these.
-    void turn_back(std::uint32_t body, const Quat& held)
-    {
-        Quat& orientation = poses_.orientation[body];
-        if (masses_.gyroscopic_kind[body] != 0 && context_.gyroscopic != Gyroscopic::off) {
-            Vec3& spin = velocities_.angular[body];
-            spin = held * (orientation.conjugate() * spin);
-        }
-        orientation = held;
+        const Vec3 fell_to = driven ? pose_on(way, way.since).position : end.position;
+        if (held_energy_.hold(way.body, end, fell_to)) fast_.held.push_back(way.body);
     }
 
     // Each is stopped on its own way once, and once more on that of what carries it.
@@ -658,14 +535,10 @@ private:
 
     const StepContext& context_;
     const ImpactParameters& parameters_;
-    const Vec3 gravity_;
-    const double substep_;  // s
     const Shapes& shapes_;
     const Colliders& colliders_;
     const Surfaces& surfaces_;
     const PairFilter& filter_;
-    const Forces& forces_;
-    const Masses& masses_;
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;
@@ -674,6 +547,7 @@ private:
     Poses& poses_;
     Velocities& velocities_;
     FastBodies& fast_;
+    HeldEnergy held_energy_;
     std::vector<std::uint32_t> found_;  // fast bodies, ascending
     std::vector<Candidate> candidates_;
     std::vector<Way> ways_;              // by body

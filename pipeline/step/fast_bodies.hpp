@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/data/bodies.hpp"
+#include "kernels/data/bounds.hpp"
 
 #include <algorithm>
 
@@ -70,6 +71,40 @@ inline bool is_fast_candidate(const Colliders& colliders,
         if (rest + way + turning > kFastCandidateMargin * inner && way + turning + falls > 0)
             return true;
         if (strays(colliders, at, angle * angle)) return true;
+    }
+    return false;
+}
+
+/// Most are: neither fast candidates as the step began nor fast as it ended. False where that takes
+/// a closer look.
+inline bool is_surely_slow(const Colliders& colliders,
+                           const Bounds& bounds,
+                           const Velocities& velocities,
+                           std::size_t body,
+                           double dt)
+{
+    if (colliders.count[body] != 1) return false;
+    const std::uint32_t at = colliders.begin[body];
+    const double inner = colliders.inner_extent[at];
+    const double turned = velocities.angular[body].squaredNorm() * dt * dt;
+    return bounds.speculative_margin[at] <= kFastCandidateMargin * inner
+        && 4 * velocities.linear[body].squaredNorm() * dt * dt <= inner * inner
+        && turned <= kSmallTurn * kSmallTurn && !strays(colliders, at, turned);
+}
+
+/// Whether a body has come far enough in a step to have passed through something.
+///
+///   length  m, of the way of its middle
+///   angle   rad, that its spin would have turned it by
+///   square  of the angle that counts for how far it strayed, which may be greater
+inline bool may_have_passed(
+    const Colliders& colliders, std::size_t body, double length, double angle, double square)
+{
+    for (std::uint32_t k = 0; k < colliders.count[body]; ++k) {
+        const std::uint32_t at = colliders.begin[body] + k;
+        const double inner = colliders.inner_extent[at];
+        const double turning = inner > 0 ? way_of_turning(colliders, at, angle) : 0;
+        if (length + turning > inner || strays(colliders, at, square)) return true;
     }
     return false;
 }
