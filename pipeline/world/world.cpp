@@ -31,6 +31,13 @@ void check_settings(const Settings& settings, const char* caller)
 
 }  // namespace
 
+template <class Real>
+Step<Real>::Step() = default;
+template <class Real>
+Step<Real>::~Step() = default;
+template struct Step<float>;
+template struct Step<double>;
+
 WorldState::WorldState(const Settings& all, int thread_count) : pool(thread_count)
 {
     check_settings(all, "world");

@@ -12,13 +12,21 @@
 
 namespace throng {
 
-/// A step over one kind of number.
+/// A step over one kind of number. What makes and destroys its data is long: one file
+/// compiles it, and no other asks whether it could be copied.
 template <class Real>
 struct Step {
     using Number = Real;
+    Step();
+    ~Step();
+    Step(const Step&) = delete;
+    Step& operator=(const Step&) = delete;
+
     StepData<Real> data;
     std::unique_ptr<StepGraph<Real>> graph;
 };
+extern template struct Step<float>;
+extern template struct Step<double>;
 
 /// Where the parts of a stated shape went.
 struct PlacedShape {
