@@ -1,5 +1,6 @@
 // Forces: what acts besides gravity and contacts, in flight and on what touches something.
 #include "tests/pipeline/forces/force_scenes.hpp"
+#include "tests/support/watched.hpp"
 #include "throng/energy_ledger.hpp"
 #include "throng/world.hpp"
 
@@ -141,13 +142,7 @@ TEST(Forces, AnAttractorGivesNothingToWhoFallThroughIt)
                 scene.settings.substeps = substeps;
                 scene.attractors.push_back({Vec3(1, 0, 0), strength});
                 add_body(scene, Vec3(3, 0, 0)).velocity = Vec3(0, sideways, 0);
-                World world(scene);
-                EnergyLedger ledger;
-                for (int step = 0; step < 3000; ++step) {
-                    ledger.before_step(world);
-                    world.step();
-                    ledger.after_step(world);
-                }
+                const auto ledger = given::watched<EnergyLedger>(scene, 3000);
                 EXPECT_LT(ledger.gained(), 0.015 * ledger.greatest_kinetic())
                     << sideways << " m/s, strength " << strength << ", substeps " << substeps;
             }

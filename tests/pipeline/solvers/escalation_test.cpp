@@ -1,6 +1,7 @@
 // Escalation: what the solver would let fall is found, held, and let go again.
 #include "kernels/math/rotation.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "tests/support/watched.hpp"
 #include "throng/energy_ledger.hpp"
 
 #include <gtest/gtest.h>
@@ -135,12 +136,7 @@ TEST(Escalation, HoldsTheHeavyOnWhoCanOnlyTurn)
             add(small, 2 + small).lock_position = true;
             add(1, 3 + 2 * small);
             World world(made.scene);
-            EnergyLedger ledger;
-            for (int step = 0; step < 600; ++step) {
-                ledger.before_step(world);
-                world.step();
-                ledger.after_step(world);
-            }
+            const auto ledger = given::watched<EnergyLedger>(world, 600);
             const double weight = world.mass(world.bodies()[3]) * 9.81;
             EXPECT_LE(ledger.gained(), 1e-3 * weight) << small << ' ' << round;
         }

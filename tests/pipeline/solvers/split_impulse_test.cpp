@@ -1,6 +1,7 @@
 // Parting: bodies made deep inside one another move apart, and get no speed by it.
 #include "scene/catalog/closed_meshes.hpp"
 #include "tests/support/small_scenes.hpp"
+#include "tests/support/watched.hpp"
 #include "throng/catalog.hpp"
 #include "throng/energy_ledger.hpp"
 
@@ -159,13 +160,7 @@ TEST(SplitImpulses, ThinSolidsThatAFallHasDrivenThroughOneAnotherGetNoSpeedByIt)
         scene.settings.voxel_size = 0.012;
         scene.settings.substeps = setting.substeps;
         scene.settings.solver = setting.solver;
-        World world(scene);
-        EnergyLedger ledger;
-        for (int step = 0; step < 90; ++step) {
-            ledger.before_step(world);
-            world.step();
-            ledger.after_step(world);
-        }
+        const auto ledger = given::watched<EnergyLedger>(scene, 90);
         EXPECT_LE(ledger.gained(), 3e-2 * ledger.greatest_kinetic()) << setting.name;
     }
 }

@@ -110,13 +110,7 @@ TEST(FastBodies, AreHeldWithTheEnergyTheyHad)
             made.scene.materials[0].friction = 0;
             made.floor();
             made.body(made.shape(CylinderShape{0.48, 0.48}), Vec3(0, 0, 0.48 + height)).fast = true;
-            World world(made.scene);
-            EnergyLedger ledger;
-            for (int step = 0; step < static_cast<int>(1 / dt); ++step) {
-                ledger.before_step(world);
-                world.step();
-                ledger.after_step(world);
-            }
+            const auto ledger = given::watched<EnergyLedger>(made.scene, static_cast<int>(1 / dt));
             EXPECT_LE(ledger.gained(), 1e-4 * ledger.greatest_kinetic()) << dt << ' ' << height;
         }
 }
