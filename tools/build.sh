@@ -95,7 +95,7 @@ need_packages() {
         fi
     fi
     say "installing ${missing[*]}"
-    : >"$log"
+    mkdir -p "${log%/*}" && : >"$log"
     # A list that could not be renewed may still do.
     logged "$log" "${as_root[@]}" apt-get update || true
     logged "$log" "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes \

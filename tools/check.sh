@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # Check: what a change goes through before it is pushed.
 #   tools/check.sh         format, include direction, dev build, fast tests, clang-tidy on what changed
+#   tools/check.sh tidy    clang-tidy alone, on what the last 20 commits and since have changed: some
+#                          20 s of a processor for each file
 #   tools/check.sh all     clang-tidy on everything, the other presets too, and the pages of the public
 #                          headers; looks at the page of throng cost in a browser; fuzzes a little;
 #                          then every case whole, whose time it tells, and the fixed random scenes
@@ -10,6 +12,22 @@ cd "$root"
 source tools/build.sh
 need_packages "${build_packages[@]}" "${test_packages[@]}" "${check_packages[@]}"
 
+# clang-tidy on the files that differ from a commit, and those that git does not track yet.
+tidy_since() {  # COMMIT
+    say "clang-tidy"
+    mkdir -p build
+    cmake --preset tidy >build/tidy.log || { cat build/tidy.log; exit 1; }
+    { git diff --name-only --diff-filter=d "$1"; git ls-files --others --exclude-standard; } \
+        | sed -n '/_threads\.cpp$/d; /^tests\/fuzz\//d; /\.cpp$/p' \
+        | xargs -r -d '\n' -n 1 -P "$(job_count)" clang-tidy-14 --quiet -p build/tidy
+}
+
+if [[ ${1:-} == tidy ]]; then
+    tidy_since "$(git rev-list -n 21 HEAD | tail -n 1)"
+    say "all is well"
+    exit
+fi
+
 say "format"
 tools/format.sh --check
 say "include direction"
@@ -17,14 +35,10 @@ tools/include_direction.py
 build_preset dev
 test_preset dev -LE slow
 
-say "clang-tidy"
 # What differs from where this branch left the one it is to go to, or everything.
 base=$(git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEAD)
 [[ ${1:-} != all ]] || base=$(git hash-object -t tree /dev/null)
-cmake --preset tidy >build/tidy.log || { cat build/tidy.log; exit 1; }
-{ git diff --name-only --diff-filter=d "$base"; git ls-files --others --exclude-standard; } \
-    | sed -n '/_threads\.cpp$/d; /^tests\/fuzz\//d; /\.cpp$/p' \
-    | xargs -r -d '\n' -n 1 -P "$(job_count)" clang-tidy-14 --quiet -p build/tidy
+tidy_since "$base"
 
 if [[ ${1:-} == all ]]; then
     build_preset asan
