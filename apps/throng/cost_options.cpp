@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <sstream>
 
 namespace throng {
 namespace {
@@ -42,6 +43,48 @@ std::vector<std::string> dials_asked(const Options& options)
         dials.emplace_back(name);
     }
     return dials;
+}
+
+// A line of a file of settings: words such as solver=pgs, none turned twice.
+Changes changes_in(const std::string& line, const std::string& place)
+{
+    Changes changes;
+    Settings settings;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {
+        const std::size_t equals = word.find('=');
+        if (equals == std::string::npos)
+            throw BadInput(place + "wanted DIAL=VALUE, not " + in_quotes(word));
+        Change change{word.substr(0, equals), word.substr(equals + 1)};
+        const std::string trouble = set_dial(settings, change.dial, change.value);
+        if (!trouble.empty()) throw BadInput(place + trouble);
+        const bool again = std::any_of(changes.begin(), changes.end(), [&](const Change& each) {
+            return each.dial == change.dial;
+        });
+        if (again) throw BadInput(place + in_quotes(change.dial) + " is there twice");
+        changes.push_back(std::move(change));
+    }
+    return changes;
+}
+
+// Empty lines are passed over, and so is what follows a #.
+std::vector<Changes> settings_asked(const Options& options)
+{
+    std::vector<Changes> settings;
+    if (!options.has("--settings")) return settings;
+    if (options.has("--dials")) throw BadInput("--settings: wanted either that or --dials");
+    const std::string path(options.text("--settings"));
+    const std::optional<std::string> text = text_of_file(path);
+    if (!text) throw BadInput("--settings: " + in_quotes(path) + " cannot be read");
+    std::istringstream lines(*text);
+    std::size_t number = 0;
+    for (std::string line; std::getline(lines, line);) {
+        const std::string place = path + ':' + std::to_string(++number) + ": ";
+        Changes changes = changes_in(line.substr(0, line.find('#')), place);
+        if (!changes.empty()) settings.push_back(std::move(changes));
+    }
+    if (settings.empty()) throw BadInput("--settings: there are none in " + in_quotes(path));
+    return settings;
 }
 
 std::string folder_asked(const Options& options, const std::string& name)
@@ -93,6 +136,7 @@ CostOptions read_cost_options(const Options& options)
         options.whole("--windows", static_cast<std::int64_t>(asked.windows.count), 2, 1000));
     asked.windows.threads = threads_asked(options);
     asked.sweep.dials = dials_asked(options);
+    asked.sweep.settings = settings_asked(options);
     asked.sweep.patience = 60 * positive(options, "--minutes", kStandardMinutes);
     return asked;
 }

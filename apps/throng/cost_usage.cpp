@@ -20,6 +20,8 @@ constexpr Option kOptions[] = {
     {"--dials", "A,B",
      "tries values of these dials alone; none: measures the scene as it is (default: all that may "
      "matter here)"},
+    {"--settings", "FILE",
+     "tries these alone, each measured whole: a line a setting, as in dt=1/120 solver=pgs"},
     {"--window", "S", "s that bodies may drift from the reference in (default 0.1)"},
     {"--windows", "N", "how many windows, 2 to 1000 (default 24)"},
     {"--seconds", "S", "s of the scene, from its beginning, that windows lie in (default 5)"},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace throng {
 
@@ -13,6 +14,8 @@ namespace {
 // Of the scene's own dt.
 constexpr double kSteps[] = {2, 1, 0.5, 0.25, 0.125, 0.0625};
 constexpr std::string_view kSubsteps[] = {"1", "2", "4", "8", "16", "32"};
+
+constexpr int kMostIterations = 64;
 
 // A value worth a try by itself, and what calls for it: none for what any scene may have.
 struct Try {
@@ -116,6 +119,14 @@ std::vector<Changes> steps_for(const Scene& scene, std::span<const std::string> 
     return steps;
 }
 
+bool is_step(const Change& change) { return change.dial == "dt" || change.dial == "substeps"; }
+
+// Of a dial turned to what the scene has anyway, nothing.
+void put(const Scene& scene, const Change& change, Changes& to)
+{
+    if (dial_value(scene.settings, change.dial) != change.value) to.push_back(change);
+}
+
 }  // namespace
 
 std::vector<std::string_view> swept_dials()
@@ -138,6 +149,54 @@ candidates_for(const Scene& scene, const Effects& effects, std::span<const std::
         if (does_something(scene, each.changes)) candidates.others.push_back(each.changes);
     }
     return candidates;
+}
+
+std::vector<Changes>
+neighbors_of(const Scene& scene, const Changes& changes, std::span<const std::string> dials)
+{
+    constexpr double kFactors[] = {2, 1, 0.5};
+    const Settings own = changed(scene, changes).settings;
+    Changes others;
+    std::remove_copy_if(changes.begin(), changes.end(), std::back_inserter(others), is_step);
+    std::vector<Changes> all;
+    const auto add = [&](const Changes& neighbor) {
+        if (does_something(scene, neighbor)) all.push_back(neighbor);
+    };
+    for (const double longer : kFactors) {
+        const double dt = own.dt * longer, share = dt / scene.settings.dt;
+        const bool is_tried = share < 1.01 * kSteps[0] && share > 0.99 * *std::rbegin(kSteps);
+        if (longer != 1 && (!is_tried || !asked_for("dt", dials))) continue;
+        for (const double more : kFactors) {
+            const std::string substeps = number_text(own.substeps * more);
+            const bool is_known = std::find(std::begin(kSubsteps), std::end(kSubsteps), substeps)
+                != std::end(kSubsteps);
+            if (more != 1 && (!is_known || !asked_for("substeps", dials))) continue;
+            if (longer == 1 && more == 1) continue;
+            Changes steps;
+            put(scene, {"dt", time_text(dt)}, steps);
+            put(scene, {"substeps", substeps}, steps);
+            add(joined(steps, others));
+        }
+    }
+    for (const Change& other : others) {
+        Changes fewer = changes;
+        std::erase(fewer, other);
+        add(fewer);
+    }
+    // Those that pgs has by itself are half as many at first.
+    if (own.solver == Solver::pgs && own.iterations == 0 && asked_for("iterations", dials))
+        add(joined(changes, {{"iterations", "10"}}));
+    const auto turn = [&](std::string_view dial, int count) {
+        const bool is_turned = std::any_of(others.begin(), others.end(),
+                                           [&](const Change& each) { return each.dial == dial; });
+        if (!is_turned) return;
+        for (const int more : {2 * count, count / 2})
+            if (more >= 1 && more <= kMostIterations)
+                add(joined(changes, {{std::string(dial), std::to_string(more)}}));
+    };
+    turn("iterations", own.iterations);
+    turn("relax_iterations", own.relax_iterations);
+    return all;
 }
 
 }  // namespace throng

@@ -24,4 +24,10 @@ std::vector<std::string_view> swept_dials();
 Candidates
 candidates_for(const Scene& scene, const Effects& effects, std::span<const std::string> dials);
 
+/// A move from a setting: dt or substeps, or both, by a factor of two either way, within what
+/// candidates have of them; iterations that it has by such a factor; or one of the other values
+/// left out. Of the dials given alone, or of all; not the scene as it is.
+std::vector<Changes>
+neighbors_of(const Scene& scene, const Changes& changes, std::span<const std::string> dials);
+
 }  // namespace throng

@@ -24,6 +24,10 @@ constexpr double kChanges = 0.02, kFaster = 0.95;
 constexpr double kTooSlow = 300;
 constexpr double kLeast = 1;            // s of the clock
 constexpr std::size_t kMostJoined = 8;  // others that are tried with steps, and steps with others
+// Of the patience, after which nothing new is tried: the rest is for a nearer look.
+constexpr double kTriesShare = 0.75;
+// A point from which others are looked for has no other so much better in both.
+constexpr double kAtFront = 0.97;
 // Trials that a time is taken over, and the share of the patience that times may take.
 constexpr std::size_t kTimedTrials = 8;
 constexpr double kTimesShare = 0.25;
@@ -37,7 +41,10 @@ public:
     SweepResult run(const Candidates& candidates)
     {
         try {
-            search(candidates);
+            if (plan_.settings.empty())
+                search(candidates);
+            else
+                measure_whole();
         } catch (const Interrupted&) {
             found_.interrupted = true;
         }
@@ -54,7 +61,8 @@ private:
         for (const Changes& each : candidates.others) add(each);
         measure_all(kFirstTrials, kFirstShare);
         join();
-        measure_all(kFirstTrials, 1);
+        measure_all(kFirstTrials, kTriesShare);
+        move_on();
         leave_beaten(kBeatenBy[0]);
         measure_left(kMoreTrials);
         leave_beaten(kBeatenBy[1]);
@@ -62,21 +70,45 @@ private:
         leave_beaten(kBeatenBy[2]);
         take_times();
     }
+    // Without a choice among them, and of each that cannot be had, why.
+    void measure_whole()
+    {
+        add({});
+        for (const Changes& each : plan_.settings)
+            if (const std::string trouble = trouble_of(each); trouble.empty()) {
+                add(each);
+            } else {
+                found_.points.push_back({});
+                found_.points.back().changes = each;
+                found_.points.back().trouble = trouble;
+            }
+        measure_all(trials_.size(), 1);
+        std::erase_if(left_, [&](std::size_t at) {
+            return !point(at).had() || point(at).errors.size() < trials_.size();
+        });
+        take_times();
+    }
     double time_left(double share = 1) const
     {
         return share * plan_.patience - seconds_since(begin_);
     }
-    // Not what cannot be had, nor steps of which trials hold no whole number.
-    void add(const Changes& changes)
+    // Why it cannot be tried; empty where it can. Trials have to hold a whole number of steps.
+    std::string trouble_of(const Changes& changes) const
     {
         const bool turns_dt = std::any_of(changes.begin(), changes.end(),
                                           [](const Change& each) { return each.dial == "dt"; });
         try {
             const double dt = changed(trials_.scene(), changes).settings.dt;
-            if (turns_dt && !trials_.holds_whole_steps(dt)) return;
-        } catch (const std::invalid_argument&) {
-            return;
+            if (turns_dt && !trials_.holds_whole_steps(dt))
+                return "what is measured holds no whole number of its steps";
+        } catch (const std::invalid_argument& wrong) {
+            return wrong.what();
         }
+        return {};
+    }
+    void add(const Changes& changes)
+    {
+        if (!trouble_of(changes).empty()) return;
         const bool known =
             std::any_of(found_.points.begin(), found_.points.end(),
                         [&](const Point& point) { return point.changes == changes; });
@@ -160,7 +192,8 @@ private:
     {
         std::vector<std::pair<double, std::size_t>> turns;
         for (std::size_t at = 0; at < found_.points.size(); ++at)
-            turns.emplace_back(at == 0 ? 0 : substeps_of(point(at)), at);
+            if (point(at).trouble.empty())
+                turns.emplace_back(at == 0 ? 0 : substeps_of(point(at)), at);
         std::sort(turns.begin(), turns.end());
         for (std::size_t k = 0; k < turns.size(); ++k) {
             if (k > 0 && time_left(share) < 0) {
@@ -221,14 +254,11 @@ private:
             if (is_step && point(at).had() && !beaten(point(at), kBeatenBy[1])) steps.push_back(at);
             if (!is_step && is_worth_more(point(at))) others.push_back(at);
         }
-        const auto shorten = [&](std::vector<std::size_t>& list) {
-            std::stable_sort(list.begin(), list.end(), [&](std::size_t a, std::size_t b) {
-                return worth(point(a)) < worth(point(b));
-            });
-            if (list.size() > kMostJoined) list.resize(kMostJoined);
-        };
-        shorten(steps);
-        shorten(others);
+        std::stable_sort(others.begin(), others.end(), [&](std::size_t a, std::size_t b) {
+            return worth(point(a)) < worth(point(b));
+        });
+        if (others.size() > kMostJoined) others.resize(kMostJoined);
+        spread(steps);
         std::vector<Changes> joint;
         for (const std::size_t step : steps)
             for (const std::size_t other : others)
@@ -237,6 +267,35 @@ private:
             for (std::size_t b = a + 1; b < others.size(); ++b)
                 joint.push_back(joined(point(others[a]).changes, point(others[b]).changes));
         for (const Changes& each : joint) add(each);
+    }
+    // From the cheapest to the dearest, so that no part of the front is without.
+    void spread(std::vector<std::size_t>& steps)
+    {
+        std::stable_sort(steps.begin(), steps.end(), [&](std::size_t a, std::size_t b) {
+            return point(a).time_ms.median < point(b).time_ms.median;
+        });
+        if (steps.size() <= kMostJoined) return;
+        std::vector<std::size_t> some;
+        for (std::size_t k = 0; k < kMostJoined; ++k)
+            some.push_back(steps[k * (steps.size() - 1) / (kMostJoined - 1)]);
+        steps = std::move(some);
+    }
+    // From the front to its neighbors, as long as that leads to settings that are new and time is
+    // left: what joins two good values need not be at the best of steps for both.
+    void move_on()
+    {
+        for (bool moved = true; moved && time_left(kTriesShare) > 0;) {
+            const std::size_t before = found_.points.size();
+            std::vector<std::size_t> front;
+            for (std::size_t at = 0; at < before; ++at)
+                if (point(at).had() && !beaten(point(at), kAtFront)) front.push_back(at);
+            for (const std::size_t at : front)
+                for (const Changes& each :
+                     neighbors_of(trials_.scene(), point(at).changes, plan_.dials))
+                    add(each);
+            measure_all(kFirstTrials, kTriesShare);
+            moved = found_.points.size() > before;
+        }
     }
     // The less the better: time times error, as on a front of order 1.
     double worth(const Point& point) const
@@ -250,18 +309,17 @@ private:
         const WallClock::time_point begin = WallClock::now();
         std::vector<std::vector<double>> times(left_.size());
         for (int repeat = 0; repeat < plan_.repeats; ++repeat) {
-            std::vector<double> round;
-            for (std::size_t k = 0; k < left_.size(); ++k) {
-                const double takes = seconds_of(point(left_[k])) * static_cast<double>(timed());
-                if (seconds_since(begin) + takes > kTimesShare * plan_.patience) break;
-                show(k + 1, left_.size(), point(left_[k]), "time of setting");
-                round.push_back(time_of(point(left_[k])));
-            }
-            if (round.size() < left_.size()) {
+            double takes = 0;
+            for (const std::size_t at : left_)
+                takes += seconds_of(point(at)) * static_cast<double>(timed());
+            if (seconds_since(begin) + takes > kTimesShare * plan_.patience) {
                 found_.cut_short = found_.cut_short || repeat == 0;
                 break;
             }
-            for (std::size_t k = 0; k < round.size(); ++k) times[k].push_back(round[k]);
+            for (std::size_t k = 0; k < left_.size(); ++k) {
+                show(k + 1, left_.size(), point(left_[k]), "time of setting");
+                times[k].push_back(time_of(point(left_[k])));
+            }
         }
         for (std::size_t k = 0; k < left_.size(); ++k) {
             std::vector<double>& of = times[k];

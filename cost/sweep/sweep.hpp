@@ -45,12 +45,14 @@ struct Point {
 /// How it is swept.
 ///
 ///   dials     alone; empty: all that can matter
+///   settings  tried alone, each on all trials and none left; empty: those that are worth a try
 ///   measure   by which the front is: a place among the quantities
 ///   patience  s of the clock after which nothing new is begun
 ///   repeats   of the times of what is on the front
 ///   known     points that were measured before, on the same trials: not measured again
 struct SweepPlan {
     std::vector<std::string> dials;
+    std::vector<Changes> settings;
     std::size_t measure = 0;
     double patience = 180;
     int repeats = 7;
@@ -68,8 +70,10 @@ struct SweepResult {
 
 /// Steps and substeps together and every other value by itself are measured on a few trials; what
 /// another beats by far is left (successive halving); values that did well by themselves are tried
-/// with the steps that did; and what is near the front is measured on more trials, at last on all,
-/// and timed in turn. effects: of the trials' scene.
+/// with the steps that did; from the front others are looked for, a dial at a time, until that
+/// leads to nothing new; and what is near the front is measured on more trials, at last on all, and
+/// timed in turn. effects: of the trials' scene. Settings that the plan names are measured whole
+/// instead, without a choice among them: what those are held against that were found so.
 ///
 /// Source: Jamieson and Talwalkar, Non-stochastic best arm identification and hyperparameter
 ///         optimization (2016).

@@ -265,15 +265,17 @@ WindowRun Windows::run(const Scene& scene, std::size_t window, double patience) 
     EnergyLedger ledger;
     LawWatch laws;
     const int steps = steps_in(length_, scene.settings.dt), skipped = steps / 3;
+    const WorkClock clock(threads_);
     double time_ms = 0, all = 0;
     for (int step = 0; step < steps; ++step) {
         check();
         ledger.before_step(world);
         laws.before_step(world, step == steps - 1);
-        const WallClock::time_point begin = WallClock::now();
+        const WallClock::time_point waited = WallClock::now();
+        const double begin = clock.now();
         world.step();
-        const double taken = seconds_since(begin);
-        all += taken;
+        const double taken = clock.since(begin);
+        all += seconds_since(waited);
         if (all > patience) throw TooSlow{};
         if (step >= skipped) time_ms += 1e3 * taken;
         ledger.after_step(world);
@@ -296,9 +298,10 @@ double Windows::time_ms(const Scene& scene, std::size_t window) const
     const int steps = steps_in(length_, scene.settings.dt), skipped = steps / 3;
     for (int step = 0; step < skipped; ++step) world.step();
     check();
-    const WallClock::time_point begin = WallClock::now();
+    const WorkClock clock(threads_);
+    const double begin = clock.now();
     for (int step = skipped; step < steps; ++step) world.step();
-    return 1e3 * seconds_since(begin) * kFrame / (scene.settings.dt * (steps - skipped));
+    return 1e3 * clock.since(begin) * kFrame / (scene.settings.dt * (steps - skipped));
 }
 
 std::vector<StageTime> Windows::stage_times(const Scene& scene) const

@@ -53,8 +53,8 @@ struct Window {
 
 /// What came of a window by some settings.
 ///
-///   time_ms  of its steps, for each 1/60 s of the scene's time; without the first third of them,
-///            which find their contacts anew
+///   time_ms  of its steps, by the work clock, for each 1/60 s of the scene's time; without the
+///            first third of them, which find their contacts anew
 struct WindowRun {
     Errors errors{};
     double time_ms = 0;

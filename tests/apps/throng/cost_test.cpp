@@ -194,6 +194,38 @@ TEST(Cost, ComparesTwoReports)
     EXPECT_EQ(run_throng({"cost", "--compare", report, folder / "none.json"}).code, 2);
 }
 
+TEST(Cost, TriesTheSettingsOfAFile)
+{
+    const TestFolder folder;
+    const auto by = [&](const std::string& text) {
+        return run_throng({"cost", "stacks:10", "--windows", "2", "--seconds", "0.5", "--settings",
+                           folder.write("some.txt", text), "--out", folder / "found"});
+    };
+    const Outcome said = by("# two\nsubsteps=16   contact_rate=0.4\n\nsolver=pgs # by sweeps\n");
+    ASSERT_EQ(said.code, 0) << said.err;
+    EXPECT_NE(said.out.find("settings on the front, of 3 tried"), std::string::npos) << said.out;
+    const std::string csv = folder.read("found/cost.csv");
+    EXPECT_NE(csv.find("\n\"substeps=16 contact_rate=0.4\","), std::string::npos) << csv;
+    EXPECT_NE(csv.find("\n\"solver=pgs\","), std::string::npos) << csv;
+
+    const std::pair<const char*, const char*> wrongs[] = {
+        {"substeps=16\nsolver pgs\n", "some.txt:2: wanted DIAL=VALUE, not \"solver\""},
+        {"solver=pigs\n", "some.txt:1: "},
+        {"substeps=1 substeps=2\n", "some.txt:1: \"substeps\" is there twice"},
+        {"# none\n", "--settings: there are none in "},
+    };
+    for (const auto& [text, wanted] : wrongs) {
+        const Outcome refused = by(text);
+        EXPECT_EQ(refused.code, 2) << wanted;
+        EXPECT_NE(refused.err.find(wanted), std::string::npos) << refused.err;
+    }
+    const Outcome both = run_throng(quick(folder, {"--settings", folder / "some.txt"}));
+    EXPECT_NE(both.err.find("--settings: wanted either that or --dials"), std::string::npos);
+    const Outcome none =
+        run_throng({"cost", "stacks:10", "--settings", folder / "no.txt", "--out", folder / "a"});
+    EXPECT_NE(none.err.find("no.txt\" cannot be read"), std::string::npos) << none.err;
+}
+
 TEST(Cost, AnInterruptKeepsWhatWasFound)
 {
     const TestFolder folder;

@@ -1,12 +1,15 @@
 // Windows: cut from scenes whose answers are known.
 #include "cost/windows/windows.hpp"
 
+#include "cost/clock.hpp"
 #include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace throng {
 namespace {
@@ -103,6 +106,16 @@ TEST(Windows, TimeEachStageOfTheStep)
         ASSERT_NE(found, stages.end()) << name;
         EXPECT_GT(found->time_ms, 0) << name;
     }
+}
+
+// A thread that waits does no work; who waits for others does not know whether they do.
+TEST(WorkClock, OfOneThreadStandsStillWhileItWaits)
+{
+    const WorkClock one(1), two(2);
+    const double begin_one = one.now(), begin_two = two.now();
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_LT(one.since(begin_one), 0.1);
+    EXPECT_GE(two.since(begin_two), 0.2);
 }
 
 }  // namespace
