@@ -1,7 +1,7 @@
 """Cost runs: `throng cost`, run for those who judge its answers, each run once.
 
-A run is kept in a folder of its own beside the words it was made by, and taken from there when it is
-asked for again, so that what was interrupted goes on where it was.
+A run is kept in a folder of its own beside the words it was made by, and taken from there when it
+is asked for again, so that what was interrupted goes on where it was.
 """
 import json
 import pathlib
@@ -18,7 +18,8 @@ class Point:
 
     error, at_most, time: ms for each 1/60 s; None where there is none or it is beyond all bounds
     repeats: times that the time was taken in turn
-    whole: measured on all that there is
+    done: there was time to measure it on all that there is, or it cannot be had
+    whole: measured so, and finite
     """
 
     def __init__(self, read, measure, trials):
@@ -26,14 +27,14 @@ class Point:
         self.trouble = read.get("trouble", "")
         self.error = self.at_most = self.time = None
         self.repeats, self.on_front, self.whole = 0, False, False
+        self.done = bool(self.trouble) or len(read["squares"]) == trials
         if self.trouble:
             return
         self.error, self.at_most = read["errors"][measure], read["errors_at_most"][measure]
         self.time, self.repeats = read["time_ms"]["median"], read["time_ms"]["repeats"]
         self.on_front = read["on_front"]
         # What is not finite is written as null.
-        finite = None not in (self.error, self.at_most, self.time)
-        self.whole = len(read["squares"]) == trials and finite
+        self.whole = self.done and None not in (self.error, self.at_most, self.time)
 
 
 class Report:
@@ -61,8 +62,8 @@ class Runs:
         self.folder = pathlib.Path(folder)
 
     def cost(self, name, scene, *options, settings=()):
-        """The report of `throng cost SCENE OPTIONS`, kept by this name, and whether it is a new one;
-        by these settings alone where there are some."""
+        """The report of `throng cost SCENE OPTIONS`, kept by this name; by these settings alone
+        where there are some."""
         folder = self.folder / name
         folder.mkdir(parents=True, exist_ok=True)
         words = ["cost", scene, *map(str, options)]
@@ -72,11 +73,11 @@ class Runs:
         if note.exists() and note.read_text() == made_by:
             return Report(json.loads((folder / "cost.json").read_text()))
         note.unlink(missing_ok=True)
+        told = f", {len(settings)} settings" if settings else ""
+        print(f"throng {shlex.join(words[1:])}{told}", file=sys.stderr, flush=True)
         if settings:
             (folder / "settings.txt").write_text(listed)
             words += ["--settings", str(folder / "settings.txt")]
-        told = f", {len(settings)} settings" if settings else ""
-        print(f"throng {shlex.join([scene, *map(str, options)])}{told}", file=sys.stderr, flush=True)
         quiet = [] if sys.stderr.isatty() else ["--quiet"]
         begin = time.monotonic()
         done = subprocess.run([*self.command, *words, "--out", str(folder), *quiet],
@@ -102,7 +103,7 @@ class Runs:
 
 
 def figure(number, digits=2):
-    """0.0123 as 12e-3 is for machines; tables have it in so many digits."""
+    """In so many digits; 0.00012 as 1.2e-4 where it is small."""
     if number is None:
         return ""
     text = f"{number:.{digits}g}"

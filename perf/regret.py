@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Regret: whether what `throng cost` recommends is nearly the cheapest that there is, and how far the
-default dials are from the front, on ten scenes of the catalogue.
+"""Regret: whether what `throng cost` recommends is nearly the cheapest that there is, and how far
+the default dials are from the front, on ten scenes of the catalogue.
 
     perf/regret.py [--throng COMMAND] [--folder FOLDER] [--scenes A,B] [--docs]
 
-Of each scene: `throng cost` for an error and for a time in the middle of the front of dt and substeps; then
-all of a product of dials, measured whole on the same windows; then the cheapest of both, timed in turn.
-What was measured is kept in the folder (build/regret): a run that was interrupted goes on from there,
-and another build begins with another folder. Prints both tables; --docs puts them into docs/ and
-the sweep into perf/regret.csv. An hour and a half on one core; times are of one thread.
+Of each scene: `throng cost` for an error and for a time in the middle of the front of dt and
+substeps; then all of a product of dials, measured whole on the same windows; then the cheapest of
+both, timed in turn. What was measured is kept in the folder (build/regret): a run that was
+interrupted goes on from there, and another build begins with another folder. Prints both tables;
+--docs puts them into docs/ and the sweep into perf/regret.csv. An hour and a half on one core;
+times are of one thread.
 """
 import argparse
 import csv
@@ -21,8 +22,8 @@ import sys
 sys.dont_write_bytecode = True
 from cost_runs import ROOT, Runs, figure, put_table, table  # noqa: E402
 
-SCENES = ("spring:1", "card_house:2", "pile:50", "stacks:50", "spheres:50", "hulls:50", "tumbler:50",
-          "wall:50", "pyramid:50", "crowd:50")
+SCENES = ("spring:1", "card_house:2", "pile:50", "stacks:50", "spheres:50", "hulls:50",
+          "tumbler:50", "wall:50", "pyramid:50", "crowd:50")
 WINDOWS = ("--threads", 1, "--windows", 12)
 # Of what is as exact as wanted, so many of the cheapest are timed in turn with what is recommended.
 NEAR = 5
@@ -163,15 +164,15 @@ def default_table(scenes):
 
 
 def write_sweep(scenes, path):
-    """A row a setting; of each scene its error at most and its time, empty where it was not tried."""
+    """A row a setting; of each scene error at most and time, empty where it was not tried."""
     keys = {}
     for scene in scenes:
         for key, point in scene.points.items():
             keys.setdefault(key, point.setting)
     machine = scenes[0].machine
     with open(path, "w", newline="", encoding="utf-8") as file:
-        file.write(f"# perf/regret.py --docs, {machine['processor']}, 1 thread of {machine['cores']} "
-                   f"cores, throng {machine['throng']}\n")
+        file.write(f"# perf/regret.py --docs, {machine['processor']}, 1 thread of "
+                   f"{machine['cores']} cores, throng {machine['throng']}\n")
         out = csv.writer(file, lineterminator="\n")
         out.writerow(["setting", *(f"{scene.name} {what}" for scene in scenes
                                    for what in ("at_most_m", "ms"))])
@@ -185,10 +186,12 @@ def write_sweep(scenes, path):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
-    options.add_argument("--throng", default=ROOT / "throng", help="the command (default: ./throng)")
+    options.add_argument("--throng", default=ROOT / "throng",
+                         help="the command (default: ./throng)")
     options.add_argument("--folder", default=ROOT / "build/regret", type=pathlib.Path)
     options.add_argument("--scenes", default=",".join(SCENES))
-    options.add_argument("--docs", action="store_true", help="puts tables and sweep where they are kept")
+    options.add_argument("--docs", action="store_true",
+                         help="puts tables and sweep where they are kept")
     asked = options.parse_args()
     runs = Runs(asked.throng, asked.folder)
     scenes = [Scene(runs, name) for name in asked.scenes.split(",")]

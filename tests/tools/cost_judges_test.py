@@ -117,7 +117,8 @@ class Kept(unittest.TestCase):
             folder = pathlib.Path(folder)
             command = folder / "throng"
             made = json.dumps(report([point("", 1, 1, 1)]))
-            command.write_text("#!/bin/sh\nwhile [ $# -gt 0 ]; do [ $1 = --out ] && out=$2; shift; done\n"
+            command.write_text("#!/bin/sh\n"
+                               "while [ $# -gt 0 ]; do [ $1 = --out ] && out=$2; shift; done\n"
                                f"echo >>{folder}/calls; echo '{made}' >$out/cost.json\n")
             command.chmod(0o755)
             runs = cost_runs.Runs(command, folder / "runs")
@@ -125,7 +126,8 @@ class Kept(unittest.TestCase):
             try:
                 for options, settings in (((), ()), ((), ()), (("--error", 1), ()), ((), ("a=1",)),
                                           ((), ("a=1",)), ((), ("a=2",))):
-                    self.assertEqual(runs.cost("run", "pile:5", *options, settings=settings).of("").time, 1)
+                    found = runs.cost("run", "pile:5", *options, settings=settings)
+                    self.assertEqual(found.of("").time, 1)
             finally:
                 sys.stderr.close()
                 sys.stderr = told
