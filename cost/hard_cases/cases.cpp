@@ -144,6 +144,8 @@ constexpr HardCase kCases[] = {
      case_simbenchmark, Fault::haste},
     {"H103", "what a step is told to be off by is what it is off by", case_step_errors,
      Fault::modesty},
+    {"H104", "what is struck so hard that it spins far round in a step makes no energy",
+     case_struck_heaps, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

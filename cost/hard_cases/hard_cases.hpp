@@ -111,6 +111,7 @@ void case_landed_heaps(CaseBench& bench);       // H100, landed_heaps.cpp
 void case_near_walls(CaseBench& bench);         // H101, near_walls.cpp
 void case_simbenchmark(CaseBench& bench);       // H102, simbenchmark.cpp
 void case_step_errors(CaseBench& bench);        // H103, step_errors.cpp
+void case_struck_heaps(CaseBench& bench);       // H104, struck_heaps.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -206,10 +206,12 @@ struct Slice {
     std::uint32_t first_contact = 0, contacts = 0;  // in Layout::contacts
 };
 
-/// What an island is solved with: so many times the substeps that the settings say, or exactly.
+/// What an island is solved with: so many times the substeps that the settings say, or exactly; and
+/// whether contacts are held to making no energy (see energy_limiter.hpp).
 struct Effort {
     std::uint8_t times = 1;
     bool direct = false;
+    bool limited = false;
 
     bool operator==(const Effort&) const = default;
 };
@@ -221,6 +223,7 @@ struct Batch {
     bool wide = false;                         // big: all threads share it
     bool direct = false;                       // one island, for the direct solver
     std::uint8_t times = 1;                    // as many substeps as the settings say
+    bool limited = false;                      // contacts are held to making no energy
 };
 
 /// Which contact goes into which lane, and which body is which solver body: first the still one,

@@ -83,6 +83,7 @@ void ConstraintGraph::gather_slices(const Islands& islands,
         const Effort effort = effort_of(first);
         batch.direct = effort.direct || is_direct(first);
         batch.times = effort.times;
+        batch.limited = effort.limited;
         const bool alone = effort.direct || direct_limit > 0;
         for (last = first + 1; !alone && last < islands.size(); ++last)
             if (contacts_until(last + 1) > kBatchContacts || effort_of(last) != effort) break;

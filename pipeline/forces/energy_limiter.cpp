@@ -44,15 +44,20 @@ bool is_fed(const Forces& forces, std::uint32_t body)
 template <class Real>
 bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed)
 {
+    // As four numbers, of which the last is 0: this is asked about everybody in every substep.
+    const auto more = [](const SolverBody<Real>& body) {
+        using Four = Eigen::Map<const Eigen::Array<Real, 4, 1>>;
+        const Four motion(body.motion), free(body.free);
+        return ((motion - free) * (motion + free)).sum();
+    };
+    const Real least = static_cast<Real>(speed * speed);
     std::size_t gainers = 0;
+    for (const SolverBody<Real>& body : bodies) gainers += more(body) > least ? 1 : 0;
+    if (gainers < kFewestInBlow || !one_island) return gainers >= kFewestInBlow;
     double gained = 0;
-    for (const SolverBody<Real>& body : bodies) {
-        const double square = in_double(body.motion).squaredNorm()
-            - in_double(body.free).squaredNorm() - speed * speed;
-        gainers += square > 0 ? 1 : 0;
-        if (one_island && body.inertia[0] > 0) gained += square / double{body.inertia[0]};
-    }
-    return gainers >= kFewestInBlow && (!one_island || gained > 0);
+    for (const SolverBody<Real>& body : bodies)
+        if (body.inertia[0] > 0) gained += double{more(body) - least} / double{body.inertia[0]};
+    return gained > 0;
 }
 
 template bool may_gain<float>(std::span<const SolverBody<float>>, bool, double);
@@ -188,6 +193,21 @@ double EnergyLimiter<Real>::kinetic_of(const Group& group,
 }
 
 template <class Real>
+double EnergyLimiter<Real>::given_by_contacts(const Group& group,
+                                              const ContactConstraints<Real>& constraints)
+{
+    double twice = 0;
+    for (const Member& member : group.members) {
+        const SolverBody<Real>& body = constraints.bodies[member.solver_index];
+        const Vec3 velocity = in_double(body.motion), spin = in_double(body.motion + 4);
+        const Vec3 free = in_double(body.free), free_spin = in_double(body.free + 4);
+        twice += member.mass * (velocity - free).dot(velocity + free)
+            + (spin - free_spin).dot(member.inertia * (spin + free_spin));
+    }
+    return twice / 2;
+}
+
+template <class Real>
 void EnergyLimiter<Real>::open(const ContactConstraints<Real>& constraints)
 {
     for (Group& group : groups_) {
@@ -259,6 +279,7 @@ void EnergyLimiter<Real>::take_share_of_blow(double speed,
                                              ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
+        if (group.members.size() < kFewestInBlow) continue;
         const WarmStart start = warm_start_of(group, constraints);
         double mass = 0;
         for (const Member& member : group.members) mass += member.mass;
@@ -339,6 +360,20 @@ void EnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) const
                      more = gained(group, kinetic, constraints);
         if (!(more > kLetBe * kinetic)) continue;
         slow_down(group, std::sqrt(std::max(0.0, 1 - more / kinetic)), constraints);
+    }
+}
+
+template <class Real>
+void EnergyLimiter<Real>::hold_contacts(double slowest, ContactConstraints<Real>& constraints) const
+{
+    for (const Group& group : groups_) {
+        const double given = given_by_contacts(group, constraints);
+        if (!(given > 0)) continue;
+        const double kinetic = kinetic_of(group, constraints);
+        double mass = 0;
+        for (const Member& member : group.members) mass += member.mass;
+        if (given > kLetBe * kinetic && kinetic > mass * slowest * slowest / 2)
+            slow_down(group, std::sqrt(std::max(0.0, 1 - given / kinetic)), constraints);
     }
 }
 

@@ -19,10 +19,11 @@ constexpr double kFinestSubstep = 5e-5;  // s
 // of one core. An exact solve is counted as so many substeps.
 constexpr std::size_t kBudget = 1 << 15, kExactCost = 128;
 
-// The greatest strain of an island, and whether any body of it is known to need an exact solve.
+// The greatest strain of an island, whether any body of it is known to need an exact solve, and
+// whether contacts gave any of it energy of late.
 struct IslandStrain {
     double greatest = 0;
-    bool exactly = false;
+    bool exactly = false, gained = false;
 };
 
 IslandStrain
@@ -31,6 +32,7 @@ strain_of(const Islands& islands, std::size_t island, const OverloadedIslands& o
     IslandStrain strain;
     for (std::uint32_t k = islands.body_begin[island]; k < islands.body_begin[island + 1]; ++k) {
         const double of_body = overloaded.of(islands.bodies[k]);
+        strain.gained = strain.gained || overloaded.limited_for(islands.bodies[k]) > 0;
         if (!is_overloaded(of_body)) continue;
         strain.greatest = std::max(strain.greatest, std::abs(of_body));
         strain.exactly = strain.exactly || of_body < 0;
@@ -58,13 +60,14 @@ void escalate_islands(const StepContext& context,
     std::size_t left = kBudget;
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const IslandStrain strain = strain_of(islands, island, overloaded);
+        overloaded.efforts[island].limited = strain.gained;
         if (!(strain.greatest > 0)) continue;
         const std::size_t contacts =
             islands.contact_begin[island + 1] - islands.contact_begin[island];
         const std::size_t bodies = islands.body_begin[island + 1] - islands.body_begin[island];
         const bool exact = may_be_exact(bodies, contacts);
         const Effort wanted = effort_for(strain.greatest, exact);
-        Effort effort{wanted.times, exact && (wanted.direct || strain.exactly)};
+        Effort effort{wanted.times, exact && (wanted.direct || strain.exactly), true};
         const auto cost = [&] {
             return contacts * (effort.direct ? kExactCost : substeps * (effort.times - 1u));
         };

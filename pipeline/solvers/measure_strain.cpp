@@ -10,6 +10,7 @@
 // would hold it, which would throw it off; or where a blow drives somebody light in before somebody
 // heavy, and while he is as deep. Islands of more than a batch of contacts are not looked at: what
 // is so great holds itself up sideways, or is beyond the budget.
+#include "kernels/math/numbers.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solver/coloring.hpp"
 #include "pipeline/solvers/constraint_builder.hpp"
@@ -46,7 +47,10 @@ constexpr double kHeavy = 8, kDriven = 0.1, kCrushed = 2 * kExactStrain;
 constexpr std::size_t kCrushedContacts = 16;
 // Strain of an island that overlaps in spite of finer substeps: solved exactly as long as it rests.
 constexpr double kInVain = 4 * kExactStrain;
-constexpr double kAllBut = 0.999999;  // for the last digits of a product in another order
+// Share of what an island has in motion that it may gain in a step besides what gravity gives; and
+// for how many steps contacts are held to making nothing once it has gained more.
+constexpr double kGained = 0.01;
+constexpr std::uint8_t kLimited = 32;
 
 // How easily a body gives way, 1/kg. Who cannot be moved, only turned, gives way by lever arms
 // about as much as his mass would.
@@ -61,14 +65,16 @@ template <class Real>
 double
 speed_borne(const ActiveContacts::Entry& entry, const Contact<Real>& contact, const Masses& masses)
 {
-    double impulse = 0;
-    for (std::size_t k = 0; k < entry.points; ++k) impulse += double{contact.points[k].impulse};
-    return impulse
-        * (inverse_mass_of(masses, entry.body_a) + inverse_mass_of(masses, entry.body_b));
+    Real impulse = 0;
+    for (std::size_t k = 0; k < entry.points; ++k) impulse += contact.points[k].impulse;
+    return double{impulse}
+    * (inverse_mass_of(masses, entry.body_a) + inverse_mass_of(masses, entry.body_b));
 }
 
 template <class Real>
 class Gauge {
+    using Settled = typename ContactConstraints<Real>::Settled;
+
 public:
     Gauge(const StepContext& context,
           const SolverParameters& parameters,
@@ -81,11 +87,15 @@ public:
           const MeshContacts<Real>& meshes,
           const SolidContacts<Real>& solids,
           const JoinedContacts<Real>& joined,
+          const ContactConstraints<Real>& constraints,
           OverloadedIslands& overloaded)
         : islands_(islands), layout_(layout), active_(active), masses_(masses),
           velocities_(velocities), convex_(convex), meshes_(meshes), solids_(solids),
-          joined_(joined), overloaded_(overloaded), resting_(kResting * context.gravity.norm()),
-          step_(context.dt)
+          joined_(joined), constraints_(constraints), overloaded_(overloaded),
+          resting_(kResting * context.gravity.norm()), step_(context.dt), gravity_(context.gravity),
+          falls_(context.gravity.norm() * context.dt),
+          falls_only_(!context.effects.meets(kForces) && !context.effects.meets(kFollowBodies)
+                      && constraints.prescribed.empty())
     {
         for (int points = 1; points <= 4; ++points) {
             const double omega = contact_frequency(context, parameters, points);
@@ -103,8 +113,9 @@ public:
         if (contacts.size() < 2 || contacts.size() > kBatchContacts) return 0;
         const bool exactly = may_be_exact(bodies, contacts.size());
         const double before = strain_before(island);
+        const double greatest = find_gives(island);
         // What is loaded by so little that no height makes it too much is most of what there is.
-        if (before == 0 && !gives_more_than(kRelieved / double(bodies), contacts)) return 0;
+        if (before == 0 && !(greatest * double(bodies) > kRelieved)) return 0;
         const double most = most_borne(island);
         // Pushed apart otherwise, what was driven in is thrown.
         if (before >= kCrushed && exactly && overlaps(contacts, kDriven)) return -kCrushed;
@@ -116,7 +127,70 @@ public:
         return exactly ? lasting(island, strain, most, before, rests) : fading(strain, before);
     }
 
+    // For how many steps contacts of the island are still to be held to making no energy.
+    std::uint8_t limited(std::size_t island) const
+    {
+        if (contacts_of(island).size() < 2 || contacts_of(island).size() > kBatchContacts) return 0;
+        if (gains(island)) return kLimited;
+        std::uint8_t before = 0;
+        if (!overloaded_.gainers.empty())
+            for (const std::uint32_t body : bodies_of(island))
+                before = std::max(before, overloaded_.limited_for(body));
+        return before > 0 ? static_cast<std::uint8_t>(before - 1) : before;
+    }
+
 private:
+    // Whether the bodies of an island move faster by more than gravity gives. What spins may give
+    // some to what moves on, and rightly so: then there is nothing for the limiter to take.
+    bool gains(std::size_t island) const
+    {
+        if (!falls_only_ || !moves(island)) return false;
+        double mass = 0, twice_energy = 0, twice_gained = 0;
+        for (std::uint32_t k = islands_.body_begin[island]; k < islands_.body_begin[island + 1];
+             ++k) {
+            const SolverBody<Real>& solver_body = constraints_.bodies[k + 1];
+            const std::uint32_t body = layout_.body_of_solver_index[k + 1];
+            if (!constraints_.settled.empty() && constraints_.settled[k + 1] != Settled::no)
+                return false;
+            const double square = vector_at(solver_body.motion).squaredNorm();
+            const double of_body = masses_.inverse_mass[body] > 0 ? masses_.mass[body] : 0;
+            mass += of_body;
+            twice_energy += of_body * square;
+            twice_gained += of_body
+                * (square - velocities_.linear[body].squaredNorm()
+                   - 2 * gravity_.dot(vector_at(solver_body.delta_pose)));
+        }
+        return twice_gained > kGained * twice_energy && twice_energy > mass * falls_ * falls_
+            && !is_driven(island);
+    }
+
+    // Whether it touches what moves by itself, which may give it any energy.
+    bool is_driven(std::size_t island) const
+    {
+        const auto drives = [&](std::uint32_t body) {
+            return layout_.solver_index[body] == Layout::kNoSolverIndex
+                && !(velocities_.linear[body].isZero(0) && velocities_.angular[body].isZero(0));
+        };
+        const auto contacts = contacts_of(island);
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            return drives(entry.body_a) || drives(entry.body_b);
+        });
+    }
+
+    // Whether any body does faster than it falls in a step.
+    bool moves(std::size_t island) const
+    {
+        const auto bodies =
+            std::span(constraints_.bodies)
+                .subspan(islands_.body_begin[island] + std::size_t{1}, bodies_of(island).size());
+        const Real falls = static_cast<Real>(falls_ * falls_);
+        return std::any_of(bodies.begin(), bodies.end(), [&](const SolverBody<Real>& body) {
+            // Four numbers, of which the last is 0.
+            return Eigen::Map<const Eigen::Array<Real, 4, 1>>(body.motion).square().sum() > falls;
+        });
+    }
+
     static double fading(double strain, double before)
     {
         const double faded = std::max(strain, kFading * before);
@@ -179,9 +253,10 @@ private:
         auto& gives = overloaded_.scratch.gives;
         const auto index = [&](std::uint32_t body) { return layout_.solver_index[body]; };
         for (const std::uint32_t body : bodies_of(island)) gives[index(body)] = {};
-        for (const std::uint32_t place : contacts_of(island)) {
-            const ActiveContacts::Entry& entry = active_.entries[place];
-            const auto give = static_cast<float>(give_of(place));
+        for (std::uint32_t k = islands_.contact_begin[island];
+             k < islands_.contact_begin[island + 1]; ++k) {
+            const ActiveContacts::Entry& entry = active_.entries[islands_.contacts[k]];
+            const float give = overloaded_.scratch.contact_gives[k];
             const std::uint32_t a = index(entry.body_a), b = index(entry.body_b);
             if (a == Layout::kNoSolverIndex)
                 gives[b].ground += give;
@@ -201,15 +276,17 @@ private:
         return double{most};
     }
 
-    // Whether any contact does; give_of() without its division.
-    bool gives_more_than(double least, std::span<const std::uint32_t> contacts) const
+    // Of all contacts of an island; returns the greatest.
+    double find_gives(std::size_t island) const
     {
-        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
-            const ActiveContacts::Entry& entry = active_.entries[place];
-            const double held =
-                speed_borne(entry, contact_of(entry), masses_) * per_speed_[entry.points - 1u];
-            return held > kAllBut * least * double{entry.extent};
-        });
+        float greatest = 0;
+        for (std::uint32_t k = islands_.contact_begin[island];
+             k < islands_.contact_begin[island + 1]; ++k) {
+            const auto give = static_cast<float>(give_of(islands_.contacts[k]));
+            overloaded_.scratch.contact_gives[k] = give;
+            greatest = std::max(greatest, give);
+        }
+        return double{greatest};
     }
 
     // By mass, as a light body between heavy ones may tremble.
@@ -311,13 +388,18 @@ private:
         };
         for (const std::uint32_t body : bodies_of(island))
             overloaded_.scratch.height[layout_.solver_index[body]] = kUnreached;
-        for (bool lowered = true; lowered;) {
+        // Forth and back by turns: a column is done in two, whichever way its contacts go.
+        const auto contacts = contacts_of(island);
+        const auto lower_by = [&](std::uint32_t contact) {
+            const ActiveContacts::Entry& entry = active_.entries[contact];
+            const bool a = lower(entry.body_a, height(entry.body_b));
+            return lower(entry.body_b, height(entry.body_a)) || a;
+        };
+        bool lowered = true;
+        for (bool forth = true; lowered; forth = !forth) {
             lowered = false;
-            for (const std::uint32_t contact : contacts_of(island)) {
-                const ActiveContacts::Entry& entry = active_.entries[contact];
-                lowered = lower(entry.body_a, height(entry.body_b)) || lowered;
-                lowered = lower(entry.body_b, height(entry.body_a)) || lowered;
-            }
+            for (std::size_t k = 0; k < contacts.size(); ++k)
+                lowered = lower_by(contacts[forth ? k : contacts.size() - 1 - k]) || lowered;
         }
         int highest = 1;
         for (const std::uint32_t body : bodies_of(island))
@@ -343,9 +425,13 @@ private:
     const MeshContacts<Real>& meshes_;
     const SolidContacts<Real>& solids_;
     const JoinedContacts<Real>& joined_;
+    const ContactConstraints<Real>& constraints_;
     OverloadedIslands& overloaded_;
     double resting_;       // m/s
     double step_;          // s
+    Vec3 gravity_;         // m/s2
+    double falls_;         // m/s, in a step
+    bool falls_only_;      // nothing but gravity acts
     double per_speed_[4];  // s, by points, less one: overlap over the rigid share of the extent
 };
 
@@ -363,27 +449,37 @@ void measure_strain(const StepContext& context,
                     const MeshContacts<Real>& meshes,
                     const SolidContacts<Real>& solids,
                     const JoinedContacts<Real>& joined,
+                    const ContactConstraints<Real>& constraints,
                     OverloadedIslands& overloaded)
 {
     const std::size_t count = islands.size();
     overloaded.scratch.of_island.resize(count);
+    overloaded.scratch.limited.resize(count);
     overloaded.scratch.height.resize(layout.body_of_solver_index.size());
     overloaded.scratch.gives.resize(layout.body_of_solver_index.size());
+    overloaded.scratch.contact_gives.resize(islands.contacts.size());
     const Gauge<Real> gauge(context, parameters, islands, layout, active, masses, velocities,
-                            convex, meshes, solids, joined, overloaded);
+                            convex, meshes, solids, joined, constraints, overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t i = begin; i < end; ++i) {
             overloaded.scratch.of_island[i] = float(gauge.strain_of(i));
+            overloaded.scratch.limited[i] = gauge.limited(i);
+        }
     });
 
     overloaded.forget_all();
-    for (std::size_t i = 0; i < count; ++i) {
-        if (overloaded.scratch.of_island[i] == 0) continue;
-        overloaded.strain.resize(layout.solver_index.size(), 0);
-        for (std::uint32_t k = islands.body_begin[i]; k < islands.body_begin[i + 1]; ++k) {
-            overloaded.strain[islands.bodies[k]] = overloaded.scratch.of_island[i];
-            overloaded.strained.push_back(islands.bodies[k]);
+    const auto note = [&](std::size_t island, auto of_island, auto& of_bodies, auto& bodies) {
+        if (of_island == 0) return;
+        of_bodies.resize(layout.solver_index.size(), 0);
+        for (std::uint32_t k = islands.body_begin[island]; k < islands.body_begin[island + 1];
+             ++k) {
+            of_bodies[islands.bodies[k]] = of_island;
+            bodies.push_back(islands.bodies[k]);
         }
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        note(i, overloaded.scratch.of_island[i], overloaded.strain, overloaded.strained);
+        note(i, overloaded.scratch.limited[i], overloaded.limited, overloaded.gainers);
     }
 }
 
@@ -392,7 +488,7 @@ void measure_strain(const StepContext& context,
         const StepContext&, const SolverParameters&, const Islands&, const Layout&,                \
         const ActiveContacts&, const Masses&, const Velocities&, const ConvexContacts<Real>&,      \
         const MeshContacts<Real>&, const SolidContacts<Real>&, const JoinedContacts<Real>&,        \
-        OverloadedIslands&);
+        const ContactConstraints<Real>&, OverloadedIslands&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -90,7 +90,7 @@ public:
     }
 
 private:
-    static constexpr std::array<Pass<Task>, 18> passes_with(Set<Effect> limited,
+    static constexpr std::array<Pass<Task>, 19> passes_with(Set<Effect> limited,
                                                             const Pass<Task>& after_moving)
     {
         using enum Effect;
@@ -112,6 +112,7 @@ private:
             pass<&Task::advance_bodies>({contact}, each_substep),
             pass<&Task::end_state_forces>(kFollowBodies, each_substep),
             after_moving,
+            pass<&Task::hold_contacts>({contact}, each_substep),
             pass<&Task::close_energy_limiter>(limited, each_substep),
             pass<&Task::store_impulses>({contact}, after_substeps),
         }};
@@ -295,11 +296,20 @@ private:
         if (batch_.slices > 1 || slice.kinematic > 0 || !constraints_.prescribed.empty()) return;
         if (!(speed > 0) && (context_.effects.meets(kForces) || facts_.forces.field)) return;
         const auto bodies = std::span(constraints_.bodies).subspan(slice.first_body, slice.dynamic);
-        if (!may_gain<Real>(bodies, batch_.contacts > kBatchContacts, speed)) return;
-        if (!blow_limiter_)
+        const bool gains = may_gain<Real>(bodies, batch_.contacts > kBatchContacts, speed);
+        if (!blow_limiter_ && (gains || batch_.limited)) {
+            using Whose = typename EnergyLimiter<Real>::Whose;
             blow_limiter_.emplace(layout_, batch_, facts_, nullptr,
-                                  EnergyLimiter<Real>::Whose::stacked, Vec3::Zero());
-        blow_limiter_->take_share_of_blow(speed, constraints_);
+                                  batch_.limited ? Whose::all : Whose::stacked, Vec3::Zero());
+        }
+        if (gains) blow_limiter_->take_share_of_blow(speed, constraints_);
+    }
+
+    // What acts once bodies have moved is no work of contacts.
+    void hold_contacts()
+    {
+        if (blow_limiter_ && !parts_ && !late_)
+            blow_limiter_->hold_contacts(context_.gravity.norm() * context_.dt, constraints_);
     }
 
     // Followers as they are now, less what contacts gave in this substep if that is asked.

@@ -19,16 +19,20 @@ bool take_back(const SolverBody<Real>& solver_body,
                Poses& poses,
                Velocities& velocities)
 {
+    if (ran_away(solver_body)) return false;
     const Vec3 moved = vector_at(solver_body.delta_pose);
     const Vec3 v = vector_at(solver_body.motion), spin = vector_at(solver_body.motion + 4);
     const bool goes_along = inertia != nullptr && inertia->share[6] > 0;
     const Vec3 w = goes_along ? spin_frame(solver_body, inertia) * spin : spin;
     const Vec3 position = poses.position[body] + moved;
-    Quat orientation = turn_of(solver_body) * poses.orientation[body];
-    const double length = std::sqrt(orientation.squaredNorm());
-    orientation.coeffs() /= length;
-    return !ran_away(solver_body)
-        && give_motion({position, orientation, v, w}, body, poses, velocities);
+    Quat orientation = poses.orientation[body];
+    // Who has not turned keeps its very bits.
+    if (solver_body.delta_pose[4] != 0 || solver_body.delta_pose[5] != 0
+        || solver_body.delta_pose[6] != 0) {
+        orientation = turn_of(solver_body) * orientation;
+        orientation.coeffs() /= std::sqrt(orientation.squaredNorm());
+    }
+    return give_motion({position, orientation, v, w}, body, poses, velocities);
 }
 
 }  // namespace

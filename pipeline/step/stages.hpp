@@ -204,6 +204,7 @@ void measure_strain(const StepContext&,
                     const MeshContacts<Real>&,
                     const SolidContacts<Real>&,
                     const JoinedContacts<Real>&,
+                    const ContactConstraints<Real>&,
                     OverloadedIslands&);
 
 /// What solver bodies came to since the step began, onto poses and velocities.

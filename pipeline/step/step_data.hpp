@@ -69,16 +69,21 @@ struct SplitImpulse {
 ///
 ///   strain    [bodies] that of a stubborn island in the last step, else 0; may be shorter
 ///   strained  bodies whose strain may be above 0
+///   limited   [bodies] steps for which contacts are still held to making no energy; may be shorter
+///   gainers   bodies of which limited may be above 0
 ///   efforts   [islands] of this step; empty while nobody is stubborn
 ///   escalated, missed  islands of this step that were, and that the budget did not reach
 ///   work      contacts times substeps beyond the usual of this step; see StepReport
 struct OverloadedIslands {
     std::vector<float> strain;
     std::vector<std::uint32_t> strained;
+    std::vector<std::uint8_t> limited;
+    std::vector<std::uint32_t> gainers;
     std::vector<Effort> efforts;
     std::size_t escalated = 0, missed = 0, work = 0;
     struct Scratch {
         std::vector<float> of_island;       // [islands] strain
+        std::vector<std::uint8_t> limited;  // [islands]
         std::vector<std::uint16_t> height;  // [solver bodies] above what stands still
         // How far loads press in a body's contacts: the greatest two of them, and all with what
         // stands still.
@@ -92,18 +97,26 @@ struct OverloadedIslands {
                 first = std::max(first, give);
             }
         };
-        std::vector<Gives> gives;  // [solver bodies]
+        std::vector<Gives> gives;          // [solver bodies]
+        std::vector<float> contact_gives;  // [contacts] in the order of Islands::contacts
     } scratch;
 
     float of(std::uint32_t body) const { return body < strain.size() ? strain[body] : 0; }
+    std::uint8_t limited_for(std::uint32_t body) const
+    {
+        return body < limited.size() ? limited[body] : 0;
+    }
     void forget(std::uint32_t body)
     {
         if (body < strain.size()) strain[body] = 0;
+        if (body < limited.size()) limited[body] = 0;
     }
     void forget_all()
     {
         for (const std::uint32_t body : strained) forget(body);
+        for (const std::uint32_t body : gainers) forget(body);
         strained.clear();
+        gainers.clear();
     }
 };
 

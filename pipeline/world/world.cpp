@@ -123,6 +123,8 @@ void WorldState::follow_stubborn()
     std::uint32_t first = kNoBody;
     for (const std::uint32_t body : overloaded.strained)
         if (is_overloaded(overloaded.of(body))) first = std::min(first, body);
+    for (const std::uint32_t body : overloaded.gainers)
+        if (overloaded.limited_for(body) > 0) first = std::min(first, body);
     const bool any = first != kNoBody;
     if (any == effects.on.has(Effect::escalation)) return;
     requests.first[static_cast<std::size_t>(Effect::escalation)].clear();
