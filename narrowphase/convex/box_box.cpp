@@ -1,11 +1,12 @@
 // Box against box: the best of fifteen separating axes, then one box's face clipped against the
-// other's, or the place where two edges cross.
+// other's, or the place where two edges cross or lie along one another.
 //
 // All of it in a's frame (or, where b's face leads, in b's): numbers stay as small as the boxes are
 // far apart, which is what lets float do.
 #include "kernels/geometry/clip.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
+#include "narrowphase/manifold/edge_on_edge.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -345,6 +346,8 @@ void box_box(const PairInput<Real>& in, PairCache& cache, LocalManifold<Real>& o
     const bool kept = !edge_better && (face.separation >= 0 || least <= face.separation + 2 * bias);
     const bool agrees = alike && std::abs(least - edge.separation) <= 2 * bias;
     if (has_edge && !kept && !agrees) edge_manifold(pair, edge, speculative_margin, out);
+    meet_edge_on_edge<Real>(pair.half_a, pair.half_b, pair.turn, pair.center, speculative_margin,
+                            out);
 }
 
 THRONG_PAIR_INSTANCES(box_box)

@@ -10,6 +10,7 @@
 #include "narrowphase/convex/wide/hull_kernels.hpp"
 #include "narrowphase/convex/wide_shapes.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
+#include "narrowphase/manifold/edge_on_edge.hpp"
 #include "narrowphase/manifold/polytope_foot.hpp"
 
 #include <algorithm>
@@ -271,6 +272,15 @@ void spread_feet(const PolytopePair& pair, double speculative_margin, LocalManif
     turn_round(pair, out);
 }
 
+// None where it was no face that led.
+LeadingFace leading_face(const PairCache& cache)
+{
+    const std::uint32_t kind = cache.kind & ~kFellBack;
+    const bool of_a = kind == static_cast<std::uint32_t>(Remembered::face_a);
+    const bool of_b = kind == static_cast<std::uint32_t>(Remembered::face_b);
+    return {of_a || of_b ? cache.feature_a : LeadingFace{}.face, of_b};
+}
+
 void collide_polytopes(const PolytopePair& pair,
                        double speculative_margin,
                        const Shown* shown,
@@ -295,6 +305,7 @@ void collide_polytopes(const PolytopePair& pair,
     if (found != Found::near) return;
     find_points(sides, axes, out);
     spread_feet(pair, speculative_margin, out);
+    meet_edge_on_edge(pair, leading_face(cache), speculative_margin, out);
 }
 
 // Of the size of both: where the balls inside are smaller, the bias of faces comes near rounding.
@@ -340,23 +351,44 @@ bool meet_wide(const PairInput<float>& in, PairCache& cache, LocalManifold<float
     return true;
 }
 
-// As above, for what the wide kernels found.
-void spread_wide_feet(const PairInput<float>& in, LocalManifold<float>& out)
+// Whether what is small to the other has to stand on its feet, for the step that is taken.
+bool may_spread(const PairInput<float>& in, const LocalManifold<float>& found)
 {
     const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const double outer_a = outer_radius(shapes, a), outer_b = outer_radius(shapes, b);
-    if (outer_a <= kFloor * outer_b && outer_b <= kFloor * outer_a) return;
+    if (outer_a <= kFloor * outer_b && outer_b <= kFloor * outer_a) return false;
     float deepest = 0;
-    for (int i = 0; i < out.count; ++i)
-        deepest = std::min(deepest, out.points[static_cast<std::size_t>(i)].separation);
+    for (int i = 0; i < found.count; ++i)
+        deepest = std::min(deepest, found.points[static_cast<std::size_t>(i)].separation);
     const double inner = inner_extent(shapes, outer_a > outer_b ? b : a);
-    if (!is_long_step(double{speculative_margin}, double{deepest}, inner)) return;
+    return is_long_step(double{speculative_margin}, double{deepest}, inner);
+}
+
+// Whether it may be two edges that meet, side by side.
+bool may_be_edges(const PairInput<float>& in,
+                  const PairCache& cache,
+                  const LocalManifold<float>& found)
+{
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
+    if (found.count == 0) return cache.apart <= speculative_margin;
+    const double inner = std::min(inner_extent(shapes, a), inner_extent(shapes, b));
+    Vec3T<float> middle, along;
+    return is_strip(found, static_cast<float>(kRounded * inner), middle, along);
+}
+
+// As above, for what the wide kernels found.
+void finish_wide(const PairInput<float>& in, const PairCache& cache, LocalManifold<float>& out)
+{
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
+    const bool spreads = may_spread(in, out);
+    if (!spreads && !may_be_edges(in, cache, out)) return;
     const PolytopeShape shape_a(shapes, a), shape_b(shapes, b);
     const PolytopePair pair(shape_a.view(), shape_b.view(),
                             {b_in_a.position.cast<double>(), b_in_a.orientation.cast<double>()});
-    LocalManifold<double> spread = out.cast<double>();
-    spread_feet(pair, double{speculative_margin}, spread);
-    out = spread.cast<float>();
+    LocalManifold<double> finished = out.cast<double>();
+    if (spreads) spread_feet(pair, double{speculative_margin}, finished);
+    meet_edge_on_edge(pair, leading_face(cache), double{speculative_margin}, finished);
+    out = finished.cast<float>();
 }
 
 // Of both: from how many vertices on GJK takes less than all axes do.
@@ -390,8 +422,8 @@ void hull_hull<float>(const PairInput<float>& in, PairCache& cache, LocalManifol
 {
     if (!meet_wide(in, cache, out))
         meet_plain(in, true, cache, out);
-    else if (out.count > 0)
-        spread_wide_feet(in, out);
+    else
+        finish_wide(in, cache, out);
 }
 
 template <>

@@ -1,6 +1,7 @@
 #include "narrowphase/convex/wide/box_pairs.hpp"
 
 #include "kernels/check.hpp"
+#include "narrowphase/manifold/edge_on_edge.hpp"
 
 #include <algorithm>
 
@@ -17,6 +18,14 @@ static_assert(sizeof(LocalManifold<float>) == kManifoldNumbers * sizeof(float));
 static_assert(sizeof(LocalManifold<float>::Point) == 5 * sizeof(float));
 static_assert(offsetof(LocalManifold<float>, points) == 3 * sizeof(float));
 static_assert(offsetof(LocalManifold<float>, count) == 23 * sizeof(float));
+
+void meet_edge_on_edge(const BoxPair& pair, LocalManifold<float>& manifold)
+{
+    using Numbers = Eigen::Map<const Vec3T<float>>;
+    const QuatT<float> turn(pair.place[7], pair.place[4], pair.place[5], pair.place[6]);
+    meet_edge_on_edge<float>(Numbers(pair.size), Numbers(pair.size + 4), turn.toRotationMatrix(),
+                             Numbers(pair.place), pair.place[3], manifold);
+}
 
 }  // namespace
 
@@ -35,6 +44,10 @@ void collide_boxes(const BoxKernels& kernels,
         kernels.part(from, static_cast<std::int32_t>(count), faces, edges);
         kernels.clip(from, faces, edges, to);
         kernels.cross(from, edges, to);
+        for (std::int32_t k = 0; k < faces.count; ++k) {
+            const auto i = begin + static_cast<std::size_t>(faces.at[k].pair);
+            meet_edge_on_edge(pairs[i], manifolds[i]);
+        }
     }
 }
 
