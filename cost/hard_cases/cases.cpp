@@ -146,6 +146,10 @@ constexpr HardCase kCases[] = {
      Fault::modesty},
     {"H104", "what is struck so hard that it spins far round in a step makes no energy",
      case_struck_heaps, Fault::haste},
+    {"H105", "planks that lean edge against edge stand where friction is enough, and no longer",
+     case_leaning_planks, Fault::friction},
+    {"H106", "who is caught between what moves by itself and what stands still is not thrown",
+     case_squeezed, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -234,15 +234,16 @@ void turn_bolt(CaseBench& bench, const SolidRepresentationName& way, int image_r
     const double play = 2 * kClearance / std::cos(kPi / 6) / kPitch;
     bench.report(setting, "way against the thread's",
                  std::abs(descent.way / kPitch + descent.turns), play, "turns");
-    bench.report(setting, "greatest overlap", descent.overlap, 0.2 * kClearance, "m");
-    const char* const by_triangles = "greatest overlap of the triangles, at any step";
     // What a ray is wide is as much as the play by default.
     const bool coarse = way.name == "depth_image" && image_resolution == 0;
-    if (coarse)
-        bench.report_default(setting, by_triangles, descent.triangles, 0.2 * kClearance, "m",
-                             finer);
-    else
-        bench.report(setting, by_triangles, descent.triangles, 0.2 * kClearance, "m");
+    const auto judge = [&](const char* quantity, double figure) {
+        if (coarse)
+            bench.report_default(setting, quantity, figure, 0.2 * kClearance, "m", finer);
+        else
+            bench.report(setting, quantity, figure, 0.2 * kClearance, "m");
+    };
+    judge("greatest overlap", descent.overlap);
+    judge("greatest overlap of the triangles, at any step", descent.triangles);
 }
 
 }  // namespace

@@ -364,7 +364,8 @@ void EnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) const
 }
 
 template <class Real>
-void EnergyLimiter<Real>::hold_contacts(double slowest, ContactConstraints<Real>& constraints) const
+void EnergyLimiter<Real>::limit_contacts(double slowest,
+                                         ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
         const double given = given_by_contacts(group, constraints);

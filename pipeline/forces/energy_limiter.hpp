@@ -61,7 +61,7 @@ public:
     /// Once contacts are solved: slows down groups that have more than they would without them, but
     /// for those that are slower than that by and large, m/s: what all but rests gives way and
     /// comes back.
-    void hold_contacts(double slowest, ContactConstraints<Real>& constraints) const;
+    void limit_contacts(double slowest, ContactConstraints<Real>& constraints) const;
     /// Once all has acted: slows down who gained on springs.
     void close(ContactConstraints<Real>& constraints) const;
 

@@ -107,6 +107,25 @@ public:
     // 0 for an island that is not stubborn; below 0 for one to be solved exactly in the next step.
     double strain_of(std::size_t island) const
     {
+        const double strain = strain_if_free(island);
+        return strain != 0 && is_squeezed(island) ? 0 : strain;
+    }
+
+    // For how many steps contacts of the island are still to be held to making no energy.
+    std::uint8_t limited(std::size_t island) const
+    {
+        if (contacts_of(island).size() < 2 || contacts_of(island).size() > kBatchContacts) return 0;
+        if (gains(island)) return kLimited;
+        std::uint8_t before = 0;
+        if (!overloaded_.gainers.empty())
+            for (const std::uint32_t body : bodies_of(island))
+                before = std::max(before, overloaded_.limited_for(body));
+        return before > 0 ? static_cast<std::uint8_t>(before - 1) : before;
+    }
+
+private:
+    double strain_if_free(std::size_t island) const
+    {
         const std::size_t bodies = islands_.body_begin[island + 1] - islands_.body_begin[island];
         const auto contacts = contacts_of(island);
         // Who lies on what stands still, by one contact, has nobody to wait for.
@@ -127,19 +146,6 @@ public:
         return exactly ? lasting(island, strain, most, before, rests) : fading(strain, before);
     }
 
-    // For how many steps contacts of the island are still to be held to making no energy.
-    std::uint8_t limited(std::size_t island) const
-    {
-        if (contacts_of(island).size() < 2 || contacts_of(island).size() > kBatchContacts) return 0;
-        if (gains(island)) return kLimited;
-        std::uint8_t before = 0;
-        if (!overloaded_.gainers.empty())
-            for (const std::uint32_t body : bodies_of(island))
-                before = std::max(before, overloaded_.limited_for(body));
-        return before > 0 ? static_cast<std::uint8_t>(before - 1) : before;
-    }
-
-private:
     // Whether the bodies of an island move faster by more than gravity gives. What spins may give
     // some to what moves on, and rightly so: then there is nothing for the limiter to take.
     bool gains(std::size_t island) const
@@ -175,6 +181,25 @@ private:
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
             return drives(entry.body_a) || drives(entry.body_b);
+        });
+    }
+
+    // Whether it touches two that no contact moves, and that move against one another: then there
+    // may be no way out, and the more exactly it is solved the greater are the impulses, which
+    // cancel one another until the next step has turned them.
+    bool is_squeezed(std::size_t island) const
+    {
+        std::uint32_t first = kNoBody;
+        const auto moves_against_first = [&](std::uint32_t body) {
+            if (layout_.solver_index[body] != Layout::kNoSolverIndex) return false;
+            if (first == kNoBody) first = body;
+            return velocities_.linear[body] != velocities_.linear[first]
+                || velocities_.angular[body] != velocities_.angular[first];
+        };
+        const auto contacts = contacts_of(island);
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = active_.entries[place];
+            return moves_against_first(entry.body_a) || moves_against_first(entry.body_b);
         });
     }
 

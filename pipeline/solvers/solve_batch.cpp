@@ -19,6 +19,9 @@ namespace {
 
 // See answer_late_forces(); and what pgs takes where the dial says auto.
 constexpr int kInLateForces = 6, kPgsIterations = 20;
+// Of a world's first step, in which no contact remembers what it bears: by one iteration what
+// stands on others would sink by a third of a free fall, and slip where it leans.
+constexpr int kFirstIterations = 16;
 
 // Pushing iterations a substep while bodies part. Each substep starts from nothing, and what is
 // wedged in the middle of a crowd waits for those around it: by one iteration a thousand boxes made
@@ -112,7 +115,7 @@ private:
             pass<&Task::advance_bodies>({contact}, each_substep),
             pass<&Task::end_state_forces>(kFollowBodies, each_substep),
             after_moving,
-            pass<&Task::hold_contacts>({contact}, each_substep),
+            pass<&Task::limit_contacts>({contact}, each_substep),
             pass<&Task::close_energy_limiter>(limited, each_substep),
             pass<&Task::store_impulses>({contact}, after_substeps),
         }};
@@ -132,7 +135,8 @@ private:
     {
         if (parameters_.solver != Solver::direct && parameters_.iterations > 0)
             return parameters_.iterations;
-        return by_pgs() ? kPgsIterations : 1;
+        if (by_pgs()) return kPgsIterations;
+        return context_.last_substep > 0 ? 1 : kFirstIterations;
     }
 
     bool on_stiff_springs() const { return state_forces_ && state_forces_->stiff(); }
@@ -306,10 +310,10 @@ private:
     }
 
     // What acts once bodies have moved is no work of contacts.
-    void hold_contacts()
+    void limit_contacts()
     {
         if (blow_limiter_ && !parts_ && !late_)
-            blow_limiter_->hold_contacts(context_.gravity.norm() * context_.dt, constraints_);
+            blow_limiter_->limit_contacts(context_.gravity.norm() * context_.dt, constraints_);
     }
 
     // Followers as they are now, less what contacts gave in this substep if that is asked.

@@ -195,6 +195,10 @@ void World::remove(std::span<const BodyId> bodies)
     drop_forces(going, states, state.get<Forces>());
     if (state.fields.remove(going, state.get<Forces>())) state.wake_all();
     state.effects_stale = true;
+    // Whoever comes into an empty world begins from nothing, as in its first step.
+    const bool empty = std::none_of(states.kind.begin(), states.kind.end(),
+                                    [](BodyKind kind) { return kind == BodyKind::dynamic; });
+    if (empty) state.get<StepContext>().last_substep = 0;
 }
 
 void World::set_force_field(ForceField field)
