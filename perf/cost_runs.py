@@ -3,6 +3,7 @@
 A run is kept in a folder of its own beside the words it was made by, and taken from there when it
 is asked for again, so that what was interrupted goes on where it was.
 """
+import argparse
 import json
 import pathlib
 import shlex
@@ -100,6 +101,18 @@ class Runs:
         subprocess.run([*self.command, "run", scene, "--seed", str(seed), "--steps", "1", "--quiet",
                         "--stats", str(stats)], stdout=subprocess.DEVNULL, check=True)
         return json.loads(stats.read_text())["state_hash"]
+
+
+def options_of(description, folder, scenes):
+    """What every judge can be told."""
+    options = argparse.ArgumentParser(description=description.partition("\n\n")[0])
+    options.add_argument("--throng", default=ROOT / "throng",
+                         help="the command (default: ./throng)")
+    options.add_argument("--folder", default=ROOT / "build" / folder, type=pathlib.Path)
+    options.add_argument("--scenes", default=",".join(scenes))
+    options.add_argument("--docs", action="store_true",
+                         help="puts what is printed where it is kept")
+    return options
 
 
 def figure(number, digits=2):

@@ -11,12 +11,10 @@ time was, the one that was told as `at most`; it holds where the error is no gre
 of 20. What was measured is kept in the folder (build/promises), and another build begins with
 another folder.
 """
-import argparse
-import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-from cost_runs import ROOT, Runs, figure, put_table, table  # noqa: E402
+from cost_runs import Runs, figure, options_of, put_table, table  # noqa: E402
 
 SCENES = ("spring:1", "H3", "card_house:2", "stacks:200", "pile:200", "tumbler:200", "knots:20")
 WISHES = (("--error", "1e-3"), ("--within", "2"))
@@ -97,15 +95,10 @@ def row(scene, promise):
 
 
 def main():
-    options = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
-    options.add_argument("--throng", default=ROOT / "throng",
-                         help="the command (default: ./throng)")
-    options.add_argument("--folder", default=ROOT / "build/promises", type=pathlib.Path)
-    options.add_argument("--scenes", default=",".join(SCENES))
+    options = options_of(__doc__, "promises", SCENES)
     options.add_argument("--fresh", default=20, type=int, help="seeds (default 20)")
     options.add_argument("--minutes", default=2, type=float, help="of each fresh seed (default 2)")
     options.add_argument("--threads", default=1, type=int, help="that run the steps (default 1)")
-    options.add_argument("--docs", action="store_true", help="puts the table into docs/accuracy.md")
     asked = options.parse_args()
     runs = Runs(asked.throng, asked.folder)
     rows, broken = [], 0

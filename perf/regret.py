@@ -11,16 +11,14 @@ interrupted goes on from there, and another build begins with another folder. Pr
 --docs puts them into docs/ and the sweep into perf/regret.csv. An hour and a half on one core;
 times are of one thread.
 """
-import argparse
 import csv
 import itertools
 import math
-import pathlib
 import statistics
 import sys
 
 sys.dont_write_bytecode = True
-from cost_runs import ROOT, Runs, figure, put_table, table  # noqa: E402
+from cost_runs import ROOT, Runs, figure, options_of, put_table, table  # noqa: E402
 
 SCENES = ("spring:1", "card_house:2", "pile:50", "stacks:50", "spheres:50", "hulls:50",
           "tumbler:50", "wall:50", "pyramid:50", "crowd:50")
@@ -185,14 +183,7 @@ def write_sweep(scenes, path):
 
 
 def main():
-    options = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
-    options.add_argument("--throng", default=ROOT / "throng",
-                         help="the command (default: ./throng)")
-    options.add_argument("--folder", default=ROOT / "build/regret", type=pathlib.Path)
-    options.add_argument("--scenes", default=",".join(SCENES))
-    options.add_argument("--docs", action="store_true",
-                         help="puts tables and sweep where they are kept")
-    asked = options.parse_args()
+    asked = options_of(__doc__, "regret", SCENES).parse_args()
     runs = Runs(asked.throng, asked.folder)
     scenes = [Scene(runs, name) for name in asked.scenes.split(",")]
     tables = {"performance.md": regret_table(scenes), "accuracy.md": default_table(scenes)}

@@ -17,6 +17,19 @@ constexpr double kFlat = 0.99985;
 
 constexpr std::size_t kNone = ~std::size_t{0};
 
+// An edge of a convex shape.
+template <class Real>
+struct ConvexEdge {
+    Vec3T<Real> middle, along, left, right;  // the last two: unit, outward normals of its faces
+    Real half_length = 0;                    // m
+    std::uint32_t id = 0;                    // its own among those of the shape
+
+    ConvexEdge moved(const Mat3T<Real>& turn, const Vec3T<Real>& shift) const
+    {
+        return {turn * middle + shift, turn * along, turn * left, turn * right, half_length, id};
+    }
+};
+
 // Whether a direction, across an edge, lies between the normals of its faces.
 template <class Real>
 bool looks_away(const ConvexEdge<Real>& edge, const Vec3T<Real>& direction)
@@ -122,35 +135,7 @@ bool is_beside(const Hull::Edge& edge, std::uint32_t face)
     return edge.left == face || edge.right == face;
 }
 
-}  // namespace
-
-template <class Real>
-bool is_strip(const LocalManifold<Real>& manifold,
-              Real width,
-              Vec3T<Real>& middle,
-              Vec3T<Real>& along)
-{
-    const auto& points = manifold.points;
-    const auto is_near = [&](std::size_t i, std::size_t k) {
-        return (points[i].position - points[k].position).squaredNorm() < width * width;
-    };
-    // All that are near the first are of its end; the others have to be near one another.
-    std::size_t far = kNone, of_first = 1;
-    for (std::size_t i = 1; i < static_cast<std::size_t>(manifold.count); ++i) {
-        if (is_near(0, i))
-            ++of_first;
-        else if (far == kNone)
-            far = i;
-        else if (!is_near(far, i))
-            return false;
-    }
-    if (far == kNone || of_first > 2) return false;
-    const Vec3T<Real>&p = points[0].position, &q = points[far].position;
-    middle = (p + q) / 2;
-    along = (q - p).normalized();
-    return true;
-}
-
+// In the manifold's frame; the radius is above 0.
 template <class Real>
 void hold_edges(const ConvexEdge<Real>& a,
                 const ConvexEdge<Real>& b,
@@ -181,6 +166,35 @@ void hold_edges(const ConvexEdge<Real>& a,
                   3u << 30 | (a.id & 0x3fff) << 15 | (b.id & 0x3fff) << 1 | end);
     }
     manifold = found;
+}
+
+}  // namespace
+
+template <class Real>
+bool is_strip(const LocalManifold<Real>& manifold,
+              Real width,
+              Vec3T<Real>& middle,
+              Vec3T<Real>& along)
+{
+    const auto& points = manifold.points;
+    const auto is_near = [&](std::size_t i, std::size_t k) {
+        return (points[i].position - points[k].position).squaredNorm() < width * width;
+    };
+    // All that are near the first are of its end; the others have to be near one another.
+    std::size_t far = kNone, of_first = 1;
+    for (std::size_t i = 1; i < static_cast<std::size_t>(manifold.count); ++i) {
+        if (is_near(0, i))
+            ++of_first;
+        else if (far == kNone)
+            far = i;
+        else if (!is_near(far, i))
+            return false;
+    }
+    if (far == kNone || of_first > 2) return false;
+    const Vec3T<Real>&p = points[0].position, &q = points[far].position;
+    middle = (p + q) / 2;
+    along = (q - p).normalized();
+    return true;
 }
 
 template <class Real>
@@ -251,8 +265,6 @@ void meet_edge_on_edge(const PolytopePair& pair,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template bool is_strip(const LocalManifold<Real>&, Real, Vec3T<Real>&, Vec3T<Real>&);          \
-    template void hold_edges(const ConvexEdge<Real>&, const ConvexEdge<Real>&, Real, Real,         \
-                             LocalManifold<Real>&);                                                \
     template void meet_edge_on_edge(const Vec3T<Real>&, const Vec3T<Real>&, const Mat3T<Real>&,    \
                                     const Vec3T<Real>&, Real, LocalManifold<Real>&);
 THRONG_INSTANTIATE(float)

@@ -15,25 +15,6 @@ namespace throng {
 /// Of the least half extent, or the ball inside: how far the edges of both are rounded.
 inline constexpr double kRounded = 0.05;
 
-/// An edge of a convex shape.
-///
-///   middle       half way along it
-///   along        unit
-///   left, right  unit, outward normals of its faces
-///   half_length  m
-///   id           its own among those of the shape
-template <class Real>
-struct ConvexEdge {
-    Vec3T<Real> middle, along, left, right;
-    Real half_length = 0;
-    std::uint32_t id = 0;
-
-    ConvexEdge moved(const Mat3T<Real>& turn, const Vec3T<Real>& shift) const
-    {
-        return {turn * middle + shift, turn * along, turn * left, turn * right, half_length, id};
-    }
-};
-
 /// Whether a manifold is no wider than a width, m, across some line: then its middle, and the line.
 template <class Real>
 bool is_strip(const LocalManifold<Real>& manifold,
@@ -42,22 +23,12 @@ bool is_strip(const LocalManifold<Real>& manifold,
               Vec3T<Real>& along);
 
 /// Makes a manifold of what two edges that lie along one another have side by side, by the normal
-/// that they would have if they were rounded. Left as it is where rounded edges would touch at a
-/// face of either; where faces of both lie on one another, as what bears a beam by an inch bears it
-/// straight, and cubes of a wall do not wedge their neighbours apart; and where the edges are
-/// beyond the margin.
+/// that they would have if they were rounded: of two boxes, of which all axes are known to be
+/// within the margin, where their manifold is a strip, or where clipping has left nothing.
 ///
-///   a, b    in the manifold's frame
-///   radius  m, above 0
-template <class Real>
-void hold_edges(const ConvexEdge<Real>& a,
-                const ConvexEdge<Real>& b,
-                Real radius,
-                Real speculative_margin,
-                LocalManifold<Real>& manifold);
-
-/// The edges of two boxes, of which all axes are known to be within the margin, if it is edges that
-/// meet: where the manifold is a strip, or where clipping has left nothing.
+/// Left as it is where rounded edges would touch at a face of either; where faces of both lie on
+/// one another, as what bears a beam by an inch bears it straight, and cubes of a wall do not wedge
+/// their neighbours apart; and where the edges are beyond the margin.
 template <class Real>
 void meet_edge_on_edge(const Vec3T<Real>& half_a,
                        const Vec3T<Real>& half_b,
@@ -72,7 +43,7 @@ struct LeadingFace {
     bool of_b = false;
 };
 
-/// Those of two polytopes; where clipping has left nothing, one of the leading face.
+/// The same of two polytopes; where clipping has left nothing, one of the leading face.
 void meet_edge_on_edge(const PolytopePair& pair,
                        const LeadingFace& leading,
                        double speculative_margin,

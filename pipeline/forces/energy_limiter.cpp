@@ -281,9 +281,7 @@ void EnergyLimiter<Real>::take_share_of_blow(double speed,
     for (const Group& group : groups_) {
         if (group.members.size() < kFewestInBlow) continue;
         const WarmStart start = warm_start_of(group, constraints);
-        double mass = 0;
-        for (const Member& member : group.members) mass += member.mass;
-        if (start.gained > mass * speed * speed / 2)
+        if (start.gained > group.mass() * speed * speed / 2)
             scale(group, static_cast<Real>(start.share), constraints);
     }
 }
@@ -371,9 +369,7 @@ void EnergyLimiter<Real>::limit_contacts(double slowest,
         const double given = given_by_contacts(group, constraints);
         if (!(given > 0)) continue;
         const double kinetic = kinetic_of(group, constraints);
-        double mass = 0;
-        for (const Member& member : group.members) mass += member.mass;
-        if (given > kLetBe * kinetic && kinetic > mass * slowest * slowest / 2)
+        if (given > kLetBe * kinetic && kinetic > group.mass() * slowest * slowest / 2)
             slow_down(group, std::sqrt(std::max(0.0, 1 - given / kinetic)), constraints);
     }
 }

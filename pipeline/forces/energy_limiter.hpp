@@ -81,6 +81,13 @@ private:
         bool fed = false;                    // may be given energy by more than springs and gravity
         bool driven = false;                 // touches what moves by itself
         double kinetic = 0;                  // J, as the substep began
+
+        double mass() const
+        {
+            double sum = 0;
+            for (const Member& member : members) sum += member.mass;
+            return sum;
+        }
     };
     class Sets;
     // What impulses of the last substep would do to a group.

@@ -9,7 +9,7 @@
 // exact: where an island has only become stubborn, or is pressed in further than finer substeps
 // would hold it, which would throw it off; or where a blow drives somebody light in before somebody
 // heavy, and while he is as deep. Islands of more than a batch of contacts are not looked at: what
-// is so great holds itself up sideways, or is beyond the budget.
+// is so great holds itself up sideways, or is beyond the budget. Nor is who is squeezed escalated.
 #include "kernels/math/numbers.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solver/coloring.hpp"
@@ -170,17 +170,25 @@ private:
             && !is_driven(island);
     }
 
-    // Whether it touches what moves by itself, which may give it any energy.
-    bool is_driven(std::size_t island) const
+    // Whether it touches one of those that no contact moves of which that is so.
+    template <class Is>
+    bool touches_unmoved(std::size_t island, const Is& is_so) const
     {
-        const auto drives = [&](std::uint32_t body) {
-            return layout_.solver_index[body] == Layout::kNoSolverIndex
-                && !(velocities_.linear[body].isZero(0) && velocities_.angular[body].isZero(0));
+        const auto asked = [&](std::uint32_t body) {
+            return layout_.solver_index[body] == Layout::kNoSolverIndex && is_so(body);
         };
         const auto contacts = contacts_of(island);
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
-            return drives(entry.body_a) || drives(entry.body_b);
+            return asked(entry.body_a) || asked(entry.body_b);
+        });
+    }
+
+    // Whether it touches what moves by itself, which may give it any energy.
+    bool is_driven(std::size_t island) const
+    {
+        return touches_unmoved(island, [&](std::uint32_t body) {
+            return !(velocities_.linear[body].isZero(0) && velocities_.angular[body].isZero(0));
         });
     }
 
@@ -190,16 +198,10 @@ private:
     bool is_squeezed(std::size_t island) const
     {
         std::uint32_t first = kNoBody;
-        const auto moves_against_first = [&](std::uint32_t body) {
-            if (layout_.solver_index[body] != Layout::kNoSolverIndex) return false;
+        return touches_unmoved(island, [&](std::uint32_t body) {
             if (first == kNoBody) first = body;
             return velocities_.linear[body] != velocities_.linear[first]
                 || velocities_.angular[body] != velocities_.angular[first];
-        };
-        const auto contacts = contacts_of(island);
-        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
-            const ActiveContacts::Entry& entry = active_.entries[place];
-            return moves_against_first(entry.body_a) || moves_against_first(entry.body_b);
         });
     }
 
