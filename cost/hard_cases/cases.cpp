@@ -150,6 +150,8 @@ constexpr HardCase kCases[] = {
      case_leaning_planks, Fault::friction},
     {"H106", "who is caught between what moves by itself and what stands still is not thrown",
      case_squeezed, Fault::haste},
+    {"H107", "what air brakes makes no energy as it bounces, and rises as high as it can",
+     case_dragged_bounces, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

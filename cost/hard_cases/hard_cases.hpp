@@ -114,6 +114,7 @@ void case_step_errors(CaseBench& bench);        // H103, step_errors.cpp
 void case_struck_heaps(CaseBench& bench);       // H104, struck_heaps.cpp
 void case_leaning_planks(CaseBench& bench);     // H105, leaning_planks.cpp
 void case_squeezed(CaseBench& bench);           // H106, squeezed.cpp
+void case_dragged_bounces(CaseBench& bench);    // H107, dragged_bounces.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -132,7 +132,7 @@ void run_point(CaseBench& bench, const Point& point)
 void kapla(CaseBench& bench)
 {
     const Scene scene = published(bench, "kapla", 0.01, kDefault);
-    const int steps = bench.brief() ? 50 : 60000;
+    const int steps = bench.brief() ? 20 : 60000;
     const double falls = scene.bodies.back().position.z() - 0.15;
     int stood = 0;
     double drift = 0;

@@ -65,7 +65,7 @@ Scene column(const CaseBench& bench, const Columns& all, std::uint64_t seed)
 void fall(CaseBench& bench, const Columns& all)
 {
     double worst = 0;
-    const int scenes = bench.brief() ? 5 : 150;
+    const int scenes = bench.brief() ? 2 : 150;
     const auto watch = [](World&, double) { return true; };
     for (int seed = 0; seed < scenes; ++seed) {
         EnergyLedger ledger;

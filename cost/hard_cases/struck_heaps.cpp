@@ -128,7 +128,7 @@ void case_struck_heaps(CaseBench& bench)
     };
     for (const Struck& how : all) {
         for (const Drop& drop : kDrops) {
-            const double most = made(bench, how, drop, bench.brief() ? 3 : drop.seeds);
+            const double most = made(bench, how, drop, bench.brief() ? 1 : drop.seeds);
             if (drop.by_default_also || how.dt <= kMetAt)
                 bench.report(how.setting, drop.quantity, most, kBound, "1");
             else

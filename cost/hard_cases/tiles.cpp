@@ -146,7 +146,7 @@ void keeps_speed(CaseBench& bench,
                  const Laid& laid,
                  const std::function<void(Settings&)>& set)
 {
-    const double seconds = bench.brief() ? 1 : 4;
+    const double seconds = bench.brief() ? 0.5 : 4;
     for (const Slider slider : {Slider::ball, Slider::box, Slider::voxels, Slider::depth_image}) {
         Scene scene = tiled(bench, laid, slider, 0, static_cast<int>(kSpeed * seconds) + 3);
         set(scene.settings);

@@ -70,7 +70,7 @@ inline constexpr Set<Effect> kForces = {Effect::forces, Effect::springs, Effect:
                                         Effect::wind,   Effect::drag,    Effect::pivot};
 /// Of those, what changes as bodies go through a step.
 inline constexpr Set<Effect> kFollowBodies = {Effect::forces, Effect::springs, Effect::attractors,
-                                              Effect::pivot};
+                                              Effect::drag, Effect::pivot};
 inline constexpr int kEffects = static_cast<int>(Effect::escalation) + 1;
 
 std::string_view name_of(Effect effect);

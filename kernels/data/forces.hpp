@@ -57,18 +57,28 @@ struct Forces {
     }
     /// Whether a body is held by something that may move it from rest at any time.
     bool keeps_awake(std::uint32_t body) const { return field || has_springs(body); }
+    bool is_dragged(std::uint32_t body) const
+    {
+        return body < linear_drag.size() && (linear_drag[body] != 0 || angular_drag[body] != 0);
+    }
     /// Whether what acts on a body changes as it goes: to take it as it was when the step began
-    /// would make energy.
+    /// would make energy. So would drag, for one that is thrown back within the step.
     bool depends_on_state(std::uint32_t body) const
     {
-        return field || !attractors.empty() || has_springs(body) || on_pivot(body);
+        return field || !attractors.empty() || has_springs(body) || on_pivot(body)
+            || is_dragged(body);
+    }
+    /// Whether there is any body of that kind: most scenes have none, and nobody is looked at.
+    bool may_depend_on_state() const
+    {
+        return field || !attractors.empty() || !springs.empty() || !has_pivot.empty()
+            || !linear_drag.empty();
     }
     /// Whether anything but gravity acts on a body.
     bool act_on(std::uint32_t body) const
     {
         return depends_on_state(body)
-            || (body < force.size() && !(force[body].isZero(0) && torque[body].isZero(0)))
-            || (body < linear_drag.size() && (linear_drag[body] != 0 || angular_drag[body] != 0));
+            || (body < force.size() && !(force[body].isZero(0) && torque[body].isZero(0)));
     }
     /// From where a body's position is to its center of mass, m, body axes.
     Vec3 pivot_to_center_of(std::uint32_t body) const

@@ -246,9 +246,7 @@ private:
     void find_state_forces()
     {
         const Forces& forces = facts_.forces;
-        if (forces.springs.empty() && forces.has_pivot.empty() && forces.attractors.empty()
-            && !forces.field)
-            return;
+        if (!forces.may_depend_on_state()) return;
         std::vector<std::uint32_t> bodies;
         for (std::uint32_t i = 0; i < batch_.slices; ++i) {
             const Slice& slice = layout_.slices[batch_.first_slice + i];

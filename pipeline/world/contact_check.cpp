@@ -304,9 +304,7 @@ std::vector<Vec3> unbalanced_forces(const World& world)
             left[b] += force;
         });
     for (std::uint32_t body = 0; body < left.size(); ++body) {
-        const bool is_dragged = body < forces.linear_drag.size() && forces.linear_drag[body] != 0;
-        if (!states.dynamic(body) || masses.inverse_mass[body] == 0 || is_dragged
-            || forces.depends_on_state(body)
+        if (!states.dynamic(body) || masses.inverse_mass[body] == 0 || forces.depends_on_state(body)
             || state.get<PrescribedVelocities>().of(body) != nullptr)
             left[body].setConstant(std::numeric_limits<double>::quiet_NaN());
         else

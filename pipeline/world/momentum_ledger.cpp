@@ -69,8 +69,7 @@ bool MomentumLedger::Inside::is_held(const WorldState& state, std::uint32_t body
 {
     const auto& states = state.get<BodyStates>();
     const auto& forces = state.get<Forces>();
-    const bool is_dragged = body < forces.linear_drag.size() && forces.linear_drag[body] != 0;
-    return !begun_[body].awake || is_dragged || states.quarantined[body] != 0
+    return !begun_[body].awake || forces.is_dragged(body) || states.quarantined[body] != 0
         || forces.on_pivot(body) || state.get<Masses>().inverse_mass[body] == 0
         || !forces.attractors.empty() || forces.field
         || state.get<PrescribedVelocities>().of(body) != nullptr;
