@@ -1,4 +1,6 @@
 """What tools/random_scenes promises of its scenes, and that its judge sees what is planted."""
+import importlib.machinery
+import importlib.util
 import json
 import math
 import pathlib
@@ -10,6 +12,10 @@ sys.path.insert(0, str(ROOT / "tools"))
 sys.dont_write_bytecode = True
 import random_scene_judge as judge  # noqa: E402
 import random_scene_maker as maker  # noqa: E402
+
+LOADER = importlib.machinery.SourceFileLoader("random_scenes", str(ROOT / "tools/random_scenes"))
+random_scenes = importlib.util.module_from_spec(importlib.util.spec_from_loader("random_scenes", LOADER))
+LOADER.exec_module(random_scenes)
 
 SCENES = [maker.make(seed, 40) for seed in range(300)]
 
@@ -53,6 +59,21 @@ class Maker(unittest.TestCase):
             for i, (a, reach) in enumerate(placed):
                 for b, other in placed[:i]:
                     self.assertGreaterEqual(math.dist(a, b), reach + other)
+
+
+class Draws(unittest.TestCase):
+    def test_the_first_is_the_scene_and_others_differ_by_hairs(self):
+        for seed, made in enumerate(SCENES[:50]):
+            self.assertIs(random_scenes.moved_by_hairs(made, seed, 0), made)
+            one, again, other = (random_scenes.moved_by_hairs(made, seed, draw).scene for draw in (1, 1, 2))
+            self.assertEqual(one, again)
+            self.assertNotEqual(one, other)
+            most = random_scenes.HAIR * judge.thickness_of(made)
+            for body, was in zip(one["bodies"], made.scene["bodies"]):
+                moved = [abs(a - b) for a, b in zip(body.pop("position"), was["position"])]
+                self.assertLessEqual(max(moved), 1.001 * most + 1e-12)
+                self.assertEqual("motion" in was and was["motion"] != "dynamic", max(moved) == 0)
+                self.assertEqual(body, {key: was[key] for key in was if key != "position"})
 
 
 def box_on_floor(**changes):
