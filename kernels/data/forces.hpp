@@ -57,16 +57,23 @@ struct Forces {
     }
     /// Whether a body is held by something that may move it from rest at any time.
     bool keeps_awake(std::uint32_t body) const { return field || has_springs(body); }
+    /// Whether drag acts on how a body moves; its spin may be dragged by itself.
     bool is_dragged(std::uint32_t body) const
     {
-        return body < linear_drag.size() && (linear_drag[body] != 0 || angular_drag[body] != 0);
+        return body < linear_drag.size() && linear_drag[body] != 0;
+    }
+    /// Whether the force on a body changes as it goes, whatever turns it.
+    bool force_depends_on_state(std::uint32_t body) const
+    {
+        return field || !attractors.empty() || has_springs(body) || on_pivot(body)
+            || is_dragged(body);
     }
     /// Whether what acts on a body changes as it goes: to take it as it was when the step began
     /// would make energy. So would drag, for one that is thrown back within the step.
     bool depends_on_state(std::uint32_t body) const
     {
-        return field || !attractors.empty() || has_springs(body) || on_pivot(body)
-            || is_dragged(body);
+        return force_depends_on_state(body)
+            || (body < angular_drag.size() && angular_drag[body] != 0);
     }
     /// Whether there is any body of that kind: most scenes have none, and nobody is looked at.
     bool may_depend_on_state() const

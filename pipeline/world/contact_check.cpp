@@ -304,7 +304,8 @@ std::vector<Vec3> unbalanced_forces(const World& world)
             left[b] += force;
         });
     for (std::uint32_t body = 0; body < left.size(); ++body) {
-        if (!states.dynamic(body) || masses.inverse_mass[body] == 0 || forces.depends_on_state(body)
+        if (!states.dynamic(body) || masses.inverse_mass[body] == 0
+            || forces.force_depends_on_state(body)
             || state.get<PrescribedVelocities>().of(body) != nullptr)
             left[body].setConstant(std::numeric_limits<double>::quiet_NaN());
         else

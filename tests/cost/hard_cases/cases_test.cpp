@@ -31,7 +31,6 @@ constexpr bool kIsChecked = false;
 constexpr int kCheckedSteps = 500;
 
 // With the same figures on three threads.
-
 TEST_P(HardCases, KeepsItsBounds)
 {
     std::size_t runs = 0;
