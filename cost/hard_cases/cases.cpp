@@ -152,6 +152,8 @@ constexpr HardCase kCases[] = {
      case_squeezed, Fault::haste},
     {"H107", "what air brakes makes no energy as it bounces, and rises as high as it can",
      case_dragged_bounces, Fault::haste},
+    {"H108", "who is heavy and rolls off what is light makes no energy, on it and beside it",
+     case_falls_off, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

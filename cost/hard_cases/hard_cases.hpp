@@ -115,6 +115,7 @@ void case_struck_heaps(CaseBench& bench);       // H104, struck_heaps.cpp
 void case_leaning_planks(CaseBench& bench);     // H105, leaning_planks.cpp
 void case_squeezed(CaseBench& bench);           // H106, squeezed.cpp
 void case_dragged_bounces(CaseBench& bench);    // H107, dragged_bounces.cpp
+void case_falls_off(CaseBench& bench);          // H108, falls_off.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -113,13 +113,13 @@ struct FlightMemory {
 
 /// By body; empty where none is kept.
 ///
-///   lags  1 where contacts left a velocity half a substep behind (see
-///         pipeline/forces/velocity_lag.hpp); may be shorter
+///   lags  n where contacts left a velocity half an n-th of a substep behind, 0 where they were not
+///         the last to move a body (see pipeline/forces/velocity_lag.hpp); may be shorter
 struct Flights {
     std::vector<FlightMemory> memory;
     std::vector<std::uint8_t> lags;
 
-    bool lags_of(std::size_t body) const { return body < lags.size() && lags[body] != 0; }
+    std::uint8_t lags_of(std::size_t body) const { return body < lags.size() ? lags[body] : 0; }
 };
 
 }  // namespace throng

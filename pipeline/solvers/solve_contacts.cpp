@@ -1,6 +1,7 @@
 // Solve contacts: the five solvers, each batch by batch.
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/forces/velocity_lag.hpp"
 #include "pipeline/solvers/escalation.hpp"
 #include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/solvers/solve_batch.hpp"
@@ -20,6 +21,11 @@ bool any_compound(const Colliders& colliders)
                        [](std::uint32_t count) { return count > 1; });
 }
 
+std::span<const std::uint32_t> bodies_of(const Layout& layout, const Slice& slice)
+{
+    return std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic);
+}
+
 // Whether stiff springs pull at bodies of an island. Exact solves take turns with them, which over
 // long substeps does not come together.
 bool is_stiff(const StepContext& context,
@@ -28,11 +34,15 @@ bool is_stiff(const StepContext& context,
               const Batch& batch)
 {
     if (facts.forces.springs.empty()) return false;
-    const Slice& slice = layout.slices[batch.first_slice];
-    return StateDependentForces(
-               context, facts,
-               std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic))
+    return StateDependentForces(context, facts,
+                                bodies_of(layout, layout.slices[batch.first_slice]))
         .stiff();
+}
+
+bool any_finer(const Layout& layout)
+{
+    return std::any_of(layout.batches.begin(), layout.batches.end(),
+                       [](const Batch& batch) { return batch.times > 1; });
 }
 
 // A contact problem, and how its batches are solved.
@@ -51,6 +61,7 @@ public:
           joined_(problem.template get<JoinedContacts<Real>>()),
           constraints_(problem.template get<ContactConstraints<Real>>()),
           split_impulse_(problem.template get<SplitImpulse>()),
+          flights_(problem.template get<Flights>()),
           diagnostics_(problem.template get<StepDiagnostics>()),
           facts_{problem.template get<const Forces>(), problem.template get<const Masses>(),
                  problem.template get<Poses>(), problem.template get<Velocities>()},
@@ -76,6 +87,7 @@ public:
                                     problem.template get<Velocities>()}
     {
         start_islands(layout_, constraints_, diagnostics_);
+        if (any_finer(layout_)) flights_.lags.resize(facts_.masses.mass.size());
         start_split_impulse(layout_, split_impulse_);
         const auto& colliders = problem.template get<const Colliders>();
         if (!solids_.entries.empty() || any_compound(colliders))
@@ -92,9 +104,11 @@ public:
             if (!parts && batch.direct && !is_stiff(context_, facts_, layout_, batch))
                 solve_island(islands_, batch, constraints_, diagnostics_);
             else if (!parts && batch.times > 1)
-                iterate_finer(batch);
+                return iterate_finer(batch);
             else
                 iterate(batch);
+            for (std::uint32_t i = 0; i < batch.slices; ++i)
+                lag_by_usual(layout_.slices[batch.first_slice + i], 1);
         });
     }
 
@@ -145,8 +159,27 @@ private:
         const Slice& slice = layout_.slices[batch.first_slice];
         // Impulses are kept as of the substep that the settings say.
         with.scale_impulses(slice, Real(1) / Real(batch.times));
+        lag_by_finer(context_, facts_.forces,
+                     {batch.times, bodies_of(layout_, slice), with.pressed(slice)}, flights_,
+                     solver_bodies_of(slice));
         solve_batch(finer, parameters, facts_, layout_, batch, with, constraints_, split_impulse_);
         with.scale_impulses(slice, Real(batch.times));
+        lag_by_usual(slice, batch.times);
+    }
+
+    // Of a slice that was solved by so many times the substeps, or comes from such a solve.
+    void lag_by_usual(const Slice& slice, int times)
+    {
+        const auto bodies = bodies_of(layout_, slice);
+        const auto finer = [&](std::uint32_t body) { return flights_.lags_of(body) > 1; };
+        if (times == 1 && std::none_of(bodies.begin(), bodies.end(), finer)) return;
+        throng::lag_by_usual(context_, facts_.forces, {times, bodies, builder_.pressed(slice)},
+                             flights_, solver_bodies_of(slice));
+    }
+
+    std::span<SolverBody<Real>> solver_bodies_of(const Slice& slice)
+    {
+        return std::span(constraints_.bodies).subspan(slice.first_body, slice.dynamic);
     }
 
     const StepContext& context_;
@@ -159,6 +192,7 @@ private:
     JoinedContacts<Real>& joined_;
     ContactConstraints<Real>& constraints_;
     SplitImpulse& split_impulse_;
+    Flights& flights_;
     StepDiagnostics& diagnostics_;
     const RigidFacts facts_;
     const ConstraintBuilder<Real> builder_;

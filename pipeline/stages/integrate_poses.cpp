@@ -294,6 +294,7 @@ void integrate_poses(const StepContext& context,
     if (alone) diagnostics.quarantined.clear();
 
     const auto fly = [&](const std::vector<std::uint32_t>& bodies) {
+        lag_as_kicked(context, bodies, flights, velocities);
         fly_freely(context, masses, states, bodies, poses, velocities, diagnostics);
     };
     const auto& free = alone ? states.active_bodies.dynamic : islands.lone;

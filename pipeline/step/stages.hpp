@@ -171,6 +171,7 @@ using ContactProblem = StageData<const StepContext,
                                  JoinedContacts<Real>,
                                  Poses,
                                  Velocities,
+                                 Flights,
                                  SplitImpulse,
                                  StepDiagnostics>;
 

@@ -211,7 +211,8 @@ double WorldState::velocity_lag(std::uint32_t body) const
     if (context.effects.meets(kEventDriven)) return 0;
     const bool kicked = context.integrator == Integrator::semi_implicit
         || (context.integrator == Integrator::auto_ && !get<Forces>().act_on(body));
-    return kicked || get<Flights>().lags_of(body) ? context.substep() / 2 : 0;
+    const int times = get<Flights>().lags_of(body);
+    return kicked || times > 0 ? context.substep() / (2 * std::max(times, 1)) : 0;
 }
 
 Vec3 WorldState::arm(std::uint32_t body) const

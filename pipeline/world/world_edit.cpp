@@ -38,6 +38,8 @@ void WorldState::mark_changed(std::uint32_t body)
         bounds.touched.push_back(colliders.begin[body] + i);
     get<SplitImpulse>().place(body);
     get<OverloadedIslands>().forget(body);
+    auto& lags = get<Flights>().lags;
+    if (body < lags.size()) lags[body] = 0;
 }
 
 void WorldState::wake_neighbors(const std::vector<std::uint8_t>& of)

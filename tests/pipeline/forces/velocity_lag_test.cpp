@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace throng {
 namespace {
@@ -91,6 +92,60 @@ TEST(VelocityLag, WhoIsPulledFromRestIsHeldByAllOfHisWeight)
         const double speed = 0.6 * (6 - 0.4 * world.gravity().norm());
         EXPECT_NEAR(world.velocity(world.bodies()[1]).x(), speed, 1e-4) << int(integrator);
     }
+}
+
+// A heavy ball that rolls off a light one: on it he is solved by finer substeps, of which he is half
+// of one behind, and beside it by the usual one.
+TEST(VelocityLag, WhoFallsOffWhatIsEscalatedWinsNothing)
+{
+    Scene scene = bouncing(Integrator::auto_);
+    scene.materials[0] = {"m", 1000, 0.3, 0, 0};
+    scene.settings.substeps = 1;
+    scene.bodies[1].position.z() = 0.05;
+    scene.bodies[1].mass = 1;
+    scene.bodies.push_back(scene.bodies[1]);
+    scene.bodies[2].position = Vec3(0.01, 0, 0.05 + 0.1 * std::sqrt(0.99));
+    scene.bodies[2].mass = 10;
+    World world(scene);
+    EnergyLedger ledger;
+    std::size_t escalated = 0;
+    for (int step = 0; step < 60; ++step) {
+        ledger.before_step(world);
+        world.step();
+        ledger.after_step(world);
+        escalated += world.report().islands_escalated;
+    }
+    EXPECT_GT(escalated, 5u);
+    EXPECT_LT(world.pose(world.bodies()[2]).position.z(), 0.06);
+    EXPECT_LT(ledger.gained(), 5e-3 * 10 * world.gravity().norm() * 0.1);
+}
+
+// The same falls as far as by the usual substeps, once nothing holds him: by none of them is he slower
+// or faster than gravity makes him.
+TEST(VelocityLag, WhoFallsBesideWhatIsEscalatedFallsAsAllDo)
+{
+    Scene scene = bouncing(Integrator::auto_);
+    scene.materials[0] = {"m", 1000, 0, 0, 0};
+    scene.settings.substeps = 1;
+    scene.shapes.push_back({"box", BoxShape{Vec3(0.5, 0.5, 0.5)}});
+    for (const int i : {0, 1}) {
+        BodyDescription box = scene.bodies[1];
+        box.shape = 2;
+        box.position = Vec3(0, 0, 0.5 + i);
+        box.mass = i == 0 ? 1 : 1000;
+        scene.bodies.push_back(box);
+    }
+    // Along a side, nearer than contacts look ahead, and never on it.
+    scene.bodies[1].position = Vec3(0.552, 0, 1.9);
+    World world(scene);
+    const BodyId ball = world.bodies()[1];
+    std::size_t escalated = 0;
+    for (int step = 1; step <= 30; ++step) {
+        world.step();
+        escalated += world.report().islands_escalated;
+        EXPECT_NEAR(world.velocity(ball).z(), -world.gravity().norm() * step / 60, 1e-4) << step;
+    }
+    EXPECT_GT(escalated, 5u);
 }
 
 }  // namespace
