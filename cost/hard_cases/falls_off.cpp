@@ -45,7 +45,8 @@ double gained(CaseBench& bench, const How& how, double ratio, double radius, dou
     if (!how.heavy_first) parts.ball(material, ratio * kLight, radius, of_heavy);
 
     EnergyLedger ledger;
-    bench.run(scene, 2, [](World&, double) { return true; }, &ledger);
+    bench.run(
+        scene, 2, [](World&, double) { return true; }, &ledger);
     return ledger.gained() / (ratio * kLight * kGravity * 2 * radius);
 }
 

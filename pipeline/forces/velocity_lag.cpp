@@ -26,8 +26,8 @@ void add(Real sign, const Vec3& velocity, SolverBody<Real>& body)
     for (int k = 0; k < 3; ++k) body.motion[k] += sign * static_cast<Real>(velocity[k]);
 }
 
-// Whether contacts leave the velocity of a body behind: they give half of what depends on its state,
-// and of gravity with it, after it moved.
+// Whether contacts leave the velocity of a body behind: they give half of what depends on its
+// state, and of gravity with it, after it moved.
 bool lags_in_contact(const StepContext& context, const Forces& forces, std::uint32_t body)
 {
     return context.response == Response::penalty || !forces.depends_on_state(body);
@@ -108,9 +108,9 @@ void lag_by_usual(const StepContext& context,
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void lag_by_finer<Real>(const StepContext&, const Forces&, const SolvedBodies&,         \
+    template void lag_by_finer<Real>(const StepContext&, const Forces&, const SolvedBodies&,       \
                                      const Flights&, std::span<SolverBody<Real>>);                 \
-    template void lag_by_usual<Real>(const StepContext&, const Forces&, const SolvedBodies&,         \
+    template void lag_by_usual<Real>(const StepContext&, const Forces&, const SolvedBodies&,       \
                                      Flights&, std::span<SolverBody<Real>>);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

@@ -3,9 +3,9 @@
 // The solver of contacts gives gravity at once for a whole substep, before a body moves, so that
 // the velocity it leaves, like that of what only falls by kicks, is half a substep behind. What an
 // integrator of a higher order leaves is of the moment. Who goes from one to the other takes the
-// half along: else who bounces would win g h v each time. So does who is solved by finer substeps, of which
-// his velocity is half of one behind, while nothing presses him. Whom something presses, on the way
-// there or back, keeps his: most rest, and what bears them would take it for a blow.
+// half along: else who bounces would win g h v each time. So does who is solved by finer substeps,
+// of which his velocity is half of one behind, while nothing presses him. Whom something presses,
+// on the way there or back, keeps his: most rest, and what bears them would take it for a blow.
 #pragma once
 
 #include "kernels/data/bodies.hpp"

@@ -266,9 +266,9 @@ std::vector<std::uint8_t> ConstraintBuilder<Real>::pressed(const Slice& slice) c
     for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i) {
         const ActiveContacts::Entry& entry = active_.entries[layout_.contacts[i]];
         const Contact<Real>& contact = contact_of(entry);
-        const bool presses = std::any_of(contact.points.begin(),
-                                         contact.points.begin() + contact.count,
-                                         [](const auto& point) { return point.impulse > 0; });
+        const bool presses =
+            std::any_of(contact.points.begin(), contact.points.begin() + contact.count,
+                        [](const auto& point) { return point.impulse > 0; });
         if (!presses) continue;
         for (const std::uint32_t body : {entry.body_a, entry.body_b}) {
             const std::uint32_t place = layout_.solver_index[body] - slice.first_body;

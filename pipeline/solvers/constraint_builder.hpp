@@ -45,7 +45,8 @@ public:
 
     /// Makes what the contacts of a slice hold this times as much, for substeps of another length.
     void scale_impulses(const Slice& slice, Real scale) const;
-    /// 1 for each body of a slice that can be moved, by place, at whose contacts there is an impulse.
+    /// 1 for each body of a slice that can be moved, by place, at whose contacts there is an
+    /// impulse.
     std::vector<std::uint8_t> pressed(const Slice& slice) const;
 
     Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const

@@ -34,8 +34,7 @@ bool is_stiff(const StepContext& context,
               const Batch& batch)
 {
     if (facts.forces.springs.empty()) return false;
-    return StateDependentForces(context, facts,
-                                bodies_of(layout, layout.slices[batch.first_slice]))
+    return StateDependentForces(context, facts, bodies_of(layout, layout.slices[batch.first_slice]))
         .stiff();
 }
 

@@ -94,8 +94,8 @@ TEST(VelocityLag, WhoIsPulledFromRestIsHeldByAllOfHisWeight)
     }
 }
 
-// A heavy ball that rolls off a light one: on it he is solved by finer substeps, of which he is half
-// of one behind, and beside it by the usual one.
+// A heavy ball that rolls off a light one: on it he is solved by finer substeps, of which he is
+// half of one behind, and beside it by the usual one.
 TEST(VelocityLag, WhoFallsOffWhatIsEscalatedWinsNothing)
 {
     Scene scene = bouncing(Integrator::auto_);
@@ -120,8 +120,8 @@ TEST(VelocityLag, WhoFallsOffWhatIsEscalatedWinsNothing)
     EXPECT_LT(ledger.gained(), 5e-3 * 10 * world.gravity().norm() * 0.1);
 }
 
-// The same falls as far as by the usual substeps, once nothing holds him: by none of them is he slower
-// or faster than gravity makes him.
+// The same falls as far as by the usual substeps, once nothing holds him: by none of them is he
+// slower or faster than gravity makes him.
 TEST(VelocityLag, WhoFallsBesideWhatIsEscalatedFallsAsAllDo)
 {
     Scene scene = bouncing(Integrator::auto_);
