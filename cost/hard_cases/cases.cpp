@@ -111,7 +111,7 @@ constexpr HardCase kCases[] = {
     {"H84", "plates that turn carry round what lies on them", case_carried_round, Fault::friction},
     {"H76", "heavy boxes on light ones, dice, cylinders and cards stand by the default dials",
      case_heavy_on_light, Fault::mass},
-    {"H85", "walls of bricks stand, as high as soft contacts bear", case_tall_walls, Fault::sink},
+    {"H85", "walls of bricks stand, as high as soft contacts bear", case_tall_walls, Fault::skew},
     {"H86", "who is driven has the speed that it is driven at, whatever friction bears",
      case_walkers, Fault::haste},
     {"H87", "thin solids that a fall drives through one another are thrown by nothing",
@@ -154,6 +154,8 @@ constexpr HardCase kCases[] = {
      case_dragged_bounces, Fault::haste},
     {"H108", "who is heavy and rolls off what is light makes no energy, on it and beside it",
      case_falls_off, Fault::haste},
+    {"H109", "unlike bodies put on one another by hand come to rest", case_unlike_stacks,
+     Fault::unsteady},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

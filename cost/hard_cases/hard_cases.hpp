@@ -116,6 +116,7 @@ void case_leaning_planks(CaseBench& bench);     // H105, leaning_planks.cpp
 void case_squeezed(CaseBench& bench);           // H106, squeezed.cpp
 void case_dragged_bounces(CaseBench& bench);    // H107, dragged_bounces.cpp
 void case_falls_off(CaseBench& bench);          // H108, falls_off.cpp
+void case_unlike_stacks(CaseBench& bench);      // H109, unlike_stacks.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

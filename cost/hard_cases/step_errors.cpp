@@ -156,7 +156,7 @@ void time_it(CaseBench& bench)
 
 void case_step_errors(CaseBench& bench)
 {
-    const std::size_t scenes = bench.brief() ? 3 : std::size(kScenes);
+    const std::size_t scenes = bench.brief() ? 4 : std::size(kScenes);
     const std::size_t settings = bench.brief() ? 4 : std::size(kSettings);
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < scenes; ++i) {

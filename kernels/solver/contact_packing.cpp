@@ -1,6 +1,7 @@
 #include "kernels/solver/contact_packing.hpp"
 
 #include <cstddef>
+#include <limits>
 
 namespace throng {
 
@@ -112,22 +113,57 @@ void scale_impulses(Real scale, Contact<Real>& contact)
     contact.rolling *= scale;
 }
 
+// Cosine of the angle up to which a contact is with the same face as before.
+template <class Real>
+constexpr Real kSameFace = Real(0.97);
+
+// What a point bore that is there no more goes to the nearest of those that are new: else the body
+// would sink there, be thrown back, and sink where it lies on the other one.
+template <class Real>
+void pass_on(const typename Contact<Real>::Point& from,
+             Real scale,
+             unsigned& is_new,
+             Contact<Real>& contact)
+{
+    std::size_t nearest = 0;
+    Real least = std::numeric_limits<Real>::max();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        if ((is_new >> k & 1u) == 0) continue;
+        const Real distance2 = (contact.points[k].anchor_a - from.anchor_a).squaredNorm();
+        if (distance2 >= least) continue;
+        least = distance2;
+        nearest = k;
+    }
+    is_new &= ~(1u << nearest);
+    contact.points[nearest].impulse = from.impulse * scale;
+}
+
 template <class Real>
 void carry_impulses(const Contact<Real>& before, Real scale, Contact<Real>& contact)
 {
     bool any = false;
     bool taken[4] = {};
+    unsigned is_new = (1u << contact.count) - 1u;
     for (int k = 0; k < contact.count; ++k) {
         auto& point = contact.points[static_cast<std::size_t>(k)];
         for (int old = 0; old < before.count; ++old) {
             const auto& from = before.points[static_cast<std::size_t>(old)];
             if (taken[old] || from.feature != point.feature) continue;
             taken[old] = true;
+            is_new &= ~(1u << k);
             point.impulse = from.impulse * scale;
             any = any || point.impulse > 0;
             break;
         }
     }
+    // Of another face whatever was borne is over.
+    if (is_new != 0 && before.normal.dot(contact.normal) > kSameFace<Real>)
+        for (int old = 0; old < before.count && is_new != 0; ++old) {
+            const auto& from = before.points[static_cast<std::size_t>(old)];
+            if (taken[old] || !(from.impulse > 0)) continue;
+            pass_on(from, scale, is_new, contact);
+            any = true;
+        }
     if (!any) return;
     contact.friction =
         scale * (before.friction - contact.normal * contact.normal.dot(before.friction));

@@ -25,10 +25,33 @@ std::size_t best_of(Points<Real> points, const Score& score)
     return best;
 }
 
-// Points whose depths differ by less than this part of the contact's extent are as deep as one
-// another: what is left of a body's motion at rest stays below it.
+// Those that are left out and deeper than all that were chosen, around one of these.
 template <class Real>
-constexpr Real kLevel = Real(1e-5);
+class Drawn {
+public:
+    void see(Real separation) { least_ = std::min(least_, separation); }
+
+    // The deepest count most, so that going from one to the other is no jump either.
+    void add(const typename LocalManifold<Real>::Point& point, Real whole)
+    {
+        const Real share = std::max(1 - (point.separation - least_) / whole, Real(0));
+        position_ += share * point.position;
+        separation_ += share * point.separation;
+        sum_ += share;
+    }
+
+    void draw(Real chosen_least, Real whole, typename LocalManifold<Real>::Point& point) const
+    {
+        if (!(sum_ > 0)) return;
+        const Real part = std::min((chosen_least - least_) / whole, Real(1));
+        point.position += part * (position_ / sum_ - point.position);
+        point.separation += part * (separation_ / sum_ - point.separation);
+    }
+
+private:
+    Vec3T<Real> position_ = Vec3T<Real>::Zero();
+    Real separation_ = 0, sum_ = 0, least_ = std::numeric_limits<Real>::max();
+};
 
 // A direction across the normal that moves smoothly with it, but for seams far from the axes.
 template <class Real>
@@ -84,34 +107,34 @@ void reduce_to_four(std::span<const typename LocalManifold<Real>::Point> candida
         return;
     }
     using Point = typename LocalManifold<Real>::Point;
-    std::array<std::size_t, 4> chosen = spread_four<Real>(candidates, manifold.normal);
+    const std::array<std::size_t, 4> chosen = spread_four<Real>(candidates, manifold.normal);
 
-    // Where the deepest is left out, it takes the place of the chosen one nearest to it.
-    const std::size_t deepest =
-        best_of<Real>(candidates, [](const Point& p) { return -p.separation; });
-    Real chosen_least = candidates[chosen[0]].separation;
-    std::size_t nearest = 0;
-    Real nearest_distance2 = std::numeric_limits<Real>::max();
-    for (std::size_t i = 0; i < 4; ++i) {
-        const Point& point = candidates[chosen[i]];
-        const Real distance2 = (point.position - candidates[deepest].position).squaredNorm();
-        chosen_least = std::min(chosen_least, point.separation);
-        if (distance2 < nearest_distance2) {
-            nearest_distance2 = distance2;
-            nearest = i;
-        }
-    }
+    Real least = std::numeric_limits<Real>::max();
+    for (const std::size_t i : chosen) least = std::min(least, candidates[i].separation);
+    const auto nearest_to = [&](const Point& point) {
+        const auto distance2 = [&](std::size_t i) {
+            return (candidates[i].position - point.position).squaredNorm();
+        };
+        std::size_t nearest = 0;
+        for (std::size_t k = 1; k < 4; ++k)
+            if (distance2(chosen[k]) < distance2(chosen[nearest])) nearest = k;
+        return nearest;
+    };
     const Real extent = (candidates[chosen[1]].position - candidates[chosen[0]].position).norm();
-    if (candidates[deepest].separation < chosen_least - kLevel<Real> * extent) {
-        chosen[nearest] = deepest;
-    }
+    const Real whole = kDrawn<Real> * extent;
+    std::array<Drawn<Real>, 4> drawn;
+    for (const Point& point : candidates)
+        if (point.separation < least) drawn[nearest_to(point)].see(point.separation);
+    for (const Point& point : candidates)
+        if (point.separation < least) drawn[nearest_to(point)].add(point, whole);
 
     // Each once, in the candidates' order, so that the manifold's order is repeatable too.
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (i == chosen[0] || i == chosen[1] || i == chosen[2] || i == chosen[3]) {
-            const Point& point = candidates[i];
-            manifold.add(point.position, point.separation, point.feature);
-        }
+        const auto place = std::find(chosen.begin(), chosen.end(), i);
+        if (place == chosen.end()) continue;
+        Point point = candidates[i];
+        drawn[static_cast<std::size_t>(place - chosen.begin())].draw(least, whole, point);
+        manifold.add(point.position, point.separation, point.feature);
     }
 }
 

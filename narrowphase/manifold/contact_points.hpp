@@ -9,14 +9,20 @@
 
 namespace throng {
 
+/// A chosen point is drawn to one that is left out as far as that is deeper than all chosen: wholly
+/// from this part of the contact's extent on.
+template <class Real>
+inline constexpr Real kDrawn = Real(5e-4);
+
 /// Fills the manifold's points with four of the candidates, or with all if there are no more than
-/// four: the deepest, and those that span the greatest area seen along the manifold's normal.
-/// Three, where all others lie inside the triangle of those.
+/// four: those that span the greatest area seen along the manifold's normal. Three, where all
+/// others lie inside the triangle of those.
 ///
-/// Which points are kept hangs on their places rather than on small differences in depth, so that a
-/// body at rest keeps the same four. The deepest is always among them, or one that is as deep to
-/// within a hundred-thousandth of the contact's extent. Ties go to the candidate that comes first,
-/// so the order of the candidates has to be repeatable.
+/// Which points are kept hangs on their places alone, so that a body at rest keeps the same four,
+/// with the impulses that they have. Where it leans on one that is left out, the nearest of the
+/// four goes there as far as it leans: were one taken for the other, the load would stand where no
+/// four hold it, and the body tremble from the one to the other for ever. Ties go to the candidate
+/// that comes first, so the order of the candidates has to be repeatable.
 template <class Real>
 void reduce_to_four(std::span<const typename LocalManifold<Real>::Point> candidates,
                     LocalManifold<Real>& manifold);

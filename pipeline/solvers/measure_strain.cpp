@@ -30,6 +30,9 @@ constexpr std::size_t kIslands = 8;  // a block
 constexpr double kShare = 0.25;
 // s, in which gravity makes what still counts as rest: no impact, no walk.
 constexpr double kResting = 1.0 / 15;
+// m/s: slower than any that is seen; and what a step of trembling adds, on the way from 0 to 1, so
+// that it is believed after two seconds or so at 1/60 s.
+constexpr double kTrembling = 2e-3, kPatience = 1.0 / 240;
 // A strain is let go once it is this much less: loads that tremble, and an impact as something was
 // set down, do not change from step to step how they are borne.
 constexpr double kLasting = 3;
@@ -60,13 +63,20 @@ double inverse_mass_of(const Masses& masses, std::uint32_t body)
     return inverse_mass == 0 && mass > 0 ? 1 / mass : inverse_mass;
 }
 
-// N s, of all points; and times the ease with which the lesser mass gives way: m/s.
+// N s, of all points, or as if all bore what the most loaded one does; and times the ease with
+// which the lesser mass gives way: m/s.
 template <class Real>
-double
-speed_borne(const ActiveContacts::Entry& entry, const Contact<Real>& contact, const Masses& masses)
+double speed_borne(const ActiveContacts::Entry& entry,
+                   const Contact<Real>& contact,
+                   const Masses& masses,
+                   bool by_most_loaded)
 {
-    Real impulse = 0;
-    for (std::size_t k = 0; k < entry.points; ++k) impulse += contact.points[k].impulse;
+    Real sum = 0, most = 0;
+    for (std::size_t k = 0; k < entry.points; ++k) {
+        sum += contact.points[k].impulse;
+        most = std::max(most, contact.points[k].impulse);
+    }
+    const Real impulse = by_most_loaded ? most * Real(entry.points) : sum;
     return double{impulse}
     * (inverse_mass_of(masses, entry.body_a) + inverse_mass_of(masses, entry.body_b));
 }
@@ -132,7 +142,9 @@ private:
         if (contacts.size() < 2 || contacts.size() > kBatchContacts) return 0;
         const bool exactly = may_be_exact(bodies, contacts.size());
         const double before = strain_before(island);
-        const double greatest = find_gives(island);
+        // A load that stands at a corner of who bears it has a quarter of him to be held by. In a
+        // heap the points of a contact change what they bear from step to step.
+        const double greatest = find_gives(island, is_column(bodies, contacts.size()));
         // What is loaded by so little that no height makes it too much is most of what there is.
         if (before == 0 && !(greatest * double(bodies) > kRelieved)) return 0;
         const double most = most_borne(island);
@@ -140,9 +152,12 @@ private:
         if (before >= kCrushed && exactly && overlaps(contacts, kDriven)) return -kCrushed;
         if (!(std::max(most * double(bodies), before) > kRelieved)) return 0;
         const double strain = most * height_of(island);
-        const bool rests = is_resting(island);
-        if (!(before > 1))
-            return rests ? begun(strain, before, exactly) : is_crushed(island) ? -kCrushed : 0;
+        const double square = mean_square_speed(island);
+        const bool rests = square < resting_ * resting_;
+        if (!(before > 1)) {
+            if (!rests) return is_crushed(island) ? -kCrushed : 0;
+            return begun(strain, before, exactly, square > kTrembling * kTrembling);
+        }
         return exactly ? lasting(island, strain, most, before, rests) : fading(strain, before);
     }
 
@@ -241,11 +256,14 @@ private:
         return throng::contact_of(convex_, meshes_, solids_, joined_, entry);
     }
 
-    // A heap that settles trembles.
-    static double begun(double strain, double before, bool exactly)
+    // A heap that settles trembles, so only who goes on trembling under a load that is nearly too
+    // much is stubborn by that.
+    static double begun(double strain, double before, bool exactly, bool trembles)
     {
-        const double now = before + kShare * (strain / kStrained - before);
-        if (!(now >= 1 && strain > kStrained)) return std::min(now, 1.0);
+        const bool goes_on = trembles && strain > kRelieved;
+        const double now = std::max(before + kShare * (strain / kStrained - before),
+                                    goes_on ? before + kPatience : 0);
+        if (!(now >= 1 && (goes_on || strain > kStrained))) return std::min(now, 1.0);
         return exactly ? -strain : kFirst * strain;
     }
 
@@ -263,12 +281,12 @@ private:
 
     // How far its load presses a contact in, over where it turns rigid. The lesser of the two
     // masses is what its points have to hold it by.
-    double give_of(std::uint32_t place) const
+    double give_of(std::uint32_t place, bool by_most_loaded) const
     {
         const ActiveContacts::Entry& entry = active_.entries[place];
         if (!(entry.extent > 0)) return 0;
-        return speed_borne(entry, contact_of(entry), masses_) * per_speed_[entry.points - 1u]
-            / double{entry.extent};
+        return speed_borne(entry, contact_of(entry), masses_, by_most_loaded)
+            * per_speed_[entry.points - 1u] / double{entry.extent};
     }
 
     // Of all bodies the most that one passes on: the second of his gives, as what presses him goes
@@ -304,27 +322,27 @@ private:
     }
 
     // Of all contacts of an island; returns the greatest.
-    double find_gives(std::size_t island) const
+    double find_gives(std::size_t island, bool by_most_loaded) const
     {
         float greatest = 0;
         for (std::uint32_t k = islands_.contact_begin[island];
              k < islands_.contact_begin[island + 1]; ++k) {
-            const auto give = static_cast<float>(give_of(islands_.contacts[k]));
+            const auto give = static_cast<float>(give_of(islands_.contacts[k], by_most_loaded));
             overloaded_.scratch.contact_gives[k] = give;
             greatest = std::max(greatest, give);
         }
         return double{greatest};
     }
 
-    // By mass, as a light body between heavy ones may tremble.
-    bool is_resting(std::size_t island) const
+    // m2/s2, by mass, as a light body between heavy ones may tremble.
+    double mean_square_speed(std::size_t island) const
     {
         double mass = 0, twice_energy = 0;
         for (const std::uint32_t body : bodies_of(island)) {
             mass += masses_.mass[body];
             twice_energy += masses_.mass[body] * velocities_.linear[body].squaredNorm();
         }
-        return twice_energy < mass * resting_ * resting_;
+        return twice_energy / mass;
     }
 
     // Overlaps are of the step's start, when it had not been helped yet.

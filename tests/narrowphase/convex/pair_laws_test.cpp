@@ -132,9 +132,10 @@ TEST_P(PairLaws, OverlapDepthAgreesWithDirectionSearch)
 
 TEST_P(PairLaws, NormalSeparatesByWhatTheDeepestPointSays)
 {
-    // Eight corners stand for a cap's rim, within 1e-5 of the size.
+    // Eight corners stand for a cap's rim, within 1e-5 of the size, and of more than four points
+    // the deepest may lie beside the one that is told.
     const bool rim = GetParam().a == ShapeKind::cylinder || GetParam().b == ShapeKind::cylinder;
-    const double tolerance = rim ? 2e-5 : 1e-9;
+    const double tolerance = rim ? 1e-4 : 1e-9;
     std::mt19937 random(kSeed + 2);
     for (int i = 0; i < 300; ++i) {
         const Case one = random_case(GetParam(), random);

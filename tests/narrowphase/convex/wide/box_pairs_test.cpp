@@ -1,6 +1,7 @@
 #include "narrowphase/convex/wide/box_pairs.hpp"
 
 #include "cost/hard_cases/broken_pairs.hpp"
+#include "narrowphase/manifold/contact_points.hpp"
 #include "tests/narrowphase/convex/wide/placed_boxes.hpp"
 #include "tests/support/polyhedra.hpp"
 
@@ -138,7 +139,7 @@ void compare(const PlacedPair& pair, const LocalManifold<float>& found, Tally& t
         return;
     }
     // Of many points others may have been chosen, the slanted direction being the leading box's.
-    ASSERT_NEAR(deepest(found), deepest(expected), rounding + 2e-5 * pair.size());
+    ASSERT_NEAR(deepest(found), deepest(expected), rounding + kDrawn<double> * pair.size());
     if (found.count == 4 && expected.count == 4) {
         ASSERT_GE(outline(found), 0.75 * outline(expected));
     }
