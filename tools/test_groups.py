@@ -6,8 +6,9 @@ Usage: test_groups.py BUILD [-j JOBS] [-LE LABELS] [-R NAMED] [-E EXCLUDED] [--t
 CTest starts a program for each test. Under a sanitizer the start alone takes a quarter of a second to a
 second, which over the suite is a third of the time. Here what CTest knows of the tests stays the list;
 those of one program run some at a time in one process. -LE, -R, -E are CTest's, but by Python's regular
-expressions; of a test's properties, its labels and its folder count. Prints what a group that failed has printed and, at the end, how many tests ran. Exits 1
-when one failed, crashed, took more than SECONDS (600) with its group, or never reported.
+expressions; of a test's properties, its labels and its folder count. Prints what a group that failed has
+printed and, at the end, which tests took longest and how many ran. Exits 1 when one failed, crashed, took
+more than SECONDS (600) with its group, or never reported.
 """
 import argparse
 import collections
@@ -19,6 +20,7 @@ import sys
 import time
 
 GROUP = 12  # tests a process: enough to forget its start, few enough to keep every core busy to the end
+LONGEST = 40  # tests told of
 FILTER = "--gtest_filter="
 
 
@@ -62,19 +64,23 @@ def grouped(tests):
 
 
 def run(command, folder, count, timeout):
-    """How many of the tests passed or were skipped, and what was printed where one did neither."""
+    """Milliseconds and name of each test that passed or was skipped, and what was printed where one did neither."""
+    start = time.monotonic()
     try:
         done = subprocess.run(command, cwd=folder, timeout=timeout, text=True, errors="replace",
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     except subprocess.TimeoutExpired as late:
         printed = late.stdout or b""
-        return 0, f"{printed.decode(errors='replace')}\nno end within {timeout} s: {' '.join(command)}\n"
+        return [], f"{printed.decode(errors='replace')}\nno end within {timeout} s: {' '.join(command)}\n"
     if not any(word.startswith(FILTER) for word in command):
-        return (1, "") if done.returncode in (0, 77) else (0, done.stdout)
-    well = len(re.findall(r"^\[  (?:     OK|SKIPPED) \] \S+.* \(\d+ ms\)$", done.stdout, re.MULTILINE))
-    if done.returncode == 0 and well == count:
+        took = round(1000 * (time.monotonic() - start))
+        return ([(took, " ".join(command))], "") if done.returncode in (0, 77) else ([], done.stdout)
+    told = re.findall(r"^\[  (?:     OK|SKIPPED) \] (\S+).* \((\d+) ms\)$", done.stdout, re.MULTILINE)
+    well = [(int(took), name) for name, took in told]
+    if done.returncode == 0 and len(well) == count:
         return well, ""
-    return well, f"{done.stdout}\nexit {done.returncode}, {well} of {count} tests well: {' '.join(command)}\n"
+    return well, (f"{done.stdout}\nexit {done.returncode}, {len(well)} of {count} tests well: "
+                  f"{' '.join(command)}\n")
 
 
 def main(words):
@@ -92,7 +98,7 @@ def main(words):
     if not total:
         print("no test is left to run", file=sys.stderr)
         return 1
-    start, well, failed = time.monotonic(), 0, 0
+    start, well, failed = time.monotonic(), [], 0
     with concurrent.futures.ThreadPoolExecutor(asked.j) as pool:
         runs = [pool.submit(run, *command, asked.timeout) for command in commands]
         for done in concurrent.futures.as_completed(runs):
@@ -101,9 +107,10 @@ def main(words):
             if complaint:
                 failed += 1
                 print(complaint, flush=True)
-    print(f"{well} of {total} tests passed or were skipped, in {len(commands)} groups, "
+    print("longest, s: " + ", ".join(f"{name} {took / 1000:.1f}" for took, name in sorted(well)[:-LONGEST - 1:-1]))
+    print(f"{len(well)} of {total} tests passed or were skipped, in {len(commands)} groups, "
           f"{time.monotonic() - start:.0f} s")
-    return 1 if failed or well != total else 0
+    return 1 if failed or len(well) != total else 0
 
 
 if __name__ == "__main__":

@@ -40,7 +40,8 @@ class Groups(unittest.TestCase):
             program.write_text(PROGRAM)
             os.chmod(program, 0o755)
             command = [str(program), "--gtest_filter=" + ":".join(names)]
-            return test_groups.run(command, folder, len(names), timeout)
+            well, complaint = test_groups.run(command, folder, len(names), timeout)
+            return len(well), complaint
 
     def test_what_passes_and_is_skipped_is_well(self):
         self.assertEqual(self.verdict("A.One", "A.Skips"), (2, ""))
