@@ -144,8 +144,9 @@ test_preset() {
 }
 
 # Runs what a sanitizer is there for: asan the fast tests, but for those that only compare runs with
-# one another or that do the same many times over; tsan and tsan-tbb those with threads.
-test_sanitized() {
+# one another or that do the same many times over; tsan and tsan-tbb those with threads. With SECONDS
+# none that took longer when preset test last ran them.
+test_sanitized() {  # PRESET [SECONDS]
     local which=(-LE "slow|tree") steady=()
     # The module that makes level sets has copies of its own of what it needs of throng.
     export ASAN_OPTIONS=detect_stack_use_after_return=1:detect_odr_violation=1
@@ -173,5 +174,6 @@ test_sanitized() {
         local times="BuildHull.TipsOfManyFacesTakeNoLonger"
         which+=(-E "$compares|$repeats|$agree|$times")
     fi
+    [[ -z ${2:-} ]] || which+=(--under "$2" --times "$root/build/test")
     "${steady[@]}" "$root/tools/test_groups.py" "$root/build/$1" -j "$(job_count)" "${which[@]}"
 }

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Runs the tests of a build in groups that share a process.
 
-Usage: test_groups.py BUILD [-j JOBS] [-LE LABELS] [-R NAMED] [-E EXCLUDED] [--timeout SECONDS]
+Usage: test_groups.py BUILD [-j JOBS] [-LE LABELS] [-R NAMED] [-E EXCLUDED] [--under SECONDS --times BUILD]
+                      [--timeout SECONDS]
 
 CTest starts a program for each test. Under a sanitizer the start alone takes a quarter of a second to a
 second, which over the suite is a third of the time. Here what CTest knows of the tests stays the list;
 those of one program run some at a time in one process. -LE, -R, -E are CTest's, but by Python's regular
-expressions; of a test's properties, its labels and its folder count. Prints what a group that failed has
+expressions; of a test's properties, its labels and its folder count. --under leaves out what took longer
+when CTest last ran the tests of the build that --times names. Prints what a group that failed has
 printed and, at the end, which tests took longest and how many ran. Exits 1 when one failed, crashed, took
 more than SECONDS (600) with its group, or never reported.
 """
@@ -14,6 +16,7 @@ import argparse
 import collections
 import concurrent.futures
 import json
+import pathlib
 import re
 import subprocess
 import sys
@@ -40,6 +43,17 @@ def chosen(tests, without_labels=None, named=None, excluded=None):
             return False
         return not (excluded and re.search(excluded, test["name"]))
     return [test for test in tests if is_asked_for(test)]
+
+
+def took(build):
+    """Seconds of each test when CTest last ran those of a build folder."""
+    times = {}
+    for line in (pathlib.Path(build) / "Testing/Temporary/CTestCostData.txt").read_text().splitlines():
+        if line == "---":  # those that failed come after
+            break
+        name, _, seconds = line.rsplit(" ", 2)
+        times[name] = float(seconds)
+    return times
 
 
 def grouped(tests):
@@ -73,10 +87,10 @@ def run(command, folder, count, timeout):
         printed = late.stdout or b""
         return [], f"{printed.decode(errors='replace')}\nno end within {timeout} s: {' '.join(command)}\n"
     if not any(word.startswith(FILTER) for word in command):
-        took = round(1000 * (time.monotonic() - start))
-        return ([(took, " ".join(command))], "") if done.returncode in (0, 77) else ([], done.stdout)
+        spent = round(1000 * (time.monotonic() - start))
+        return ([(spent, " ".join(command))], "") if done.returncode in (0, 77) else ([], done.stdout)
     told = re.findall(r"^\[  (?:     OK|SKIPPED) \] (\S+).* \((\d+) ms\)$", done.stdout, re.MULTILINE)
-    well = [(int(took), name) for name, took in told]
+    well = [(int(spent), name) for name, spent in told]
     if done.returncode == 0 and len(well) == count:
         return well, ""
     return well, (f"{done.stdout}\nexit {done.returncode}, {len(well)} of {count} tests well: "
@@ -90,10 +104,16 @@ def main(words):
     parser.add_argument("-LE", metavar="LABELS")
     parser.add_argument("-R", metavar="NAMED")
     parser.add_argument("-E", metavar="EXCLUDED")
+    parser.add_argument("--under", type=float, metavar="SECONDS")
+    parser.add_argument("--times", metavar="BUILD")
     parser.add_argument("--timeout", type=float, default=600, metavar="SECONDS")
     asked = parser.parse_args(words)
 
-    commands = grouped(chosen(listed(asked.build), asked.LE, asked.R, asked.E))
+    tests = chosen(listed(asked.build), asked.LE, asked.R, asked.E)
+    if asked.under is not None:
+        times = took(asked.times)
+        tests = [test for test in tests if times.get(test["name"], 0) <= asked.under]
+    commands = grouped(tests)
     total = sum(count for _, _, count in commands)
     if not total:
         print("no test is left to run", file=sys.stderr)
@@ -107,7 +127,7 @@ def main(words):
             if complaint:
                 failed += 1
                 print(complaint, flush=True)
-    print("longest, s: " + ", ".join(f"{name} {took / 1000:.1f}" for took, name in sorted(well)[:-LONGEST - 1:-1]))
+    print("longest, s: " + ", ".join(f"{name} {spent / 1000:.1f}" for spent, name in sorted(well)[:-LONGEST - 1:-1]))
     print(f"{len(well)} of {total} tests passed or were skipped, in {len(commands)} groups, "
           f"{time.monotonic() - start:.0f} s")
     return 1 if failed or len(well) != total else 0

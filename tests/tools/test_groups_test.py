@@ -57,6 +57,13 @@ class Groups(unittest.TestCase):
         self.assertEqual(well, 0)
         self.assertIn("no end within 0.5 s", complaint)
 
+    def test_times_are_those_of_the_last_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            kept = pathlib.Path(folder) / "Testing/Temporary/CTestCostData.txt"
+            kept.parent.mkdir(parents=True)
+            kept.write_text("A.One 2 0.25\nAll/A.Of # GetParam() = 3 1 1.5\n---\nA.One\n")
+            self.assertEqual(test_groups.took(folder), {"A.One": 0.25, "All/A.Of # GetParam() = 3": 1.5})
+
     def test_every_test_is_in_one_group_and_programs_are_kept_apart(self):
         names = [f"A.{number}" for number in range(40)]
         groups = test_groups.grouped([test(name) for name in names] + [test("B.One", "others")])
