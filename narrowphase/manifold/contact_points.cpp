@@ -121,7 +121,8 @@ void reduce_to_four(std::span<const typename LocalManifold<Real>::Point> candida
         return nearest;
     };
     const Real extent = (candidates[chosen[1]].position - candidates[chosen[0]].position).norm();
-    const Real whole = kDrawn<Real> * extent;
+    // Above nothing, as all may lie in one point.
+    const Real whole = std::max(kDrawn<Real> * extent, std::numeric_limits<Real>::min());
     std::array<Drawn<Real>, 4> drawn;
     for (const Point& point : candidates)
         if (point.separation < least) drawn[nearest_to(point)].see(point.separation);

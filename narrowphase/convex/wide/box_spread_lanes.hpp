@@ -141,7 +141,9 @@ private:
         }
         if (any == 0) return kept;
 
-        const Floats whole = sqrt(distance2(chosen[1].spot, chosen[0].spot)) * kDrawn;
+        // Above nothing, as all may lie in one point.
+        const Floats whole =
+            max(sqrt(distance2(chosen[1].spot, chosen[0].spot)) * kDrawn, Floats(1e-37f));
         std::array<Drawn, 4> all;
         std::array<Ints, kPlaces> nearest;
         for (std::size_t k = 0; k < kPlaces; ++k) {

@@ -95,6 +95,21 @@ TEST(ContactPoints, SmallChangesOfDepthKeepTheSameFour)
     }
 }
 
+TEST(ContactPoints, ManyInOnePlaceAreFinite)
+{
+    std::vector<Point> points;
+    for (std::uint32_t k = 0; k < 6; ++k) points.push_back({{1, 2, 3}, -0.1 * k, k});
+    LocalManifold<double> out;
+    reduce_to_four<double>(points, out);
+    ASSERT_GT(out.count, 0);
+    double told = 0;
+    for (int k = 0; k < out.count; ++k) {
+        EXPECT_EQ(out.points[std::size_t(k)].position, Vec3(1, 2, 3));
+        told = std::min(told, out.points[std::size_t(k)].separation);
+    }
+    EXPECT_EQ(told, -0.5);
+}
+
 // Who leans on what is left out goes there without a jump: a thousandth of the way in depth moves
 // no point by more than its share of the way.
 TEST(ContactPoints, LeaningMovesPointsAndNeverSwapsThem)
