@@ -78,7 +78,7 @@ def grouped(tests):
 
 
 def run(command, folder, count, timeout):
-    """Milliseconds and name of each test that passed or was skipped, and what was printed where one did neither."""
+    """Of each test that passed or was skipped its milliseconds and name; what was printed where one did not."""
     start = time.monotonic()
     try:
         done = subprocess.run(command, cwd=folder, timeout=timeout, text=True, errors="replace",

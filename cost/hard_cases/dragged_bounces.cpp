@@ -41,9 +41,8 @@ Bounce bounce(CaseBench& bench, const How& how, bool is_ball, double rate, doubl
     scene.gravity = how.place.orientation * Vec3(0, 0, -kGravity);
     const std::uint32_t material = parts.material(0.5);
     scene.materials[material].restitution = 1;
-    const auto floor = parts.box(material, 1, Vec3(1, 1, 0.1),
-                                 how.place * Pose{Vec3(0, 0, -0.1), Quat::Identity()});
-    parts.body(floor).motion = Motion::static_;
+    parts.hold(parts.box(material, 1, Vec3(1, 1, 0.1),
+                         how.place * Pose{Vec3(0, 0, -0.1), Quat::Identity()}));
     const double terminal = kGravity / rate;
     const double above = terminal * scene.settings.dt * (3 + early);
     const Pose at = how.place * Pose{Vec3(0, 0, kHalf + above), Quat::Identity()};

@@ -34,9 +34,8 @@ double gained(CaseBench& bench, const How& how, double ratio, double radius, dou
     how.set(scene.settings);
     scene.gravity = how.place.orientation * Vec3(0, 0, -kGravity);
     const std::uint32_t material = parts.material(0.3);
-    const auto floor = parts.box(material, 1, Vec3(1, 1, 0.1),
-                                 how.place * Pose{Vec3(0, 0, -0.1), Quat::Identity()});
-    parts.body(floor).motion = Motion::static_;
+    parts.hold(parts.box(material, 1, Vec3(1, 1, 0.1),
+                         how.place * Pose{Vec3(0, 0, -0.1), Quat::Identity()}));
     const Vec3 of_light = how.place * Vec3(0, 0, radius);
     const double up = 2 * radius * std::sqrt(1 - aside * aside / 4);
     const Vec3 of_heavy = how.place * Vec3(aside * radius, 0, radius + up);

@@ -111,7 +111,7 @@ void judge_contact(CaseBench& bench, const char* name, double depth, double stee
             SceneParts parts(bench.scene());
             const std::uint32_t stuff = parts.material(0.5);
             const Pose above{Vec3(0.1, 0.05, 0.6 - depth), exponential(tilt * axes.about)};
-            parts.body(parts.box(stuff, 1, kHalf, Pose{})).motion = Motion::static_;
+            parts.hold(parts.box(stuff, 1, kHalf, Pose{}));
             parts.box(stuff, 1, kHalf, above);
             const double dt = parts.scene().settings.dt;
             bench.run(parts.scene(), dt, [&](World& world, double) {

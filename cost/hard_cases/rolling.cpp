@@ -77,7 +77,7 @@ void slip_by_short_steps(CaseBench& bench, double substep, Precision precision, 
     const std::uint32_t material = parts.material(kFriction);
     if (floor > 0) {
         const Pose below{Vec3(-0.7 * floor, 0, -1), Quat::Identity()};
-        parts.body(parts.box(material, 1, Vec3(floor, floor, 1), below)).motion = Motion::static_;
+        parts.hold(parts.box(material, 1, Vec3(floor, floor, 1), below));
     } else {
         parts.plane(material, Vec3::UnitZ(), 0);
     }

@@ -26,9 +26,7 @@ Scene swept(const CaseBench& bench, double friction, double height, int seed)
 {
     SceneParts parts(bench.scene());
     const std::uint32_t material = parts.material(friction);
-    const auto still =
-        parts.box(material, 1, Vec3(2, 2, 0.01), {Vec3(0, 0, -0.01), Quat::Identity()});
-    parts.body(still).motion = Motion::static_;
+    parts.hold(parts.box(material, 1, Vec3(2, 2, 0.01), {Vec3(0, 0, -0.01), Quat::Identity()}));
     Random random(static_cast<std::uint64_t>(seed));
     for (int i = 0; i < 5; ++i)
         for (int k = 0; k < 5; ++k) {

@@ -138,7 +138,7 @@ Flight shoot(CaseBench& bench, const Vec3& at)
     const std::uint32_t material = parts.material(0.5);
     Pose pose;
     pose.position = at;
-    parts.body(parts.box(material, 1, wall, pose)).motion = Motion::static_;
+    parts.hold(parts.box(material, 1, wall, pose));
     BodyDescription& bullet =
         parts.body(parts.ball(material, 0.01, 0.005, face - Vec3(10, 0.1, 0.2)));
     bullet.velocity = Vec3(200, 0, 0);

@@ -9,6 +9,7 @@
 #include "kernels/parallel/wavefront.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace throng {
@@ -254,6 +255,11 @@ struct Layout {
     {
         const Color& last = colors[slice.first_color + slice.colors - 1];
         return {colors[slice.first_color].first, std::size_t{last.first} + last.count};
+    }
+    /// Those of a slice that can be moved.
+    std::span<const std::uint32_t> bodies_of(const Slice& slice) const
+    {
+        return std::span(body_of_solver_index).subspan(slice.first_body, slice.dynamic);
     }
     /// Of a place among the solver bodies.
     bool movable(std::int32_t place) const

@@ -22,7 +22,6 @@ Vec3 between(const StepContext& context, int times)
 template <class Real>
 void add(Real sign, const Vec3& velocity, SolverBody<Real>& body)
 {
-    if (!(body.inertia[0] > 0)) return;
     for (int k = 0; k < 3; ++k) body.motion[k] += sign * static_cast<Real>(velocity[k]);
 }
 
@@ -87,7 +86,7 @@ void lag_by_finer(const StepContext& context,
 {
     for (std::size_t i = 0; i < solve.bodies.size(); ++i)
         if (solve.pressed[i] == 0 && flights.lags_of(solve.bodies[i]) <= 1
-            && lags_in_contact(context, forces, solve.bodies[i]))
+            && solver[i].inertia[0] > 0 && lags_in_contact(context, forces, solve.bodies[i]))
             add(Real(1), between(context, solve.times), solver[i]);
 }
 
@@ -101,7 +100,9 @@ void lag_by_usual(const StepContext& context,
     for (std::size_t i = 0; i < solve.bodies.size(); ++i) {
         const std::uint32_t body = solve.bodies[i];
         const int behind = solve.times > 1 ? solve.times : flights.lags_of(body);
-        if (behind <= 1 || !lags_in_contact(context, forces, body)) continue;
+        // Who can only turn does not fall.
+        const bool falls = solver[i].inertia[0] > 0;
+        if (behind <= 1 || !falls || !lags_in_contact(context, forces, body)) continue;
         if (solve.pressed[i] == 0) add(Real(-1), between(context, behind), solver[i]);
         flights.lags[body] = static_cast<std::uint8_t>(solve.pressed[i] != 0 ? solve.times : 1);
     }

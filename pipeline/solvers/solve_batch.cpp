@@ -249,9 +249,8 @@ private:
         if (!forces.may_depend_on_state()) return;
         std::vector<std::uint32_t> bodies;
         for (std::uint32_t i = 0; i < batch_.slices; ++i) {
-            const Slice& slice = layout_.slices[batch_.first_slice + i];
-            for (std::uint32_t k = 0; k < slice.dynamic; ++k)
-                bodies.push_back(layout_.body_of_solver_index[slice.first_body + k]);
+            const auto of_slice = layout_.bodies_of(layout_.slices[batch_.first_slice + i]);
+            bodies.insert(bodies.end(), of_slice.begin(), of_slice.end());
         }
         state_forces_.emplace(context_, facts_, bodies);
         if (state_forces_->forced_bodies().empty()) state_forces_.reset();

@@ -21,11 +21,6 @@ bool any_compound(const Colliders& colliders)
                        [](std::uint32_t count) { return count > 1; });
 }
 
-std::span<const std::uint32_t> bodies_of(const Layout& layout, const Slice& slice)
-{
-    return std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic);
-}
-
 // Whether stiff springs pull at bodies of an island. Exact solves take turns with them, which over
 // long substeps does not come together.
 bool is_stiff(const StepContext& context,
@@ -34,7 +29,7 @@ bool is_stiff(const StepContext& context,
               const Batch& batch)
 {
     if (facts.forces.springs.empty()) return false;
-    return StateDependentForces(context, facts, bodies_of(layout, layout.slices[batch.first_slice]))
+    return StateDependentForces(context, facts, layout.bodies_of(layout.slices[batch.first_slice]))
         .stiff();
 }
 
@@ -159,7 +154,7 @@ private:
         // Impulses are kept as of the substep that the settings say.
         with.scale_impulses(slice, Real(1) / Real(batch.times));
         lag_by_finer(context_, facts_.forces,
-                     {batch.times, bodies_of(layout_, slice), with.pressed(slice)}, flights_,
+                     {batch.times, layout_.bodies_of(slice), with.pressed(slice)}, flights_,
                      solver_bodies_of(slice));
         solve_batch(finer, parameters, facts_, layout_, batch, with, constraints_, split_impulse_);
         with.scale_impulses(slice, Real(batch.times));
@@ -169,7 +164,8 @@ private:
     // Of a slice that was solved by so many times the substeps, or comes from such a solve.
     void lag_by_usual(const Slice& slice, int times)
     {
-        const auto bodies = bodies_of(layout_, slice);
+        if (flights_.lags.empty()) return;
+        const auto bodies = layout_.bodies_of(slice);
         const auto finer = [&](std::uint32_t body) { return flights_.lags_of(body) > 1; };
         if (times == 1 && std::none_of(bodies.begin(), bodies.end(), finer)) return;
         throng::lag_by_usual(context_, facts_.forces, {times, bodies, builder_.pressed(slice)},

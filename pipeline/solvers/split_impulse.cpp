@@ -131,8 +131,7 @@ bool uses_split_impulse(const Layout& layout, const Batch& batch, const SplitImp
 {
     const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
     return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
-        const auto bodies =
-            std::span(layout.body_of_solver_index).subspan(slice.first_body, slice.dynamic);
+        const auto bodies = layout.bodies_of(slice);
         return std::any_of(bodies.begin(), bodies.end(),
                            [&](std::uint32_t body) { return split_impulse.parts(body); });
     });

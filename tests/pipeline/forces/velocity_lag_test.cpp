@@ -148,5 +148,37 @@ TEST(VelocityLag, WhoFallsBesideWhatIsEscalatedFallsAsAllDo)
     EXPECT_GT(escalated, 5u);
 }
 
+// Who can only turn stays where he is, also when he was solved by finer substeps and all is taken
+// off him.
+TEST(VelocityLag, WhoCanOnlyTurnDoesNotFallFromEscalation)
+{
+    Scene scene = bouncing(Integrator::auto_);
+    scene.materials[0] = {"m", 1000, 0.5, 0, 0};
+    scene.bodies[1].lock_position = true;
+    scene.bodies[1].mass = 1;
+    scene.shapes.push_back({"box", BoxShape{Vec3(1, 1, 1)}});
+    for (const double height : {1.0, 1.1}) {
+        BodyDescription& box = scene.bodies.emplace_back(scene.bodies[1]);
+        box.lock_position = false;
+        box.shape = 2;
+        box.mass = 1000;
+        box.position = Vec3(0, 0, height == 1.0 ? 1 : 3.1);
+    }
+    scene.bodies[1].position = Vec3(0, 0, 2.05);
+    World world(scene);
+    const BodyId ball = world.bodies()[1];
+    std::size_t escalated = 0;
+    for (int step = 0; step < 60; ++step) {
+        world.step();
+        escalated += world.report().islands_escalated;
+    }
+    EXPECT_GT(escalated, 5u);
+    world.set_pose(world.bodies()[2], {Vec3(10, 0, 1), Quat::Identity()});
+    world.set_pose(world.bodies()[3], {Vec3(20, 0, 1), Quat::Identity()});
+    world.step(60);
+    EXPECT_EQ(world.pose(ball).position, Vec3(0, 0, 2.05));
+    EXPECT_EQ(world.velocity(ball), Vec3(Vec3::Zero()));
+}
+
 }  // namespace
 }  // namespace throng
