@@ -156,6 +156,10 @@ constexpr HardCase kCases[] = {
      case_falls_off, Fault::haste},
     {"H109", "unlike bodies put on one another by hand come to rest", case_unlike_stacks,
      Fault::unsteady},
+    {"H110", "what is not convex stays above a floor with nothing behind it, whatever falls on it",
+     case_pressed_through, Fault::haste},
+    {"H111", "thin bodies that are thrown on a floor and bounce make no energy", case_thrown_rods,
+     Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -117,6 +117,8 @@ void case_squeezed(CaseBench& bench);           // H106, squeezed.cpp
 void case_dragged_bounces(CaseBench& bench);    // H107, dragged_bounces.cpp
 void case_falls_off(CaseBench& bench);          // H108, falls_off.cpp
 void case_unlike_stacks(CaseBench& bench);      // H109, unlike_stacks.cpp
+void case_pressed_through(CaseBench& bench);    // H110, pressed_through.cpp
+void case_thrown_rods(CaseBench& bench);        // H111, thrown_rods.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);
@@ -140,13 +142,14 @@ public:
     std::uint32_t cylinder(
         std::uint32_t material, double mass, double radius, double half_length, const Pose& pose);
     std::uint32_t hull(std::uint32_t material, double mass, HullShape shape, const Pose& pose);
+    /// Any body with a shape of its own.
+    std::uint32_t add(decltype(ShapeDescription::shape) shape, BodyDescription body);
     BodyDescription& body(std::uint32_t id) { return scene_.bodies[id]; }
     /// Lets nothing move it, or nothing but its own velocity.
     void hold(std::uint32_t id, Motion motion = Motion::static_);
     Scene& scene() { return scene_; }
 
 private:
-    std::uint32_t add(decltype(ShapeDescription::shape) shape, BodyDescription body);
     Scene scene_;
 };
 

@@ -58,7 +58,8 @@ void find_candidates_from_other(const PairInput<double>& in,
 
 }  // namespace
 
-SolidAnswer collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out)
+SolidAnswer
+collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out, double pressed_in)
 {
     const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     SolidAnswer answer;
@@ -82,10 +83,10 @@ SolidAnswer collide_solid(const PairInput<double>& in, std::vector<PatchManifold
         find_candidates_from_other({shapes, solid, other, other_in_solid, speculative_margin},
                                    candidates);
     else
-        answer.apart =
-            std::max(answer.apart,
-                     find_voxel_candidates(shapes, shapes.solids[solid.index], other,
-                                           other_in_solid, speculative_margin, candidates));
+        answer.apart = std::max(answer.apart,
+                                find_voxel_candidates(shapes, shapes.solids[solid.index], other,
+                                                      other_in_solid, speculative_margin,
+                                                      pressed_in, candidates));
     const double size = std::min(size_of(shapes, solid), size_of(shapes, other));
     answer.left_out = make_patches(candidates, speculative_margin, size, out);
     return answer;

@@ -23,9 +23,12 @@ struct SolidAnswer {
 ///
 ///   in   a: solid; b: sphere, capsule, cylinder, box, hull, plane, mesh (its front faces) or solid
 ///   out  appended to
+///   pressed_in  m, how deep the solid is in the mesh at least, as what was found before says: no
+///               mesh tells how thick it is, so what is much deeper counts as beyond it
 ///
 /// Two solids go by depth images where either asks for them, else by the spheres of those that are
 /// spheres, else by voxels both ways. Never throws.
-SolidAnswer collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out);
+SolidAnswer
+collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out, double pressed_in = 0);
 
 }  // namespace throng

@@ -52,6 +52,18 @@ Vec3 front_at(const Mesh& mesh, const MeshPoint& where)
     return sum.squaredNorm() > 1e-12 ? Vec3(sum.normalized()) : mesh.normals[where.triangle];
 }
 
+// Whether a triangle ends here without another beyond.
+bool is_on_rim(const Mesh& mesh, const MeshPoint& where)
+{
+    const auto region = static_cast<std::size_t>(where.region);
+    if (region == 0) return false;
+    // At a corner both its edges count.
+    const std::size_t first = region > 3 ? (region - 2) % 3 : region - 1;
+    const std::size_t last = region > 3 ? region - 4 : first;
+    const auto& adjacent = mesh.adjacent[where.triangle];
+    return adjacent[first] < 0 || adjacent[last] < 0;
+}
+
 SurfaceDistance to_front(const Mesh& mesh, const MeshPoint& nearest, const Vec3& place)
 {
     const Vec3 front = front_at(mesh, nearest);
@@ -133,7 +145,9 @@ void MeshSide::sample(LeafSample<double>& leaf) const
             here = to_front(mesh_, nearest, place);
             beside = nearest.triangle;
         }
-        if (here.distance < -deepest_) here.distance = std::numeric_limits<double>::infinity();
+        const bool past = here.distance < -past_rim_ && is_on_rim(mesh_, nearest);
+        if (here.distance < -deepest_ || past)
+            here.distance = std::numeric_limits<double>::infinity();
         put(leaf, i, here.distance, here.outward);
     }
 }

@@ -74,13 +74,15 @@ private:
     ShapeRef shape_;
 };
 
-/// The front of a static mesh. What lies deeper behind it than `deepest` m does not touch.
+/// The front of a static mesh. What lies deeper behind it than `deepest` m does not touch, nor what
+/// lies deeper than `past_rim` and is nearest to its rim: that went round it.
 class MeshSide {
 public:
     using Real = double;
 
-    MeshSide(const Mesh& mesh, double speculative_margin, double deepest)
-        : mesh_(mesh), speculative_margin_(speculative_margin), deepest_(deepest)
+    MeshSide(const Mesh& mesh, double speculative_margin, double deepest, double past_rim)
+        : mesh_(mesh), speculative_margin_(speculative_margin), deepest_(deepest),
+          past_rim_(past_rim)
     { }
     double furthest() const { return std::numeric_limits<double>::infinity(); }
     void bound(LeafSample<double>& places) const;
@@ -88,7 +90,7 @@ public:
 
 private:
     const Mesh& mesh_;
-    double speculative_margin_, deepest_;
+    double speculative_margin_, deepest_, past_rim_;
 };
 
 /// A walked point that the other shape touches, in the walked solid's frame.

@@ -51,11 +51,13 @@ double find_points_of_b(const Solid& a,
 }
 
 // Behind a static mesh nothing says how thick it is: no deeper than half of the solid, and than
-// four of the distances between its points.
-double deepest_behind(const Solid& a, const FieldSide& field)
+// four of the distances between its points, beyond where it was pressed to before.
+MeshSide front_of(const Mesh& mesh, const Solid& a, double speculative_margin, double pressed_in)
 {
-    return std::min(0.25 * (field.box().upper - field.box().lower).minCoeff(),
-                    4 * a.points.spacing);
+    const Box3 box = FieldSide(a).box();
+    const Vec3 size = box.upper - box.lower;
+    const double unknown = std::min(0.25 * size.minCoeff(), 4 * a.points.spacing);
+    return {mesh, speculative_margin, std::min(unknown + pressed_in, size.norm()), unknown};
 }
 
 }  // namespace
@@ -65,6 +67,7 @@ double find_voxel_candidates(const Shapes& shapes,
                              ShapeRef other,
                              const Pose& other_in_a,
                              double speculative_margin,
+                             double pressed_in,
                              std::vector<ContactCandidate>& out)
 {
     const bool has_field = !a.field.empty();
@@ -80,8 +83,7 @@ double find_voxel_candidates(const Shapes& shapes,
     }
     case ShapeKind::mesh: {
         const Mesh& mesh = shapes.meshes[other.index];
-        const FieldSide field(a);
-        const MeshSide side(mesh, speculative_margin, deepest_behind(a, field));
+        const MeshSide side = front_of(mesh, a, speculative_margin, pressed_in);
         apart = find_points_of_a(a, side, other_in_a, speculative_margin, out);
         if (has_field) probe_mesh(a, mesh, other_in_a, speculative_margin, out);
         break;

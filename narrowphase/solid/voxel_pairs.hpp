@@ -16,7 +16,9 @@ namespace throng {
 ///                   its corners, points along its edges a voxel apart, and balls that fill what is
 ///                   round, so that none falls through between the points of a
 ///          plane    nothing of its own
-///          mesh     its corners and edges; front faces only
+///          mesh     its corners and edges; front faces only, and nothing that lies further behind
+///                   them than `pressed_in`, m, and half of the solid or four spacings of its
+///                   points
 ///
 /// Depths are exact, to the field's rounding, where a corner or a point of one meets a flat face of
 /// the other. Else they are off by what the surfaces bend away from one another within the spacing
@@ -36,6 +38,7 @@ double find_voxel_candidates(const Shapes& shapes,
                              ShapeRef other,
                              const Pose& other_in_a,
                              double speculative_margin,
+                             double pressed_in,
                              std::vector<ContactCandidate>& out);
 
 }  // namespace throng

@@ -69,20 +69,23 @@ void IslandSolver::hold_struck()
     solve(after_, others_);
 }
 
-// The same on top of the impacts.
-void IslandSolver::add_to_struck()
+// The same on top of the impacts. Who spins otherwise than before precesses otherwise: of a rod
+// that was set spinning about itself the torque of before would make energy.
+void IslandSolver::add_to_struck(const StepContext& context, double time)
 {
     after_ = free_;
     for (std::size_t i = 0; i < after_.size(); ++i) {
         after_[i].velocity += struck_[i].velocity - before_[i].velocity;
-        after_[i].spin += struck_[i].spin - before_[i].spin;
+        if (bodies_[i].dynamic)
+            after_[i].spin += turned_freely(i, struck_[i].spin, context, time)
+                - turned_freely(i, before_[i].spin, context, time);
     }
     solve(after_, others_);
 }
 
 // Each struck point leaves as fast as it is reflected, friction or not, unless that takes energy
 // that nobody gave: then friction bears its share of the impulse, and the point leaves as it comes.
-void IslandSolver::settle_after_impacts()
+void IslandSolver::settle_after_impacts(const StepContext& context, double time)
 {
     double work = 0;
     others_ = points_;
@@ -104,7 +107,7 @@ void IslandSolver::settle_after_impacts()
         if (struck_impulse_[i] > 0) apply_impact_friction(struck_impulse_[i], point, struck_);
         if (struck_impulse_[i] > 0) others_[i].least = 0;
     }
-    add_to_struck();
+    add_to_struck(context, time);
     for (std::size_t i = 0; i < others_.size(); ++i) {
         others_[i].impulse += struck_points_[i].impulse;
         others_[i].torque += struck_points_[i].torque;
@@ -129,7 +132,7 @@ void IslandSolver::apply_restitution(const StepContext& context, double time)
         greatest = std::max(greatest, std::abs(approach(point.at, struck_)));
     reflect(parameters_.impact_law == ImpactLaw::sequential, Impacts::kMostPasses,
             std::max(restitution_threshold_, Impacts::kRounding * greatest));
-    settle_after_impacts();
+    settle_after_impacts(context, time);
     points_ = others_;
 }
 

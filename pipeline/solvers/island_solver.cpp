@@ -142,6 +142,21 @@ void IslandSolver::turn_inertias()
     }
 }
 
+// The spin that a body has after the substep with nothing but what turns it in the air.
+Vec3 IslandSolver::turned_freely(std::size_t at,
+                                 const Vec3& spin,
+                                 const StepContext& context,
+                                 double time) const
+{
+    const IslandBody& island_body = bodies_[at];
+    const Vec3 pushed = spin + island_body.angular_acceleration * time;
+    if (!island_body.precesses || context.gyroscopic == Gyroscopic::off) return pushed;
+    const auto torque = context.gyroscopic == Gyroscopic::implicit
+        ? after_gyroscopic_torque
+        : after_explicit_gyroscopic_torque;
+    return torque(pushed, inertia_[at], island_body.turned * island_body.orientation, time);
+}
+
 // What a substep does to the bodies besides contacts.
 void IslandSolver::move_freely(const StepContext& context, double time)
 {
@@ -154,13 +169,7 @@ void IslandSolver::move_freely(const StepContext& context, double time)
         if (context.has(Effect::gravity) && body.inverse_mass > 0)
             body.velocity += context.gravity * time;
         body.velocity += island_body.acceleration * time;
-        body.spin += island_body.angular_acceleration * time;
-        if (!island_body.precesses || context.gyroscopic == Gyroscopic::off) continue;
-        const auto torque = context.gyroscopic == Gyroscopic::implicit
-            ? after_gyroscopic_torque
-            : after_explicit_gyroscopic_torque;
-        body.spin =
-            torque(body.spin, inertia_[i], island_body.turned * island_body.orientation, time);
+        body.spin = turned_freely(i, body.spin, context, time);
     }
     begin_state_forces(time);
     free_ = after_;

@@ -99,6 +99,8 @@ private:
     double separation_now(std::size_t at) const;
     Vec3 moved(std::int32_t index) const;
     bool place_rolling(const IslandContact& contact, DirectPoint& point, double& separation) const;
+    Vec3
+    turned_freely(std::size_t at, const Vec3& spin, const StepContext& context, double time) const;
     void move_freely(const StepContext& context, double time);
     double approach(std::size_t at, std::span<const DirectBody> bodies) const;
     // Forces that change as bodies go.
@@ -117,8 +119,8 @@ private:
     void reflect(bool in_order, int most_passes, double least_speed);
     bool gains(double work) const;
     void hold_struck();
-    void add_to_struck();
-    void settle_after_impacts();
+    void add_to_struck(const StepContext& context, double time);
+    void settle_after_impacts(const StepContext& context, double time);
 
     // Other responses: see penalty_forces.cpp and kinematic_pushes.cpp.
     struct Give;

@@ -78,7 +78,8 @@ private:
         Found found;
         if (kept.empty()
             || !recycle_all(kept.front(), sides, pose, pair.speculative_margin, block, found, out))
-            find_anew(sides, pose, pair.speculative_margin, block, found, out);
+            find_anew(sides, pose, pair.speculative_margin, pressed_in(kept, sides, pose), block,
+                      found, out);
         found.pair = i;
         contacts_.finds_scratch.found_of_block[block].push_back(found);
         for (std::size_t n = first; n < out.size(); ++n)
@@ -88,6 +89,7 @@ private:
     void find_anew(const Sides& sides,
                    const Pose& pose,
                    double speculative_margin,
+                   double pressed_in,
                    std::size_t block,
                    Found& found,
                    ContactEntries<Real>& out)
@@ -97,7 +99,7 @@ private:
         const SolidAnswer answer =
             collide_solid({shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
                            pose, speculative_margin},
-                          patches);
+                          patches, pressed_in);
         for (std::size_t k = first; k < patches.size(); ++k)
             add(sides, patches[k].patch, patches[k].manifold, out);
         found.count = static_cast<std::uint32_t>(patches.size() - first);
@@ -105,6 +107,26 @@ private:
         found.speculative_margin = speculative_margin;
         found.apart = answer.apart;
         found.left_out = answer.left_out;
+    }
+
+    // How deep what was found before is by now, m.
+    double pressed_in(std::span<const Found> kept, const Sides& sides, const Pose& pose) const
+    {
+        if (kept.empty() || colliders_.shape[sides.other].kind != ShapeKind::mesh) return 0;
+        const Found& then = kept.front();
+        double least = 0;
+        LocalManifold<double> now;
+        for (const PatchManifold& patch : patches_of(then)) {
+            move_manifold({patch.manifold, then.b_in_a, then.speculative_margin}, pose, 0.0, now);
+            for (int i = 0; i < now.count; ++i)
+                least = std::min(least, now.points[static_cast<std::size_t>(i)].separation);
+        }
+        return -least;
+    }
+
+    std::span<const PatchManifold> patches_of(const Found& kept) const
+    {
+        return std::span(contacts_.found_before.patches).subspan(kept.first, kept.count);
     }
 
     // False where the two have moved too much.
@@ -127,12 +149,11 @@ private:
             return false;
         CachedManifold<double> then{{}, kept.b_in_a, kept.speculative_margin};
         LocalManifold<double> now;
-        const auto begin = contacts_.found_before.patches.begin() + kept.first;
-        for (auto patch = begin; patch != begin + kept.count; ++patch) {
-            then.manifold = patch->manifold;
+        for (const PatchManifold& patch : patches_of(kept)) {
+            then.manifold = patch.manifold;
             move_manifold(then, pose, speculative_margin, now);
-            contacts_.finds_scratch.patches_of_block[block].push_back(*patch);
-            if (now.count > 0) add(sides, patch->patch, now, out);
+            contacts_.finds_scratch.patches_of_block[block].push_back(patch);
+            if (now.count > 0) add(sides, patch.patch, now, out);
         }
         found = kept;
         found.left_out = 0;

@@ -22,7 +22,7 @@ std::vector<ContactCandidate> touches_of(
     const Shapes& shapes, ShapeRef a, ShapeRef b, const Pose& b_in_a, double speculative_margin)
 {
     std::vector<ContactCandidate> candidates;
-    find_voxel_candidates(shapes, shapes.solids[a.index], b, b_in_a, speculative_margin,
+    find_voxel_candidates(shapes, shapes.solids[a.index], b, b_in_a, speculative_margin, 0,
                           candidates);
     return candidates;
 }
@@ -479,6 +479,33 @@ TEST(VoxelPairs, AStaticMeshIsTouchedInFrontAlone)
         ASSERT_FALSE(stung.empty());
         deepest(stung, depth);
         ASSERT_NEAR(depth, separation, 0.1 * voxel) << "seed 99, tip " << i;
+    }
+}
+
+TEST(VoxelPairs, WhatWasPressedIntoAStaticMeshIsStillInIt)
+{
+    const double voxel = 1.0 / 8, half = 0.5;
+    Shapes shapes;
+    shapes.solids = {small_box({half, half, half}, voxel)};
+    const std::vector<Vec3> square = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}};
+    shapes.meshes = {build_mesh(square, {{0, 1, 2}, {0, 2, 3}}).mesh};
+    const auto found = [&](const Vec3& mesh_at, double pressed_in) {
+        std::vector<PatchManifold> all;
+        collide_solid(
+            {shapes, kFirst, {ShapeKind::mesh, 0}, Pose{mesh_at, Quat::Identity()}, voxel / 2}, all,
+            pressed_in);
+        return all;
+    };
+    for (const double depth : {0.6, 0.9}) {
+        const Vec3 up(0.3, 0.2, depth - half);
+        EXPECT_TRUE(found(up, 0).empty()) << depth;
+        double told = 0;
+        const auto pressed = found(up, depth);
+        ASSERT_FALSE(pressed.empty()) << depth;
+        EXPECT_LT((deepest(pressed, told).manifold.normal - Vec3(0, 0, -1)).norm(), 1e-6) << depth;
+        EXPECT_NEAR(told, -depth, 1e-6);
+        // Beside the rim it has nothing over it.
+        EXPECT_TRUE(found(up + Vec3(5.6, 0, 0), depth).empty()) << depth;
     }
 }
 
