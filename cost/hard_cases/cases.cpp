@@ -160,6 +160,8 @@ constexpr HardCase kCases[] = {
      case_pressed_through, Fault::haste},
     {"H111", "thin bodies that are thrown on a floor and bounce make no energy", case_thrown_rods,
      Fault::haste},
+    {"H112", "balls that springs press upon one another and that bounce win nothing by it",
+     case_pressed_balls, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -131,6 +131,7 @@ struct ContactConstraintWide {
 template <class Real>
 struct RestitutionWide {
     Lane16<Real> restitution;  // coefficient
+    Lane16<Real> least_speed;  // m/s: who comes in slower rests here, whatever is slow elsewhere
     Lane16<Real>
         impulse[3];  // N s on b in all impacts of the step: along the normal, tangent, other
 };

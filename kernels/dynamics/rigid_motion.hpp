@@ -56,8 +56,8 @@ public:
     /// not among them moves on at its velocity.
     void take(std::span<const std::uint32_t> bodies, const Flights& flights);
     double* state() { return state_.data(); }
-    /// From now on springs are somebody else's (see stiff_springs.hpp).
-    void leave_springs() { by_springs_ = false; }
+    /// From now on springs are somebody else's (see stiff_springs.hpp), or its own again.
+    void leave_springs(bool leave = true) { by_springs_ = !leave; }
     /// Goes on by an integrator from a time, s since the step began; by splitting, which bears any
     /// spin, where a body turns further in the span than that one can follow.
     void

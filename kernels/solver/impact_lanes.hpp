@@ -95,8 +95,9 @@ void find_impact_points(Contacts<L, turns>& c,
     c.relative.v1 += dot(c.frame.tangent, fall_between.lags);
     c.relative.v2 += dot(c.frame.other, fall_between.lags);
     const SeparationChange<L> change = separation_change(c, constraints.bodies);
-    const L slow = -iteration.restitution_threshold,
-            at_rest = Real(-kAtRest) * iteration.inverse_substep;
+    const L slow =
+        zero - max(L(iteration.restitution_threshold), lane<L>(restitution.least_speed, c.at));
+    const L at_rest = Real(-kAtRest) * iteration.inverse_substep;
     const L deep = lane<L>(c.block.inverse_deep, c.at);
     L hits = zero, lasts = zero;
     for (int k = 0; k < c.block.points; ++k) {

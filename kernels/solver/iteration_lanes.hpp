@@ -162,8 +162,10 @@ void leave_to_restitution(const Contacts<L, turns>& c,
     using Real = typename L::Number;
     const L zero = Real(0);
     // Nobody is as fast as that where nothing bounces.
-    const L slow = select(lane<L>(restitution.restitution, c.at) > zero,
-                          L(-iteration.restitution_threshold), L(Real(-1e30)));
+    const L resting =
+        max(L(iteration.restitution_threshold), lane<L>(restitution.least_speed, c.at));
+    const L slow =
+        select(lane<L>(restitution.restitution, c.at) > zero, zero - resting, L(Real(-1e30)));
     const int count = most == 1 ? 1 : c.block.points;
     for (int k = 0; k < count; ++k) {
         L speed = c.relative.n;

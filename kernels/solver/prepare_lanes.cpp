@@ -231,6 +231,7 @@ void fill_bounce(RestitutionWide<typename L::Number>& bounce,
     using Real = typename L::Number;
     const L zero = Real(0);
     lane<L>(packed.restitution, at).store(bounce.restitution.at + at);
+    zero.store(bounce.least_speed.at + at);
     store3(V3<L>{zero, zero, zero}, bounce.impulse, at);
 }
 

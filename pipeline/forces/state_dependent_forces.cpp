@@ -171,7 +171,16 @@ void StateDependentForces::find_changes()
     for (ForcedBody& forced : forced_bodies_) {
         RigidMotion& law = forced.stiff ? stiff_law_ : soft_law_;
         forced.change = span_ * law.acceleration_of(forced.place, span_).linear + fall_of(forced);
+        forced.pressing = forced.change;
     }
+    if (!stiff()) return;
+    stiff_law_.leave_springs(false);
+    find_accelerations(0, false);
+    for (ForcedBody& forced : forced_bodies_)
+        if (forced.stiff)
+            forced.pressing =
+                span_ * stiff_law_.acceleration_of(forced.place, span_).linear + fall_of(forced);
+    stiff_law_.leave_springs();
 }
 
 double StateDependentForces::least_change_of_step() const

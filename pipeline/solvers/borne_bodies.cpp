@@ -106,6 +106,38 @@ private:
     std::vector<std::uint8_t> slips_;   // on one that gives way, or rolls
 };
 
+// Places among the forced bodies of a batch, by those that constraints have.
+class ForcedPlaces {
+public:
+    ForcedPlaces(const Layout& layout, const Batch& batch, std::span<const ForcedBody> forced)
+        : first_(layout.slices[batch.first_slice].first_body)
+    {
+        const Slice& last = layout.slices[batch.first_slice + batch.slices - 1];
+        places_.assign(last.first_body + last.dynamic - first_, kNotForced);
+        for (std::size_t i = 0; i < forced.size(); ++i)
+            places_[layout.solver_index[forced[i].body] - first_] = i;
+    }
+    std::size_t of(std::int32_t body) const
+    {
+        const std::size_t at = static_cast<std::size_t>(body) - first_;
+        return at < places_.size() ? places_[at] : kNotForced;
+    }
+
+private:
+    std::size_t first_;
+    std::vector<std::size_t> places_;
+};
+
+void visit_lanes(const Layout& layout, const Batch& batch, const auto& visit)
+{
+    for (std::uint32_t i = 0; i < batch.slices; ++i) {
+        const auto [begin, end] = layout.blocks_of(layout.slices[batch.first_slice + i]);
+        for (std::size_t at = begin; at < end; ++at)
+            for (std::size_t lane = 0; lane < kBlock; ++lane)
+                if (layout.lanes[at * kBlock + lane].entry != LaneSource{}.entry) visit(at, lane);
+    }
+}
+
 }  // namespace
 
 template <class Real>
@@ -116,32 +148,46 @@ void find_borne(const Layout& layout,
                 double substep,
                 std::span<ForcedBody> forced)
 {
-    const Slice& first = layout.slices[batch.first_slice];
-    const Slice& last = layout.slices[batch.first_slice + batch.slices - 1];
-    std::vector<std::size_t> place(last.first_body + last.dynamic - first.first_body, kNotForced);
-    for (std::size_t i = 0; i < forced.size(); ++i)
-        place[layout.solver_index[forced[i].body] - first.first_body] = i;
-    const auto place_of = [&](std::int32_t body) {
-        const std::size_t at = static_cast<std::size_t>(body) - first.first_body;
-        return at < place.size() ? place[at] : kNotForced;
-    };
+    const ForcedPlaces places(layout, batch, forced);
     BorneBodies<Real> bodies(constraints, forced, substep);
-    for (std::uint32_t i = 0; i < batch.slices; ++i) {
-        const auto [begin, end] = layout.blocks_of(layout.slices[batch.first_slice + i]);
-        for (std::size_t at = begin; at < end; ++at)
-            for (std::size_t lane = 0; lane < kBlock; ++lane) {
-                if (layout.lanes[at * kBlock + lane].entry == LaneSource{}.entry) continue;
-                const ContactConstraintWide<Real>& block = constraints.blocks[at];
-                bodies.add(block, lane, place_of(block.a[lane]), place_of(block.b[lane]));
-            }
-    }
+    visit_lanes(layout, batch, [&](std::size_t at, std::size_t lane) {
+        const ContactConstraintWide<Real>& block = constraints.blocks[at];
+        bodies.add(block, lane, places.of(block.a[lane]), places.of(block.b[lane]));
+    });
     for (std::size_t i = 0; i < forced.size(); ++i)
         bodies.judge(i, masses.inverse_mass[forced[i].body], forced[i]);
 }
 
+template <class Real>
+void find_least_speeds(const Layout& layout,
+                       const Batch& batch,
+                       std::span<const ForcedBody> forced,
+                       const Vec3& fall,
+                       int substeps,
+                       ContactConstraints<Real>& constraints)
+{
+    if (constraints.restitutions.empty()) return;
+    const ForcedPlaces places(layout, batch, forced);
+    const auto change_of = [&](std::int32_t body) -> Vec3 {
+        const std::size_t at = places.of(body);
+        if (at != kNotForced) return forced[at].pressing;
+        return layout.movable(body) ? fall : Vec3(Vec3::Zero());
+    };
+    visit_lanes(layout, batch, [&](std::size_t at, std::size_t lane) {
+        const ContactConstraintWide<Real>& block = constraints.blocks[at];
+        const std::int32_t a = block.a[lane], b = block.b[lane];
+        if (places.of(a) == kNotForced && places.of(b) == kNotForced) return;
+        constraints.restitutions[at].least_speed.at[lane] = static_cast<Real>(
+            least_speed_of(in_double(block.normal, lane), change_of(a), change_of(b), substeps));
+    });
+}
+
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void find_borne<Real>(const Layout&, const Batch&, const ContactConstraints<Real>&,   \
-                                   const Masses&, double, std::span<ForcedBody>);
+                                   const Masses&, double, std::span<ForcedBody>);                  \
+    template void find_least_speeds<Real>(const Layout&, const Batch&,                             \
+                                          std::span<const ForcedBody>, const Vec3&, int,           \
+                                          ContactConstraints<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -1,8 +1,11 @@
-// Borne bodies: who of those that state-dependent forces act on is held by contacts.
+// Borne bodies: who of those that state-dependent forces act on is held by contacts, and where they
+// press.
 #pragma once
 
 #include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/step/step_data.hpp"
+
+#include <algorithm>
 
 namespace throng {
 
@@ -19,5 +22,27 @@ void find_borne(const Layout& layout,
                 const Masses& masses,
                 double substep,
                 std::span<ForcedBody> forced);
+
+/// m/s: who comes in slower than twice what acts in a step presses two bodies together by is
+/// resting there, not bouncing.
+///
+///   normal    from a to b
+///   change_a  m/s, what all that acts does to it in a substep
+inline double
+least_speed_of(const Vec3& normal, const Vec3& change_a, const Vec3& change_b, int substeps)
+{
+    return 2 * substeps * std::max(0.0, normal.dot(Vec3(change_a - change_b)));
+}
+
+/// The same for all contacts of forced bodies: sets RestitutionWide::least_speed.
+///
+///   fall  m/s, what gravity does in a substep
+template <class Real>
+void find_least_speeds(const Layout& layout,
+                       const Batch& batch,
+                       std::span<const ForcedBody> forced,
+                       const Vec3& fall,
+                       int substeps,
+                       ContactConstraints<Real>& constraints);
 
 }  // namespace throng

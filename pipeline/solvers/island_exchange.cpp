@@ -1,5 +1,6 @@
 // Island exchange: an island taken from the step's data, and its answer given back.
 #include "kernels/solver/driven_contacts.hpp"
+#include "pipeline/solvers/borne_bodies.hpp"
 #include "pipeline/solvers/island_solver.hpp"
 
 namespace throng {
@@ -74,6 +75,26 @@ IslandSolver::IslandSolver(const IslandScene<Real>& scene, const Batch& batch)
     for (std::uint32_t i = 0; i < slice.contacts; ++i)
         take_contact(scene, slice, slice.first_contact + i);
     separations_.resize(contacts_.size());
+    find_least_speeds(scene.context);
+}
+
+void IslandSolver::find_least_speeds(const StepContext& context)
+{
+    for (IslandContact& contact : contacts_) contact.least_speed = restitution_threshold_;
+    if (!state_forces_) return;
+    std::vector<Vec3> changes(bodies_.size(), Vec3::Zero());
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        if (bodies_[i].dynamic && context.has(Effect::gravity) && after_[i].inverse_mass > 0)
+            changes[i] = context.gravity * context.substep();
+    for (const ForcedBody& forced : state_forces_->forced_bodies())
+        changes[forced.at] = forced.pressing;
+    const auto change_of = [&](std::int32_t body) -> Vec3 {
+        return body < 0 ? Vec3(Vec3::Zero()) : changes[static_cast<std::size_t>(body)];
+    };
+    for (IslandContact& contact : contacts_)
+        contact.least_speed = std::max(contact.least_speed,
+                                       least_speed_of(contact.normal, change_of(contact.a),
+                                                      change_of(contact.b), context.substeps));
 }
 
 template <class Real>

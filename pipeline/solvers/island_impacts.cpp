@@ -22,8 +22,8 @@ bool IslandSolver::list_touching()
             || points_[i].normal.dot(points_[i].impulse) > 0;
         if (!touches) continue;
         add_impact(i);
-        any =
-            any || (contacts_[i].restitution > 0 && approach(i, struck_) < -restitution_threshold_);
+        any = any
+            || (contacts_[i].restitution > 0 && approach(i, struck_) < -contacts_[i].least_speed);
     }
     return any;
 }
@@ -38,7 +38,8 @@ void IslandSolver::add_impact(std::size_t at)
 // an island that is escalated end with the steps that it has, and what still closes is stopped.
 void IslandSolver::reflect(bool in_order, int most_passes, double least_speed)
 {
-    for (ImpactPoint& point : impacts_.points) point.least_speed = least_speed;
+    for (ImpactPoint& point : impacts_.points)
+        point.least_speed = std::max(least_speed, contacts_[point.at].least_speed);
     const auto stop = [&](auto& bodies, auto& points) { solve(bodies, points); };
     const auto goes_on = [&] { return effort_.pivots || left_ > 0; };
     for (int pass = 0; pass < most_passes && goes_on() && impacts_.pass(in_order, struck_, stop);

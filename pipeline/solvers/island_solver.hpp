@@ -41,8 +41,9 @@ struct IslandContact {
     Vec3 center_offset = Vec3::Zero();  // m, from b's center of mass to a's
     double separation = 0;
     double restitution = 0;
-    double extent = 0;     // m, smallest half extent of the lesser shape
-    double tolerance = 0;  // m, overlap that is let be
+    double least_speed = 0;  // m/s: who comes in slower rests here
+    double extent = 0;       // m, smallest half extent of the lesser shape
+    double tolerance = 0;    // m, overlap that is let be
 };
 
 /// A touch of somebody driven: by what each side is, or null.
@@ -80,6 +81,7 @@ private:
     void take_bodies(const IslandScene<Real>& scene, const Slice& slice);
     template <class Real>
     void take_forces(const IslandScene<Real>& scene, const Slice& slice);
+    void find_least_speeds(const StepContext& context);
     template <class Real>
     void take_contact(const IslandScene<Real>& scene, const Slice& slice, std::uint32_t place);
     template <class Real>
