@@ -318,13 +318,13 @@ void CaseBench::report_default(std::string setting,
                                double figure,
                                double bound,
                                std::string unit,
-                               const std::string& met_by)
+                               std::string_view met_by)
 {
     CaseResult result =
         judged(std::move(setting), std::move(quantity), figure, bound, std::move(unit));
-    if (result.verdict == Verdict::fail && result.why.empty()) {
+    if (result.verdict == Verdict::fail && result.why.empty() && !met_by.empty()) {
         result.verdict = Verdict::missed;
-        result.why = "met by " + met_by;
+        result.why = "met by " + std::string(met_by);
     }
     keep(std::move(result));
 }

@@ -165,13 +165,13 @@ public:
         std::string setting, std::string quantity, double figure, double bound, std::string unit);
 
     /// Adds a line about the default where `setting`, which the case runs as well, is what meets
-    /// the bound: missed where the default does not.
+    /// the bound: missed where the default does not. `met_by` empty: as report().
     void report_default(std::string setting,
                         std::string quantity,
                         double figure,
                         double bound,
                         std::string unit,
-                        const std::string& met_by);
+                        std::string_view met_by);
 
     /// Adds a figure that is held to nothing.
     void show(std::string setting, std::string quantity, double figure, std::string unit);

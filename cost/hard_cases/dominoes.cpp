@@ -102,11 +102,8 @@ double judge_row(CaseBench& bench, Dominoes row, const char* step)
     const std::string name = std::to_string(row.count) + " pieces, spacing "
         + number_text(row.spacing) + step + (row.exactly ? ", direct" : "");
     const auto judge = [&](const char* quantity, double figure, double bound) {
-        if (row.exactly)
-            bench.report(name, quantity, figure, bound, "1");
-        else
-            bench.report_default(name, quantity, figure, bound, "1",
-                                 "solver=direct, dt 4e-3 or less");
+        bench.report_default(name, quantity, figure, bound, "1",
+                             row.exactly ? "" : "solver=direct, dt 4e-3 or less");
     };
     const auto [when, residual] = watch_row(bench, row);
     bench.report(name, "pieces that stand, or fell out of order", out_of_order(when), 0, "1");

@@ -122,10 +122,8 @@ void land_all(CaseBench& bench, const Heap& how)
     // By default what a shorter step meets.
     const auto report = [&](const char* quantity, double figure, double bound, const char* unit,
                             double met_at, const char* met_by) {
-        if (how.dt <= met_at)
-            bench.report(setting, quantity, figure, bound, unit);
-        else
-            bench.report_default(setting, quantity, figure, bound, unit, met_by);
+        bench.report_default(setting, quantity, figure, bound, unit,
+                             how.dt <= met_at ? "" : met_by);
     };
     if (!how.is_small_alone) {
         bench.report(setting, "work of escalation over that of the usual substeps, landed",

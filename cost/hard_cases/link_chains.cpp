@@ -124,10 +124,7 @@ void judge(CaseBench& bench,
 {
     const Held held = hold(bench, chain, seconds);
     const auto report = [&](const char* quantity, double figure, double bound) {
-        if (met_by.empty())
-            bench.report(name, quantity, figure, bound, "1");
-        else
-            bench.report_default(name, quantity, figure, bound, "1", met_by);
+        bench.report_default(name, quantity, figure, bound, "1", met_by);
     };
     report("greatest stretch over a pitch", held.stretch, 0.2);
     report("energy gained over weight times length", held.gained, 5e-3);

@@ -129,10 +129,9 @@ void case_struck_heaps(CaseBench& bench)
     for (const Struck& how : all) {
         for (const Drop& drop : kDrops) {
             const double most = made(bench, how, drop, bench.brief() ? 1 : drop.seeds);
-            if (drop.by_default_also || how.dt <= kMetAt)
-                bench.report(how.setting, drop.quantity, most, kBound, "1");
-            else
-                bench.report_default(how.setting, drop.quantity, most, kBound, "1", "dt=1/1000");
+            const bool is_met = drop.by_default_also || how.dt <= kMetAt;
+            bench.report_default(how.setting, drop.quantity, most, kBound, "1",
+                                 is_met ? "" : "dt=1/1000");
         }
         if (bench.brief()) return;
     }

@@ -167,10 +167,8 @@ void case_unlike_stacks(CaseBench& bench)
     const auto tell = [&](const How& how, const std::string& what, bool in_all, double share) {
         const std::string setting = std::string(how.setting) + ", " + what;
         constexpr char kQuantity[] = "share that moves after 10 s, or fell";
-        if (in_all && std::string_view(how.setting) != kPgs)
-            bench.report(setting, kQuantity, share, kBound, "1");
-        else
-            bench.report_default(setting, kQuantity, share, kBound, "1", kExactly);
+        const bool is_met = in_all && std::string_view(how.setting) != kPgs;
+        bench.report_default(setting, kQuantity, share, kBound, "1", is_met ? "" : kExactly);
     };
     for (const How& how : hows) {
         const std::uint64_t draws = bench.brief() ? 2 : 20;

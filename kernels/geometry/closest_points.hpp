@@ -6,6 +6,8 @@
 
 #include "throng/math.hpp"
 
+#include <array>
+
 namespace throng {
 
 template <class Real>
@@ -26,6 +28,14 @@ SegmentPoint<Real> closest_on_segment(const Vec3T<Real>& point, const Segment<Re
 /// Where on a triangle a point lies. Edges are numbered as in a mesh: 0 is v0-v1, 1 is v1-v2,
 /// 2 is v2-v0.
 enum class TriangleRegion : std::uint8_t { face, edge0, edge1, edge2, vertex0, vertex1, vertex2 };
+
+/// The edges that a place on the rim is on: at a corner both, else the same twice. Not of the face.
+inline std::array<std::size_t, 2> edges_at(TriangleRegion where)
+{
+    const auto region = static_cast<std::size_t>(where);
+    if (region > 3) return {(region - 2) % 3, region - 4};
+    return {region - 1, region - 1};
+}
 
 /// point = weights[0] v0 + weights[1] v1 + weights[2] v2; weights at least 0, of sum 1.
 template <class Real>

@@ -69,10 +69,7 @@ MeshSides::Approach MeshSides::crossed(std::uint32_t triangle, bool behind) cons
     const Vec3 apart = center_ - nearest.point;
     const Vec3 past = apart - seen.normal * seen.normal.dot(apart);
     if (past.norm() <= kSeam * through_) return through;
-    const auto region = static_cast<std::size_t>(nearest.region);
-    // At a corner both its edges count.
-    const std::size_t first = region > 3 ? (region - 2) % 3 : region - 1;
-    const std::size_t last = region > 3 ? region - 4 : first;
+    const auto [first, last] = edges_at(nearest.region);
     if (seen.adjacent(first) < 0 || seen.adjacent(last) < 0) return went_round;
     // Over an edge within: the triangle that the center is over pushes.
     return {.any = false};

@@ -55,11 +55,8 @@ Vec3 front_at(const Mesh& mesh, const MeshPoint& where)
 // Whether a triangle ends here without another beyond.
 bool is_on_rim(const Mesh& mesh, const MeshPoint& where)
 {
-    const auto region = static_cast<std::size_t>(where.region);
-    if (region == 0) return false;
-    // At a corner both its edges count.
-    const std::size_t first = region > 3 ? (region - 2) % 3 : region - 1;
-    const std::size_t last = region > 3 ? region - 4 : first;
+    if (where.region == TriangleRegion::face) return false;
+    const auto [first, last] = edges_at(where.region);
     const auto& adjacent = mesh.adjacent[where.triangle];
     return adjacent[first] < 0 || adjacent[last] < 0;
 }

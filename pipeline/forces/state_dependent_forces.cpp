@@ -173,14 +173,16 @@ void StateDependentForces::find_changes()
         forced.change = span_ * law.acceleration_of(forced.place, span_).linear + fall_of(forced);
         forced.pressing = forced.change;
     }
-    if (!stiff()) return;
+    if (!stiff() || !context_.has(Effect::restitution)) return;
+    const auto count = std::count_if(forced_bodies_.begin(), forced_bodies_.end(),
+                                     [](const ForcedBody& forced) { return forced.stiff; });
     stiff_law_.leave_springs(false);
-    find_accelerations(0, false);
+    stiff_law_.find_accelerations(0, 0, static_cast<std::size_t>(count));
+    stiff_law_.leave_springs();
     for (ForcedBody& forced : forced_bodies_)
         if (forced.stiff)
             forced.pressing =
                 span_ * stiff_law_.acceleration_of(forced.place, span_).linear + fall_of(forced);
-    stiff_law_.leave_springs();
 }
 
 double StateDependentForces::least_change_of_step() const

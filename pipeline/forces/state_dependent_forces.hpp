@@ -53,7 +53,7 @@ struct ForcedBody {
     // m/s, by find_changes(): what all that acts does, gravity too; and by who knows contacts, what
     // they leave of it, whether they bear the body, and by friction on what does not roll
     Vec3 change = Vec3::Zero();
-    Vec3 pressing = Vec3::Zero();  // m/s, likewise: with what stiff springs do as they are then
+    Vec3 pressing = Vec3::Zero();  // m/s, likewise, where things bounce: with stiff springs, too
     double left = 0;
     bool borne = false, grips = false;
     Vec3 carried_spin = Vec3::Zero();  // kept by who asks: as of after it moved

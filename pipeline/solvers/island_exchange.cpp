@@ -84,8 +84,7 @@ void IslandSolver::find_least_speeds(const StepContext& context)
     if (!state_forces_) return;
     std::vector<Vec3> changes(bodies_.size(), Vec3::Zero());
     for (std::size_t i = 0; i < bodies_.size(); ++i)
-        if (bodies_[i].dynamic && context.has(Effect::gravity) && after_[i].inverse_mass > 0)
-            changes[i] = context.gravity * context.substep();
+        if (after_[i].inverse_mass > 0) changes[i] = context.gravity * context.substep();
     for (const ForcedBody& forced : state_forces_->forced_bodies())
         changes[forced.at] = forced.pressing;
     const auto change_of = [&](std::int32_t body) -> Vec3 {

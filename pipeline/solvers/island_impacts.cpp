@@ -132,7 +132,7 @@ void IslandSolver::apply_restitution(const StepContext& context, double time)
     for (const ImpactPoint& point : impacts_.points)
         greatest = std::max(greatest, std::abs(approach(point.at, struck_)));
     reflect(parameters_.impact_law == ImpactLaw::sequential, Impacts::kMostPasses,
-            std::max(restitution_threshold_, Impacts::kRounding * greatest));
+            Impacts::kRounding * greatest);
     settle_after_impacts(context, time);
     points_ = others_;
 }

@@ -178,7 +178,8 @@ void IslandSolver::bounce_off(const SolverParameters& parameters, double time)
         impacts_.points.clear();
         for (std::size_t i = 0; i < contacts_.size(); ++i) {
             const double speed = approach(i, struck_);
-            if (speed < -least && separations_[i] + speed * time < 0) add_impact(i);
+            const double resting = std::max(least, contacts_[i].least_speed);
+            if (speed < -resting && separations_[i] + speed * time < 0) add_impact(i);
         }
         if (impacts_.points.empty()) break;
         reflect(true, 1, least);

@@ -270,11 +270,8 @@ private:
             if (forced.falls_late)
                 constraints_.bodies[layout_.solver_index[forced.body]].inertia[7] = 1;
         slices_.raise_restitution_threshold(2 * state_forces_->least_change_of_step());
-        const Vec3 fall = context_.has(Effect::gravity)
-            ? Vec3(context_.gravity * context_.substep())
-            : Vec3(Vec3::Zero());
-        find_least_speeds(layout_, batch_, std::span(state_forces_->forced_bodies()), fall,
-                          context_.substeps, constraints_);
+        find_least_speeds(layout_, batch_, std::span(state_forces_->forced_bodies()),
+                          context_.gravity * context_.substep(), context_.substeps, constraints_);
     }
 
     // By pgs it is for a few iterations to take back what is too much of a warm start.

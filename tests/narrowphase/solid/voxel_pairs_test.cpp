@@ -504,8 +504,11 @@ TEST(VoxelPairs, WhatWasPressedIntoAStaticMeshIsStillInIt)
         ASSERT_FALSE(pressed.empty()) << depth;
         EXPECT_LT((deepest(pressed, told).manifold.normal - Vec3(0, 0, -1)).norm(), 1e-6) << depth;
         EXPECT_NEAR(told, -depth, 1e-6);
-        // Beside the rim it has nothing over it.
-        EXPECT_TRUE(found(up + Vec3(5.6, 0, 0), depth).empty()) << depth;
+        // What hangs over the rim went round it: no push but of what has the mesh over it.
+        const auto half_over = found(up + Vec3(4.8, 0, 0), depth);
+        ASSERT_FALSE(half_over.empty()) << depth;
+        for (const PatchManifold& patch : half_over)
+            EXPECT_LT((patch.manifold.normal - Vec3(0, 0, -1)).norm(), 1e-6) << depth;
     }
 }
 
