@@ -162,6 +162,8 @@ constexpr HardCase kCases[] = {
      Fault::haste},
     {"H112", "balls that springs press upon one another and that bounce win nothing by it",
      case_pressed_balls, Fault::haste},
+    {"H113", "what falls on a floor and may not overlap it lies still", case_lain_down,
+     Fault::whirl},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

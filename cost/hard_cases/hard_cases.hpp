@@ -120,6 +120,7 @@ void case_unlike_stacks(CaseBench& bench);      // H109, unlike_stacks.cpp
 void case_pressed_through(CaseBench& bench);    // H110, pressed_through.cpp
 void case_thrown_rods(CaseBench& bench);        // H111, thrown_rods.cpp
 void case_pressed_balls(CaseBench& bench);      // H112, pressed_balls.cpp
+void case_lain_down(CaseBench& bench);          // H113, lain_down.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

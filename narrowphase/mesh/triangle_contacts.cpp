@@ -15,11 +15,14 @@ constexpr double kLevel = 1e-9;
 // rounding on a seam never lets both triangles take it for the other's.
 constexpr double kSeam = 1e-4;
 
-bool rises(const Vec3& from, const Vec3& to, const Vec3& direction)
+// Sine of the angle beyond which what rises by less than the slack rises all the same.
+constexpr double kSteep = 0.1;
+
+bool rises(const Vec3& from, const Vec3& to, const Vec3& direction, double slack)
 {
     const Vec3 step = to - from;
-    const double up = direction.dot(step);
-    return up > 0 && up * up > kLevel * kLevel * step.squaredNorm();
+    const double up = direction.dot(step), sine = up > slack ? kLevel : kSteep;
+    return up > 0 && up * up > sine * sine * step.squaredNorm();
 }
 
 std::size_t corner_of(const Mesh& mesh, std::uint32_t triangle, std::uint32_t vertex)
@@ -148,7 +151,10 @@ bool MeshTriangle::is_crossed(const Vec3& from, const Vec3& to) const
     return true;
 }
 
-bool corner_sticks_out(const MeshTriangle& triangle, std::size_t corner, const Vec3& direction)
+bool corner_sticks_out(const MeshTriangle& triangle,
+                       std::size_t corner,
+                       const Vec3& direction,
+                       double slack)
 {
     const Mesh& mesh = triangle.mesh;
     const std::uint32_t vertex = mesh.triangles[triangle.index][triangle.own_corner(corner)];
@@ -156,15 +162,18 @@ bool corner_sticks_out(const MeshTriangle& triangle, std::size_t corner, const V
     bool risen = false;
     const auto look = [&](std::uint32_t other, std::size_t at) {
         const auto& ids = mesh.triangles[other];
-        return rises(here, mesh.vertices[ids[(at + 1) % 3]], direction)
-            || rises(here, mesh.vertices[ids[(at + 2) % 3]], direction);
+        return rises(here, mesh.vertices[ids[(at + 1) % 3]], direction, slack)
+            || rises(here, mesh.vertices[ids[(at + 2) % 3]], direction, slack);
     };
     const bool all_round = walk_round(mesh, triangle.index, vertex, 0, risen, look);
     if (!risen && !all_round) walk_round(mesh, triangle.index, vertex, 2, risen, look);
     return !risen;
 }
 
-bool edge_sticks_out(const MeshTriangle& triangle, std::size_t edge, const Vec3& direction)
+bool edge_sticks_out(const MeshTriangle& triangle,
+                     std::size_t edge,
+                     const Vec3& direction,
+                     double slack)
 {
     const Mesh& mesh = triangle.mesh;
     if (!triangle.is_convex(edge)) return false;
@@ -172,9 +181,9 @@ bool edge_sticks_out(const MeshTriangle& triangle, std::size_t edge, const Vec3&
     if (next < 0) return direction.dot(triangle.normal) >= 0;
     const auto& ids = mesh.triangles[static_cast<std::size_t>(next)];
     const Vec3& here = triangle.corners[edge];
-    return !rises(here, mesh.vertices[ids[0]], direction)
-        && !rises(here, mesh.vertices[ids[1]], direction)
-        && !rises(here, mesh.vertices[ids[2]], direction);
+    return !rises(here, mesh.vertices[ids[0]], direction, slack)
+        && !rises(here, mesh.vertices[ids[1]], direction, slack)
+        && !rises(here, mesh.vertices[ids[2]], direction, slack);
 }
 
 void collide_triangle_ball(const MeshTriangle& triangle,

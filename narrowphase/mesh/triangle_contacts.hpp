@@ -48,11 +48,17 @@ struct MeshTriangle {
 };
 
 /// Whether no point of the triangles round this corner lies further along `direction` (unit) than
-/// the corner does.
-bool corner_sticks_out(const MeshTriangle& triangle, std::size_t corner, const Vec3& direction);
+/// the corner does; where they are as good as level with it, by more than `slack` (m).
+bool corner_sticks_out(const MeshTriangle& triangle,
+                       std::size_t corner,
+                       const Vec3& direction,
+                       double slack = 0);
 
 /// The same for an edge, and the edge is one that sticks out at all. Edges as in Mesh.
-bool edge_sticks_out(const MeshTriangle& triangle, std::size_t edge, const Vec3& direction);
+bool edge_sticks_out(const MeshTriangle& triangle,
+                     std::size_t edge,
+                     const Vec3& direction,
+                     double slack = 0);
 
 /// Where the triangle touches a ball, or a segment thickened by radius, or a polytope, out to
 /// `speculative_margin`; in the mesh's frame, normals from the triangle to the shape. Nothing while

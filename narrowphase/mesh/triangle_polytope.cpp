@@ -1,5 +1,6 @@
 // Triangle against polytope: the axis that leads, of those that the mesh sticks out to, and the
 // points that come of it.
+#include "kernels/geometry/closest_points.hpp"
 #include "kernels/geometry/polytope_contacts.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
 #include "narrowphase/manifold/polytope_foot.hpp"
@@ -48,7 +49,7 @@ void try_faces(const MeshTriangle& triangle,
         if (axis.separation <= to_beat) continue;
         const Vec3 direction = -(turned.turn.transpose() * turned.a.normals[i]);
         if (direction.dot(triangle.normal) < 0) continue;
-        if (!corner_sticks_out(triangle, axis.vertex, direction)) continue;
+        if (!corner_sticks_out(triangle, axis.vertex, direction, bias)) continue;
         best.kind = TriangleAxis::Kind::face;
         best.separation = axis.separation;
         best.face = axis;
@@ -215,6 +216,22 @@ struct OutwardEdges {
     PolytopePair pair;
 };
 
+// The point of two edges; none where it is nowhere near the triangle: what overlaps along the axis
+// of two long edges by a hair may have them pass one another by any distance.
+void push_by_edges(const FrontedPair& fronted,
+                   const OutwardEdges& outward,
+                   const EdgeAxis& edge,
+                   LocalManifold<double>& out)
+{
+    const double limit = fronted.speculative_margin + fronted.bias;
+    cross_edges(outward.pair, edge, limit, out);
+    if (out.count == 0) return;
+    const auto& [a, b, c] = fronted.triangle.corners;
+    const Vec3& place = out.points[0].position;
+    const Vec3 apart = place - closest_on_triangle<double>(place, a, b, c).point;
+    if (apart.norm() > limit - std::min(edge.separation, 0.0)) out.count = 0;
+}
+
 // By what tells them apart best, or least of all overlaps.
 void collide_along_best(const FrontedPair& fronted,
                         const TrianglePolytope& flat,
@@ -236,15 +253,14 @@ void collide_along_best(const FrontedPair& fronted,
         if (!edge.normal.isZero(0) && yields_to_faces(triangle, turned, most)) return;
     }
     if (!edge.normal.isZero(0)) {
-        if (edge.separation <= speculative_margin)
-            cross_edges(outward.pair, edge, speculative_margin + bias, out);
+        if (edge.separation <= speculative_margin) push_by_edges(fronted, outward, edge, out);
         return;
     }
     lay_face(fronted, best, out);
     // What leads by its bias alone may have nothing over it.
     if (out.count > 0 || best.separation >= 0 || parted) return;
     const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
-    if (!better.normal.isZero(0)) cross_edges(outward.pair, better, speculative_margin + bias, out);
+    if (!better.normal.isZero(0)) push_by_edges(fronted, outward, better, out);
 }
 
 }  // namespace

@@ -41,13 +41,13 @@ struct Placed {
 
     double size() const { return (corners[1] - corners[0]).cwiseAbs().maxCoeff(); }
     Vec3 seen(const Vec3& direction) const { return turn.transpose() * direction; }
-    bool corner_out(std::size_t corner, const Vec3& direction) const
+    bool corner_out(std::size_t corner, const Vec3& direction, double slack) const
     {
-        return corner_sticks_out(triangle, corner, seen(direction));
+        return corner_sticks_out(triangle, corner, seen(direction), slack);
     }
-    bool edge_out(std::size_t edge, const Vec3& direction) const
+    bool edge_out(std::size_t edge, const Vec3& direction, double slack) const
     {
-        return edge_sticks_out(triangle, edge, seen(direction));
+        return edge_sticks_out(triangle, edge, seen(direction), slack);
     }
     // Each edge is told of by one of its two triangles.
     bool owns(std::size_t edge) const
@@ -146,17 +146,18 @@ private:
         const Vec3 apart = place - nearest.point;
         const Vec3 past = apart - other.normal * height;
         Vec3 outward = other.normal;  // of the other
-        double distance = height;
+        double distance = height, slack = speculative_margin_;
         if (past.norm() > kSeam * other.size()) {
             distance = apart.norm();
             if (!(distance <= speculative_margin_) || !(height > 0)) return;
             outward = apart / distance;
             const auto region = static_cast<std::size_t>(nearest.region);
-            if (region > 3 ? !other.corner_out(region - 4, outward)
-                           : region > 0 && !other.edge_out(region - 1, outward))
+            if (region > 3 ? !other.corner_out(region - 4, outward, 0)
+                           : region > 0 && !other.edge_out(region - 1, outward, 0))
                 return;
+            slack = 0;
         }
-        if (!one.corner_out(corner, -outward)) return;
+        if (!one.corner_out(corner, -outward, slack)) return;
         add(place - outward * (distance / 2), outward * -sign, distance);
     }
 
@@ -173,7 +174,9 @@ private:
         if (normal.dot(a.outward_of_edge(i) - b.outward_of_edge(k)) < 0) normal = -normal;
         const double separation = normal.dot(apart);
         if (!(separation <= speculative_margin_) || !(separation > -below_)) return;
-        if (!a.edge_out(i, normal) || !b.edge_out(k, -normal)) return;
+        if (!a.edge_out(i, normal, speculative_margin_)
+            || !b.edge_out(k, -normal, speculative_margin_))
+            return;
         add((nearest.on_a + nearest.on_b) / 2, normal, separation);
     }
 

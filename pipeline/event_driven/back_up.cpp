@@ -19,37 +19,83 @@ constexpr double kWhole = 1 - 1e-12;
 constexpr double kCloser = 0.125;
 // Spans that went well before a longer one is tried.
 constexpr int kCalm = 4;
+// How often a span is taken anew with what was foreseen of it, before it is cut.
+constexpr int kMostForeseen = 3;
 // Of its separation a pair that touches may lose this share while it rests; it is given back after.
 constexpr double kKept = 0.9;
 
 }  // namespace
 
-// Whether none will have come nearer than a quarter of the tolerance at the end of the way ahead;
-// of those that are there already, whether none will have come much nearer.
-bool EventDrivenGroup::stay_apart(double time)
+// Whether the two will not have come nearer than a quarter of the tolerance at the end of the way
+// ahead; who is there already, not much nearer.
+bool EventDrivenGroup::stay_apart(PairKey key, double time)
 {
-    for (const PairKey key : pairs_) {
-        double least = tolerance_of(key) / 4;
-        if (const auto now = separation_now_.find(key); now != separation_now_.end()) {
-            const double separation = now->second;
-            if (separation <= 0 && depth_error(key) > 0) continue;
-            const double deeper = separation - least * (1 - kKept);
-            least = std::min(least, separation > 0 ? separation * kKept : deeper);
-        }
-        const std::uint32_t a = scene_.colliders.body[first_of(key)];
-        const std::uint32_t b = scene_.colliders.body[second_of(key)];
-        const double speculative_margin = std::max(least, 0.0);
-        if (separation_of(key, end_of(a, time), end_of(b, time), speculative_margin) < least)
-            return false;
+    double least = tolerance_of(key) / 4;
+    if (const auto now = separation_now_.find(key); now != separation_now_.end()) {
+        const double separation = now->second;
+        if (separation <= 0 && depth_error(key) > 0) return true;
+        const double deeper = separation - least * (1 - kKept);
+        least = std::min(least, separation > 0 ? separation * kKept : deeper);
     }
-    return true;
+    const std::uint32_t a = scene_.colliders.body[first_of(key)];
+    const std::uint32_t b = scene_.colliders.body[second_of(key)];
+    const double speculative_margin = std::max(least, 0.0);
+    return !(separation_of(key, end_of(a, time), end_of(b, time), speculative_margin) < least);
+}
+
+// The same of all; where those that do not will be too near is foreseen from there on.
+bool EventDrivenGroup::stay_apart(double begin, double end)
+{
+    bool all = true;
+    for (const PairKey key : pairs_) {
+        if (stay_apart(key, end)) continue;
+        foresee(key, begin, end);
+        all = false;
+    }
+    return all;
+}
+
+// Places that the manifolds found last have too near at the end of the way ahead are contacts of
+// its beginning: what a body tips over to, or rolls on to, while it is held elsewhere.
+void EventDrivenGroup::foresee(PairKey key, double begin, double end)
+{
+    GroupContact contact = contact_of(key);
+    const Pose from_a = pose_at(contact.body_a, begin), from_b = pose_at(contact.body_b, begin);
+    const Pose to_a = end_of(contact.body_a, end), to_b = end_of(contact.body_b, end);
+    DirectPoint& point = contact.point;
+    for (const LocalManifold<double>& found : manifolds_.manifolds) {
+        note_normal(found, contact);
+        for (int k = 0; k < found.count; ++k) {
+            const auto& at = found.points[static_cast<std::size_t>(k)];
+            if (!(at.separation < contact.rest_separation)) continue;
+            const Vec3 middle = manifolds_.at_first * at.position;
+            const Vec3 half = point.normal * (at.separation / 2);
+            point.arm_a = from_a.orientation * to_a.to_local(middle - half);
+            point.arm_b = from_b.orientation * to_b.to_local(middle + half);
+            contact.separation =
+                point.normal.dot(from_b.position + point.arm_b - from_a.position - point.arm_a);
+            // Who was on the other side, seen along this normal, met it in another way.
+            if (!(contact.separation > 0)) continue;
+            if (!scene_.prescribed.body.empty()) point.walk = walk_at(contact);
+            foreseen_.push_back(contact);
+        }
+    }
+}
+
+void EventDrivenGroup::add_foreseen()
+{
+    for (GroupContact& contact : foreseen_) {
+        contact.point.a = index_of(contact.body_a);
+        contact.point.b = index_of(contact.body_b);
+        contacts_.push_back(contact);
+    }
 }
 
 void EventDrivenGroup::back_up()
 {
     const double dt = scene_.context.dt, whole = scene_.context.substep();
     double time = 0, span = whole;
-    int calm = kCalm;
+    int calm = kCalm, foreseen = 0;
     while (time < dt * kWhole && may_go_on()) {
         double next = std::min(span, dt - time);
         if (dt - time - next < dt * (1 - kWhole)) next = dt - time;
@@ -57,6 +103,7 @@ void EventDrivenGroup::back_up()
         if (!fly(time, next)) break;
         find_pairs(time, next);
         list_contacts(time);
+        add_foreseen();
         if (resolve_impacts()) continue;
         if (solve_resting(next)) find_pairs(time, next);
         const FirstImpact first = look_ahead(pairs_, time, next);
@@ -66,13 +113,18 @@ void EventDrivenGroup::back_up()
             fly(time, next);
             solve_resting(next);
         }
-        if (!stay_apart(time + next)) {
+        const std::size_t before = foreseen_.size();
+        if (!stay_apart(time, time + next)) {
+            if (foreseen_.size() > before && foreseen++ < kMostForeseen) continue;
             span = next / 2;
-            calm = 0;
+            calm = foreseen = 0;
+            foreseen_.clear();
             if (!(span > dt * kLeastSpan)) break;
             continue;
         }
         commit();
+        foreseen = 0;
+        foreseen_.clear();
         time += next;
         if (++calm > kCalm) span = std::min(whole, 2 * span);
         if (!meets) continue;

@@ -18,6 +18,26 @@ constexpr std::size_t kBoxPairs = 64, kEvaluations = 4;
 
 }  // namespace
 
+Box3 GroupScene::box_of(std::uint32_t collider, const Pose& body) const
+{
+    Box3 box = shape_bounds(shapes, colliders.shape[collider], body * colliders.local[collider]);
+    const double beyond = beyond_mesh(collider);
+    box.lower.array() -= beyond;
+    box.upper.array() += beyond;
+    return box;
+}
+
+double GroupScene::beyond_mesh(std::uint32_t collider) const
+{
+    const ShapeRef shape = colliders.shape[collider];
+    return shape.kind == ShapeKind::solid ? shapes.solids[shape.index].error : 0;
+}
+
+double GroupScene::touching_margin(std::uint32_t collider) const
+{
+    return 2 * impacts.tolerance * colliders.inner_extent[collider];
+}
+
 EventDrivenGroup::EventDrivenGroup(GroupScene& scene,
                                    std::span<const std::uint32_t> bodies,
                                    std::uint64_t most_work)
@@ -91,24 +111,6 @@ bool EventDrivenGroup::note_ends(const RigidMotion& law)
     return true;
 }
 
-Box3 EventDrivenGroup::box_of(std::uint32_t collider, const Pose& body) const
-{
-    const Colliders& colliders = scene_.colliders;
-    Box3 box =
-        shape_bounds(scene_.shapes, colliders.shape[collider], body * colliders.local[collider]);
-    const double beyond = beyond_mesh(collider);
-    box.lower.array() -= beyond;
-    box.upper.array() += beyond;
-    return box;
-}
-
-// m, how far what stands for a solid may reach out of its triangles.
-double EventDrivenGroup::beyond_mesh(std::uint32_t collider) const
-{
-    const ShapeRef shape = scene_.colliders.shape[collider];
-    return shape.kind == ShapeKind::solid ? scene_.shapes.solids[shape.index].error : 0;
-}
-
 void EventDrivenGroup::add_pair(std::uint32_t a, std::uint32_t b)
 {
     if (scene_.filter.allows(a, b)) pairs_.push_back(pair_key(a, b));
@@ -125,9 +127,10 @@ void EventDrivenGroup::find_pairs(double begin, double span)
         const double angle = std::min(ends_[i].spin.norm() * span, 2.0);
         for (std::uint32_t k = 0; k < colliders.count[body]; ++k) {
             const std::uint32_t at = colliders.begin[body] + k;
-            Box3 box = joined(box_of(at, scene_.poses.at(body)), box_of(at, ends_[i].pose));
-            const double slack = angle * (colliders.outer_radius[at] + beyond_mesh(at))
-                + 2 * scene_.impacts.tolerance * colliders.inner_extent[at];
+            Box3 box =
+                joined(scene_.box_of(at, scene_.poses.at(body)), scene_.box_of(at, ends_[i].pose));
+            const double slack = angle * (colliders.outer_radius[at] + scene_.beyond_mesh(at))
+                + scene_.touching_margin(at);
             box.lower.array() -= slack;
             box.upper.array() += slack;
             scene_.ways[body] = joined(scene_.ways[body], box);
@@ -140,12 +143,12 @@ void EventDrivenGroup::find_pairs(double begin, double span)
                 add_pair(boxes_[i].first, boxes_[j].first);
         for (const std::uint32_t at : scene_.obstacles) {
             const std::uint32_t body = colliders.body[at];
-            Box3 box = box_of(at, pose_at(body, begin));
+            Box3 box = scene_.box_of(at, pose_at(body, begin));
             if (scene_.states.kind[body] == BodyKind::kinematic) {
-                box = joined(box, box_of(at, pose_at(body, begin + span)));
+                box = joined(box, scene_.box_of(at, pose_at(body, begin + span)));
                 const double angle = scene_.velocities.angular[body].norm() * span;
                 const double slack =
-                    std::min(angle, 2.0) * (colliders.outer_radius[at] + beyond_mesh(at));
+                    std::min(angle, 2.0) * (colliders.outer_radius[at] + scene_.beyond_mesh(at));
                 box.lower.array() -= slack;
                 box.upper.array() += slack;
             }

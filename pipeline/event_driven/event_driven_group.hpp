@@ -40,6 +40,13 @@ struct GroupScene {
     Flights& flights;
     std::vector<std::uint32_t> obstacles;
     std::vector<Box3> ways;
+
+    /// m, round a collider of a body that is there, and what stands for a solid's triangles.
+    Box3 box_of(std::uint32_t collider, const Pose& body) const;
+    /// m, how far what stands for a solid may reach out of its triangles.
+    double beyond_mesh(std::uint32_t collider) const;
+    /// m, within which of a collider another may be that touches it.
+    double touching_margin(std::uint32_t collider) const;
 };
 
 /// What came of a group's step.
@@ -132,11 +139,10 @@ private:
     Pose end_of(std::uint32_t body, double time) const;
     double tolerance_of(PairKey key) const;
     std::int32_t member_of(std::uint32_t body) const;
-    Box3 box_of(std::uint32_t collider, const Pose& body) const;
-    double beyond_mesh(std::uint32_t collider) const;
 
     // Where two are: see group_collide.cpp.
     void collide_pair(PairKey key, const Pose& a, const Pose& b, double speculative_margin);
+    void thin_out(double tolerance);
     static void look_closer(const ConvexPair& pair,
                             double tolerance,
                             double speculative_margin,
@@ -145,7 +151,10 @@ private:
     double depth_error(PairKey key) const;
 
     // Spans up to a touch: see back_up.cpp.
-    bool stay_apart(double time);
+    bool stay_apart(PairKey key, double time);
+    bool stay_apart(double begin, double end);
+    void foresee(PairKey key, double begin, double end);
+    void add_foreseen();
 
     // Pieces of a step: see subdivide.cpp.
     bool advance_piece(double begin, double span, bool shortest);
@@ -162,6 +171,8 @@ private:
     // Contacts: see group_contacts.cpp.
     void list_contacts(double time);
     void list_contacts_of(PairKey key, double time);
+    GroupContact contact_of(PairKey key);
+    void note_normal(const LocalManifold<double>& found, GroupContact& contact) const;
     Vec3 walk_at(const GroupContact& contact) const;
     void add_contacts(const LocalManifold<double>& found,
                       const Vec3& a,
@@ -174,12 +185,19 @@ private:
     bool leave_as_reflected(std::vector<DirectPoint>& points, Motions& bodies);
     void apply_friction(Motions& bodies);
     double restitution_of(const GroupContact& contact) const;
+    static bool touches(const GroupContact& contact);
+    bool bounces(const GroupContact& contact, double speed) const;
     void note_push(const GroupContact& contact, const Vec3& impulse);
     void guess(double span, std::vector<DirectPoint>& points) const;
     void carry(const GroupContact& contact,
                const Motions& bodies,
                double half,
                DirectPoint& point) const;
+    bool may_rest(const GroupContact& contact,
+                  const Motions& now,
+                  const Motions& bodies,
+                  double span) const;
+    bool take_resting(const Motions& now, const Motions& bodies, double span);
     bool solve_resting(double span);
     void part(double span, const Motions& solved);
     void end_with(const Motions& speeds, const Motions& ways, double span);
@@ -206,6 +224,7 @@ private:
     PairManifolds manifolds_;                            // by the last call of collide_pair()
     std::vector<TriangleManifold<double>> triangles_;    // scratch
     std::vector<GroupContact> contacts_;
+    std::vector<GroupContact> foreseen_;        // of ways from here that ended too near
     std::vector<std::size_t> resting_;          // touches that may press, of this span
     std::vector<DirectPoint> pressed_;          // [resting_] with the impulses of this span
     std::vector<Press> pressing_;               // by pair, of the last span that held any

@@ -1,6 +1,7 @@
 // Group collide: where and how near two shapes of a group are, whatever their kinds.
 #include "narrowphase/convex/query_gjk.hpp"
 #include "narrowphase/dispatch.hpp"
+#include "narrowphase/manifold/places_between.hpp"
 #include "narrowphase/solid/sphere_separations.hpp"
 #include "narrowphase/solid/surface_separations.hpp"
 #include "pipeline/event_driven/event_driven_group.hpp"
@@ -11,6 +12,13 @@
 namespace throng {
 
 namespace {
+
+// The most points that hold a face: those of a mesh are told triangle by triangle, each corner by
+// all that meet there, and a joint solve pays for each.
+constexpr std::size_t kMostOfFace = 8;
+// Sine of the angle between normals of one face; and what of a tolerance two points of it are
+// apart.
+constexpr double kOneFace = 1e-6, kSame = 1e-3;
 
 bool has_spheres(const Shapes& shapes, ShapeRef shape)
 {
@@ -82,6 +90,34 @@ void EventDrivenGroup::collide_pair(PairKey key,
     if (found.count > 0) manifolds_.manifolds.push_back(found);
 }
 
+// Of the points of one face those that span it, the deepest among them.
+void EventDrivenGroup::thin_out(double tolerance)
+{
+    std::vector<LocalManifold<double>>& all = manifolds_.manifolds;
+    if (all.size() < 2) return;
+    std::vector<LocalManifold<double>> left;
+    std::vector<std::uint8_t> done(all.size(), 0);
+    std::vector<LocalManifold<double>::Point> points;
+    std::vector<std::size_t> taken;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (done[i] || all[i].count == 0) continue;
+        points.clear();
+        for (std::size_t k = i; k < all.size(); ++k) {
+            if (done[k] || !((all[k].normal - all[i].normal).norm() <= kOneFace)) continue;
+            done[k] = 1;
+            points.insert(points.end(), all[k].points.begin(),
+                          all[k].points.begin() + all[k].count);
+        }
+        taken.clear();
+        take_between(points, kSame * tolerance, 0, kMostOfFace, taken);
+        for (const std::size_t at : taken) {
+            left.emplace_back().normal = all[i].normal;
+            left.back().add(points[at].position, points[at].separation, points[at].feature);
+        }
+    }
+    all = std::move(left);
+}
+
 // Manifolds favour faces over edges: by more than the tolerance in how far apart two are, and where
 // they meet at one point, by the normal, along which they then slide into one another. The nearest
 // points tell.
@@ -124,6 +160,7 @@ double EventDrivenGroup::separation_of(PairKey key,
                                        double speculative_margin)
 {
     collide_pair(key, a, b, speculative_margin);
+    thin_out(tolerance_of(key));
     spend(1 + manifolds_.manifolds.size());
     double separation = speculative_margin;
     for (const LocalManifold<double>& found : manifolds_.manifolds)

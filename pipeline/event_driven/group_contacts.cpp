@@ -30,6 +30,9 @@ constexpr double kClear = 2;
 constexpr double kSunk = 0.75;
 // Two methods may see a distance differently by this share.
 constexpr double kAlike = 1.01;
+// Of two that touch, points out to so many tolerances count: held at its nearest corner alone, a
+// body tips over to the others, and back, span by span.
+constexpr double kWide = 4;
 
 }  // namespace
 
@@ -59,14 +62,25 @@ void EventDrivenGroup::list_contacts(double time)
 void EventDrivenGroup::list_contacts_of(PairKey key, double time)
 {
     const Colliders& colliders = scene_.colliders;
-    const double tolerance = tolerance_of(key), speculative_margin = tolerance * kAlike;
+    const double tolerance = tolerance_of(key);
     const auto place = [&](std::uint32_t collider) {
         return pose_at(colliders.body[collider], time);
     };
     const double least =
-        separation_of(key, place(first_of(key)), place(second_of(key)), speculative_margin);
-    if (manifolds_.manifolds.empty()) return;
+        separation_of(key, place(first_of(key)), place(second_of(key)), kWide * tolerance);
+    if (manifolds_.manifolds.empty() || least > kAlike * tolerance) return;
     separation_now_[key] = least;
+    const std::uint32_t a = colliders.body[manifolds_.first], b = colliders.body[manifolds_.second];
+    const GroupContact contact = contact_of(key);
+    for (const LocalManifold<double>& found : manifolds_.manifolds)
+        add_contacts(found, place(a).position, place(b).position, contact);
+}
+
+// What points of the manifolds found last have in common.
+EventDrivenGroup::GroupContact EventDrivenGroup::contact_of(PairKey key)
+{
+    const Colliders& colliders = scene_.colliders;
+    const double tolerance = tolerance_of(key);
     const std::uint32_t a = manifolds_.first, b = manifolds_.second;
     const Surfaces::MaterialPair materials =
         scene_.surfaces.between(colliders.material[a], colliders.material[b]);
@@ -82,8 +96,7 @@ void EventDrivenGroup::list_contacts_of(PairKey key, double time)
     contact.point.b = index_of(contact.body_b);
     contact.point.friction = materials.friction;
     contact.point.rolling = materials.rolling_friction;
-    for (const LocalManifold<double>& found : manifolds_.manifolds)
-        add_contacts(found, place(a).position, place(b).position, contact);
+    return contact;
 }
 
 // Who is driven walks on what bears it.
@@ -107,6 +120,20 @@ Vec3 EventDrivenGroup::walk_at(const GroupContact& contact) const
                    up_of(scene_.context.gravity), rolls, velocity);
 }
 
+// The normal of a manifold, and how round the two are along it.
+void EventDrivenGroup::note_normal(const LocalManifold<double>& found, GroupContact& contact) const
+{
+    const Vec3 normal = (manifolds_.at_first.orientation * found.normal).normalized();
+    const auto round = [&](std::uint32_t collider, std::uint32_t body) {
+        const Colliders& colliders = scene_.colliders;
+        const Quat turn = scene_.poses.orientation[body] * colliders.local[collider].orientation;
+        return round_radius(scene_.shapes, colliders.shape[collider], {Vec3::Zero(), turn}, normal);
+    };
+    contact.point.normal = normal;
+    contact.round_a = round(manifolds_.first, contact.body_a);
+    contact.round_b = round(manifolds_.second, contact.body_b);
+}
+
 // The points of one manifold, of bodies at these positions; `contact` is what they have in common.
 void EventDrivenGroup::add_contacts(const LocalManifold<double>& found,
                                     const Vec3& a,
@@ -114,15 +141,7 @@ void EventDrivenGroup::add_contacts(const LocalManifold<double>& found,
                                     GroupContact contact)
 {
     DirectPoint& point = contact.point;
-    point.normal = (manifolds_.at_first.orientation * found.normal).normalized();
-    const auto round = [&](std::uint32_t collider, std::uint32_t body) {
-        const Colliders& colliders = scene_.colliders;
-        const Quat turn = scene_.poses.orientation[body] * colliders.local[collider].orientation;
-        return round_radius(scene_.shapes, colliders.shape[collider], {Vec3::Zero(), turn},
-                            point.normal);
-    };
-    contact.round_a = round(manifolds_.first, contact.body_a);
-    contact.round_b = round(manifolds_.second, contact.body_b);
+    note_normal(found, contact);
     for (int k = 0; k < found.count; ++k) {
         const auto& at = found.points[static_cast<std::size_t>(k)];
         const Vec3 middle = manifolds_.at_first * at.position,
@@ -158,6 +177,18 @@ double EventDrivenGroup::restitution_of(const GroupContact& contact) const
     const auto is_hit = impact_counts_.find(contact.key);
     const bool worn = is_hit != impact_counts_.end() && is_hit->second >= kMostStrikes;
     return worn ? 0 : contact.restitution;
+}
+
+// Whether it is as near as what touches.
+bool EventDrivenGroup::touches(const GroupContact& contact)
+{
+    return contact.separation <= kAlike * contact.tolerance;
+}
+
+// Whether who meets or leaves at this speed, m/s, does not rest.
+bool EventDrivenGroup::bounces(const GroupContact& contact, double speed) const
+{
+    return restitution_of(contact) > 0 && speed > contact.least_speed;
 }
 
 // The impacts of reflected bodies with friction, where every struck point leaves with the speed
@@ -217,9 +248,8 @@ bool EventDrivenGroup::resolve_impacts()
     bool any = false;
     for (GroupContact& contact : contacts_) {
         contact.least_speed = std::max(contact.least_speed, Impacts::kRounding * greatest);
-        any = any
-            || (restitution_of(contact) > 0
-                && relative_normal_velocity(contact.point, bodies) < -contact.least_speed);
+        const double separating_speed = relative_normal_velocity(contact.point, bodies);
+        any = any || (touches(contact) && bounces(contact, -separating_speed));
     }
     if (!any) return false;
     // Those of two bodies bounce together, whatever shapes of theirs meet.
@@ -227,6 +257,7 @@ bool EventDrivenGroup::resolve_impacts()
     std::map<std::pair<std::uint32_t, std::uint32_t>, PairKey> first_of_two;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const GroupContact& contact = contacts_[i];
+        if (!touches(contact)) continue;
         const auto two = std::minmax(contact.body_a, contact.body_b);
         const PairKey pair = first_of_two.try_emplace(two, contact.key).first->second;
         impacts_.points.push_back(
@@ -296,32 +327,58 @@ void EventDrivenGroup::carry(const GroupContact& contact,
                goes_with_b(contact.round_a, contact.round_b, by_a), point);
 }
 
-// Holds those that would be too near at the end of the way ahead. False if there are none.
+// Whether a contact holds or may hold bodies that go as `bodies` do, and went as `now` before.
+bool EventDrivenGroup::may_rest(const GroupContact& contact,
+                                const Motions& now,
+                                const Motions& bodies,
+                                double span) const
+{
+    // Who has just bounced flies, and falls back in a span of its own; but for those that would
+    // not come out of one another by that. Who is about to bounce is let come.
+    const double separating_speed = relative_normal_velocity(contact.point, now);
+    if (bounces(contact, separating_speed)
+        && contact.separation + separating_speed * span > -kSunk * contact.tolerance)
+        return false;
+    if (!touches(contact) && bounces(contact, -separating_speed)) return false;
+    return contact.separation + relative_normal_velocity(contact.point, bodies) * span
+        <= kClear * contact.tolerance;
+}
+
+// Takes the contacts that may hold bodies that go so. False if all of those are held already.
+bool EventDrivenGroup::take_resting(const Motions& now, const Motions& bodies, double span)
+{
+    const std::vector<std::size_t> held = std::exchange(resting_, {});
+    auto next = held.begin();
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const bool is_held = next != held.end() && *next == i;
+        if (is_held) ++next;
+        if (is_held || may_rest(contacts_[i], now, bodies, span)) resting_.push_back(i);
+    }
+    return resting_.size() > held.size();
+}
+
+// Holds those that would be too near at the end of the way ahead, and those that others, held
+// there, would let them come to. False if there are none.
 bool EventDrivenGroup::solve_resting(double span)
 {
-    const Motions bodies = motions(true), now = motions(false);
+    const Motions flown = motions(true), now = motions(false);
+    Motions held = flown;
     std::vector<DirectPoint> points;
     resting_.clear();
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-        const GroupContact& contact = contacts_[i];
-        // Who has just bounced flies, and falls back in a span of its own; but for those that would
-        // not come out of one another by that.
-        const double separating_speed = relative_normal_velocity(contact.point, now);
-        if (restitution_of(contact) > 0 && separating_speed > contact.least_speed
-            && contact.separation + separating_speed * span > -kSunk * contact.tolerance)
-            continue;
-        const double separation =
-            contact.separation + relative_normal_velocity(contact.point, bodies) * span;
-        if (separation > kClear * contact.tolerance) continue;
-        resting_.push_back(i);
-        points.push_back(contact.point);
-        points.back().least = -std::max(contact.separation - contact.rest_separation, 0.0) / span;
-        carry(contact, now, span / 2, points.back());
+    while (take_resting(now, held, span)) {
+        points.clear();
+        for (const std::size_t at : resting_) {
+            const GroupContact& contact = contacts_[at];
+            points.push_back(contact.point);
+            points.back().least =
+                -std::max(contact.separation - contact.rest_separation, 0.0) / span;
+            carry(contact, now, span / 2, points.back());
+        }
+        guess(span, points);
+        held = flown;
+        solve(held, points);
     }
     if (resting_.empty()) return false;
-    guess(span, points);
-    Motions held = bodies;
-    solve(held, points);
     pressing_.clear();
     for (std::size_t k = 0; k < points.size(); ++k)
         pressing_.push_back(

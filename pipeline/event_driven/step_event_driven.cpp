@@ -1,10 +1,11 @@
 // Carry groups: bodies that may meet in this step, found as they are carried through it.
 //
-// Every body begins as a group of its own, which is carried through the step with what nothing
-// moves (event_driven_group.hpp). Groups whose ways cross may have met: they are put back to where
-// the step began, joined, and carried as one; and again, until no ways of different groups cross.
-// So contacts that exist only because of an earlier one are found as any other, and bodies far off
-// pay nothing for them. The outcome is that of each group alone: the same on any number of threads.
+// Bodies that touch as the step begins are a group, each other one is a group of its own, and is
+// carried through the step with what nothing moves (event_driven_group.hpp). Groups whose ways
+// cross may have met: they are put back to where the step began, joined, and carried as one; and
+// again, until no ways of different groups cross. So contacts that exist only because of an earlier
+// one are found as any other, and bodies far off pay nothing for them. The outcome is that of each
+// group alone: the same on any number of threads.
 //
 // Source: Mirtich, Timewarp Rigid Body Simulation (2000), for going back alone with those
 // concerned.
@@ -55,6 +56,7 @@ public:
 
     void run(EventDrivenContacts& contacts, StepDiagnostics& diagnostics)
     {
+        join_touching();
         // Each round but the last leaves fewer groups.
         for (std::size_t round = 0; round <= bodies_.size(); ++round) {
             list_groups();
@@ -135,6 +137,24 @@ private:
                 if (scene_.filter.allows(colliders.begin[a] + i, colliders.begin[b] + k))
                     return true;
         return false;
+    }
+
+    // Those that are within reach of one another from the start would be joined after they have
+    // been carried in vain.
+    void join_touching()
+    {
+        const Colliders& colliders = scene_.colliders;
+        for (const std::uint32_t body : bodies_) {
+            scene_.ways[body] = {};
+            for (std::uint32_t i = 0; i < colliders.count[body]; ++i) {
+                const std::uint32_t at = colliders.begin[body] + i;
+                Box3 box = scene_.box_of(at, poses_.at(body));
+                box.lower.array() -= scene_.touching_margin(at);
+                box.upper.array() += scene_.touching_margin(at);
+                scene_.ways[body] = joined(scene_.ways[body], box);
+            }
+        }
+        join_crossing();
     }
 
     // False if no ways of different groups cross.

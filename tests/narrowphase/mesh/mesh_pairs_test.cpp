@@ -1,7 +1,9 @@
 #include "cooking/repair/build_mesh.hpp"
+#include "kernels/geometry/closest_points.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/math/turn_between.hpp"
 #include "narrowphase/dispatch.hpp"
+#include "narrowphase/mesh/mesh_sides.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "tests/support/dice.hpp"
 #include "tests/support/polyhedra.hpp"
@@ -417,6 +419,86 @@ TEST(MeshPairs, WhatLiesOnARimIsNotPushedOffSideways)
         leaning += pose.position.x() > 1;
     }
     EXPECT_GT(leaning, 200);
+}
+
+TEST(MeshPairs, WhatIsToldOfATriangleIsNearIt)
+{
+    test::Dice dice(78);
+    Shapes shapes;
+    shapes.boxes = {{{0.7, 0.2, 0.1}}};
+    constexpr double kBias = 1e-3 * 0.1, kMargin = 0.01;
+    std::vector<Vec3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (int i = 0; i < 21; ++i)
+        for (int k = 0; k < 21; ++k)
+            vertices.emplace_back(0.15 * (i - 10), 0.15 * (k - 10), dice.between(-0.03, 0.03));
+    for (std::uint32_t i = 0; i < 20; ++i)
+        for (std::uint32_t k = 0; k < 20; ++k) {
+            const std::uint32_t at = 21 * i + k;
+            triangles.push_back({at, at + 21, at + 22});
+            triangles.push_back({at, at + 22, at + 1});
+        }
+    shapes.meshes = {build_mesh(vertices, triangles).mesh};
+    const Mesh& mesh = shapes.meshes[0];
+    int told = 0;
+    for (int i = 0; i < 500; ++i) {
+        const Quat lean(
+            Eigen::AngleAxisd(dice.between(0, 0.2), Vec3(dice.between(-1, 1), 1, 0).normalized()));
+        const Pose pose{
+            Vec3(dice.between(-0.5, 0.5), dice.between(-0.5, 0.5), dice.between(0.09, 0.14)), lean};
+        for (const auto& touched : touch_mesh<double>(shapes, {ShapeKind::box, 0}, pose, kMargin)) {
+            const auto& ids = mesh.triangles[touched.triangle & ~kBehind];
+            for (int k = 0; k < touched.manifold.count; ++k) {
+                const auto& point = touched.manifold.points[static_cast<std::size_t>(k)];
+                const auto nearest =
+                    closest_on_triangle<double>(point.position, mesh.vertices[ids[0]],
+                                                mesh.vertices[ids[1]], mesh.vertices[ids[2]]);
+                const double most = kMargin + 2 * kBias + std::abs(point.separation);
+                EXPECT_LE((nearest.point - point.position).norm(), most);
+                ++told;
+            }
+        }
+    }
+    EXPECT_GT(told, 1000);
+}
+
+// A ring's flat side under a slab a thousand times as wide, level but for a hair: what it bears is
+// told where the ring is, and along the slab's normal.
+TEST(MeshPairs, AWideSlabTouchesASmallMeshWhereTheMeshIs)
+{
+    const TriangleSoup soup = torus_mesh(0.05, 0.02, 17, 8);
+    Shapes shapes;
+    shapes.meshes = {build_mesh(soup.vertices, soup.triangles).mesh};
+    const Vec3 half(200, 200, 0.03);
+    shapes.boxes = {{half}};
+    test::Dice dice(77);
+    double top = 0;
+    for (const Vec3& vertex : soup.vertices) top = std::max(top, vertex.z());
+    for (int i = 0; i < 50; ++i) {
+        const Vec3 axis = dice.turn() * Vec3::UnitX();
+        const Quat lean(Eigen::AngleAxisd(i % 5 * 1e-7, Vec3(axis.x(), axis.y(), 0).normalized()));
+        const Vec3 up = lean * Vec3::UnitZ();
+        const double lowest = [&] {
+            double least = -1;
+            for (const Vec3& vertex : soup.vertices) least = std::max(least, up.dot(vertex));
+            return least;
+        }();
+        ASSERT_NEAR(lowest, top, 1e-6);
+        const Pose pose{(lowest + 1e-6 + half.z()) * up, lean};
+        const auto found = touch_mesh<double>(shapes, {ShapeKind::box, 0}, pose, 1e-5);
+        int points = 0;
+        for (const auto& touched : found) {
+            const LocalManifold<double>& manifold = touched.manifold;
+            points += manifold.count;
+            EXPECT_NEAR((manifold.normal - up).norm(), 0, 1e-9);
+            for (int k = 0; k < manifold.count; ++k) {
+                const auto& point = manifold.points[static_cast<std::size_t>(k)];
+                EXPECT_LT(point.position.norm(), 0.08);
+                EXPECT_NEAR(point.separation, 1e-6, 1e-7);
+            }
+        }
+        EXPECT_GE(points, 8);
+    }
 }
 
 // A face that leans over a peak is before all triangles round it but those that it leans to, and no

@@ -128,6 +128,30 @@ TEST(SurfaceSeparations, FacesOnFacesAreHeldAtTheCornersOfWhatTheyShare)
     EXPECT_NEAR((places.lower - Vec3(-0.4, -0.4, 0.3 + 5e-5)).norm(), 0, 1e-9);
 }
 
+// A face that leans is told of at its other corners too, each as far as it is.
+TEST(SurfaceSeparations, AFaceThatLeansByLessThanTheMarginIsHeldAtAllItsCorners)
+{
+    constexpr double kLean = 5e-4, kApart = 1e-4, kMargin = 1e-3;  // rad, m
+    const Quat lean(Eigen::AngleAxisd(kLean, Vec3(0.6, 0.8, 0)));
+    double lowest = 1;
+    for (const Vec3& vertex : mesh_of(kRing).vertices)
+        lowest = std::min(lowest, (lean * vertex).z());
+    const Pose pose{Vec3(0, 0, 0.3 + kApart - lowest), lean};
+    std::vector<LocalManifold<double>> found;
+    find_surface_separations({shapes(), kBox, kRing, pose, kMargin}, found);
+    Box3 places;
+    for (const auto& manifold : found) {
+        const auto& point = manifold.points[0];
+        EXPECT_NEAR((manifold.normal - Vec3::UnitZ()).norm(), 0, 2 * kLean);
+        // The point is midway between the face of the box and the corner.
+        EXPECT_NEAR(point.position.z() - 0.3, point.separation / 2, 2 * kLean * kMargin);
+        places.lower = places.lower.cwiseMin(point.position);
+        places.upper = places.upper.cwiseMax(point.position);
+    }
+    EXPECT_GE(found.size(), 20u);  // two rings of ten
+    EXPECT_GT((places.upper - places.lower).head<2>().minCoeff(), 0.6);
+}
+
 TEST(SurfaceSeparations, OfAPlaneAreThoseOfTheCorners)
 {
     RandomShapes random(52);
