@@ -121,6 +121,7 @@ void case_pressed_through(CaseBench& bench);    // H110, pressed_through.cpp
 void case_thrown_rods(CaseBench& bench);        // H111, thrown_rods.cpp
 void case_pressed_balls(CaseBench& bench);      // H112, pressed_balls.cpp
 void case_lain_down(CaseBench& bench);          // H113, lain_down.cpp
+void case_stacked_parts(CaseBench& bench);      // H114, stacked_parts.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -23,11 +23,11 @@ namespace throng {
 inline constexpr std::size_t kMostSurfaceSeparations = 32;
 
 /// Appends a manifold of one point for each place where the two come as near as anywhere about it,
-/// out to the margin, or as good as that: of corners and faces, edges and edges, and whatever else
-/// sticks out to the other but for what rises by less than the margin, as the other corners of a
-/// face that leans do; in the solid's frame, normals from it to the other. Where the surfaces
-/// cross, places of separations below 0: by what is behind what, and where that is more than the
-/// two solids' errors twice over, what collide_solid() has of them. Never throws.
+/// out to the margin: of corners and faces, edges and edges, and whatever else sticks out to the
+/// other. The corners of a face that leans by less than the margin all do. In the solid's frame,
+/// normals from it to the other. Where the surfaces cross, places of separations below 0: by what
+/// is behind what, and where that is more than the two solids' errors twice over, what
+/// collide_solid() has of them. Never throws.
 ///
 ///   in  a: solid, and what it is in contact is left aside, but for that; b: solid, or mesh (its
 ///       front), taken by triangles; or a plane

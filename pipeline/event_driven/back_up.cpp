@@ -26,9 +26,9 @@ constexpr double kKept = 0.9;
 
 }  // namespace
 
-// Whether the two will not have come nearer than a quarter of the tolerance at the end of the way
-// ahead; who is there already, not much nearer.
-bool EventDrivenGroup::stay_apart(PairKey key, double time)
+// Whether a pair will not have come nearer than a quarter of the tolerance at the end of the way
+// ahead; one that is there already, not much nearer.
+bool EventDrivenGroup::stays_apart(PairKey key, double time)
 {
     double least = tolerance_of(key) / 4;
     if (const auto now = separation_now_.find(key); now != separation_now_.end()) {
@@ -43,12 +43,12 @@ bool EventDrivenGroup::stay_apart(PairKey key, double time)
     return !(separation_of(key, end_of(a, time), end_of(b, time), speculative_margin) < least);
 }
 
-// The same of all; where those that do not will be too near is foreseen from there on.
+// The same of all; where others would be too near is foreseen when the span is taken anew.
 bool EventDrivenGroup::stay_apart(double begin, double end)
 {
     bool all = true;
     for (const PairKey key : pairs_) {
-        if (stay_apart(key, end)) continue;
+        if (stays_apart(key, end)) continue;
         foresee(key, begin, end);
         all = false;
     }

@@ -151,7 +151,7 @@ private:
     double depth_error(PairKey key) const;
 
     // Spans up to a touch: see back_up.cpp.
-    bool stay_apart(PairKey key, double time);
+    bool stays_apart(PairKey key, double time);
     bool stay_apart(double begin, double end);
     void foresee(PairKey key, double begin, double end);
     void add_foreseen();
@@ -221,7 +221,7 @@ private:
         members_;  // bodies: those carried, then others that move by themselves
     std::vector<std::pair<std::uint32_t, Box3>> boxes_;  // of colliders, of the way just ahead
     std::vector<PairKey> pairs_;                         // that may meet on it
-    PairManifolds manifolds_;                            // by the last call of collide_pair()
+    PairManifolds manifolds_;                            // by the last call of separation_of()
     std::vector<TriangleManifold<double>> triangles_;    // scratch
     std::vector<GroupContact> contacts_;
     std::vector<GroupContact> foreseen_;        // of ways from here that ended too near

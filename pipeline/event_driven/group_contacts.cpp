@@ -73,7 +73,7 @@ void EventDrivenGroup::list_contacts_of(PairKey key, double time)
     const std::uint32_t a = colliders.body[manifolds_.first], b = colliders.body[manifolds_.second];
     const GroupContact contact = contact_of(key);
     for (const LocalManifold<double>& found : manifolds_.manifolds)
-        add_contacts(found, place(a).position, place(b).position, contact);
+        add_contacts(found, pose_at(a, time).position, pose_at(b, time).position, contact);
 }
 
 // What points of the manifolds found last have in common.

@@ -2,9 +2,10 @@
 // meets one plane.
 //
 // Bouncing is one event for all that meets there at once. Contact by contact it is none: the first
-// throws the body back at its own side alone, and what was flat spins. So contacts that may bounce
-// and have one normal are solved as one, of four of their points, and impulses are given back to
-// where they are kept from step to step.
+// throws the body back at its own side alone, and what was flat spins. Resting is one as well: of
+// the many points of bodies of several parts each bears the load by turns, and a stack of them
+// goes on swaying. So contacts of one normal are solved as one, of four of their points, and
+// impulses are given back to where they are kept from step to step.
 #include "narrowphase/manifold/contact_points.hpp"
 #include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/step/stages.hpp"
@@ -63,17 +64,23 @@ private:
     std::uint64_t pair_of(const Entry& entry) const
     {
         constexpr std::uint32_t kStanding = 0xffffffffu;
-        if (!(entry.restitution > 0) || entry.list == ContactList::solid) return kAlone;
+        if (entry.list == ContactList::solid) return kAlone;
+        // On a mesh whose triangles are all but level what rests keeps the normal of each.
+        const bool rests_by_parts = entry.list == ContactList::convex && has_parts(entry);
+        if (!(entry.restitution > 0) && !rests_by_parts) return kAlone;
         const std::uint32_t a = stands(entry.body_a) ? kStanding : entry.body_a,
                             b = stands(entry.body_b) ? kStanding : entry.body_b;
         return std::uint64_t{a} << 32 | b;
     }
 
+    bool has_parts(const Entry& entry) const
+    {
+        return colliders_.count[entry.body_a] > 1 || colliders_.count[entry.body_b] > 1;
+    }
     // Two of one shape each meet once.
     bool may_meet_twice(const Entry& entry) const
     {
-        return entry.list != ContactList::convex || colliders_.count[entry.body_a] > 1
-            || colliders_.count[entry.body_b] > 1;
+        return entry.list != ContactList::convex || has_parts(entry);
     }
 
     // Who of the two is on what stands still, or none.
@@ -171,8 +178,11 @@ private:
         for (std::size_t k = 0; k < static_cast<std::size_t>(manifold.count); ++k) {
             const std::uint32_t feature = manifold.points[k].feature;
             joined.points[k] = {feature >> 2, feature & 3u};
-            contact.points[k] =
-                contact_of(joined_.sources[first + (feature >> 2)]).points[feature & 3u];
+            auto& point = contact.points[k];
+            point = contact_of(joined_.sources[first + (feature >> 2)]).points[feature & 3u];
+            // It may be drawn to one that is deeper and was left out.
+            point.separation = manifold.points[k].separation;
+            point.anchor_a = manifold.points[k].position - contact.normal * (point.separation / 2);
         }
         entry.list = ContactList::joined;
         entry.list_index = static_cast<std::uint32_t>(joined_.contacts.size()) - 1;
@@ -217,6 +227,10 @@ void join_contacts(const StepContext& context,
     joined.sources.clear();
     // Where nothing has a rim, and nobody has several shapes, no two meet twice.
     if (!context.has(Effect::seams) && !context.has(Effect::mesh_contact)) return;
+    const auto& parts = colliders.count;
+    if (!context.has(Effect::restitution)
+        && std::none_of(parts.begin(), parts.end(), [](std::uint32_t count) { return count > 1; }))
+        return;
     Joining<Real>(states, colliders, convex, meshes, solids, active, joined).run();
 }
 

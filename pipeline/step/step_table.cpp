@@ -35,7 +35,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, collide_meshes<Real>>        ({mesh_contact}),
     stage<Real, remove_ghost_contacts<Real>> ({seams}),
     stage<Real, gather_contacts<Real>>       ({contact}),
-    stage<Real, join_contacts<Real>>         ({restitution}),
+    stage<Real, join_contacts<Real>>         ({restitution, seams}),
     stage<Real, split_islands>               ({contact}),
     stage<Real, escalate_islands>            ({escalation}),
     stage<Real, color_constraints>           ({contact}),

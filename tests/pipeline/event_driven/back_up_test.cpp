@@ -270,5 +270,33 @@ TEST(BackUp, IsLeftWhereTheResponseNeedsOverlapAndItIsSaid)
     EXPECT_TRUE(unused_dials(made.scene).empty());
 }
 
+// Bodies and their shapes are counted apart.
+TEST(BackUp, ABallBouncesOnTheFloorWhoeverHasSeveralShapes)
+{
+    for (const Overlap overlap : {Overlap::back_up, Overlap::subdivide}) {
+        given::SceneOf made;
+        made.scene.materials[0].restitution = 0.5;
+        made.scene.settings.overlap = overlap;
+        const std::uint32_t part = made.shape(BoxShape{Vec3(0.5, 0.1, 0.1)});
+        CompoundShape cross;
+        cross.parts = {{part, Pose{}},
+                       {part, {Vec3::Zero(), Quat(std::sqrt(0.5), 0, 0, std::sqrt(0.5))}}};
+        made.body(made.shape(cross), Vec3(5, 0, 0.3));
+        const std::uint32_t ball = made.shape(SphereShape{0.1});
+        made.body(ball, Vec3(0, 0, 0.5)).velocity = Vec3(1, 0, 0);
+        made.box(Vec3(20, 20, 0.5), Vec3(0, 0, -0.5)).motion = Motion::static_;
+        World world(made.scene);
+        const BodyId falling = world.bodies()[1];
+        double highest = 0;
+        for (int i = 0; i < 120; ++i) {
+            world.step();
+            ASSERT_GT(world.pose(falling).position.z(), 0.1 - 1e-4);
+            if (i > 20) highest = std::max(highest, world.pose(falling).position.z());
+        }
+        // It has bounced once, to a quarter of the height, and stopped sliding by friction.
+        EXPECT_NEAR(highest, 0.1 + 0.25 * 0.4, 0.01);
+    }
+}
+
 }  // namespace
 }  // namespace throng
