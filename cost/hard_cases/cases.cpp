@@ -164,7 +164,7 @@ constexpr HardCase kCases[] = {
      case_pressed_balls, Fault::haste},
     {"H113", "what falls on a floor and may not overlap it lies still", case_lain_down,
      Fault::whirl},
-    {"H114", "bodies of several parts stand on one another", case_stacked_parts, Fault::skew},
+    {"H114", "bodies of several parts stand on one another", case_stacked_parts, Fault::sink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };
