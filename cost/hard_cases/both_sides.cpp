@@ -3,6 +3,7 @@
 // Answers: what meets an open sheet comes to rest on the side that it came from, its half height
 // away, whichever way the triangles are wound; a closed mesh keeps out what comes from outside.
 // What leans over a peak of a terrain is thrown by none of the triangles round it.
+#include "cost/hard_cases/floors.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "scene/names.hpp"
 #include "throng/energy_ledger.hpp"
@@ -38,16 +39,7 @@ std::vector<Guest> guests()
 // A square of 4 by 4 cells, 1 m above its origin, of 32 triangles.
 MeshShape sheet(double cell = 1)
 {
-    MeshShape mesh;
-    for (int i = 0; i < 5; ++i)
-        for (int j = 0; j < 5; ++j) mesh.vertices.emplace_back(cell * (i - 2), cell * (j - 2), 1);
-    for (std::uint32_t i = 0; i < 4; ++i)
-        for (std::uint32_t j = 0; j < 4; ++j) {
-            const std::uint32_t a = 5 * i + j, b = a + 5;
-            mesh.triangles.push_back({a, b, b + 1});
-            mesh.triangles.push_back({a, b + 1, a + 1});
-        }
-    return mesh;
+    return grid_mesh(4, [&](int i, int k) { return Vec3(cell * (i - 2), cell * (k - 2), 1); });
 }
 
 // A block of 2 m by 2 m and as high as the sheet, its triangles turned inward.

@@ -19,21 +19,10 @@ HullShape slab(const FloorSize& size)
 MeshShape grid(const FloorSize& size, int cells)
 {
     Random random(1);
-    MeshShape mesh;
     const auto along = [&](int i) { return size.wide * (2.0 * i / cells - 1); };
-    for (int i = 0; i <= cells; ++i)
-        for (int k = 0; k <= cells; ++k)
-            mesh.vertices.emplace_back(along(i), along(k),
-                                       size.thick + random.uniform(0, size.height));
-    const auto corner = [&](int i, int k) {
-        return static_cast<std::uint32_t>(i * (cells + 1) + k);
-    };
-    for (int i = 0; i < cells; ++i)
-        for (int k = 0; k < cells; ++k) {
-            mesh.triangles.push_back({corner(i, k), corner(i + 1, k), corner(i + 1, k + 1)});
-            mesh.triangles.push_back({corner(i, k), corner(i + 1, k + 1), corner(i, k + 1)});
-        }
-    return mesh;
+    return grid_mesh(cells, [&](int i, int k) {
+        return Vec3(along(i), along(k), size.thick + random.uniform(0, size.height));
+    });
 }
 
 void lay_tiles(SceneParts& parts, std::uint32_t material, const Pose& frame, const FloorSize& size)
@@ -73,6 +62,20 @@ void put_floor(SceneParts& parts,
     if (floor == Floor::hull) shape = slab(size);
     if (floor == Floor::mesh) shape = grid(size, 1);
     if (floor == Floor::grid) shape = grid(size, size.cells);
+}
+
+MeshShape grid_mesh(int cells, const std::function<Vec3(int, int)>& corner)
+{
+    MeshShape mesh;
+    for (int i = 0; i <= cells; ++i)
+        for (int k = 0; k <= cells; ++k) mesh.vertices.push_back(corner(i, k));
+    const auto at = [&](int i, int k) { return static_cast<std::uint32_t>(i * (cells + 1) + k); };
+    for (int i = 0; i < cells; ++i)
+        for (int k = 0; k < cells; ++k) {
+            mesh.triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
+            mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+        }
+    return mesh;
 }
 
 }  // namespace throng

@@ -3,6 +3,8 @@
 
 #include "cost/hard_cases/hard_cases.hpp"
 
+#include <functional>
+
 namespace throng {
 
 enum class Floor : std::uint8_t { plane, box, mesh, hull, grid, tiles };
@@ -31,5 +33,9 @@ void put_floor(SceneParts& parts,
                Floor floor,
                const Pose& frame,
                const FloorSize& size);
+
+/// A sheet of `cells` by `cells` squares, of two triangles each, whose front is up: `corner` tells
+/// where the one at (i, k) lies, along y first.
+MeshShape grid_mesh(int cells, const std::function<Vec3(int, int)>& corner);
 
 }  // namespace throng

@@ -6,6 +6,7 @@
 // Held at its lowest corner alone a body tips over to the next, and back, in every piece of every
 // step, as does what rolls on its rim; and what a spring draws down has gone before what lies on it
 // begins to fall.
+#include "cost/hard_cases/floors.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/catalog/parts.hpp"
@@ -24,7 +25,7 @@ namespace {
 constexpr double kSize = 0.3;  // m, of a body across
 constexpr double kSeconds = 4;
 constexpr double kStill = 1e-4;  // m/s
-constexpr double kWide = 20;     // m, of a floor
+constexpr FloorSize kFloor{10, kSize, 20};
 
 struct How {
     const char* setting;
@@ -33,50 +34,10 @@ struct How {
     bool by_halves = false;
 };
 
-MeshShape mesh_of(const TriangleSoup& soup)
-{
-    MeshShape mesh;
-    mesh.vertices = soup.vertices;
-    mesh.triangles = soup.triangles;
-    return mesh;
-}
-
-// A floor of triangles of a meter.
-MeshShape sheet()
-{
-    constexpr int kCells = static_cast<int>(kWide);
-    MeshShape mesh;
-    for (int i = 0; i <= kCells; ++i)
-        for (int k = 0; k <= kCells; ++k)
-            mesh.vertices.emplace_back(i - kWide / 2 + 0.31, k - kWide / 2 + 0.17, 0);
-    for (std::uint32_t i = 0; i < kCells; ++i)
-        for (std::uint32_t k = 0; k < kCells; ++k) {
-            const std::uint32_t at = i * (kCells + 1) + k, across = at + kCells + 1;
-            mesh.triangles.push_back({at, across, across + 1});
-            mesh.triangles.push_back({at, across + 1, at + 1});
-        }
-    return mesh;
-}
-
-void add_floor(SceneParts& parts, const std::string& floor, std::uint32_t material)
-{
-    BodyDescription ground;
-    ground.material = material;
-    ground.motion = Motion::static_;
-    if (floor == "a plane") {
-        parts.plane(material, Vec3::UnitZ(), 0);
-    } else if (floor == "a box") {
-        ground.position = Vec3(0, 0, -kSize);
-        parts.add(BoxShape{Vec3(kWide / 2, kWide / 2, kSize)}, ground);
-    } else {
-        parts.add(sheet(), ground);
-    }
-}
-
 void add_body(SceneParts& parts, const std::string& kind, const BodyDescription& body)
 {
     if (kind == "ring") {
-        parts.add(mesh_of(torus_mesh(kSize, kSize / 3, 16, 8)), body);
+        parts.add(mesh_shape(torus_mesh(kSize, kSize / 3, 16, 8)), body);
     } else if (kind == "disc") {
         parts.add(CylinderShape{kSize, kSize / 20}, body);
     } else if (kind == "plate") {
@@ -119,7 +80,7 @@ void run(CaseBench& bench, const Scene& scene, End& worst)
     worst.waited += waited;
 }
 
-End fall(CaseBench& bench, const How& how, const std::string& kind, const std::string& floor)
+End fall(CaseBench& bench, const How& how, const std::string& kind, Floor floor)
 {
     End worst;
     for (int seed = 0; seed < (bench.brief() ? 1 : how.seeds); ++seed) {
@@ -128,7 +89,7 @@ End fall(CaseBench& bench, const How& how, const std::string& kind, const std::s
         parts.scene().settings.overlap = Overlap::back_up;
         how.set(parts.scene().settings);
         const std::uint32_t material = parts.material(0.5);
-        add_floor(parts, floor, material);
+        put_floor(parts, material, floor, Pose{}, kFloor);
         BodyDescription body;
         body.material = material;
         body.mass = 1;
@@ -184,8 +145,9 @@ void case_lain_down(CaseBench& bench)
                          "1");
         };
         for (const char* kind : {"ring", "disc", "plate", "cross"})
-            for (const char* floor : {"a plane", "a box", "a mesh"})
-                report(std::string(kind) + " on " + floor, fall(bench, how, kind, floor));
+            for (const Floor floor : {Floor::plane, Floor::box, Floor::grid})
+                report(std::string(kind) + " on a " + name_of(floor),
+                       fall(bench, how, kind, floor));
         for (const double times : {10.0, 1e4})
             report(times > 100 ? "boxes, drawn down hard" : "boxes, drawn down",
                    press(bench, how, times));

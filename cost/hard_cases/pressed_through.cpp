@@ -3,6 +3,7 @@
 //
 // A floor of triangles does not say how thick it is. Stars lie on it, and a box a thousand times as
 // heavy comes down on them, so that for some steps they are driven in deeper than any body at rest.
+#include "cost/hard_cases/floors.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "scene/catalog/parts.hpp"
 #include "scene/catalog/random.hpp"
@@ -60,18 +61,10 @@ MeshShape sheet(double uneven, Random& random)
 {
     constexpr int kCells = 12;
     constexpr double kCell = 8;  // m
-    MeshShape mesh;
-    for (int i = 0; i <= kCells; ++i)
-        for (int k = 0; k <= kCells; ++k)
-            mesh.vertices.emplace_back(kCell * (i - kCells / 2) + 0.31,
-                                       kCell * (k - kCells / 2) + 0.17, random.uniform(0, uneven));
-    for (std::uint32_t i = 0; i < kCells; ++i)
-        for (std::uint32_t k = 0; k < kCells; ++k) {
-            const std::uint32_t at = i * (kCells + 1) + k, across = at + kCells + 1;
-            mesh.triangles.push_back({at, across, across + 1});
-            mesh.triangles.push_back({at, across + 1, at + 1});
-        }
-    return mesh;
+    return grid_mesh(kCells, [&](int i, int k) {
+        return Vec3(kCell * (i - kCells / 2) + 0.31, kCell * (k - kCells / 2) + 0.17,
+                    random.uniform(0, uneven));
+    });
 }
 
 struct Heap {

@@ -2,6 +2,7 @@
 //
 // Answer: they have the speed that they are driven at; a wall is pressed by the drive, m v / dt at
 // most, and by what friction bears, and nobody climbs.
+#include "cost/hard_cases/floors.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
@@ -37,19 +38,8 @@ struct Walk {
 
 MeshShape sheet(double half, int cells)
 {
-    MeshShape mesh;
-    const auto at = [&](int i) { return half * (2.0 * i / cells - 1); };
-    const auto corner = [&](int i, int k) {
-        return static_cast<std::uint32_t>(i * (cells + 1) + k);
-    };
-    for (int i = 0; i <= cells; ++i)
-        for (int k = 0; k <= cells; ++k) mesh.vertices.emplace_back(at(i), at(k), 0);
-    for (int i = 0; i < cells; ++i)
-        for (int k = 0; k < cells; ++k) {
-            mesh.triangles.push_back({corner(i, k), corner(i + 1, k), corner(i + 1, k + 1)});
-            mesh.triangles.push_back({corner(i, k), corner(i + 1, k + 1), corner(i, k + 1)});
-        }
-    return mesh;
+    const auto along = [&](int i) { return half * (2.0 * i / cells - 1); };
+    return grid_mesh(cells, [&](int i, int k) { return Vec3(along(i), along(k), 0); });
 }
 
 std::uint32_t put_static_box(SceneParts& parts, const Vec3& half, const Pose& pose)

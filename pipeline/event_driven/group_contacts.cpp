@@ -70,10 +70,10 @@ void EventDrivenGroup::list_contacts_of(PairKey key, double time)
         separation_of(key, place(first_of(key)), place(second_of(key)), kWide * tolerance);
     if (manifolds_.manifolds.empty() || least > kAlike * tolerance) return;
     separation_now_[key] = least;
-    const std::uint32_t a = colliders.body[manifolds_.first], b = colliders.body[manifolds_.second];
     const GroupContact contact = contact_of(key);
     for (const LocalManifold<double>& found : manifolds_.manifolds)
-        add_contacts(found, pose_at(a, time).position, pose_at(b, time).position, contact);
+        add_contacts(found, place(manifolds_.first).position, place(manifolds_.second).position,
+                     contact);
 }
 
 // What points of the manifolds found last have in common.

@@ -18,17 +18,15 @@ namespace {
 
 constexpr ShapeRef kMesh{ShapeKind::mesh, 0};
 
-// A flat floor of side `cells`, cell 1 m, about the origin; with a step up of `rise` for x > 0.
-Mesh floor_of(int cells, double rise = 0)
+// `cells` by `cells` squares of two triangles each: `corner` tells where the one at (i, k) lies.
+template <class Corner>
+Mesh grid_of(int cells, const Corner& corner)
 {
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     const auto id = [&](int i, int j) { return static_cast<std::uint32_t>(i * (cells + 1) + j); };
-    for (int i = 0; i <= cells; ++i) {
-        for (int j = 0; j <= cells; ++j) {
-            vertices.emplace_back(i - cells / 2, j - cells / 2, 2 * i > cells ? rise : 0);
-        }
-    }
+    for (int i = 0; i <= cells; ++i)
+        for (int j = 0; j <= cells; ++j) vertices.push_back(corner(i, j));
     for (int i = 0; i < cells; ++i) {
         for (int j = 0; j < cells; ++j) {
             triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
@@ -36,6 +34,14 @@ Mesh floor_of(int cells, double rise = 0)
         }
     }
     return build_mesh(vertices, triangles).mesh;
+}
+
+// A flat floor of side `cells`, cell 1 m, about the origin; with a step up of `rise` for x > 0.
+Mesh floor_of(int cells, double rise = 0)
+{
+    return grid_of(cells, [&](int i, int j) {
+        return Vec3(i - cells / 2, j - cells / 2, 2 * i > cells ? rise : 0);
+    });
 }
 
 struct Slider {
@@ -427,18 +433,9 @@ TEST(MeshPairs, WhatIsToldOfATriangleIsNearIt)
     Shapes shapes;
     shapes.boxes = {{{0.7, 0.2, 0.1}}};
     constexpr double kBias = 1e-3 * 0.1, kMargin = 0.01;
-    std::vector<Vec3> vertices;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    for (int i = 0; i < 21; ++i)
-        for (int k = 0; k < 21; ++k)
-            vertices.emplace_back(0.15 * (i - 10), 0.15 * (k - 10), dice.between(-0.03, 0.03));
-    for (std::uint32_t i = 0; i < 20; ++i)
-        for (std::uint32_t k = 0; k < 20; ++k) {
-            const std::uint32_t at = 21 * i + k;
-            triangles.push_back({at, at + 21, at + 22});
-            triangles.push_back({at, at + 22, at + 1});
-        }
-    shapes.meshes = {build_mesh(vertices, triangles).mesh};
+    shapes.meshes = {grid_of(20, [&](int i, int k) {
+        return Vec3(0.15 * (i - 10), 0.15 * (k - 10), dice.between(-0.03, 0.03));
+    })};
     const Mesh& mesh = shapes.meshes[0];
     int told = 0;
     for (int i = 0; i < 500; ++i) {
