@@ -11,6 +11,7 @@
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
@@ -21,6 +22,9 @@ namespace {
 
 // Cosine beyond which two normals are one: a hundredth of a radian, as for what lies flush.
 constexpr double kAlike = 0.99995;
+// How far points of one plane may be from it: as much of their way from one another, as two sides
+// may lean, or of the lesser body's half extent.
+constexpr double kLevel = 0.01;
 constexpr std::uint64_t kAlone = std::numeric_limits<std::uint64_t>::max();
 
 template <class Real>
@@ -121,7 +125,29 @@ private:
             return false;
         const Contact<Real>&one = contact_of(x), &other = contact_of(y);
         return one.round_a == other.round_a && one.round_b == other.round_b
-            && double{one.normal.dot(other.normal)} > kAlike;
+            && double{one.normal.dot(other.normal)} > kAlike
+            && level(one, other, static_cast<Real>(std::min(x.extent, y.extent)));
+    }
+
+    // Legs may end within the board that they bear, and of a table that lies on its board they are
+    // in no plane with it: of points on both levels the four chosen may bear nothing.
+    static bool level(const Contact<Real>& one, const Contact<Real>& other, Real extent)
+    {
+        for (const bool of_b : {false, true}) {
+            const auto on_surface = [&](const Contact<Real>& contact, int k) -> Vec3T<Real> {
+                const auto& point = contact.points[static_cast<std::size_t>(k)];
+                return of_b ? Vec3T<Real>(point.anchor_a + one.normal * point.separation)
+                            : point.anchor_a;
+            };
+            const Vec3T<Real> first = on_surface(one, 0);
+            for (int k = 0; k < other.count; ++k) {
+                const Vec3T<Real> way = on_surface(other, k) - first;
+                if (std::abs(way.dot(one.normal))
+                    > static_cast<Real>(kLevel) * std::max(way.norm(), extent))
+                    return false;
+            }
+        }
+        return true;
     }
 
     // Those of one pair, by the first of each plane.

@@ -1,4 +1,5 @@
 #include "tests/support/small_scenes.hpp"
+#include "throng/rotation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -80,6 +81,43 @@ TEST(JoinContacts, OtherNormalsAndMaterialsStayApart)
     World in_corner(corner);
     in_corner.step();
     EXPECT_EQ(in_corner.report().manifolds, 2u);
+}
+
+TEST(JoinContacts, WhatEndsWithinAnotherPartIsNotOfItsPlane)
+{
+    // A table upside down: its legs end within the board that it lies on, 10 mm above the floor.
+    for (const double restitution : {0.5, 0.0}) {
+        SceneOf made;
+        made.scene.materials[0].restitution = restitution;
+        made.scene.gravity = Vec3(0, 0, -kGravity);
+        made.box(Vec3(2, 2, 0.5), Vec3(0, 0, -0.5)).motion = Motion::static_;
+        const std::uint32_t board = made.shape(BoxShape{Vec3(0.8, 0.6, 0.05)});
+        const std::uint32_t leg = made.shape(BoxShape{Vec3(0.06, 0.06, 0.2)});
+        CompoundShape table;
+        table.parts.push_back({board, {Vec3(0, 0, 0.05), Quat::Identity()}});
+        for (const double x : {-0.7, 0.7})
+            for (const double y : {-0.5, 0.5})
+                table.parts.push_back({leg, {Vec3(x, y, 0.21), Quat::Identity()}});
+        BodyDescription& body = made.body(made.shape(table), Vec3::Zero());
+        body.mass = kMass;
+        body.velocity = Vec3(0, 0, -2);  // its legs may come as far within the step
+        World world(made.scene);
+        world.step();
+        // The board, and the legs as one.
+        EXPECT_EQ(world.report().manifolds, 2u) << restitution;
+    }
+}
+
+TEST(JoinContacts, WhatLeansByAHairBouncesFlat)
+{
+    Scene scene = across_two(0.5, false);
+    BodyDescription& box = scene.bodies.back();
+    box.position.z() += 1;
+    box.orientation = exponential(Vec3(0.0048, 0.0015, 0));
+    World world(scene);
+    for (int i = 0; i < 35; ++i) world.step();
+    EXPECT_GT(world.velocity(world.bodies()[2]).z(), 0.1);
+    EXPECT_LT(world.angular_velocity(world.bodies()[2]).norm(), 0.2);
 }
 
 TEST(JoinContacts, BySubstepsOfAnotherLengthNothingIsLost)
