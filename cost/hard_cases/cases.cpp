@@ -165,6 +165,7 @@ constexpr HardCase kCases[] = {
     {"H113", "what falls on a floor and may not overlap it lies still", case_lain_down,
      Fault::whirl},
     {"H114", "bodies of several parts stand on one another", case_stacked_parts, Fault::sink},
+    {"H115", "what is on a pivot at its foot may stand on a floor", case_on_a_tip, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

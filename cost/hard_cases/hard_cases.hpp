@@ -122,6 +122,7 @@ void case_thrown_rods(CaseBench& bench);        // H111, thrown_rods.cpp
 void case_pressed_balls(CaseBench& bench);      // H112, pressed_balls.cpp
 void case_lain_down(CaseBench& bench);          // H113, lain_down.cpp
 void case_stacked_parts(CaseBench& bench);      // H114, stacked_parts.cpp
+void case_on_a_tip(CaseBench& bench);           // H115, on_a_tip.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

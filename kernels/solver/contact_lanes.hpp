@@ -190,13 +190,18 @@ struct Frame {
     }
 };
 
-/// Nothing is divided by numbers whose inverse is not one.
+/// Nothing is divided by numbers whose inverse is not one, or than which it has to be greater.
+template <class L>
+L inverse_or_zero(L x, typename L::Number least)
+{
+    using Real = typename L::Number;
+    return select(x > L(least), L(Real(1)) / x, L(Real(0)));
+}
 template <class L>
 L inverse_or_zero(L x)
 {
     using Real = typename L::Number;
-    constexpr Real kLeast = sizeof(Real) == 4 ? Real(1.2e-38) : Real(2.3e-308);
-    return select(x > L(kLeast), L(Real(1)) / x, L(Real(0)));
+    return inverse_or_zero(x, sizeof(Real) == 4 ? Real(1.2e-38) : Real(2.3e-308));
 }
 
 /// A direction across the normal that depends on it alone. For a round cone any would do; a pyramid
@@ -223,14 +228,23 @@ struct FrictionMass {
     {
         using Real = typename L::Number;
         // In units of its own size: squares of 1/kg leave float where bodies are huge or tiny.
-        const L size = (k11 + k22) * L(Real(0.5)), unit = inverse_or_zero(size);
+        // Next to a pivot the size is nothing but rounding, and its inverse times a speed may leave
+        // float: nobody is as heavy as that.
+        constexpr Real kLeast = sizeof(Real) == 4 ? Real(1e-25) : Real(1e-200);
+        const L size = (k11 + k22) * L(Real(0.5)), unit = inverse_or_zero(size, kLeast);
         k11 = k11 * unit;
         k22 = k22 * unit;
         k12 = k12 * unit;
-        const L inverse = inverse_or_zero(k11 * k22 - k12 * k12) * unit;
+        // Beside a pivot a body gives way in one direction alone: there the determinant is
+        // rounding, and the matrix is its own pseudoinverse but for its trace, 2, squared.
+        constexpr Real kRounding = sizeof(Real) == 4 ? Real(1e-6) : Real(1e-15);
+        const L determinant = k11 * k22 - k12 * k12;
+        const L inverse = inverse_or_zero(determinant, kRounding) * unit,
+                pseudo = select(determinant > L(kRounding), L(Real(0)), unit * L(Real(0.25)));
         const L half = (k11 - k22) * L(Real(0.5));
         const L greatest = L(Real(1)) + sqrt(half * half + k12 * k12);
-        return {k22 * inverse, k11 * inverse, -k12 * inverse, unit / greatest, size * greatest};
+        return {k22 * inverse + k11 * pseudo, k11 * inverse + k22 * pseudo,
+                k12 * pseudo - k12 * inverse, unit / greatest, size * greatest};
     }
 };
 

@@ -83,6 +83,16 @@ void remove_ghost_contacts(const Pairs&,
                            MeshContacts<Real>&,
                            SolidContacts<Real>&);
 
+/// Points that are borne by a pivot next to them end here.
+template <class Real>
+void remove_pivot_contacts(const Pairs&,
+                           const Colliders&,
+                           const Forces&,
+                           const Masses&,
+                           ConvexContacts<Real>&,
+                           MeshContacts<Real>&,
+                           SolidContacts<Real>&);
+
 /// All kinds of contact into one order: those that this step has to solve.
 template <class Real>
 void gather_contacts(const Pairs&,

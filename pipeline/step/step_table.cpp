@@ -34,6 +34,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, wake_islands<Real>>          ({sleeping}),
     stage<Real, collide_meshes<Real>>        ({mesh_contact}),
     stage<Real, remove_ghost_contacts<Real>> ({seams}),
+    stage<Real, remove_pivot_contacts<Real>> ({pivot}),
     stage<Real, gather_contacts<Real>>       ({contact}),
     stage<Real, join_contacts<Real>>         ({restitution, seams}),
     stage<Real, split_islands>               ({contact}),
