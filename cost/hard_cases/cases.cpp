@@ -166,6 +166,8 @@ constexpr HardCase kCases[] = {
      Fault::whirl},
     {"H114", "bodies of several parts stand on one another", case_stacked_parts, Fault::sink},
     {"H115", "what is on a pivot at its foot may stand on a floor", case_on_a_tip, Fault::haste},
+    {"H116", "small bodies that are not convex stay on the floor that they are thrown on",
+     case_thrown_rings, Fault::sink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -95,11 +95,12 @@ class Spread {
 public:
     using Point = LocalManifold<double>::Point;
 
-    /// How much a depth missing weighs: see kShallow.
-    Spread(const std::vector<Point>& points, const Vec3& normal, double shallow)
+    /// How much a depth missing weighs: see kShallow; and what is no deeper than the deepest, m.
+    Spread(const std::vector<Point>& points, const Vec3& normal, double shallow, double deep)
         : points_(points), shallow_(shallow)
     {
         deepest_ = best([](const Point&) { return 0.0; });
+        deep_ = -deep;
         const Vec3 start = across(normal);
         take(best([&](const Point& p) { return start.dot(p.position); }));
         const Vec3 from = points_[chosen_[0]].position;
@@ -133,7 +134,8 @@ private:
         std::size_t best = 0;
         double most = -std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const double score = place(points_[i]) - shallow_ * (points_[i].separation - deepest);
+            const double above = std::max(points_[i].separation, deep_) - std::max(deepest, deep_);
+            const double score = place(points_[i]) - shallow_ * above;
             if (!(score > most)) continue;
             most = score;
             best = i;
@@ -163,7 +165,7 @@ private:
     }
 
     const std::vector<Point>& points_;
-    double shallow_;
+    double shallow_, deep_ = -std::numeric_limits<double>::infinity();
     std::size_t deepest_ = std::numeric_limits<std::size_t>::max();
     std::array<std::size_t, 4> chosen_{};
     std::size_t count_ = 0;
@@ -189,9 +191,10 @@ public:
     PatchMaker(const std::vector<ContactCandidate>& candidates,
                double speculative_margin,
                double size,
+               double deep,
                std::vector<PatchManifold>& out)
         : candidates_(candidates), groups_(candidates, speculative_margin, size),
-          speculative_margin_(speculative_margin), size_(size),
+          speculative_margin_(speculative_margin), size_(size), deep_(deep),
           fills_(speculative_margin > kShortReach * size && groups_.oppose()), out_(out),
           first_(out.size())
     { }
@@ -210,7 +213,7 @@ private:
     void add(const Vec3& normal, std::uint8_t group)
     {
         const std::vector<LocalManifold<double>::Point>& places = places_of(normal, group);
-        const Spread spread(places, normal, weight_of_depth(speculative_margin_, size_));
+        const Spread spread(places, normal, weight_of_depth(speculative_margin_, size_), deep_);
         const std::uint32_t name = free_name(normal, out_, first_);
         PatchManifold together{name, {}};
         together.manifold.normal = normal;
@@ -286,7 +289,7 @@ private:
 
     const std::vector<ContactCandidate>& candidates_;
     const PatchGroups groups_;
-    double speculative_margin_, size_;
+    double speculative_margin_, size_, deep_;
     bool fills_;  // patches that bend
     std::vector<PatchManifold>& out_;
     std::size_t first_;  // of this set in `out`
@@ -297,6 +300,7 @@ private:
 std::size_t make_patches(std::vector<ContactCandidate>& candidates,
                          double speculative_margin,
                          double size,
+                         double deep,
                          std::vector<PatchManifold>& out)
 {
     std::erase_if(candidates, [&](const ContactCandidate& candidate) {
@@ -306,7 +310,7 @@ std::size_t make_patches(std::vector<ContactCandidate>& candidates,
     });
     if (candidates.empty()) return 0;
     std::sort(candidates.begin(), candidates.end(), comes_before);
-    return PatchMaker(candidates, speculative_margin, size, out).make();
+    return PatchMaker(candidates, speculative_margin, size, deep, out).make();
 }
 
 }  // namespace throng

@@ -36,6 +36,8 @@ inline constexpr std::size_t kMostManifolds = (4 + kMostBetween) * kMostPatches;
 ///                       one another
 ///   speculative_margin  m, touches further apart than this are left out
 ///   size                m, of the smaller of the two shapes
+///   deep                m, what is deeper than this is as deep for what is chosen, beside the
+///                       deepest
 ///
 /// Normals of a group's touches are within 31 degrees of the group's: their mean, weighed by how
 /// far within the margin each is. Separations are what of them lies along their manifold's. The
@@ -59,6 +61,7 @@ inline constexpr std::size_t kMostManifolds = (4 + kMostBetween) * kMostPatches;
 std::size_t make_patches(std::vector<ContactCandidate>& candidates,
                          double speculative_margin,
                          double size,
+                         double deep,
                          std::vector<PatchManifold>& out);
 
 }  // namespace throng

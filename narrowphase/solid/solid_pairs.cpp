@@ -6,9 +6,15 @@
 #include "narrowphase/solid/voxel_pairs.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace throng {
 namespace {
+
+// Part of its size from which on all that is deep of a body is alike, in what is mostly a floor:
+// who is pressed in, and leans by as much as he turns in a step, is to be pushed out all over, or
+// his ends come out and go in by turns.
+constexpr double kDeep = 0.08;
 
 // Half the diagonal of its box; a plane has no end.
 double size_of(const Shapes& shapes, ShapeRef shape)
@@ -88,7 +94,9 @@ collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out, doub
                                                       other_in_solid, speculative_margin,
                                                       pressed_in, candidates));
     const double size = std::min(size_of(shapes, solid), size_of(shapes, other));
-    answer.left_out = make_patches(candidates, speculative_margin, size, out);
+    const double deep =
+        other.kind == ShapeKind::solid ? std::numeric_limits<double>::infinity() : kDeep * size;
+    answer.left_out = make_patches(candidates, speculative_margin, size, deep, out);
     return answer;
 }
 

@@ -74,23 +74,34 @@ private:
     ShapeRef shape_;
 };
 
-/// The front of a static mesh. What lies deeper behind it than `deepest` m does not touch, nor what
-/// lies deeper than `past_rim` and is nearest to its rim: that went round it.
+/// The front of a static mesh, as what is mostly before it or behind it may touch it.
+///
+///   middle    m, of the body, in the mesh's frame
+///   deepest   m, what lies deeper behind does not touch where the middle is behind as well; where
+///             it is before, what lies deeper than `furthest`
+///   past_rim  m, what lies deeper and is nearest to the rim does not touch: that went round it
+struct MeshLimits {
+    Vec3 middle = Vec3::Zero();
+    double speculative_margin = 0, deepest = 0, furthest = 0, past_rim = 0;
+};
 class MeshSide {
 public:
     using Real = double;
 
-    MeshSide(const Mesh& mesh, double speculative_margin, double deepest, double past_rim)
-        : mesh_(mesh), speculative_margin_(speculative_margin), deepest_(deepest),
-          past_rim_(past_rim)
-    { }
+    MeshSide(const Mesh& mesh, const MeshLimits& limits) : mesh_(mesh), limits_(limits) { }
+    /// Whether something that is mostly before the mesh lies behind it by half of `deepest` or
+    /// more.
+    bool pressed_in() const { return pressed_in_; }
     double furthest() const { return std::numeric_limits<double>::infinity(); }
     void bound(LeafSample<double>& places) const;
     void sample(LeafSample<double>& leaf) const;
 
 private:
+    bool touches(double distance, const struct MeshPoint& nearest) const;
+
     const Mesh& mesh_;
-    double speculative_margin_, deepest_, past_rim_;
+    MeshLimits limits_;
+    mutable bool pressed_in_ = false;  // by what was sampled
 };
 
 /// A walked point that the other shape touches, in the walked solid's frame.

@@ -51,13 +51,32 @@ double find_points_of_b(const Solid& a,
 }
 
 // Behind a static mesh nothing says how thick it is: no deeper than half of the solid, and than
-// four of the distances between its points, beyond where it was pressed to before.
-MeshSide front_of(const Mesh& mesh, const Solid& a, double speculative_margin, double pressed_in)
+// four of the distances between its points, beyond where it was pressed to before. But who has his
+// middle before it is before it, and as deep in it as he lies: small bodies turn by radians as they
+// land, and what is thin goes in by all of its thickness.
+double find_points_on_mesh(const Solid& a,
+                           const Mesh& mesh,
+                           const Pose& mesh_in_a,
+                           double speculative_margin,
+                           double pressed_in,
+                           std::vector<ContactCandidate>& out)
 {
     const Box3 box = FieldSide(a).box();
     const Vec3 size = box.upper - box.lower;
     const double unknown = std::min(0.25 * size.minCoeff(), 4 * a.points.spacing);
-    return {mesh, speculative_margin, std::min(unknown + pressed_in, size.norm()), unknown};
+    MeshLimits limits;
+    limits.middle = mesh_in_a.to_local(0.5 * (box.lower + box.upper));
+    limits.speculative_margin = speculative_margin;
+    limits.deepest = limits.furthest = std::min(unknown + pressed_in, size.norm());
+    limits.past_rim = unknown;
+    const MeshSide near(mesh, limits);
+    const std::size_t before = out.size();
+    const double apart = find_points_of_a(a, near, mesh_in_a, speculative_margin, out);
+    if (!near.pressed_in()) return apart;
+    // Few are, and to look so far takes longer.
+    limits.furthest = size.norm();
+    out.resize(before);
+    return find_points_of_a(a, MeshSide(mesh, limits), mesh_in_a, speculative_margin, out);
 }
 
 }  // namespace
@@ -83,8 +102,7 @@ double find_voxel_candidates(const Shapes& shapes,
     }
     case ShapeKind::mesh: {
         const Mesh& mesh = shapes.meshes[other.index];
-        const MeshSide side = front_of(mesh, a, speculative_margin, pressed_in);
-        apart = find_points_of_a(a, side, other_in_a, speculative_margin, out);
+        apart = find_points_on_mesh(a, mesh, other_in_a, speculative_margin, pressed_in, out);
         if (has_field) probe_mesh(a, mesh, other_in_a, speculative_margin, out);
         break;
     }

@@ -12,7 +12,7 @@
 namespace throng::test {
 namespace {
 
-constexpr double kReach = 0.02;
+constexpr double kReach = 0.02, kDeep = 0.08;
 
 // Touches along a ring about z; their normals lean out of its axis by `lean` (0: along it).
 std::vector<ContactCandidate> ring(std::uint32_t count, double lean)
@@ -57,7 +57,7 @@ std::vector<PatchManifold> patches(std::vector<ContactCandidate> candidates,
                                    double speculative_margin = kReach)
 {
     std::vector<PatchManifold> out;
-    EXPECT_EQ(make_patches(candidates, speculative_margin, 1.0, out), 0U);
+    EXPECT_EQ(make_patches(candidates, speculative_margin, 1.0, kDeep, out), 0U);
     return out;
 }
 
@@ -129,6 +129,22 @@ TEST(ContactPatches, AFaceOnAFaceIsOneManifoldOfFourCorners)
     const auto found = patches(grid(9, Vec3(2, -1, 2) / 3, 0));
     ASSERT_EQ(found.size(), 1U);
     EXPECT_GT(spanned(found[0].manifold), 3.9);
+}
+
+// Pushed out at its deepest side alone, who is deep all over would turn, and go in at the other.
+TEST(ContactPatches, WhatIsDeepIsSpannedThoughItLeans)
+{
+    for (const double depth : {0.01, 0.5}) {
+        auto leaning = grid(9, Vec3::UnitZ(), 0);
+        for (ContactCandidate& candidate : leaning)
+            candidate.separation = -depth + 0.1 * candidate.position.x();
+        const auto found = patches(leaning, 0.2);
+        ASSERT_EQ(found.size(), 1U);
+        if (depth < 0.1)
+            EXPECT_LT(spanned(found[0].manifold), 2.5) << depth;
+        else
+            EXPECT_GT(spanned(found[0].manifold), 3.9) << depth;
+    }
 }
 
 TEST(ContactPatches, OppositeSidesAreNotJoined)
@@ -265,8 +281,8 @@ TEST(ContactPatches, TheOrderOfTouchesDoesNotMatter)
         std::vector<PatchManifold> first, second;
         std::vector<ContactCandidate> shuffled = candidates;
         dice.shuffle(shuffled);
-        const std::size_t left_out = make_patches(candidates, kReach, 1, first);
-        ASSERT_EQ(make_patches(shuffled, kReach, 1, second), left_out);
+        const std::size_t left_out = make_patches(candidates, kReach, 1, kDeep, first);
+        ASSERT_EQ(make_patches(shuffled, kReach, 1, kDeep, second), left_out);
         ASSERT_TRUE(same(first, second)) << "seed 63, set " << i;
         ASSERT_LE(first.size(), kMostManifolds);
         for (std::size_t k = 1; k < first.size(); ++k)
@@ -360,7 +376,7 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
                 candidates.push_back({normal, normal, separation, feature});
             }
     std::vector<PatchManifold> out;
-    const std::size_t left_out = make_patches(candidates, kReach, 1, out);
+    const std::size_t left_out = make_patches(candidates, kReach, 1, kDeep, out);
     // One that joins others may keep its normal to itself.
     ASSERT_GE(out.size(), kMostPatches);
     ASSERT_LE(out.size(), candidates.size());

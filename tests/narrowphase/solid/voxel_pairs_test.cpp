@@ -496,6 +496,14 @@ TEST(VoxelPairs, WhatWasPressedIntoAStaticMeshIsStillInIt)
             pressed_in);
         return all;
     };
+    // Who has his middle before it is in it as deep as he lies.
+    for (const double depth : {0.1, 0.3, 0.45}) {
+        double told = 0;
+        const auto before = found(Vec3(0.3, 0.2, depth - half), 0);
+        ASSERT_FALSE(before.empty()) << depth;
+        EXPECT_LT((deepest(before, told).manifold.normal - Vec3(0, 0, -1)).norm(), 1e-6) << depth;
+        EXPECT_NEAR(told, -depth, 1e-6);
+    }
     for (const double depth : {0.6, 0.9}) {
         const Vec3 up(0.3, 0.2, depth - half);
         EXPECT_TRUE(found(up, 0).empty()) << depth;
