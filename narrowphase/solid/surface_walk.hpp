@@ -74,16 +74,18 @@ private:
     ShapeRef shape_;
 };
 
-/// The front of a static mesh, as what is mostly before it or behind it may touch it.
+/// What lies behind a static mesh and touches it.
 ///
 ///   middle    m, of the body, in the mesh's frame
-///   deepest   m, what lies deeper behind does not touch where the middle is behind as well; where
-///             it is before, what lies deeper than `furthest`
+///   deepest   m, what lies deeper does not touch where the middle is behind as well
+///   furthest  m, what lies deeper does not touch where the middle is before it
 ///   past_rim  m, what lies deeper and is nearest to the rim does not touch: that went round it
 struct MeshLimits {
     Vec3 middle = Vec3::Zero();
     double speculative_margin = 0, deepest = 0, furthest = 0, past_rim = 0;
 };
+
+/// The front of a static mesh.
 class MeshSide {
 public:
     using Real = double;
