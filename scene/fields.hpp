@@ -157,7 +157,7 @@ inline constexpr Field<BodyDescription> kBodyFields[] = {
         &BodyDescription::torque, {-kGreatestNumber, kGreatestNumber, "a torque in N m"}},
     {"drag", "", "Against the motion through the air.",
         Group<BodyDescription>{kDragFields}, {}, {}, "none"},
-    {"pivot", "m", "This point of the body, in its axes, stays where it is. `velocity` is then that of its turning, and is left out.",
+    {"pivot", "m", "This point of the body, in its axes, stays where it is, and bears what the body stands on next to it. `velocity` is then that of its turning, and is left out.",
         &BodyDescription::pivot, kPlaces, {}, "none"},
     {"drive_velocity", "m/s", "World axes; components that are not null are set before every step; friction with the ground pulls with them.",
         &BodyDescription::drive_velocity, kVelocities},
