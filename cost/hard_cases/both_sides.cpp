@@ -3,8 +3,9 @@
 // Answers: what meets an open sheet comes to rest on the side that it came from, its half height
 // away, whichever way the triangles are wound; a closed mesh keeps out what comes from outside.
 // What leans over a peak of a terrain is thrown by none of the triangles round it.
-#include "cost/hard_cases/floors.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
+#include "scene/catalog/parts.hpp"
+#include "scene/catalog/sheets.hpp"
 #include "scene/names.hpp"
 #include "throng/energy_ledger.hpp"
 #include "throng/rotation.hpp"
@@ -39,7 +40,8 @@ std::vector<Guest> guests()
 // A square of 4 by 4 cells, 1 m above its origin, of 32 triangles.
 MeshShape sheet(double cell = 1)
 {
-    return grid_mesh(4, [&](int i, int k) { return Vec3(cell * (i - 2), cell * (k - 2), 1); });
+    return mesh_shape(
+        sheet_mesh(4, [&](int i, int k) { return Vec3(cell * (i - 2), cell * (k - 2), 1); }));
 }
 
 // A block of 2 m by 2 m and as high as the sheet, its triangles turned inward.

@@ -1,7 +1,12 @@
 #include "cost/hard_cases/floors.hpp"
 
+#include "scene/catalog/parts.hpp"
 #include "scene/catalog/random.hpp"
+#include "scene/catalog/sheets.hpp"
 #include "throng/rotation.hpp"
+
+#include <algorithm>
+#include <limits>
 
 namespace throng {
 
@@ -20,9 +25,9 @@ MeshShape grid(const FloorSize& size, int cells)
 {
     Random random(1);
     const auto along = [&](int i) { return size.wide * (2.0 * i / cells - 1); };
-    return grid_mesh(cells, [&](int i, int k) {
+    return mesh_shape(sheet_mesh(cells, [&](int i, int k) {
         return Vec3(along(i), along(k), size.thick + random.uniform(0, size.height));
-    });
+    }));
 }
 
 void lay_tiles(SceneParts& parts, std::uint32_t material, const Pose& frame, const FloorSize& size)
@@ -64,18 +69,11 @@ void put_floor(SceneParts& parts,
     if (floor == Floor::grid) shape = grid(size, size.cells);
 }
 
-MeshShape grid_mesh(int cells, const std::function<Vec3(int, int)>& corner)
+double lowest_of(std::span<const Vec3> points, const Pose& pose)
 {
-    MeshShape mesh;
-    for (int i = 0; i <= cells; ++i)
-        for (int k = 0; k <= cells; ++k) mesh.vertices.push_back(corner(i, k));
-    const auto at = [&](int i, int k) { return static_cast<std::uint32_t>(i * (cells + 1) + k); };
-    for (int i = 0; i < cells; ++i)
-        for (int k = 0; k < cells; ++k) {
-            mesh.triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
-            mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
-        }
-    return mesh;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Vec3& point : points) lowest = std::min(lowest, (pose.orientation * point).z());
+    return lowest + pose.position.z();
 }
 
 }  // namespace throng

@@ -3,7 +3,7 @@
 
 #include "cost/hard_cases/hard_cases.hpp"
 
-#include <functional>
+#include <span>
 
 namespace throng {
 
@@ -34,8 +34,7 @@ void put_floor(SceneParts& parts,
                const Pose& frame,
                const FloorSize& size);
 
-/// A sheet of `cells` by `cells` squares, of two triangles each, whose front is up: `corner` tells
-/// where the one at (i, k) lies, along y first.
-MeshShape grid_mesh(int cells, const std::function<Vec3(int, int)>& corner);
+/// m, the height of the lowest of a body's points.
+double lowest_of(std::span<const Vec3> points, const Pose& pose);
 
 }  // namespace throng

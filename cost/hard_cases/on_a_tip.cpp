@@ -80,7 +80,7 @@ void hit(CaseBench& bench,
     Random random(1);
     SceneParts parts(bench.scene());
     how.set(parts.scene().settings);
-    const double size = how.size;
+    const double size = how.size, radius = 0.3 * size;
     const std::uint32_t material = parts.material(0.6, restitution);
     put_floor(parts, material, floor, {how.far, Quat::Identity()}, {40 * size, size, 9});
     std::vector<Vec3> places;
@@ -91,7 +91,6 @@ void hit(CaseBench& bench,
     if (!how.last_first) parts.add(kind.shape, on_its_foot(how, material, lean));
     for (int i = 0; i < kBalls; ++i) {
         const int at = how.last_first ? kBalls - 1 - i : i;
-        const double radius = 0.3 * size;
         const std::uint32_t ball = parts.ball(material, 800 * 4 * radius * radius * radius, radius,
                                               places[static_cast<std::size_t>(at)]);
         parts.body(ball).velocity = Vec3(0, 0, -3);

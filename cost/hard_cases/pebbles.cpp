@@ -8,7 +8,6 @@
 #include "throng/world.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace throng {
 
@@ -62,14 +61,9 @@ void put_pebbles(SceneParts& parts, std::uint32_t material, Random& random, cons
     }
 }
 
-// How far the lowest point of a body is below the floor, m.
-double depth_of(const Scene& scene, std::uint32_t id, const Pose& pose)
+const std::vector<Vec3>& points_of(const Scene& scene, std::uint32_t id)
 {
-    const auto& hull = std::get<HullShape>(scene.shapes[scene.bodies[id].shape].shape);
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const Vec3& point : hull.points)
-        lowest = std::min(lowest, (pose.orientation * point).z() + pose.position.z());
-    return -lowest;
+    return std::get<HullShape>(scene.shapes[scene.bodies[id].shape].shape).points;
 }
 
 void let_fall(CaseBench& bench, Floor floor, const Fall& fall)
@@ -99,7 +93,7 @@ void let_fall(CaseBench& bench, Floor floor, const Fall& fall)
                 pose.position -= fall.at;
                 const double beside = pose.position.head<2>().cwiseAbs().maxCoeff();
                 if (beside > size.wide - fall.size) continue;
-                const double depth = depth_of(parts.scene(), i, pose);
+                const double depth = -lowest_of(points_of(parts.scene(), i), pose);
                 // As they land they turn by radians in a step.
                 if (now > kTime / 2) deepest = std::max(deepest, depth);
                 // All of it, and a grid's corners are above 0.

@@ -3,10 +3,10 @@
 //
 // A floor of triangles does not say how thick it is. Stars lie on it, and a box a thousand times as
 // heavy comes down on them, so that for some steps they are driven in deeper than any body at rest.
-#include "cost/hard_cases/floors.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
 #include "scene/catalog/parts.hpp"
 #include "scene/catalog/random.hpp"
+#include "scene/catalog/sheets.hpp"
 #include "throng/energy_ledger.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
@@ -61,10 +61,10 @@ MeshShape sheet(double uneven, Random& random)
 {
     constexpr int kCells = 12;
     constexpr double kCell = 8;  // m
-    return grid_mesh(kCells, [&](int i, int k) {
+    return mesh_shape(sheet_mesh(kCells, [&](int i, int k) {
         return Vec3(kCell * (i - kCells / 2) + 0.31, kCell * (k - kCells / 2) + 0.17,
                     random.uniform(0, uneven));
-    });
+    }));
 }
 
 struct Heap {

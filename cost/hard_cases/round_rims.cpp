@@ -100,13 +100,6 @@ struct Fall {
 
 FloorSize floor_for(const RoundedHull& hull) { return {4 * hull.size, hull.size / 2}; }
 
-double lowest_of(const RoundedHull& hull, const Pose& pose)
-{
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const Vec3& point : hull.points) lowest = std::min(lowest, (pose.orientation * point).z());
-    return lowest + pose.position.z();
-}
-
 void let_fall(CaseBench& bench,
               const RoundedHull& hull,
               Floor floor,
@@ -121,14 +114,15 @@ void let_fall(CaseBench& bench,
     const Pose ground{fall.at, Quat::Identity()};
     if (!fall.last) put_floor(parts, material, floor, ground, floor_for(hull));
     Pose pose{fall.at, exponential(fall.lean * Vec3(0.28, 0.96, 0))};
-    pose.position.z() += fall.at.z() + 0.01 * hull.size - lowest_of(hull, pose);
+    pose.position.z() += fall.at.z() + 0.01 * hull.size - lowest_of(hull.points, pose);
     const std::uint32_t id = parts.hull(material, 100, HullShape{hull.points}, pose);
     if (fall.last) put_floor(parts, material, floor, ground, floor_for(hull));
     double speed = 0, sunk = 0;
     bench.run(parts.scene(), kTime, [&](World& world, double now) {
         const BodyId body = world.bodies()[id];
         // While it comes down it may sink in further.
-        if (now > kTime / 2) sunk = std::max(sunk, fall.at.z() - lowest_of(hull, world.pose(body)));
+        if (now > kTime / 2)
+            sunk = std::max(sunk, fall.at.z() - lowest_of(hull.points, world.pose(body)));
         speed = std::max(world.velocity(body).norm(),
                          hull.size / 2 * world.angular_velocity(body).norm());
         return true;

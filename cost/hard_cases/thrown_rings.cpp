@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -50,15 +49,6 @@ struct End {
     int below = 0, bodies = 0;
     double deepest = 0, sum = 0;  // m; of depths at the end
 };
-
-// How far the lowest corner of a body is below the floor, m.
-double depth_of(const MeshShape& mesh, const Pose& pose)
-{
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const Vec3& corner : mesh.vertices)
-        lowest = std::min(lowest, (pose.orientation * corner).z() + pose.position.z());
-    return -lowest;
-}
 
 void throw_them(CaseBench& bench,
                 const How& how,
@@ -101,7 +91,7 @@ void throw_them(CaseBench& bench,
             Pose pose = world.pose(world.bodies()[id]);
             pose.position -= how.far;
             if (pose.position.head<2>().cwiseAbs().maxCoeff() > kFloor.wide - ring.radius) continue;
-            const double depth = depth_of(mesh, pose);
+            const double depth = -lowest_of(mesh.vertices, pose);
             // As they land they go in by what they fall in a step.
             if (now > kLanded) worst.deepest = std::max(worst.deepest, depth);
             sum += std::max(depth, 0.0);

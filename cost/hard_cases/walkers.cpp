@@ -2,8 +2,9 @@
 //
 // Answer: they have the speed that they are driven at; a wall is pressed by the drive, m v / dt at
 // most, and by what friction bears, and nobody climbs.
-#include "cost/hard_cases/floors.hpp"
 #include "cost/hard_cases/hard_cases.hpp"
+#include "scene/catalog/parts.hpp"
+#include "scene/catalog/sheets.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
 
@@ -39,7 +40,7 @@ struct Walk {
 MeshShape sheet(double half, int cells)
 {
     const auto along = [&](int i) { return half * (2.0 * i / cells - 1); };
-    return grid_mesh(cells, [&](int i, int k) { return Vec3(along(i), along(k), 0); });
+    return mesh_shape(sheet_mesh(cells, [&](int i, int k) { return Vec3(along(i), along(k), 0); }));
 }
 
 std::uint32_t put_static_box(SceneParts& parts, const Vec3& half, const Pose& pose)

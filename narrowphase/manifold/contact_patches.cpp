@@ -95,12 +95,12 @@ class Spread {
 public:
     using Point = LocalManifold<double>::Point;
 
-    /// How much a depth missing weighs: see kShallow; and what is no deeper than the deepest, m.
+    /// How much a depth missing weighs: see kShallow; and from which depth on none is missing, m.
     Spread(const std::vector<Point>& points, const Vec3& normal, double shallow, double deep)
         : points_(points), shallow_(shallow)
     {
         deepest_ = best([](const Point&) { return 0.0; });
-        deep_ = -deep;
+        deep_ = -deep;  // of the others, not of which is the deepest
         const Vec3 start = across(normal);
         take(best([&](const Point& p) { return start.dot(p.position); }));
         const Vec3 from = points_[chosen_[0]].position;
@@ -131,11 +131,12 @@ private:
     std::size_t best(const Place& place) const
     {
         const double deepest = deepest_ < points_.size() ? points_[deepest_].separation : 0;
+        const double full = std::max(deepest, deep_);
         std::size_t best = 0;
         double most = -std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const double above = std::max(points_[i].separation, deep_) - std::max(deepest, deep_);
-            const double score = place(points_[i]) - shallow_ * above;
+            const double missing = std::max(points_[i].separation, deep_) - full;
+            const double score = place(points_[i]) - shallow_ * missing;
             if (!(score > most)) continue;
             most = score;
             best = i;

@@ -122,7 +122,7 @@ void ConvexSide::sample(LeafSample<double>& leaf) const
 void MeshSide::bound(LeafSample<double>& places) const
 {
     // Behind as in front: a ball this far from all triangles has no touch in it.
-    const double behind = std::max(limits_.furthest - limits_.speculative_margin, 0.0);
+    const double behind = std::max(limits_.deepest_before - limits_.speculative_margin, 0.0);
     for (std::size_t i = 0; i < places.count; ++i) {
         const double asked = places.within[i] + behind;
         const bool near = comes_within(mesh_, place_of(places, i), asked);
@@ -132,7 +132,7 @@ void MeshSide::bound(LeafSample<double>& places) const
 
 void MeshSide::sample(LeafSample<double>& leaf) const
 {
-    const double furthest = std::max(limits_.speculative_margin, limits_.furthest);
+    const double furthest = std::max(limits_.speculative_margin, limits_.deepest_before);
     std::uint32_t beside = kNoTriangle;  // points of a leaf are neighbors
     for (std::size_t i = 0; i < leaf.count; ++i) {
         const Vec3 place = place_of(leaf, i);
@@ -155,7 +155,7 @@ bool MeshSide::touches(double distance, const MeshPoint& nearest) const
     const Vec3& front = mesh_.normals[nearest.triangle];
     if (!(front.dot(limits_.middle - nearest.point) > 0)) return distance >= -limits_.deepest;
     pressed_in_ = pressed_in_ || distance < -0.5 * limits_.deepest;
-    return distance >= -limits_.furthest;
+    return distance >= -limits_.deepest_before;
 }
 
 namespace {

@@ -74,15 +74,15 @@ private:
     ShapeRef shape_;
 };
 
-/// What lies behind a static mesh and touches it.
+/// How deep behind a static mesh what touches it may lie.
 ///
-///   middle    m, of the body, in the mesh's frame
-///   deepest   m, what lies deeper does not touch where the middle is behind as well
-///   furthest  m, what lies deeper does not touch where the middle is before it
-///   past_rim  m, what lies deeper and is nearest to the rim does not touch: that went round it
+///   middle          m, of the body, in the mesh's frame
+///   deepest         m, where the middle is behind as well
+///   deepest_before  m, where the middle is before the mesh; no less
+///   past_rim        m, of what is nearest to the rim: what is deeper went round it
 struct MeshLimits {
     Vec3 middle = Vec3::Zero();
-    double speculative_margin = 0, deepest = 0, furthest = 0, past_rim = 0;
+    double speculative_margin = 0, deepest = 0, deepest_before = 0, past_rim = 0;
 };
 
 /// The front of a static mesh.

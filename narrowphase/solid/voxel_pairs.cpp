@@ -67,14 +67,14 @@ double find_points_on_mesh(const Solid& a,
     MeshLimits limits;
     limits.middle = mesh_in_a.to_local(0.5 * (box.lower + box.upper));
     limits.speculative_margin = speculative_margin;
-    limits.deepest = limits.furthest = std::min(unknown + pressed_in, size.norm());
+    limits.deepest = limits.deepest_before = std::min(unknown + pressed_in, size.norm());
     limits.past_rim = unknown;
     const MeshSide near(mesh, limits);
     const std::size_t before = out.size();
     const double apart = find_points_of_a(a, near, mesh_in_a, speculative_margin, out);
     if (!near.pressed_in()) return apart;
     // Few are, and to look so far takes longer.
-    limits.furthest = size.norm();
+    limits.deepest_before = size.norm();
     out.resize(before);
     return find_points_of_a(a, MeshSide(mesh, limits), mesh_in_a, speculative_margin, out);
 }

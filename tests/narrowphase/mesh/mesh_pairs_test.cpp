@@ -5,6 +5,7 @@
 #include "narrowphase/dispatch.hpp"
 #include "narrowphase/mesh/mesh_sides.hpp"
 #include "scene/catalog/closed_meshes.hpp"
+#include "scene/catalog/sheets.hpp"
 #include "tests/support/dice.hpp"
 #include "tests/support/polyhedra.hpp"
 
@@ -18,22 +19,10 @@ namespace {
 
 constexpr ShapeRef kMesh{ShapeKind::mesh, 0};
 
-// `cells` by `cells` squares of two triangles each: `corner` tells where the one at (i, k) lies.
-template <class Corner>
-Mesh grid_of(int cells, const Corner& corner)
+Mesh grid_of(int cells, const std::function<Vec3(int, int)>& corner)
 {
-    std::vector<Vec3> vertices;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    const auto id = [&](int i, int j) { return static_cast<std::uint32_t>(i * (cells + 1) + j); };
-    for (int i = 0; i <= cells; ++i)
-        for (int j = 0; j <= cells; ++j) vertices.push_back(corner(i, j));
-    for (int i = 0; i < cells; ++i) {
-        for (int j = 0; j < cells; ++j) {
-            triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
-            triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
-        }
-    }
-    return build_mesh(vertices, triangles).mesh;
+    const TriangleSoup soup = sheet_mesh(cells, corner);
+    return build_mesh(soup.vertices, soup.triangles).mesh;
 }
 
 // A flat floor of side `cells`, cell 1 m, about the origin; with a step up of `rise` for x > 0.

@@ -4,6 +4,7 @@
 #include "cooking/hulls/hull.hpp"
 #include "cooking/repair/build_mesh.hpp"
 #include "cooking/repair/mesh_health.hpp"
+#include "scene/catalog/sheets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,16 +18,8 @@ using Soup = std::pair<std::vector<Vec3>, std::vector<std::array<std::uint32_t, 
 // A floor of 4 m by 4 m at 0, in squares of 1 m.
 Soup floor_soup()
 {
-    Soup soup;
-    for (int i = 0; i <= 4; ++i)
-        for (int j = 0; j <= 4; ++j) soup.first.emplace_back(i - 2, j - 2, 0);
-    for (std::uint32_t i = 0; i < 4; ++i)
-        for (std::uint32_t j = 0; j < 4; ++j) {
-            const std::uint32_t a = 5 * i + j, b = a + 5;
-            soup.second.push_back({a, b, b + 1});
-            soup.second.push_back({a, b + 1, a + 1});
-        }
-    return soup;
+    const TriangleSoup soup = sheet_mesh(4, [](int i, int k) { return Vec3(i - 2, k - 2, 0); });
+    return {soup.vertices, soup.triangles};
 }
 
 // A cube of 2 m about its origin; wound outward or inward.

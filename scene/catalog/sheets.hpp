@@ -1,0 +1,14 @@
+// Sheets: open meshes over a square of vertices.
+#pragma once
+
+#include "throng/scene.hpp"
+
+#include <functional>
+
+namespace throng {
+
+/// `cells` by `cells` squares of two triangles each, whose front is up: `corner` tells where the
+/// one at (i, k) lies, i along x and k along y, and is asked once for each, k first.
+TriangleSoup sheet_mesh(int cells, const std::function<Vec3(int, int)>& corner);
+
+}  // namespace throng
