@@ -24,9 +24,17 @@ constexpr double kSpeed = 7, kSpin = 10;     // m/s, rad/s
 constexpr double kDeep = 1, kMean = 0.05;    // 1, of their thickness
 constexpr double kApart = 5;                 // m
 constexpr char kMetBy[] = "dt=1/240";
-constexpr int kSide = 3;  // bodies of a side
-constexpr FloorSize kFloor{60, 1, 30};
-constexpr Floor kFloorsBelow[] = {Floor::plane, Floor::box, Floor::grid};
+constexpr int kSide = 3;      // bodies of a side
+constexpr double kWide = 60;  // m, half of a floor's side
+constexpr int kCells = 30;
+
+struct Below {
+    Floor floor;
+    double thick;  // m, half of it
+};
+
+constexpr Below kFloorsBelow[] = {
+    {Floor::plane, 0}, {Floor::box, 1}, {Floor::box, 0.05}, {Floor::box, 0.01}, {Floor::grid, 0}};
 
 struct How {
     const char* setting;
@@ -53,7 +61,7 @@ struct End {
 void throw_them(CaseBench& bench,
                 const How& how,
                 const Ring& ring,
-                Floor floor,
+                const Below& floor,
                 double friction,
                 int seed,
                 End& worst)
@@ -79,9 +87,10 @@ void throw_them(CaseBench& bench,
         thrown.push_back(body);
     }
     std::vector<std::uint32_t> ids;
-    if (!how.last_first) put_floor(parts, material, floor, frame, kFloor);
+    const FloorSize size{kWide, floor.thick, kCells};
+    if (!how.last_first) put_floor(parts, material, floor.floor, frame, size);
     for (const BodyDescription& body : thrown) ids.push_back(parts.add(mesh, body));
-    if (how.last_first) put_floor(parts, material, floor, frame, kFloor);
+    if (how.last_first) put_floor(parts, material, floor.floor, frame, size);
     int below = 0, bodies = 0;
     double sum = 0;
     bench.run(parts.scene(), bench.brief() ? 2.5 : kSeconds, [&](World& world, double now) {
@@ -90,7 +99,7 @@ void throw_them(CaseBench& bench,
         for (const std::uint32_t id : ids) {
             Pose pose = world.pose(world.bodies()[id]);
             pose.position -= how.far;
-            if (pose.position.head<2>().cwiseAbs().maxCoeff() > kFloor.wide - ring.radius) continue;
+            if (pose.position.head<2>().cwiseAbs().maxCoeff() > kWide - ring.radius) continue;
             const double depth = -lowest_of(mesh.vertices, pose);
             // As they land they go in by what they fall in a step.
             if (now > kLanded) worst.deepest = std::max(worst.deepest, depth);
@@ -128,7 +137,7 @@ void case_thrown_rings(CaseBench& bench)
     for (const How& how : hows) {
         for (const Ring& ring : kRings) {
             End worst;
-            for (const Floor floor : kFloorsBelow)
+            for (const Below& floor : kFloorsBelow)
                 for (const double friction : {0.0, 0.5}) {
                     if (bench.brief() && friction > 0) continue;
                     for (int seed = 0; seed < (bench.brief() ? 1 : how.seeds); ++seed)

@@ -86,6 +86,12 @@ struct SphereTree {
     std::vector<Level> levels;
 };
 
+/// A ball within a solid.
+struct SolidCore {
+    Vec3 center = Vec3::Zero();
+    double radius = 0;
+};
+
 /// A closed shape that may move.
 ///
 ///   field, points  way voxels; for others empty
@@ -93,6 +99,8 @@ struct SphereTree {
 ///   rays           way depth_image: along the longest side of the smaller shape of a pair
 ///   layers         way depth_image: along each axis, what the rays of pairs meet in which this is
 ///                  the smaller one; empty where that would take much room
+///   cores          balls all over it, which may not pass through anything whatever contact does;
+///                  none where it is too thin for them
 ///   error          m, how far a depth may be from that of the triangles: half a voxel, a pixel
 ///                  of this shape, or the spheres' own; smaller features may be missed
 struct Solid {
@@ -103,6 +111,7 @@ struct Solid {
     SphereTree spheres;
     int rays = 0;
     std::array<RayLayers, 3> layers;
+    std::vector<SolidCore> cores;
     double error = 0;
 };
 

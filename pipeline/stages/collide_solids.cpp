@@ -74,16 +74,31 @@ private:
             pose_seen_from_a(shapes_, colliders_.shape[sides.other], bounds_.placed[sides.solid],
                              bounds_.placed[sides.other]);
         const std::span kept = items_of(contacts_.found_before.pairs, old_place(pairs_, i));
+        const double margin = margin_of(pair);
         const std::size_t first = out.size();
         Found found;
-        if (kept.empty()
-            || !recycle_all(kept.front(), sides, pose, pair.speculative_margin, block, found, out))
-            find_anew(sides, pose, pair.speculative_margin, pressed_in(kept, sides, pose), block,
-                      found, out);
+        if (kept.empty() || !recycle_all(kept.front(), sides, pose, margin, block, found, out))
+            find_anew(sides, pose, margin, pressed_in(kept, sides, pose), block, found, out);
         found.pair = i;
         contacts_.finds_scratch.found_of_block[block].push_back(found);
         for (std::size_t n = first; n < out.size(); ++n)
             carry_over(old, out[n].contact, out[n].part);
+    }
+
+    // How far a pair is looked at, m. Who is fast has been held where his triangles met something,
+    // and what stands for them may be off by its error: he would fall in. No further than that, as
+    // of many points the outermost count, and those that touch would not.
+    double margin_of(const PairPlace& pair) const
+    {
+        if (bounds_.fast.empty() || !(bounds_.kept[pair.a] > 0 || bounds_.kept[pair.b] > 0))
+            return pair.speculative_margin;
+        return std::max(pair.speculative_margin, error_of(pair.a) + error_of(pair.b));
+    }
+
+    double error_of(std::uint32_t at) const
+    {
+        const ShapeRef shape = colliders_.shape[at];
+        return shape.kind == ShapeKind::solid ? shapes_.solids[shape.index].error : 0;
     }
 
     void find_anew(const Sides& sides,

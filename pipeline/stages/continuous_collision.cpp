@@ -36,14 +36,15 @@ constexpr double kNever = 2;             // later than the step
 // must not get through all the same: that is for the same shape, smaller by so much, or for a ball
 // within it. The greatest of them that does not touch yet is taken; contact may have pressed a thin
 // one in by more than a tenth.
-constexpr double kScales[] = {0.9, 0.6, 0.3, 0.1};
+constexpr double kScales[] = {1, 0.9, 0.6, 0.3, 0.1};
 
 // What a sliding one may meet with no more than this share of its smallest half extent, it is not
 // held by.
 constexpr double kSkin = 0.1;
 
-// The first of these scales for one that contacts look ahead of: they will have held it.
-constexpr std::size_t kHeldAhead = 1;
+// The first of these scales: of two that are triangles, of which none but what is within one is
+// asked; of what touches; and of what contacts look ahead of: they will have held it.
+constexpr std::size_t kWhole = 0, kTouching = 1, kHeldAhead = 2;
 
 struct Candidate {
     PairKey key = 0;
@@ -198,6 +199,12 @@ private:
             || colliders_.shape[second_of(key)].kind == ShapeKind::mesh;
     }
 
+    bool has_triangles(std::uint32_t at) const
+    {
+        const ShapeKind kind = colliders_.shape[at].kind;
+        return kind == ShapeKind::mesh || kind == ShapeKind::solid;
+    }
+
     bool ways_cross(PairKey key) const
     {
         const std::uint32_t a = first_of(key), b = second_of(key);
@@ -294,18 +301,30 @@ private:
         return {colliders_.shape[at], way.trajectory, way.attached * colliders_.local[at]};
     }
 
-    // What must not get through whatever contact does.
-    MovingShape smaller(std::uint32_t at, double scale)
+    // How many shapes within a collider there are, none of which must get through.
+    std::size_t core_count(std::uint32_t at) const
+    {
+        const ShapeRef shape = colliders_.shape[at];
+        return shape.kind == ShapeKind::solid
+            ? std::max<std::size_t>(shapes_.solids[shape.index].cores.size(), 1)
+            : 1;
+    }
+
+    // One of those, smaller. The middle of a solid may be outside of it.
+    MovingShape smaller(std::uint32_t at, double scale, std::size_t core = 0)
     {
         MovingShape inner = moving(at);
         const ShapeKind kind = inner.shape.kind;
-        if (kind == ShapeKind::hull)
-            inner.local.position +=
-                inner.local.orientation * shapes_.hulls[inner.shape.index].center;
-        if (kind == ShapeKind::hull || kind == ShapeKind::solid || kind == ShapeKind::mesh)
-            inner.ball = scale * colliders_.inner_extent[at];
-        else
+        SolidCore ball = {Vec3::Zero(), colliders_.inner_extent[at]};
+        if (kind == ShapeKind::hull) ball.center = shapes_.hulls[inner.shape.index].center;
+        if (kind == ShapeKind::solid && !shapes_.solids[inner.shape.index].cores.empty())
+            ball = shapes_.solids[inner.shape.index].cores[core];
+        if (kind == ShapeKind::hull || kind == ShapeKind::solid || kind == ShapeKind::mesh) {
+            inner.local.position += inner.local.orientation * ball.center;
+            inner.ball = scale * ball.radius;
+        } else {
             inner.scale = scale;
+        }
         return inner;
     }
 
@@ -324,23 +343,64 @@ private:
         const ImpactRule rule = rule_of(candidate.key);
         const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
         const bool ahead = (way_a.ahead || way_b.ahead) && !candidate.followed;
+        const bool triangles = has_triangles(a) && has_triangles(b);
         Impact impact;
-        if (ahead) impact = time_of_impact(shapes_, moving(a), moving(b), since, 1, rule);
+        if (ahead && !triangles)
+            impact = time_of_impact(shapes_, moving(a), moving(b), since, 1, rule);
         candidate.pressed = impact.state == ToiState::touching_at_start;
-        if (!ahead || candidate.pressed) {
+        if (!ahead || triangles || candidate.pressed) {
+            const std::size_t first = !ahead ? kHeldAhead : triangles ? kWhole : kTouching;
             const bool of_a = way_a.fast || (!way_b.fast && states_.dynamic(way_a.body));
-            if (!(colliders_.inner_extent[of_a ? a : b] > 0)) return;
-            for (std::size_t i = ahead ? 0 : kHeldAhead; i < std::size(kScales); ++i) {
-                impact = of_a
-                    ? time_of_impact(shapes_, smaller(a, kScales[i]), moving(b), since, 1, rule)
-                    : time_of_impact(shapes_, moving(a), smaller(b, kScales[i]), since, 1, rule);
-                if (impact.state != ToiState::touching_at_start) break;
-                candidate.pressed = true;
+            const std::uint32_t at = of_a ? a : b;
+            if (!(colliders_.inner_extent[at] > 0)) return;
+            impact = {};
+            const std::size_t cores = core_count(at);
+            for (std::size_t core = 0; core < cores; ++core) {
+                if (cores > 1 && !core_comes_near(at, core, of_a ? b : a)) continue;
+                const Impact met = impact_of_core(candidate, of_a, core, since, first);
+                if (met.state == ToiState::hit
+                    && (impact.state != ToiState::hit || met.time < impact.time))
+                    impact = met;
             }
         }
         if (impact.state != ToiState::hit) return;
         candidate.time = impact.time;
         candidate.normal = impact.normal;
+    }
+
+    // Whether the ways of a ball within a solid and of another shape cross.
+    bool core_comes_near(std::uint32_t at, std::size_t core, std::uint32_t other)
+    {
+        const Way& way = way_of(colliders_.body[at]);
+        if (way.held || way_of(colliders_.body[other]).held) return true;
+        if (colliders_.shape[other].kind == ShapeKind::plane) return true;
+        const MovingShape ball = smaller(at, 1, core);
+        const Vec3 begins = ball.trajectory.at(0) * ball.local.position;
+        const Vec3 ends = ball.trajectory.at(1) * ball.local.position;
+        // An arc is no further from its chord than this, nor any place of it than across.
+        const double arm = ball.local.position.norm();
+        const double arc = std::min(arm * ball.trajectory.turn.squaredNorm() / 8, 2 * arm);
+        const double slack = ball.ball + arc + parameters_.tolerance * colliders_.inner_extent[at];
+        const Box3 box{begins.cwiseMin(ends).array() - slack,
+                       begins.cwiseMax(ends).array() + slack};
+        return box.overlaps(box_of_way(other));
+    }
+
+    // When a shape within one of the two meets the other: the greatest that does not touch it yet.
+    Impact impact_of_core(
+        Candidate& candidate, bool of_a, std::size_t core, double since, std::size_t first)
+    {
+        const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
+        const ImpactRule rule = rule_of(candidate.key);
+        Impact impact;
+        for (std::size_t i = first; i < std::size(kScales); ++i) {
+            impact = of_a
+                ? time_of_impact(shapes_, smaller(a, kScales[i], core), moving(b), since, 1, rule)
+                : time_of_impact(shapes_, moving(a), smaller(b, kScales[i], core), since, 1, rule);
+            if (impact.state != ToiState::touching_at_start) break;
+            candidate.pressed = true;
+        }
+        return impact;
     }
 
     // Who touches from the start what is not dynamic.

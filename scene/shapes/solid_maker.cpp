@@ -5,6 +5,7 @@
 #include "cooking/fields/surface_points.hpp"
 #include "cooking/repair/build_mesh.hpp"
 #include "cooking/short_text.hpp"
+#include "cooking/sphere_trees/solid_cores.hpp"
 #include "cooking/sphere_trees/spheres_cache.hpp"
 #include "kernels/geometry/image_views.hpp"
 #include "kernels/geometry/mesh.hpp"
@@ -22,6 +23,7 @@ Solid voxel_solid(const Mesh& surface, VoxelBricks field)
     Solid solid;
     solid.representation = SolidRepresentation::voxels;
     solid.points = build_surface_points(surface, field.voxel);
+    solid.cores = build_solid_cores(surface, solid.points);
     solid.field = std::move(field);
     solid.error = 0.5 * solid.field.voxel;
     return solid;
@@ -35,6 +37,9 @@ std::string summary_of(const Solid& solid)
         + short_text(static_cast<double>(solid.field.values.size()) * 4e-6) + " MB), "
         + std::to_string(solid.points.size()) + " surface points";
 }
+
+// Along the longest side, where points are wanted for cores alone.
+constexpr double kPointsAlong = 32;
 
 // Share of the longest side or of the volume by which a mesh may be off and nobody is warned: what
 // the ways are off by unasked, half a voxel of 48 along the side, a pixel of 32, parts of 2.5 %, is
@@ -206,6 +211,9 @@ private:
     {
         made_.summary += error_text(solid);
         warn_of_loss(solid.error);
+        if (solid.points.size() == 0)
+            solid.cores = build_solid_cores(
+                mesh_, build_surface_points(mesh_, longest_side(mesh_) / kPointsAlong));
         solid.mesh = std::move(mesh_);
         if (solid.representation == SolidRepresentation::depth_image)
             solid.layers = layers_of(solid);

@@ -1,5 +1,7 @@
 // Fast bodies: whoever goes far in a step is stopped where it meets something, and by nothing else.
 #include "kernels/math/rotation.hpp"
+#include "scene/catalog/closed_meshes.hpp"
+#include "scene/catalog/parts.hpp"
 #include "tests/support/dice.hpp"
 #include "tests/support/small_scenes.hpp"
 #include "tests/support/watched.hpp"
@@ -71,6 +73,44 @@ TEST(FastBodies, NeverComeThroughAThinPlateOrASheet)
                     for (std::size_t i = 2; i < 6; ++i) EXPECT_LT(x_of(world, i), 0.001);
                 }
             }
+}
+
+// The middle of a ring is outside of it, and what stands for it is off by more than the tolerance.
+TEST(FastBodies, ThatAreRingsAreNotCaughtInABoardNorFallThroughASheet)
+{
+    MeshShape flat;
+    flat.vertices = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
+    flat.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const MeshShape ring = mesh_shape(torus_mesh(0.1, 0.01, 16, 8));
+    for (const bool board : {true, false})
+        for (const NonConvex way : {NonConvex::voxels, NonConvex::depth_image}) {
+            SceneOf made;
+            made.scene.materials[0].friction = 0.5;
+            made.scene.settings.nonconvex = way;
+            if (board)
+                still(made.box({50, 50, 0.01}, {0, 0, -0.01}));
+            else
+                still(made.body(made.shape(flat), Vec3::Zero()));
+            const auto shape = made.shape(ring);
+            Dice dice(4);
+            for (int i = 0; i < 8; ++i) {
+                BodyDescription& body =
+                    made.body(shape, {5.0 * (i % 4), 5.0 * (i / 4), dice.between(0.15, 0.4)});
+                body.orientation = dice.turn();
+                body.velocity = dice.point(7);
+                body.velocity.z() = -7;
+                body.angular_velocity = dice.point(10);
+            }
+            World world(made.scene);
+            for (int step = 0; step < 180; ++step) world.step();
+            for (std::size_t i = 1; i <= 8; ++i) {
+                const Pose pose = world.pose(world.bodies()[i]);
+                double lowest = 1;
+                for (const Vec3& vertex : ring.vertices)
+                    lowest = std::min(lowest, (pose * vertex).z());
+                EXPECT_GT(lowest, -0.005) << board << ", body " << i;
+            }
+        }
 }
 
 TEST(FastBodies, MeetTheWallAtTheirTimeOfImpact)
