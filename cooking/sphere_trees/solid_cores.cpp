@@ -3,6 +3,7 @@
 #include "kernels/geometry/mesh_distance.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace throng {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 constexpr std::size_t kMost = 16;
 constexpr std::size_t kGrown = 512;    // balls, of which those are chosen
 constexpr double kThinnest = 1.0 / 3;  // of the smallest half extent
-constexpr int kShrinks = 16;           // each halves what is left, at the least where it is flat
+constexpr int kShrinks = 16;           // most balls are within after five
 constexpr double kTouching = 1e-3;     // of the radius, by which a ball may stick out
 
 // The greatest ball that touches the surface at a point from within, as told by what is nearest to
@@ -35,13 +36,14 @@ SolidCore grown_at(const Mesh& mesh, const Vec3& point, const Vec3& outward, dou
 
 std::vector<SolidCore> build_solid_cores(const Mesh& mesh, const SurfacePoints& points)
 {
+    std::vector<SolidCore> grown, cores;
+    if (mesh.vertices.empty()) return cores;
     Vec3 lower = mesh.vertices.front(), upper = lower;
     for (const Vec3& vertex : mesh.vertices) {
         lower = lower.cwiseMin(vertex);
         upper = upper.cwiseMax(vertex);
     }
     const double half = 0.5 * (upper - lower).minCoeff();
-    std::vector<SolidCore> grown;
     const std::size_t stride = points.size() / kGrown + 1;
     for (std::size_t i = 0; i < points.size(); i += stride) {
         const Vec3 point(points.x[i], points.y[i], points.z[i]);
@@ -49,7 +51,6 @@ std::vector<SolidCore> build_solid_cores(const Mesh& mesh, const SurfacePoints& 
         const bool inside = core.radius > 0 && signed_distance(mesh, core.center) < 0;
         if (inside && core.radius >= kThinnest * half) grown.push_back(core);
     }
-    std::vector<SolidCore> cores;
     if (grown.empty()) return cores;
     const auto thinner = [](const SolidCore& a, const SolidCore& b) { return a.radius < b.radius; };
     cores.push_back(*std::max_element(grown.begin(), grown.end(), thinner));
