@@ -33,7 +33,7 @@ constexpr std::size_t kBoxes = 1 << 14;  // a block
 constexpr double kNever = 2;             // later than the step
 
 // Of a shape that touches another from the start contact takes care. What it does not hold back
-// must not get through all the same: that is for the same shape, smaller by so much, or for a ball
+// must not get through all the same: that is for the same shape, smaller by so much, or for balls
 // within it. The greatest of them that does not touch yet is taken; contact may have pressed a thin
 // one in by more than a tenth.
 constexpr double kScales[] = {1, 0.9, 0.6, 0.3, 0.1};
