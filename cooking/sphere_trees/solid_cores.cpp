@@ -1,5 +1,6 @@
 #include "cooking/sphere_trees/solid_cores.hpp"
 
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
 
 #include <algorithm>
@@ -37,13 +38,9 @@ SolidCore grown_at(const Mesh& mesh, const Vec3& point, const Vec3& outward, dou
 std::vector<SolidCore> build_solid_cores(const Mesh& mesh, const SurfacePoints& points)
 {
     std::vector<SolidCore> grown, cores;
-    if (mesh.vertices.empty()) return cores;
-    Vec3 lower = mesh.vertices.front(), upper = lower;
-    for (const Vec3& vertex : mesh.vertices) {
-        lower = lower.cwiseMin(vertex);
-        upper = upper.cwiseMax(vertex);
-    }
-    const double half = 0.5 * (upper - lower).minCoeff();
+    if (mesh.tree.empty()) return cores;
+    const Box3 box = box_of(mesh);
+    const double half = 0.5 * (box.upper - box.lower).minCoeff();
     const std::size_t stride = points.size() / kGrown + 1;
     for (std::size_t i = 0; i < points.size(); i += stride) {
         const Vec3 point(points.x[i], points.y[i], points.z[i]);

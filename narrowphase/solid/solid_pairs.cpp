@@ -24,12 +24,6 @@ double size_of(const Shapes& shapes, ShapeRef shape)
     return 0.5 * (box.upper - box.lower).norm();
 }
 
-// Of what stands for the shape: spheres may reach out of it by so much.
-double error_of(const Shapes& shapes, ShapeRef shape)
-{
-    return shape.kind == ShapeKind::solid ? shapes.solids[shape.index].error : 0;
-}
-
 // How far two boxes are apart along the axis of the first that parts them most; below 0 where none
 // does.
 double separation_between(const Box3& a, const Box3& b)
@@ -64,13 +58,19 @@ void find_candidates_from_other(const PairInput<double>& in,
 
 }  // namespace
 
+double shape_error(const Shapes& shapes, ShapeRef shape)
+{
+    return shape.kind == ShapeKind::solid ? shapes.solids[shape.index].error : 0;
+}
+
 SolidAnswer
 collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out, double pressed_in)
 {
     const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     SolidAnswer answer;
-    answer.apart = least_separation(shapes, solid, other, other_in_solid) - error_of(shapes, solid)
-        - error_of(shapes, other);
+    // Spheres may reach out of it by so much.
+    answer.apart = least_separation(shapes, solid, other, other_in_solid)
+        - shape_error(shapes, solid) - shape_error(shapes, other);
     if (answer.apart > speculative_margin) return answer;
     thread_local std::vector<ContactCandidate> candidates;
     candidates.clear();

@@ -18,6 +18,9 @@ struct SolidAnswer {
     double apart = 0;
 };
 
+/// m, how far what stands for a shape in contact may be off its triangles: 0 of all but solids.
+double shape_error(const Shapes& shapes, ShapeRef shape);
+
 /// Where a solid touches another shape of any kind, out to the margin: manifolds in the solid's
 /// frame, normals from the solid to the other, in order of patch.
 ///

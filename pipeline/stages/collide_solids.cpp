@@ -92,13 +92,9 @@ private:
     {
         if (bounds_.fast.empty() || !(bounds_.kept[pair.a] > 0 || bounds_.kept[pair.b] > 0))
             return pair.speculative_margin;
-        return std::max(pair.speculative_margin, error_of(pair.a) + error_of(pair.b));
-    }
-
-    double error_of(std::uint32_t at) const
-    {
-        const ShapeRef shape = colliders_.shape[at];
-        return shape.kind == ShapeKind::solid ? shapes_.solids[shape.index].error : 0;
+        const double error = shape_error(shapes_, colliders_.shape[pair.a])
+            + shape_error(shapes_, colliders_.shape[pair.b]);
+        return std::max(pair.speculative_margin, error);
     }
 
     void find_anew(const Sides& sides,
