@@ -1,6 +1,7 @@
 #include "narrowphase/solid/surface_separations.hpp"
 
 #include "kernels/geometry/closest_points.hpp"
+#include "kernels/geometry/mesh_distance.hpp"
 #include "narrowphase/manifold/places_between.hpp"
 #include "narrowphase/mesh/triangle_contacts.hpp"
 #include "narrowphase/solid/solid_pairs.hpp"
@@ -23,6 +24,8 @@ constexpr double kRounding = 1e-13;
 // Places this near one another, as a part of the speculative margin, with normals as near, are the
 // same, told of two triangles.
 constexpr double kSame = 1e-3;
+// The least depth that is looked for first, as a part of what two solids are off by.
+constexpr double kNarrow = 1.0 / 16;
 // Sine of the angle between edges that are level with one another.
 constexpr double kLevel = 1e-6;
 
@@ -83,16 +86,18 @@ bool pierces(const Placed& one, const Placed& other)
 }
 
 // `below` m: how far a place of the one may lie behind the other and is told of, if surfaces that
-// cross are to be told of at all.
+// cross are to be told of at all. `closed` says whether b has an inside, as a has.
 class TwoSurfaces {
 public:
     TwoSurfaces(const Mesh& a,
                 const Mesh& b,
                 const Pose& b_in_a,
                 double speculative_margin,
-                double below = 0)
-        : a_(a), b_(b), turn_(b_in_a.orientation.toRotationMatrix()), spread_(turn_.cwiseAbs()),
-          shift_(b_in_a.position), speculative_margin_(speculative_margin), below_(below),
+                double below = 0,
+                bool closed = false)
+        : a_(a), b_(b), closed_(closed), turn_(b_in_a.orientation.toRotationMatrix()),
+          spread_(turn_.cwiseAbs()), shift_(b_in_a.position),
+          speculative_margin_(speculative_margin), below_(below),
           wide_(std::max(speculative_margin, below))
     { }
 
@@ -107,6 +112,8 @@ public:
     }
 
     const std::vector<Manifold>& found() const { return found_; }
+    /// Pairs of triangles that were held against one another.
+    std::size_t looked_at() const { return looked_at_; }
 
 private:
     bool near(const Box3& p, const Box3& q) const
@@ -119,6 +126,7 @@ private:
     void process(std::uint32_t p, std::uint32_t q)
     {
         static const Mat3 kUnturned = Mat3::Identity();
+        ++looked_at_;
         const MeshTriangle own(a_, p), others(b_, q);
         const Placed a(own, kUnturned, Vec3::Zero()), b(others, turn_, shift_);
         if (beside_plane(a.normal, a.corners, b.corners, wide_)
@@ -185,8 +193,18 @@ private:
         return (one.corners[(edge + 1) % 3] - one.corners[edge]).normalized();
     }
 
+    // What is behind the far side of the other need not be in it: what lies between the two is in
+    // both.
+    bool overlap_at(const Vec3& place) const
+    {
+        const double slack = kSame * wide_;
+        return signed_distance(a_, place) <= slack
+            && (!closed_ || signed_distance(b_, turn_.transpose() * (place - shift_)) <= slack);
+    }
+
     void add(const Vec3& place, const Vec3& normal, double separation)
     {
+        if (separation < 0 && !overlap_at(place)) return;
         for (const Manifold& other : found_)
             if ((other.points[0].position - place).norm() <= kSame * wide_
                 && (other.normal - normal).norm() <= kSame)
@@ -198,10 +216,12 @@ private:
     }
 
     const Mesh &a_, &b_;
+    bool closed_;
     Mat3 turn_, spread_;
     Vec3 shift_;
     double speculative_margin_, below_, wide_;
     bool cross_ = false;
+    std::size_t looked_at_ = 0;
     std::vector<Manifold> found_;
 };
 
@@ -268,6 +288,34 @@ double least_of(const std::vector<Manifold>& found)
     return least;
 }
 
+// m, how deep the deepest corner of the one lies within the other; not above 0 where none does.
+// What is deeper than `enough` is told as any that is.
+double deepest_corner(const Mesh& one, const Mesh& other, const Pose& one_in_other, double enough)
+{
+    double deepest = 0;
+    if (other.tree.empty()) return deepest;
+    const Mat3 turn = one_in_other.orientation.toRotationMatrix();
+    const Box3 whole{other.tree.front().lower, other.tree.front().upper};
+    for (const Vec3& corner : one.vertices) {
+        const Vec3 place = turn * corner + one_in_other.position;
+        if (!whole.overlaps({place, place})) continue;
+        deepest = std::max(deepest, -signed_distance(other, place));
+        if (deepest > enough) break;
+    }
+    return deepest;
+}
+
+// m, by how much two surfaces that cross have come into one another, as their corners tell. Images
+// and fields of two that just touch beside one another tell of all between their far sides.
+double depth_by_corners(const PairInput<double>& in, double enough)
+{
+    if (in.b.kind != ShapeKind::solid)  // who has no inside has no depth
+        return std::numeric_limits<double>::infinity();
+    const Mesh &mesh = *mesh_of(in.shapes, in.a), &other = *mesh_of(in.shapes, in.b);
+    return std::max(deepest_corner(other, mesh, in.b_in_a, enough),
+                    deepest_corner(mesh, other, in.b_in_a.inverse(), enough));
+}
+
 // What contacts that let bodies overlap have of the two, where they overlap by more than `most`.
 bool append_deep(const PairInput<double>& in, double most, std::vector<Manifold>& out)
 {
@@ -284,35 +332,47 @@ bool append_deep(const PairInput<double>& in, double most, std::vector<Manifold>
 
 }  // namespace
 
-void find_surface_separations(const PairInput<double>& in, std::vector<LocalManifold<double>>& out)
+std::size_t find_surface_separations(const PairInput<double>& in,
+                                     std::vector<LocalManifold<double>>& out)
 {
     const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     const Mesh& mesh = *mesh_of(shapes, solid);
     if (other.kind == ShapeKind::plane) {
-        append_spread(
-            corners_over(shapes.planes[other.index], other_in_solid, mesh, speculative_margin),
-            out);
-        return;
+        const auto found =
+            corners_over(shapes.planes[other.index], other_in_solid, mesh, speculative_margin);
+        append_spread(found, out);
+        return found.size();
     }
     TwoSurfaces surfaces(mesh, *mesh_of(shapes, other), other_in_solid, speculative_margin);
     if (!surfaces.look()) {
         append_spread(surfaces.found(), out);
-        return;
+        return surfaces.looked_at();
     }
     const double seen = error_of(shapes, solid) + error_of(shapes, other);
-    if (append_deep({shapes, solid, other, other_in_solid, speculative_margin}, 2 * seen, out))
-        return;
-    TwoSurfaces shallow(mesh, *mesh_of(shapes, other), other_in_solid, speculative_margin,
-                        4 * seen);
-    shallow.look();
-    append_spread(shallow.found(), out);
-    if (!shallow.found().empty() && least_of(shallow.found()) <= 0) return;
+    const double depth = depth_by_corners(in, 2 * seen);
+    const bool deep = depth > 2 * seen;
+    if (deep && append_deep(in, 2 * seen, out)) return surfaces.looked_at();
+    std::size_t looked_at = surfaces.looked_at();
+    // What is told of is sought no further behind than it can be: of all else there is much.
+    for (const double below : {std::max(2 * depth, kNarrow * seen), 4 * seen}) {
+        if (below > 4 * seen) continue;
+        TwoSurfaces shallow(mesh, *mesh_of(shapes, other), other_in_solid, speculative_margin,
+                            below, other.kind == ShapeKind::solid);
+        shallow.look();
+        looked_at += shallow.looked_at();
+        if (!(least_of(shallow.found()) <= 0)) continue;
+        append_spread(shallow.found(), out);
+        return looked_at;
+    }
+    // An edge may lie deep across another with no corner within.
+    if (!deep && append_deep(in, 2 * seen, out)) return looked_at;
     // By less than anything tells.
     Manifold none;
     const double length = other_in_solid.position.norm();
     none.normal = length > 0 ? Vec3(other_in_solid.position / length) : Vec3(Vec3::UnitZ());
     none.add(0.5 * other_in_solid.position, 0, 0);
     out.push_back(none);
+    return looked_at;
 }
 
 }  // namespace throng

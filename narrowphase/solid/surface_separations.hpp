@@ -27,11 +27,13 @@ inline constexpr std::size_t kMostSurfaceSeparations = 32;
 /// other. The corners of a face that leans by less than the margin all do. In the solid's frame,
 /// normals from it to the other. Where the surfaces cross, places of separations below 0: by what
 /// is behind what, and where that is more than the two solids' errors twice over, what
-/// collide_solid() has of them. Never throws.
+/// collide_solid() has of them. Returns how many pairs of triangles it held against one another; of
+/// a plane, how many corners touch. Never throws.
 ///
 ///   in  a: solid, and what it is in contact is left aside, but for that; b: solid, or mesh (its
 ///       front), taken by triangles; or a plane
-void find_surface_separations(const PairInput<double>& in, std::vector<LocalManifold<double>>& out);
+std::size_t find_surface_separations(const PairInput<double>& in,
+                                     std::vector<LocalManifold<double>>& out);
 
 /// Whether one of two triangles lies further than `wide` to one side of the other's plane: the two
 /// are as far apart then. Normals of unit length.

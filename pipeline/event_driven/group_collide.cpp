@@ -16,6 +16,8 @@ namespace {
 // The most points that hold a face: those of a mesh are told triangle by triangle, each corner by
 // all that meet there, and a joint solve pays for each.
 constexpr std::size_t kMostOfFace = 8;
+// Pairs of triangles that take as long as two convex shapes do.
+constexpr std::size_t kTrianglePairs = 2;
 // Sine of the angle between normals of one face; and what of a tolerance two points of it are
 // apart.
 constexpr double kOneFace = 1e-6, kSame = 1e-3;
@@ -68,8 +70,9 @@ void EventDrivenGroup::collide_pair(PairKey key,
     }
     const bool flat = shape_b.kind == ShapeKind::plane;
     if (mesh_of(shapes, shape_a) && (flat || mesh_of(shapes, shape_b))) {
-        find_surface_separations({shapes, shape_a, shape_b, seen, speculative_margin},
-                                 manifolds_.manifolds);
+        spend(find_surface_separations({shapes, shape_a, shape_b, seen, speculative_margin},
+                                       manifolds_.manifolds)
+              / kTrianglePairs);
         return;
     }
     if (mesh_of(shapes, shape_a)) {

@@ -109,6 +109,26 @@ TEST(SurfaceSeparations, TheLeastIsTheDistance)
     EXPECT_GT(crossing, 15);
 }
 
+// However coarsely the two are seen: what is behind the far side of one is not as deep in it.
+TEST(SurfaceSeparations, TwoThatHardlyCrossAreAsDeepAsTheyCross)
+{
+    Shapes coarse = shapes();
+    for (Solid& solid : coarse.solids) solid.error = 0.05;
+    const double depth = 1e-4;
+    // A corner of the ring's rim goes into the end of the box.
+    const Pose pose{Vec3(-1 + depth, 0.013, 0.017), Quat::Identity()};
+    for (const bool swapped : {false, true}) {
+        std::vector<LocalManifold<double>> found;
+        const std::size_t looked_at = swapped
+            ? find_surface_separations({coarse, kBox, kRing, pose.inverse(), 0}, found)
+            : find_surface_separations({coarse, kRing, kBox, pose, 0}, found);
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_NEAR(found[0].points[0].separation, -depth, 1e-12);
+        EXPECT_NEAR(found[0].normal.x(), swapped ? 1 : -1, 1e-9);
+        EXPECT_GT(looked_at, 0u);
+    }
+}
+
 // Where one lies on the other all that bears it is told of.
 TEST(SurfaceSeparations, FacesOnFacesAreHeldAtTheCornersOfWhatTheyShare)
 {
