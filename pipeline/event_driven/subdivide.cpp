@@ -227,15 +227,11 @@ void EventDrivenGroup::subdivide()
         // another: of as many shortest pieces as the last bit that is set.
         std::uint64_t done = 0, size = whole;
         while (done < whole && !outcome_.held) {
-            if (!may_go_on()) {
-                // What went on from here would lodge the bodies in one another for good.
-                outcome_.held = true;
-                break;
-            }
             const auto share = [&](std::uint64_t pieces) {
                 return static_cast<double>(pieces) / static_cast<double>(whole);
             };
-            if (!advance_piece((k + share(done)) * substep, share(size) * substep, size == 1)) {
+            if (!advance_piece((k + share(done)) * substep, share(size) * substep,
+                               size == 1 || !may_go_on())) {
                 size /= 2;
                 continue;
             }
