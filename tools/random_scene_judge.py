@@ -139,12 +139,12 @@ def not_finite(made, run):
 def through_floor(made, run):
     if made.floor is None:
         return None
-    sprung = {spring[end] for spring in made.scene.get("springs", []) for end in ("a", "b")}
+    # A mesh ends: a spring may carry who hangs on it round the rim.
+    springs = made.scene.get("springs", []) if "ground.obj" in made.files else []
+    sprung = {spring[end] for spring in springs for end in ("a", "b")} - {None}
     for i, (piece, (position, _)) in enumerate(zip(made.pieces, run.bodies)):
-        if piece is None or "pivot" in made.scene["bodies"][i]:
-            continue
-        # A mesh ends: a spring may carry who hangs on it round the rim.
-        if "ground.obj" in made.files and made.scene["bodies"][i].get("name") in sprung:
+        body = made.scene["bodies"][i]
+        if piece is None or "pivot" in body or body.get("name") in sprung:
             continue
         # The middle of what is not convex may lie beside it.
         bound = piece.radius if piece.kind in ("mesh", "compound") else 0.0

@@ -274,11 +274,6 @@ void append_spread(const std::vector<Manifold>& found, std::vector<Manifold>& ou
     for (const std::size_t at : taken) out.push_back(found[at]);
 }
 
-double error_of(const Shapes& shapes, ShapeRef shape)
-{
-    return shape.kind == ShapeKind::solid ? shapes.solids[shape.index].error : 0;
-}
-
 double least_of(const std::vector<Manifold>& found)
 {
     double least = std::numeric_limits<double>::infinity();
@@ -348,7 +343,7 @@ std::size_t find_surface_separations(const PairInput<double>& in,
         append_spread(surfaces.found(), out);
         return surfaces.looked_at();
     }
-    const double seen = error_of(shapes, solid) + error_of(shapes, other);
+    const double seen = shape_error(shapes, solid) + shape_error(shapes, other);
     const double depth = depth_by_corners(in, 2 * seen);
     const bool deep = depth > 2 * seen;
     if (deep && append_deep(in, 2 * seen, out)) return surfaces.looked_at();
