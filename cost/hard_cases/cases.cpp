@@ -168,6 +168,8 @@ constexpr HardCase kCases[] = {
     {"H115", "what is on a pivot at its foot may stand on a floor", case_on_a_tip, Fault::haste},
     {"H116", "small bodies that are not convex stay on the floor that they are thrown on",
      case_thrown_rings, Fault::sink},
+    {"H117", "what comes under bodies that only turn makes no energy", case_under_pivots,
+     Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -124,6 +124,7 @@ void case_lain_down(CaseBench& bench);          // H113, lain_down.cpp
 void case_stacked_parts(CaseBench& bench);      // H114, stacked_parts.cpp
 void case_on_a_tip(CaseBench& bench);           // H115, on_a_tip.cpp
 void case_thrown_rings(CaseBench& bench);       // H116, thrown_rings.cpp
+void case_under_pivots(CaseBench& bench);       // H117, under_pivots.cpp
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

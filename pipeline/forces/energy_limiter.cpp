@@ -114,6 +114,8 @@ public:
                 {first_ + at, inverse_mass > 0 ? 1 / inverse_mass : 0, inertia.matrix()});
             group.fed = group.fed || throng::is_fed(facts.forces, body);
             group.floats = group.floats && inverse_mass > 0;
+            group.turns = group.turns || inverse_mass == 0;
+            group.weighs += facts.masses.mass[body];
         }
     }
 
@@ -287,6 +289,34 @@ void EnergyLimiter<Real>::take_share_of_blow(double speed,
 }
 
 template <class Real>
+void EnergyLimiter<Real>::open_spin(ContactConstraints<Real>& constraints)
+{
+    for (Group& group : groups_) {
+        if (!group.turns) continue;
+        for (Member& member : group.members) {
+            const SolverBody<Real>& body = constraints.bodies[member.solver_index];
+            member.free = in_double(body.free);
+            member.free_spin = in_double(body.free + 4);
+        }
+        const WarmStart start = warm_start_of(group, constraints);
+        if (counts(group, start.gained)) scale(group, static_cast<Real>(start.share), constraints);
+    }
+}
+
+template <class Real>
+void EnergyLimiter<Real>::move_free(const ContactConstraints<Real>& constraints, double share)
+{
+    for (Group& group : groups_) {
+        if (!group.turns) continue;
+        for (Member& member : group.members) {
+            const SolverBody<Real>& body = constraints.bodies[member.solver_index];
+            member.free += share * in_double(body.motion);
+            member.free_spin += share * in_double(body.motion + 4);
+        }
+    }
+}
+
+template <class Real>
 bool EnergyLimiter<Real>::is_fed(const Group& group,
                                  const ContactConstraints<Real>& constraints) const
 {
@@ -372,6 +402,29 @@ void EnergyLimiter<Real>::limit_contacts(double slowest,
         if (given > kLetBe * kinetic && kinetic > group.mass() * slowest * slowest / 2)
             slow_down(group, std::sqrt(std::max(0.0, 1 - given / kinetic)), constraints);
     }
+}
+
+template <class Real>
+void EnergyLimiter<Real>::close_spin(ContactConstraints<Real>& constraints) const
+{
+    for (const Group& group : groups_) {
+        if (!group.turns) continue;
+        double free = 0;
+        for (const Member& member : group.members)
+            free += (member.mass * member.free.squaredNorm()
+                     + member.free_spin.dot(member.inertia * member.free_spin))
+                / 2;
+        const double kinetic = kinetic_of(group, constraints), gained = kinetic - free;
+        if (gained > kLetBe * kinetic && counts(group, gained))
+            slow_down(group, std::sqrt(std::max(0.0, free / kinetic)), constraints);
+    }
+}
+
+// By more than gravity gives in a substep.
+template <class Real>
+bool EnergyLimiter<Real>::counts(const Group& group, double gained) const
+{
+    return gained > group.weighs * fall_.squaredNorm() / 2;
 }
 
 template class EnergyLimiter<float>;

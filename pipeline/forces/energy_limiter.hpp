@@ -58,10 +58,18 @@ public:
     /// The same where all of them would make more of it than none, by what takes a group to a
     /// speed, m/s: only after a blow, and of what it may go through.
     void take_share_of_blow(double speed, ContactConstraints<Real>& constraints) const;
+    /// As take_share_of_blow(), of those with somebody who can only turn: pushed by short lever
+    /// arms he bears great impulses, and turned arms make spin of these.
+    void open_spin(ContactConstraints<Real>& constraints);
     /// Once contacts are solved: slows down groups that have more than they would without them, but
     /// for those that are slower than that by and large, m/s: what all but rests gives way and
     /// comes back.
     void limit_contacts(double slowest, ContactConstraints<Real>& constraints) const;
+    /// What forces did since bodies moved is no gain: motions as they are, taken off before they
+    /// act and added after, each by a share of -1 and 1.
+    void move_free(const ContactConstraints<Real>& constraints, double share);
+    /// The same of those with somebody who can only turn, however slow they are, since then.
+    void close_spin(ContactConstraints<Real>& constraints) const;
     /// Once all has acted: slows down who gained on springs.
     void close(ContactConstraints<Real>& constraints) const;
 
@@ -71,6 +79,7 @@ private:
         double mass = 0;                 // kg; 0 of what cannot move along
         Mat3 inertia;                    // kg m2, in the axes that its spin is in
         Vec3 before = Vec3::Zero();      // m/s, as the substep began
+        Vec3 free = Vec3::Zero(), free_spin = Vec3::Zero();  // m/s, rad/s, without contacts
     };
     // Bodies that touch or that springs join, the lanes of their contacts, and the springs.
     struct Group {
@@ -78,8 +87,10 @@ private:
         std::vector<std::uint32_t> lanes;
         std::vector<std::uint32_t> springs;  // places among those of the forces
         bool floats = true;                  // touches nothing that stands still
+        bool turns = false;                  // somebody can only turn
         bool fed = false;                    // may be given energy by more than springs and gravity
         bool driven = false;                 // touches what moves by itself
+        double weighs = 0;                   // kg, of all members
         double kinetic = 0;                  // J, as the substep began
 
         double mass() const
@@ -104,6 +115,7 @@ private:
     bool is_fed(const Group& group, const ContactConstraints<Real>& constraints) const;
     double
     gained(const Group& group, double kinetic, const ContactConstraints<Real>& constraints) const;
+    bool counts(const Group& group, double gained) const;
     Vec3 common_velocity(const Group& group, const ContactConstraints<Real>& constraints) const;
     void slow_down(const Group& group, double share, ContactConstraints<Real>& constraints) const;
 

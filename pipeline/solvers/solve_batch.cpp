@@ -283,6 +283,21 @@ private:
             limiter_.emplace(layout_, batch_, facts_, stiff ? &*state_forces_ : nullptr,
                              all ? Whose::all : Whose::on_springs,
                              context_.gravity * context_.substep());
+        if (!stiff && constraints_.prescribed.empty() && somebody_only_turns())
+            spin_limiter_.emplace(layout_, batch_, facts_, nullptr, Whose::all,
+                                  context_.gravity * context_.substep());
+    }
+
+    bool somebody_only_turns() const
+    {
+        if (!constraints_.some_only_turn) return false;
+        const auto slices = std::span(layout_.slices).subspan(batch_.first_slice, batch_.slices);
+        return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
+            const auto bodies = layout_.bodies_of(slice);
+            return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
+                return !(facts_.masses.inverse_mass[body] > 0);
+            });
+        });
     }
 
     // Of soft_step what a warm start adds after a blow alone: a tower stands by what its contacts
@@ -290,6 +305,10 @@ private:
     // whom forces press together what he bears; where nothing does, all is a blow.
     void limit_warm_start()
     {
+        if (spin_limiter_ && !parts_) {
+            slices_.run();
+            spin_limiter_->open_spin(constraints_);
+        }
         if (limiter_) {
             slices_.run();
             return limiter_->take_share(constraints_);
@@ -311,8 +330,12 @@ private:
     // What acts once bodies have moved is no work of contacts.
     void limit_contacts()
     {
-        if (blow_limiter_ && !parts_ && !late_)
+        if (parts_) return;
+        if (blow_limiter_ && !late_)
             blow_limiter_->limit_contacts(context_.gravity.norm() * context_.dt, constraints_);
+        if (!spin_limiter_) return;
+        slices_.run();
+        spin_limiter_->close_spin(constraints_);
     }
 
     // Followers as they are now, less what contacts gave in this substep if that is asked.
@@ -407,9 +430,11 @@ private:
         if (!late_) return;
         slices_.run();
         if (state_forces_->stiff()) carry_spins();
+        if (spin_limiter_) spin_limiter_->move_free(constraints_, -1);
         update_forced_bodies(false);
         state_forces_->end();
         move_forced_bodies();
+        if (spin_limiter_) spin_limiter_->move_free(constraints_, 1);
     }
 
     int split_impulse_iterations() const
@@ -432,7 +457,7 @@ private:
     bool parts_ = false;  // bodies of the batch part
     bool late_ = false;   // forces acted after bodies moved, in this substep
     std::optional<StateDependentForces> state_forces_;
-    std::optional<EnergyLimiter<Real>> limiter_, blow_limiter_;
+    std::optional<EnergyLimiter<Real>> limiter_, blow_limiter_, spin_limiter_;
 };
 
 }  // namespace

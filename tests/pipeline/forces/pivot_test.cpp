@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -132,6 +133,31 @@ TEST(Pivot, OfWhatTouchesSomethingMakesNoEnergy)
     EXPECT_GT(world.report().contacts, 0u);
     EXPECT_LT(most - first, 0.1);  // of 10 J that it swings by
     EXPECT_GT(energy(world) - first, -0.3);
+}
+
+// Two beams in a row, made overlapping end to end: they have next to no lever arm to part by.
+TEST(Pivot, OfBeamsThatOverlapMakesNoEnergy)
+{
+    for (const bool locked : {false, true}) {
+        Scene scene;
+        scene.materials.push_back({"m", 1000, 0.3, 0, 0});
+        scene.shapes.push_back({"beam", BoxShape{Vec3(1.6, 0.6, 0.6)}});
+        for (const double x : {0.0, 3.0}) {
+            BodyDescription& beam = scene.bodies.emplace_back();
+            beam.shape = beam.material = 0;
+            beam.position = Vec3(x, 0, 0);
+            beam.lock_position = locked;
+            if (!locked) beam.pivot = Vec3(0, 0, 1e-3);
+        }
+        World world(scene);
+        double fastest = 0;
+        for (int i = 0; i < 240; ++i) {
+            world.step(1);
+            for (const BodyId id : world.bodies())
+                fastest = std::max(fastest, world.angular_velocity(id).norm());
+        }
+        EXPECT_LT(fastest, 0.3) << locked;
+    }
 }
 
 }  // namespace
