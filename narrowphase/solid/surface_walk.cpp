@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace throng {
 namespace {
@@ -133,17 +134,18 @@ void MeshSide::bound(LeafSample<double>& places) const
 void MeshSide::sample(LeafSample<double>& leaf) const
 {
     const double furthest = std::max(limits_.speculative_margin, limits_.deepest_before);
+    // Of what does not touch here: it may once the two have moved.
+    const double apart = kMore * limits_.speculative_margin + std::numeric_limits<double>::min();
     std::uint32_t beside = kNoTriangle;  // points of a leaf are neighbors
     for (std::size_t i = 0; i < leaf.count; ++i) {
         const Vec3 place = place_of(leaf, i);
         const MeshPoint nearest = nearest_on_mesh(mesh_, place, furthest, beside);
-        SurfaceDistance here{std::numeric_limits<double>::infinity(), Vec3::Zero()};
+        SurfaceDistance here{std::max(apart, furthest), Vec3::Zero()};
         if (nearest.distance <= furthest) {
             here = to_front(mesh_, nearest, place);
             beside = nearest.triangle;
         }
-        if (here.distance < 0 && !touches(here.distance, nearest))
-            here.distance = std::numeric_limits<double>::infinity();
+        if (here.distance < 0 && !touches(here.distance, nearest)) here.distance = apart;
         put(leaf, i, here.distance, here.outward);
     }
 }
