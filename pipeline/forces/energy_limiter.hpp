@@ -13,7 +13,9 @@
 // Of soft_step only after a blow: one iteration follows, and a tower stands by what its contacts
 // remember. From then on, and by finer substeps always, contacts may in no substep leave more
 // energy than there would be without them: who is spun far round within a step, in rows that are
-// of its beginning, gains by each substep a few hundredths of what he has.
+// of its beginning, gains by each substep a few hundredths of what he has. Of those with somebody
+// who can only turn neither is ever more: by a short lever arm he is pushed with all that turning
+// far takes, and relaxed so slowly that a push out of overlap stays with him as spin.
 //
 // Source: the kinetic energy is what Gauss-Seidel sweeps over inelastic contacts bring down
 // (Moreau, Quadratic programming in mechanics: dynamics of one-sided constraints, 1966); along the
