@@ -126,6 +126,10 @@ void case_on_a_tip(CaseBench& bench);           // H115, on_a_tip.cpp
 void case_thrown_rings(CaseBench& bench);       // H116, thrown_rings.cpp
 void case_under_pivots(CaseBench& bench);       // H117, under_pivots.cpp
 
+/// Runs a scene: energy that nobody gave, as a share of the greatest in motion; without end where a
+/// body was quarantined.
+double energy_made(CaseBench& bench, const Scene& scene, double seconds);
+
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);
 

@@ -9,13 +9,11 @@
 #include "cost/hard_cases/hard_cases.hpp"
 #include "scene/catalog/parts.hpp"
 #include "scene/catalog/random.hpp"
-#include "throng/energy_ledger.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -96,19 +94,8 @@ void hit(CaseBench& bench,
         parts.body(ball).velocity = Vec3(0, 0, -3);
     }
     if (how.last_first) parts.add(kind.shape, on_its_foot(how, material, lean));
-    EnergyLedger ledger;
-    bool sound = true;
-    bench.run(
-        parts.scene(), bench.brief() ? 1 : kSeconds,
-        [&](World& world, double) {
-            sound = world.report().bodies_quarantined == 0;
-            return sound;
-        },
-        &ledger);
+    worst = std::max(worst, energy_made(bench, parts.scene(), bench.brief() ? 1 : kSeconds));
     bench.forgive_residual();
-    worst = std::max(worst,
-                     sound ? ledger.gained() / ledger.greatest_kinetic()
-                           : std::numeric_limits<double>::infinity());
 }
 
 // Where a top's axis points after it has leaned and fallen for a while.

@@ -1,6 +1,25 @@
 #include "cost/hard_cases/hard_cases.hpp"
+#include "throng/energy_ledger.hpp"
+#include "throng/world.hpp"
+
+#include <limits>
 
 namespace throng {
+
+double energy_made(CaseBench& bench, const Scene& scene, double seconds)
+{
+    EnergyLedger ledger;
+    bool sound = true;
+    bench.run(
+        scene, seconds,
+        [&](World& world, double) {
+            sound = world.report().bodies_quarantined == 0;
+            return sound;
+        },
+        &ledger);
+    return sound ? ledger.gained() / ledger.greatest_kinetic()
+                 : std::numeric_limits<double>::infinity();
+}
 
 void ask_exactly(Settings& settings)
 {

@@ -9,13 +9,10 @@
 #include "cost/hard_cases/hard_cases.hpp"
 #include "scene/catalog/parts.hpp"
 #include "scene/catalog/random.hpp"
-#include "throng/energy_ledger.hpp"
 #include "throng/rotation.hpp"
-#include "throng/world.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 namespace throng {
@@ -131,18 +128,8 @@ void case_under_pivots(CaseBench& bench)
         double worst = 0;
         for (int seed = 0; seed < (bench.brief() ? kBriefDraws : how.draws); ++seed) {
             Draw draw(bench, how, static_cast<std::uint64_t>(seed));
-            EnergyLedger ledger;
-            bool sound = true;
-            bench.run(
-                draw.scene(), bench.brief() ? kBriefSeconds : kSeconds,
-                [&](World& world, double) {
-                    sound = world.report().bodies_quarantined == 0;
-                    return sound;
-                },
-                &ledger);
-            worst = std::max(worst,
-                             sound ? ledger.gained() / ledger.greatest_kinetic()
-                                   : std::numeric_limits<double>::infinity());
+            const double seconds = bench.brief() ? kBriefSeconds : kSeconds;
+            worst = std::max(worst, energy_made(bench, draw.scene(), seconds));
         }
         bench.report(how.setting, "energy made, over the greatest in motion", worst, kMade, "1");
         if (bench.brief()) return;

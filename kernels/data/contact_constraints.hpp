@@ -277,7 +277,6 @@ struct Layout {
 ///   surface_velocities  [blocks] while something turns that carries what lies on it, a spin goes
 ///                       along with an axis that turns, or somebody walks
 ///   surfaces_turn       something turns that carries what lies on it
-///   some_only_turn      somebody who moves has no mass to be moved by, only to be turned
 ///   axes_turn           somebody's spin goes along with an axis that turns enough to be seen
 ///   turning_arms        [blocks] while somebody moves that may swing
 ///   prescribed          [bodies] while bodies that contacts push are driven
@@ -294,7 +293,7 @@ struct ContactConstraints {
     std::vector<RestitutionWide<Real>> restitutions;
     std::vector<RollingFrictionWide<Real>> rolling_frictions;
     std::vector<SurfaceVelocityWide<Real>> surface_velocities;
-    bool surfaces_turn = false, axes_turn = false, some_only_turn = false;
+    bool surfaces_turn = false, axes_turn = false;
     std::vector<TurningArmsWide<Real>> turning_arms;
     std::vector<SolverPrescribedVelocity<Real>> prescribed;
     std::vector<PointFrictionWide<Real>> point_frictions;

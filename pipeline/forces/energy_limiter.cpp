@@ -174,10 +174,12 @@ EnergyLimiter<Real>::EnergyLimiter(const Layout& layout,
     Sets sets(layout, batch, springs);
     if (springs != nullptr) sets.list_springs(groups_);
     if (whose != Whose::on_springs)
-        sets.list_touching(whose == Whose::all ? 1 : kFewestInBlow, groups_);
+        sets.list_touching(whose == Whose::stacked ? kFewestInBlow : 1, groups_);
     sets.list_members(facts, groups_);
     sets.list_lanes(groups_);
-    std::erase_if(groups_, [](const Group& group) { return group.driven; });
+    std::erase_if(groups_, [&](const Group& group) {
+        return group.driven || (whose == Whose::turning && !group.turns);
+    });
 }
 
 template <class Real>
@@ -289,10 +291,9 @@ void EnergyLimiter<Real>::take_share_of_blow(double speed,
 }
 
 template <class Real>
-void EnergyLimiter<Real>::open_spin(ContactConstraints<Real>& constraints)
+void EnergyLimiter<Real>::open_free(ContactConstraints<Real>& constraints)
 {
     for (Group& group : groups_) {
-        if (!group.turns) continue;
         for (Member& member : group.members) {
             const SolverBody<Real>& body = constraints.bodies[member.solver_index];
             member.free = in_double(body.free);
@@ -304,14 +305,13 @@ void EnergyLimiter<Real>::open_spin(ContactConstraints<Real>& constraints)
 }
 
 template <class Real>
-void EnergyLimiter<Real>::move_free(const ContactConstraints<Real>& constraints, double share)
+void EnergyLimiter<Real>::add_to_free(const ContactConstraints<Real>& constraints, double times)
 {
     for (Group& group : groups_) {
-        if (!group.turns) continue;
         for (Member& member : group.members) {
             const SolverBody<Real>& body = constraints.bodies[member.solver_index];
-            member.free += share * in_double(body.motion);
-            member.free_spin += share * in_double(body.motion + 4);
+            member.free += times * in_double(body.motion);
+            member.free_spin += times * in_double(body.motion + 4);
         }
     }
 }
@@ -405,10 +405,9 @@ void EnergyLimiter<Real>::limit_contacts(double slowest,
 }
 
 template <class Real>
-void EnergyLimiter<Real>::close_spin(ContactConstraints<Real>& constraints) const
+void EnergyLimiter<Real>::close_free(ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
-        if (!group.turns) continue;
         double free = 0;
         for (const Member& member : group.members)
             free += (member.mass * member.free.squaredNorm()
@@ -416,7 +415,7 @@ void EnergyLimiter<Real>::close_spin(ContactConstraints<Real>& constraints) cons
                 / 2;
         const double kinetic = kinetic_of(group, constraints), gained = kinetic - free;
         if (gained > kLetBe * kinetic && counts(group, gained))
-            slow_down(group, std::sqrt(std::max(0.0, free / kinetic)), constraints);
+            slow_down(group, std::sqrt(free / kinetic), constraints);
     }
 }
 

@@ -40,9 +40,9 @@ template <class Real>
 class EnergyLimiter {
 public:
     /// Of a batch those that stiff springs pull and all that touch them, besides those that touch
-    /// in such numbers that a blow goes through, or all; but for those that touch what moves by
-    /// itself.
-    enum class Whose : std::uint8_t { on_springs, stacked, all };
+    /// in such numbers that a blow goes through, or those with somebody who can only turn and all
+    /// that touch him, or all; but for those that touch what moves by itself.
+    enum class Whose : std::uint8_t { on_springs, stacked, turning, all };
 
     ///   springs  of which some are stiff, to be kept as long as this; null: there are none
     ///   fall     m/s, that gravity gives in a substep
@@ -60,18 +60,18 @@ public:
     /// The same where all of them would make more of it than none, by what takes a group to a
     /// speed, m/s: only after a blow, and of what it may go through.
     void take_share_of_blow(double speed, ContactConstraints<Real>& constraints) const;
-    /// As take_share_of_blow(), of those with somebody who can only turn: pushed by short lever
-    /// arms he bears great impulses, and turned arms make spin of these.
-    void open_spin(ContactConstraints<Real>& constraints);
+    /// The same where they make more of it than gravity gives in a substep. Notes what bodies do
+    /// without contacts.
+    void open_free(ContactConstraints<Real>& constraints);
     /// Once contacts are solved: slows down groups that have more than they would without them, but
     /// for those that are slower than that by and large, m/s: what all but rests gives way and
     /// comes back.
     void limit_contacts(double slowest, ContactConstraints<Real>& constraints) const;
-    /// What forces did since bodies moved is no gain: motions as they are, taken off before they
-    /// act and added after, each by a share of -1 and 1.
-    void move_free(const ContactConstraints<Real>& constraints, double share);
-    /// The same of those with somebody who can only turn, however slow they are, since then.
-    void close_spin(ContactConstraints<Real>& constraints) const;
+    /// The same against what was noted, where they have more by what gravity gives in a substep.
+    void close_free(ContactConstraints<Real>& constraints) const;
+    /// Between the two: forces that act once bodies have moved give what is no gain. Adds motions
+    /// as they are to what was noted, times -1 before these forces act and times 1 after.
+    void add_to_free(const ContactConstraints<Real>& constraints, double times);
     /// Once all has acted: slows down who gained on springs.
     void close(ContactConstraints<Real>& constraints) const;
 

@@ -284,13 +284,13 @@ private:
                              all ? Whose::all : Whose::on_springs,
                              context_.gravity * context_.substep());
         if (!stiff && constraints_.prescribed.empty() && somebody_only_turns())
-            spin_limiter_.emplace(layout_, batch_, facts_, nullptr, Whose::all,
+            spin_limiter_.emplace(layout_, batch_, facts_, nullptr, Whose::turning,
                                   context_.gravity * context_.substep());
     }
 
     bool somebody_only_turns() const
     {
-        if (!constraints_.some_only_turn) return false;
+        if (!context_.has(Effect::rotation)) return false;
         const auto slices = std::span(layout_.slices).subspan(batch_.first_slice, batch_.slices);
         return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
             const auto bodies = layout_.bodies_of(slice);
@@ -307,7 +307,7 @@ private:
     {
         if (spin_limiter_ && !parts_) {
             slices_.run();
-            spin_limiter_->open_spin(constraints_);
+            spin_limiter_->open_free(constraints_);
         }
         if (limiter_) {
             slices_.run();
@@ -335,7 +335,7 @@ private:
             blow_limiter_->limit_contacts(context_.gravity.norm() * context_.dt, constraints_);
         if (!spin_limiter_) return;
         slices_.run();
-        spin_limiter_->close_spin(constraints_);
+        spin_limiter_->close_free(constraints_);
     }
 
     // Followers as they are now, less what contacts gave in this substep if that is asked.
@@ -430,11 +430,11 @@ private:
         if (!late_) return;
         slices_.run();
         if (state_forces_->stiff()) carry_spins();
-        if (spin_limiter_) spin_limiter_->move_free(constraints_, -1);
+        if (spin_limiter_) spin_limiter_->add_to_free(constraints_, -1);
         update_forced_bodies(false);
         state_forces_->end();
         move_forced_bodies();
-        if (spin_limiter_) spin_limiter_->move_free(constraints_, 1);
+        if (spin_limiter_) spin_limiter_->add_to_free(constraints_, 1);
     }
 
     int split_impulse_iterations() const

@@ -108,13 +108,6 @@ bool anybody_swings(const Layout& layout, const Shapes& shapes, const Colliders&
                        [&](std::uint32_t body) { return (colliders.may_swing[body] & how) != 0; });
 }
 
-bool anybody_only_turns(const Layout& layout, const Masses& masses)
-{
-    const auto first = layout.body_of_solver_index.begin() + 1;
-    return std::any_of(first, first + layout.dynamic,
-                       [&](std::uint32_t body) { return !(masses.inverse_mass[body] > 0); });
-}
-
 template <class Real>
 void fill_prescribed_velocity(const PrescribedVelocity& velocity,
                               const SolverBody<Real>& body,
@@ -232,8 +225,6 @@ void prepare_constraints(const StepContext& context,
                                                   || !constraints.prescribed.empty()
                                               ? blocks
                                               : 0);
-    constraints.some_only_turn =
-        context.has(Effect::rotation) && anybody_only_turns(layout, masses);
     constraints.turning_arms.resize(anybody_swings(layout, shapes, colliders) ? blocks : 0);
     constraints.point_frictions.resize(
         parameters.friction_at_points_or_pyramid(context.effects) ? points : 0);
