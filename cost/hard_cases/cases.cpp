@@ -170,6 +170,8 @@ constexpr HardCase kCases[] = {
      case_thrown_rings, Fault::sink},
     {"H117", "what comes under bodies that only turn makes no energy", case_under_pivots,
      Fault::haste},
+    {"H118", "who closes in on somebody light before a wall is turned back, and not thrown",
+     case_closing_in, Fault::restitution},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -125,6 +125,7 @@ void case_stacked_parts(CaseBench& bench);      // H114, stacked_parts.cpp
 void case_on_a_tip(CaseBench& bench);           // H115, on_a_tip.cpp
 void case_thrown_rings(CaseBench& bench);       // H116, thrown_rings.cpp
 void case_under_pivots(CaseBench& bench);       // H117, under_pivots.cpp
+void case_closing_in(CaseBench& bench);         // H118, closing_in.cpp
 
 /// Runs a scene: energy that nobody gave, as a share of the greatest in motion; without end where a
 /// body was quarantined.

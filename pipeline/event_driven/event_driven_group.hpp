@@ -183,7 +183,7 @@ private:
     bool resolve_impacts();
     void settle_impacts();
     bool leave_as_reflected(std::vector<DirectPoint>& points, Motions& bodies);
-    void apply_friction(Motions& bodies);
+    void apply_friction(Motions& bodies, bool ended);
     double restitution_of(const GroupContact& contact) const;
     static bool touches(const GroupContact& contact);
     bool bounces(const GroupContact& contact, double speed) const;

@@ -210,9 +210,10 @@ bool EventDrivenGroup::leave_as_reflected(std::vector<DirectPoint>& points, Moti
     return true;
 }
 
-// Friction of impacts. Where points that leave as they are reflected would win energy, friction
-// bears its share of what struck instead, and they leave as they come.
-void EventDrivenGroup::apply_friction(Motions& bodies)
+// Friction of impacts. Where points that leave as they are reflected would win energy, or impacts
+// came to no end and somebody is on his way back, friction bears its share of what struck instead,
+// and they leave as they come.
+void EventDrivenGroup::apply_friction(Motions& bodies, bool ended)
 {
     std::vector<DirectPoint> points;
     std::vector<std::size_t> struck;
@@ -225,7 +226,7 @@ void EventDrivenGroup::apply_friction(Motions& bodies)
         points.back().least = std::max(0.0, relative_normal_velocity(points.back(), bodies));
         grips = grips || points.back().friction > 0 || points.back().rolling > 0;
     }
-    if (grips && !leave_as_reflected(points, bodies))
+    if (grips && !(ended && leave_as_reflected(points, bodies)))
         for (DirectPoint& point : points)
             apply_impact_friction(point.normal.dot(point.impulse), point, bodies);
     for (std::size_t k = 0; k < struck.size(); ++k)
@@ -267,15 +268,14 @@ bool EventDrivenGroup::resolve_impacts()
                      [](const ImpactPoint& x, const ImpactPoint& y) { return x.pair < y.pair; });
     const bool in_order = scene_.parameters.impact_law == ImpactLaw::sequential;
     const auto stop = [&](auto& stopped, auto& points) { solve(stopped, points); };
-    int passes = 0;
-    while (passes < Impacts::kMostPasses && may_go_on() && impacts_.pass(in_order, bodies, stop))
-        ++passes;
+    bool closes = true;
+    for (int left = Impacts::kMostPasses; left > 0 && closes && may_go_on(); --left)
+        closes = impacts_.pass(in_order, bodies, stop);
     struck_.assign(contacts_.size(), 0);
     for (const ImpactPoint& impact : impacts_.points) struck_[impact.at] = impact.impulse;
-    apply_friction(bodies);
+    apply_friction(bodies, !closes);
     for (std::size_t i = 0; i < contacts_.size(); ++i)
-        if (struck_[i] > 0)
-            impact_counts_[contacts_[i].key] += passes < Impacts::kMostPasses ? 1 : kMostStrikes;
+        if (struck_[i] > 0) impact_counts_[contacts_[i].key] += closes ? kMostStrikes : 1;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         scene_.velocities.linear[bodies_[i]] = bodies[i].velocity;
         scene_.velocities.angular[bodies_[i]] = bodies[i].spin;

@@ -212,11 +212,16 @@ bool IslandSolver::end_state_forces()
     return true;
 }
 
+// The speed at which those apart come to touch as the substep ends: below 0; of others 0.
+double IslandSolver::closing_in(std::size_t at, double time) const
+{
+    return -std::max(separations_[at], 0.0) / time;
+}
+
 // Contacts, and stiff springs with them, which have the last word: see solve_batch.cpp.
 void IslandSolver::hold_contacts(const StepContext&, double time)
 {
-    for (std::size_t i = 0; i < points_.size(); ++i)
-        points_[i].least = -std::max(separations_[i], 0.0) / time;
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i].least = closing_in(i, time);
     solve(after_, points_);
     if (!state_forces_ || !state_forces_->stiff()) return;
     for (int turn = 1;; ++turn) {
@@ -236,7 +241,7 @@ void IslandSolver::answer_late_forces(const StepContext&, double time)
     place_points();
     others_ = points_;
     for (std::size_t i = 0; i < others_.size(); ++i) {
-        others_[i].least = -std::max(separations_[i], 0.0) / time;
+        others_[i].least = closing_in(i, time);
         others_[i].impulse = others_[i].torque = Vec3::Zero();
     }
     solve(after_, others_);

@@ -116,13 +116,15 @@ private:
     double ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     // Impacts: see island_impacts.cpp.
     void apply_restitution(const StepContext& context, double time);
-    bool list_touching();
-    void add_impact(std::size_t at);
-    void reflect(bool in_order, int most_passes, double least_speed);
+    bool list_touching(double time);
+    void add_impact(std::size_t at, double least_speed);
+    bool reflect(bool in_order, int most_passes, double least_speed);
     bool gains(double work) const;
-    void hold_struck();
+    double closing_in(std::size_t at, double time) const;
+    bool is_held() const;
+    void hold_struck(double time);
     void add_to_struck(const StepContext& context, double time);
-    void settle_after_impacts(const StepContext& context, double time);
+    void settle_after_impacts(const StepContext& context, double time, bool ended);
 
     // Other responses: see penalty_forces.cpp and kinematic_pushes.cpp.
     struct Give;

@@ -16,8 +16,9 @@ namespace throng {
 
 namespace {
 
-// Rounds of impacts a part of a substep; springs stop what comes in after so many.
-constexpr int kImpactRounds = 16;
+// Rounds of impacts a part of a substep, and contacts that they look at; springs stop what comes in
+// after so many.
+constexpr std::size_t kFewestImpactRounds = 16, kMostImpactRounds = 1024, kImpactVisits = 1 << 14;
 
 // Of auto: by how many radians it swings in a substep, and the share of critical damping where
 // nothing bounces; together half of what a semi-implicit step bears.
@@ -174,20 +175,25 @@ void IslandSolver::bounce_off(const SolverParameters& parameters, double time)
     const double least = std::max(restitution_threshold_, Impacts::kRounding * greatest);
     if (!(greatest > least)) return;
     struck_ = after_;
-    for (int round = 0; round < kImpactRounds; ++round) {
+    const std::size_t rounds =
+        std::clamp(kImpactVisits / contacts_.size(), kFewestImpactRounds, kMostImpactRounds);
+    for (std::size_t round = 0; round < rounds; ++round) {
         impacts_.points.clear();
         for (std::size_t i = 0; i < contacts_.size(); ++i) {
             const double speed = approach(i, struck_);
             const double resting = std::max(least, contacts_[i].least_speed);
-            if (speed < -resting && separations_[i] + speed * time < 0) add_impact(i);
+            if (speed < -resting && separations_[i] + speed * time < 0) add_impact(i, resting);
         }
         if (impacts_.points.empty()) break;
         reflect(true, 1, least);
         for (const ImpactPoint& impact : impacts_.points) {
             const std::size_t at = impact.at;
+            if (!(struck_impulse_[at] > 0)) continue;
             points_[at].impulse += points_[at].normal * struck_impulse_[at];
-            if (struck_impulse_[at] > 0)
-                apply_impact_friction(struck_impulse_[at], points_[at], struck_);
+            apply_impact_friction(struck_impulse_[at], points_[at], struck_);
+            // He leaves with his share of what he came with: what the spring gave back besides
+            // would be too much. Of who is stopped its damper takes it.
+            unearned_[at] = std::max(unearned_[at], -separations_[at] * contacts_[at].restitution);
         }
     }
     after_ = struck_;

@@ -1,6 +1,7 @@
 #include "pipeline/solvers/slice_passes.hpp"
 
 #include "kernels/parallel/blocks.hpp"
+#include "kernels/solver/coloring.hpp"
 #include "kernels/solver/solver_bodies.hpp"
 #include "kernels/solver/turning_arms.hpp"
 
@@ -17,9 +18,17 @@ constexpr std::size_t kBodies = 512;  // a task
 // as much again before they stop coming to rest; to relax, one does as well.
 constexpr int kBiasedNormalIterations = 2, kRelaxNormalIterations = 1;
 
-// Rounds of impacts a substep at most. Each takes a blow on by one body at least, and mostly there
-// are one or two; what still comes in after so many is stopped.
-constexpr int kImpactRounds = 16;
+// Rounds of impacts a substep. Each takes a blow on by one body at least, and mostly there are one
+// or two. A heavy body that closes in on a light one before a wall is turned back by as many as the
+// square root of their masses' ratio tells, twice or so; what still comes in after the last round
+// is stopped. Of large islands they come to no more visits of contacts than that of one batch.
+constexpr std::size_t kFewestImpactRounds = 16, kMostImpactRounds = 1024;
+
+std::size_t impact_rounds(std::size_t contacts)
+{
+    return std::clamp(kMostImpactRounds * kBatchContacts / std::max<std::size_t>(contacts, 1),
+                      kFewestImpactRounds, kMostImpactRounds);
+}
 
 }  // namespace
 
@@ -258,7 +267,8 @@ void SlicePasses<Real>::advance(const Slice& slice, bool shared)
 template <class Real>
 void SlicePasses<Real>::apply_restitution()
 {
-    for (int round = 0; round < kImpactRounds; ++round) {
+    const std::size_t rounds = impact_rounds(batch_.contacts);
+    for (std::size_t round = 0; round < rounds; ++round) {
         struck_ = false;
         add({SlicePass::Kind::apply_restitution, false, round % 2 == 1});
         run();

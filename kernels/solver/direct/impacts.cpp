@@ -25,12 +25,25 @@ bool Impacts::reflect(std::size_t begin,
         shares_.push_back(points[i].restitution);
     }
     if (hits_.empty()) return false;
+    if (hits_.size() == 1 && bounce_one(bodies)) return true;
     stopped_ = bodies;
     solve(stopped_, struck_);
     const double twice = 1 + shared_restitution(struck_, speeds_, shares_);
     mirror(stopped_, twice, bodies);
     for (std::size_t k = 0; k < hits_.size(); ++k)
         points[hits_[k]].impulse += struck_[k].normal.dot(struck_[k].impulse) * twice;
+    return true;
+}
+
+// One that closes alone takes no solve. False where it cannot be moved along its normal.
+bool Impacts::bounce_one(std::vector<DirectBody>& bodies)
+{
+    const DirectPoint& point = struck_.front();
+    const double inverse_mass = inverse_mass_along(point, point.normal, bodies);
+    if (!(inverse_mass > 0)) return false;
+    const double impulse = (1 + shares_.front()) * speeds_.front() / inverse_mass;
+    apply_impulse(point, point.normal * impulse, bodies);
+    points[hits_.front()].impulse += impulse;
     return true;
 }
 

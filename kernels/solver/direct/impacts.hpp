@@ -50,6 +50,7 @@ private:
                  std::size_t end,
                  std::vector<DirectBody>& bodies,
                  const Solve& solve);
+    bool bounce_one(std::vector<DirectBody>& bodies);
 
     std::vector<std::size_t> hits_;        // those of `points` that close
     std::vector<DirectPoint> struck_;      // [hits]
