@@ -118,9 +118,13 @@ public:
     template <class Visitor>
     void visit(const Visitor& visit) const
     {
-        std::array<std::uint32_t, 4> order{0, 1, 2, 3};
-        std::sort(order.begin(), order.begin() + count_,
-                  [&](std::uint32_t a, std::uint32_t b) { return chosen_[a] < chosen_[b]; });
+        std::array<std::uint32_t, 4> order{};
+        for (std::uint32_t place = 0; place < count_; ++place) {
+            std::size_t at = place;
+            for (; at > 0 && chosen_[order[at - 1]] > chosen_[place]; --at)
+                order[at] = order[at - 1];
+            order[at] = place;
+        }
         for (std::size_t k = 0; k < count_; ++k) visit(points_[chosen_[order[k]]], order[k]);
     }
 

@@ -1,0 +1,111 @@
+// Wobbling: H119, cans, coins and rods that stand on their rim roll round on it.
+//
+// Answer: no energy is made.
+//
+// The place of touch runs round the rim many times as fast as anything moves, and a contact that is
+// held for a step where it was found lags behind: its push turns the body on the way that it goes.
+#include "cost/hard_cases/hard_cases.hpp"
+#include "scene/catalog/parts.hpp"
+#include "throng/rotation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace throng {
+
+namespace {
+
+constexpr double kMade = 5e-2, kSeconds = 10, kBriefSeconds = 3;
+
+constexpr const char* kOne = "substeps=1";
+
+struct How {
+    const char* setting;
+    void (*set)(Settings&) = [](Settings&) {};
+    const char* met_by = "";
+    bool box = false;  // on a box, else on a plane
+    Vec3 far = Vec3::Zero();
+    Quat turn = Quat::Identity();
+};
+
+struct Can {
+    double radius = 0, half_length = 0, tilt = 0, round = 0, friction = 0;  // m, m, rad, rad/s, 1
+};
+
+double wobble(CaseBench& bench, const How& how, const Can& can)
+{
+    SceneParts parts(bench.scene());
+    how.set(parts.scene().settings);
+    parts.scene().gravity = how.turn * Vec3(0, 0, -kGravity);
+    const std::uint32_t material = parts.material(can.friction, 0);
+    if (how.box) {
+        BodyDescription floor;
+        floor.motion = Motion::static_;
+        floor.material = material;
+        floor.position = how.far + how.turn * Vec3(0, 0, -1);
+        floor.orientation = how.turn;
+        parts.add(BoxShape{Vec3(100, 100, 1)}, floor);
+    } else {
+        const Vec3 up = how.turn * Vec3::UnitZ();
+        parts.plane(material, up, up.dot(how.far));
+    }
+    const Quat lean = exponential(Vec3(0, can.tilt, 0));
+    const Vec3 axis = lean * Vec3::UnitZ();
+    const Vec3 arm = lean * Vec3(can.radius, 0, -can.half_length);
+    // Its middle stays, and so does the place of touch for a moment: it turns about the line
+    // through both, so fast that its axis goes round as asked.
+    const double about =
+        -can.round * arm.x() / (std::cos(can.tilt) * arm.x() - std::sin(can.tilt) * arm.z());
+    BodyDescription body;
+    body.material = material;
+    body.position = how.far + how.turn * Vec3(0, 0, -arm.z());
+    body.orientation = how.turn * lean;
+    body.angular_velocity = how.turn * Vec3(axis * about + Vec3(0, 0, can.round));
+    parts.add(CylinderShape{can.radius, can.half_length}, body);
+    return energy_made(bench, parts.scene(), bench.brief() ? kBriefSeconds : kSeconds);
+}
+
+}  // namespace
+
+void case_wobbling(CaseBench& bench)
+{
+    const How hows[] = {
+        {.setting = "default", .met_by = kOne},
+        {.setting = "default, on a box", .met_by = kOne, .box = true},
+        {.setting = "default, dt 1/240",
+         .set = [](Settings& s) { s.dt = 1.0 / 240; },
+         .met_by = kOne},
+        {.setting = "default, dt 1e-3", .set = [](Settings& s) { s.dt = 1e-3; }, .met_by = kOne},
+        {.setting = "default, far off", .met_by = kOne, .far = Vec3(3e6, -2e6, 0)},
+        {.setting = "default, turned", .met_by = kOne, .turn = exponential(Vec3(0.29, 0.59, 0.88))},
+        {.setting = "double",
+         .set = [](Settings& s) { s.precision = Precision::double_; },
+         .met_by = kOne},
+        {.setting = "16 substeps", .set = [](Settings& s) { s.substeps = 16; }, .met_by = kOne},
+        {.setting = "1 substep", .set = [](Settings& s) { s.substeps = 1; }},
+        {.setting = "pgs", .set = [](Settings& s) { s.solver = Solver::pgs; }, .met_by = kOne},
+        {.setting = "direct",
+         .set = [](Settings& s) { s.solver = Solver::direct; },
+         .met_by = kOne},
+    };
+    const Can shapes[] = {{0.84, 0.98}, {1, 0.1}, {0.5, 1}, {1, 0.02}};
+    for (const How& how : hows) {
+        double worst = 0;
+        for (Can can : shapes)
+            for (const double size : {0.02, 1.0})
+                for (const double tilt : {0.05, 0.3, 0.7, 1.1})
+                    for (const double round : {1.0, 2.0, 4.0, 8.0})
+                        for (const double friction : {0.3, 1.0}) {
+                            if (bench.brief() && (round != 4 || tilt != 0.3)) continue;
+                            worst = std::max(worst,
+                                             wobble(bench, how,
+                                                    {can.radius * size, can.half_length * size,
+                                                     tilt, round / std::sqrt(size), friction}));
+                        }
+        bench.report_default(how.setting, "energy made, over the greatest in motion", worst, kMade,
+                             "1", how.met_by);
+        if (bench.brief()) return;
+    }
+}
+
+}  // namespace throng
