@@ -90,8 +90,10 @@ void case_wobbling(CaseBench& bench)
     };
     const Can shapes[] = {{0.84, 0.98}, {1, 0.1}, {0.5, 1}, {1, 0.02}};
     for (const How& how : hows) {
+        // In a brief run what is not known to miss.
+        if (bench.brief() && *how.met_by != 0) continue;
         double worst = 0;
-        for (Can can : shapes)
+        for (const Can& can : shapes)
             for (const double size : {0.02, 1.0})
                 for (const double tilt : {0.05, 0.3, 0.7, 1.1})
                     for (const double round : {1.0, 2.0, 4.0, 8.0})
