@@ -61,7 +61,8 @@ def read_bodies(path):
 def is_textbook(scene):
     """Whether a dial asks for a rule that is known to gain: an explicit midpoint does on springs
     that nothing damps, in energy a quarter of the fourth power of what they swing in a substep."""
-    if scene["settings"].get("integrator") == "midpoint" and scene.get("springs"):
+    undamped = any(not spring.get("damping") for spring in scene.get("springs", []))
+    if scene["settings"].get("integrator") == "midpoint" and undamped:
         return True
     return any(scene["settings"].get(dial) in values for dial, values in TEXTBOOK.items())
 

@@ -47,6 +47,22 @@ decltype(ShapeDescription::shape) shape_of(bool box, double size)
     return SphereShape{size};
 }
 
+void add(SceneParts& parts,
+         const How& how,
+         std::uint32_t material,
+         bool box,
+         double size,
+         const Vec3& from_far,
+         const Vec3& velocity)
+{
+    BodyDescription body;
+    body.position = how.far + from_far;
+    body.orientation = how.turn;
+    body.velocity = velocity;
+    body.material = material;
+    parts.add(shape_of(box, size), body);
+}
+
 // What a heavy body does that goes at speed 1 towards a light one at rest before a wall: how fast
 // it goes as all hits but one are over, and as all are.
 std::array<double, 2> billiards(double mass_ratio)
@@ -81,16 +97,8 @@ void close_in(CaseBench& bench, const How& how, bool box, int times, double apar
     const std::uint32_t material = parts.material(0, 1);
     const Vec3 out = how.turn * Vec3::UnitX();
     parts.plane(material, out, out.dot(how.far));
-    const auto add = [&](double size, double distance, double speed) {
-        BodyDescription body;
-        body.position = how.far + out * distance;
-        body.orientation = how.turn;
-        body.velocity = -speed * out;
-        body.material = material;
-        parts.add(shape_of(box, size), body);
-    };
-    add(small, from_wall, 0);
-    add(kSize, from_wall + small + kDistance, kSpeed);
+    add(parts, how, material, box, small, out * from_wall, Vec3::Zero());
+    add(parts, how, material, box, kSize, out * (from_wall + small + kDistance), -kSpeed * out);
     const double mass_ratio = std::pow(times, 3);
     double heavy = 0, energy = 0;
     bench.run(parts.scene(), kAllHits, [&](World& world, double) {
@@ -124,15 +132,9 @@ double fall_on(CaseBench& bench, const How& how, bool box, int times, double res
             const std::uint32_t material = parts.material(0.5, restitution);
             const Vec3 up = how.turn * Vec3::UnitZ();
             parts.plane(material, up, up.dot(how.far));
-            const auto add = [&](double size, const Vec3& at) {
-                BodyDescription body;
-                body.position = how.far + how.turn * at;
-                body.orientation = how.turn;
-                body.material = material;
-                parts.add(shape_of(box, size), body);
-            };
-            add(small, Vec3(0, 0, small));
-            add(kSize, Vec3(beside * small, 0, 2 * small + kSize + fall));
+            const Vec3 on_floor(0, 0, small), above(beside * small, 0, 2 * small + kSize + fall);
+            add(parts, how, material, box, small, how.turn * on_floor, Vec3::Zero());
+            add(parts, how, material, box, kSize, how.turn * above, Vec3::Zero());
             worst = std::max(worst, energy_made(bench, parts.scene(), kSeconds));
         }
     return worst;

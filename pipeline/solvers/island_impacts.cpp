@@ -141,8 +141,9 @@ void IslandSolver::settle_after_impacts(const StepContext& context, double time,
         DirectPoint& point = struck_points_[i];
         point.impulse = point.normal * struck_impulse_[i];
         point.torque.setZero();
-        if (struck_impulse_[i] > 0) apply_impact_friction(struck_impulse_[i], point, struck_);
-        if (struck_impulse_[i] > 0) others_[i].least = closing_in(i, time);
+        if (!(struck_impulse_[i] > 0)) continue;
+        apply_impact_friction(struck_impulse_[i], point, struck_);
+        others_[i].least = closing_in(i, time);
     }
     add_to_struck(context, time);
     for (std::size_t i = 0; i < others_.size(); ++i) {

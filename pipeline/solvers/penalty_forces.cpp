@@ -7,6 +7,7 @@
 // what should not roll creeps.
 //
 // Source: Cundall and Strack, A discrete numerical model for granular assemblies (1979).
+#include "pipeline/solvers/impact_rounds.hpp"
 #include "pipeline/solvers/island_solver.hpp"
 
 #include <algorithm>
@@ -16,9 +17,9 @@ namespace throng {
 
 namespace {
 
-// Rounds of impacts a part of a substep, and contacts that they look at; springs stop what comes in
-// after so many.
-constexpr std::size_t kFewestImpactRounds = 16, kMostImpactRounds = 1024, kImpactVisits = 1 << 14;
+// Contacts that the rounds of impacts look at, in all, in a part of a substep; springs stop what
+// still comes in then.
+constexpr std::size_t kImpactContactsInPart = 1 << 14;
 
 // Of auto: by how many radians it swings in a substep, and the share of critical damping where
 // nothing bounces; together half of what a semi-implicit step bears.
@@ -175,8 +176,7 @@ void IslandSolver::bounce_off(const SolverParameters& parameters, double time)
     const double least = std::max(restitution_threshold_, Impacts::kRounding * greatest);
     if (!(greatest > least)) return;
     struck_ = after_;
-    const std::size_t rounds =
-        std::clamp(kImpactVisits / contacts_.size(), kFewestImpactRounds, kMostImpactRounds);
+    const std::size_t rounds = impact_rounds(kImpactContactsInPart, contacts_.size());
     for (std::size_t round = 0; round < rounds; ++round) {
         impacts_.points.clear();
         for (std::size_t i = 0; i < contacts_.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "kernels/solver/coloring.hpp"
 #include "kernels/solver/solver_bodies.hpp"
 #include "kernels/solver/turning_arms.hpp"
+#include "pipeline/solvers/impact_rounds.hpp"
 
 #include <algorithm>
 
@@ -18,17 +19,9 @@ constexpr std::size_t kBodies = 512;  // a task
 // as much again before they stop coming to rest; to relax, one does as well.
 constexpr int kBiasedNormalIterations = 2, kRelaxNormalIterations = 1;
 
-// Rounds of impacts a substep. Each takes a blow on by one body at least, and mostly there are one
-// or two. A heavy body that closes in on a light one before a wall is turned back by as many as the
-// square root of their masses' ratio tells, twice or so; what still comes in after the last round
-// is stopped. Of large islands they come to no more visits of contacts than that of one batch.
-constexpr std::size_t kFewestImpactRounds = 16, kMostImpactRounds = 1024;
-
-std::size_t impact_rounds(std::size_t contacts)
-{
-    return std::clamp(kMostImpactRounds * kBatchContacts / std::max<std::size_t>(contacts, 1),
-                      kFewestImpactRounds, kMostImpactRounds);
-}
+// Contacts that the rounds of impacts look at, in all, in a substep: 1,024 rounds of a batch of
+// small islands, fewer of a large one.
+constexpr std::size_t kImpactContacts = 1024 * kBatchContacts;
 
 }  // namespace
 
@@ -267,7 +260,7 @@ void SlicePasses<Real>::advance(const Slice& slice, bool shared)
 template <class Real>
 void SlicePasses<Real>::apply_restitution()
 {
-    const std::size_t rounds = impact_rounds(batch_.contacts);
+    const std::size_t rounds = impact_rounds(kImpactContacts, batch_.contacts);
     for (std::size_t round = 0; round < rounds; ++round) {
         struck_ = false;
         add({SlicePass::Kind::apply_restitution, false, round % 2 == 1});
