@@ -32,7 +32,7 @@ bool IslandSolver::list_touching(double time)
         const double least =
             touches ? contact.least_speed : std::max(contact.least_speed, separations_[i] / time);
         add_impact(i, least);
-        any = any || (contact.restitution > 0 && approach(i, struck_) < -least);
+        any = any || (touches && contact.restitution > 0 && approach(i, struck_) < -least);
     }
     return any;
 }
