@@ -294,7 +294,7 @@ void case_euler_disk(CaseBench& bench)
     slow_down(bench, true);
     spin_coin(bench, kLongSteps[0], 5);
     spin_coin(bench, kLongSteps[2], 5);
-    spin_coin(bench, {", dt 1e-4", 1e-4}, bench.brief() ? 0.5 : 20);
+    spin_coin(bench, {", dt 1e-4", 1e-4}, bench.brief() ? 0.5 : 40);
     const auto finely = [](Settings& settings) { settings.dt = 5e-4; };
     const auto exactly = [](Settings& settings) { settings.solver = Solver::direct; };
     for (const Wheel& wheel : {Wheel{0.05, 3}, Wheel{0.005, 3}, Wheel{0.001, 3}, Wheel{0.02, 1.5},

@@ -166,8 +166,8 @@ struct Colliders {
     std::vector<double> inner_extent;         // m, smallest half extent
     std::vector<double> outer_radius;         // m, furthest point from the body's center of mass
     std::vector<std::uint32_t> begin, count;  // [bodies] the colliders of each
-    std::vector<std::uint8_t> may_swing;  // [bodies] how, kMayHang and kFlat: see turning_arms.hpp
-    static constexpr std::uint8_t kMayHang = 1, kFlat = 2;
+    std::vector<std::uint8_t> may_swing;      // [bodies] how, by these bits: see turning_arms.hpp
+    static constexpr std::uint8_t kMayHang = 1, kFlat = 2, kRim = 4;
 
     std::size_t size() const { return body.size(); }
 };

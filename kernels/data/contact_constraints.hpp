@@ -50,15 +50,28 @@ struct SolverBody {
     Real free[8];
 };
 
-/// What turning a body takes, for the gyroscopic torque, in world axes as of the step's beginning.
+/// What turning a body takes, for the gyroscopic torque, in world axes as of the step's beginning,
+/// or as take_axes_anew() last found them.
 ///
 ///   share  inertia as a share of its trace, xx, yy, zz, xy, xz, yz; 1 where the torque acts; 0
 ///   axis   the axis that the inertia is symmetric about (3), the moment about it as a share of
-///          that across; zeros where there is none such
+///          that across; zeros where there is none such; and the turn since the step began, x, y,
+///          z, w, from which on the body's spin is in axes that go with it
 template <class Real>
 struct GyroscopicInertia {
-    alignas(64) Real share[8];
-    Real axis[8];
+    alignas(64) Real share[8] = {};
+    Real axis[8] = {0, 0, 0, 0, 0, 0, 0, 1};
+};
+
+/// The rims of a cylinder, on which it may roll.
+///
+///   axis      as the step began
+///   radius    m; 0: the body has none
+///   contacts  that it has in this step
+struct RoundRim {
+    double axis[3] = {0, 0, 1};
+    double radius = 0;
+    std::uint32_t contacts = 0;
 };
 
 /// What forces add to a body's motion, as SolverBody::motion has it, a second.
@@ -154,10 +167,11 @@ struct PointFrictionWide {
 /// turning_arms.hpp. The first three are as ContactConstraintWide has them.
 ///
 ///   lanes           bit a lane: it is one of them; the others have nothing here
-///   flat_a, flat_b  bit a lane: a flat side of that body rolls on a round one
+///   flat_a, flat_b  bit a lane: a flat side of that body rolls on a round one, or a rim on it
+///   rims            bit a lane: what rolls there is a rim
 template <class Real>
 struct TurningArmsWide {
-    std::uint16_t lanes = 0, flat_a = 0, flat_b = 0;
+    std::uint16_t lanes = 0, flat_a = 0, flat_b = 0, rims = 0;
     Lane16<Real> normal[3], tangent[3];
     Lane16<Real> center_a[3], center_b[3];
     Lane16<Real> center_offset[3];  // m, from b's center of mass to a's
@@ -282,6 +296,7 @@ struct Layout {
 ///   prescribed          [bodies] while bodies that contacts push are driven
 ///   point_frictions     [points] while friction acts at points or within a pyramid
 ///   inertias            [bodies] while the gyroscopic torque acts
+///   rims                [bodies] while a cylinder moves
 ///   accelerations       [bodies] while forces act
 ///   settled             [bodies] while the direct solver acts: who has its new state already, and
 ///                       who turned non-finite
@@ -299,6 +314,7 @@ struct ContactConstraints {
     std::vector<PointFrictionWide<Real>> point_frictions;
     std::vector<SolverBody<Real>> bodies;
     std::vector<GyroscopicInertia<Real>> inertias;
+    std::vector<RoundRim> rims;
     std::vector<SolverAcceleration<Real>> accelerations;
     enum class Settled : std::uint8_t { no, yes, lost };
     std::vector<Settled> settled;

@@ -238,12 +238,14 @@ template <class L>
 Turn<L> turned_along(const Spinning<L>& of, const Turn<L>& before, const V3<L>& turn)
 {
     using Real = typename L::Number;
-    const V3<L> own = of.own_axis(), now = turned(before.axis, before.w, own);
+    const Turn<L> taken{{of.axis[4], of.axis[5], of.axis[6]}, of.axis[7]};
+    const Turn<L> since = before * Turn<L>{{-taken.axis.x, -taken.axis.y, -taken.axis.z}, taken.w};
+    const V3<L> own = of.own_axis(), now = turned(since.axis, since.w, own);
     const V3<L> about = own * dot(own, turn), none{L(Real(0)), L(Real(0)), L(Real(0))};
     const V3<L> across = ShortestTurn<L>(own, now) * (turn - about);
     const V3<L> first = chosen(of.acts(), chosen(of.symmetric(), across, none), turn);
     const V3<L> last = chosen(of.acts(), chosen(of.symmetric(), about, turn), none);
-    return small_turn(first) * before * small_turn(last);
+    return small_turn(first) * since * small_turn(last) * taken;
 }
 
 template <class L>

@@ -46,6 +46,7 @@ void pack_contact(const Contact<Real>& contact,
     packed.bias_rate.at[lane] = terms.softness.bias_rate;
     packed.impulse_scale.at[lane] = terms.softness.impulse_scale;
     packed.deep.at[lane] = terms.deep;
+    packed.on_rim.at[lane] = terms.on_rim ? Real(1) : Real(0);
 }
 
 template <class Real>

@@ -42,6 +42,7 @@ struct ContactParameters {
     Real friction = 0, restitution = 0, rolling_friction = 0;
     Softness<Real> softness;
     Real deep = 0;  // m, overlap from which the contact no longer gives way; 0: it always does
+    bool on_rim = false;  // it rolls on a rim
 };
 
 /// Puts a contact into one lane of a block of packed contacts, which refers to it.

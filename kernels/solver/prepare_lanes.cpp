@@ -306,14 +306,15 @@ template <class L, bool turns>
     packed.round_b.store(block.round_b.at + at);
     packed.torsional_impulse.store(block.torsional_impulse.at + at);
 
-    // The middle of the points, on either surface. Of round sides it is that of the load: friction
-    // in the middle of a wheel that rolls on one rim would hold the other.
+    // The middle of the points, on either surface. Of round sides and rims it is that of the load:
+    // friction in the middle of a wheel that rolls on one rim would hold the other.
     L count = zero, load = zero;
     for (int k = 0; k < block.points; ++k) {
         count += packed.point[k].there;
         load += packed.point[k].impulse;
     }
-    const L rolls = select(packed.round_a + packed.round_b > zero, load, zero);
+    const L round = packed.round_a + packed.round_b + lane<L>(from.on_rim, at);
+    const L rolls = select(round > zero, load, zero);
     const auto borne = rolls > L(kLeastLoad<Real>);
     const L share = L(Real(1)) / select(borne, load, count);
     V3<L> middle{zero, zero, zero};

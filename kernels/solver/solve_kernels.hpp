@@ -52,6 +52,7 @@ struct PackedContacts {
     const Real* contact[kBlock];  // kAll numbers of each
     Lane16<Real> count;           // points
     Lane16<Real> friction, restitution, rolling_friction, bias_rate, impulse_scale, deep;
+    Lane16<Real> on_rim;  // 1 for those that roll on a rim, else 0
 };
 
 /// The constraints and bodies that the kernels work on. Null where an effect does not act.
@@ -65,8 +66,9 @@ struct ContactConstraintsView {
     PointFrictionWide<Real>* point_frictions = nullptr;
     SurfaceVelocityWide<Real>* surface_velocities = nullptr;
     const SolverPrescribedVelocity<Real>* prescribed = nullptr;
-    const GyroscopicInertia<Real>* inertias = nullptr;
+    GyroscopicInertia<Real>* inertias = nullptr;
     TurningArmsWide<Real>* turning_arms = nullptr;
+    const RoundRim* rims = nullptr;
 
     static ContactConstraintsView of(ContactConstraints<Real>& constraints)
     {
@@ -81,7 +83,8 @@ struct ContactConstraintsView {
                                                        : constraints.surface_velocities.data(),
                 constraints.prescribed.empty() ? nullptr : constraints.prescribed.data(),
                 constraints.inertias.empty() ? nullptr : constraints.inertias.data(),
-                constraints.turning_arms.empty() ? nullptr : constraints.turning_arms.data()};
+                constraints.turning_arms.empty() ? nullptr : constraints.turning_arms.data(),
+                constraints.rims.empty() ? nullptr : constraints.rims.data()};
     }
 };
 

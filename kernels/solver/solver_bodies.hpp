@@ -24,6 +24,11 @@ namespace throng {
 template <class Real>
 Quat spin_frame(const SolverBody<Real>& body, const GyroscopicInertia<Real>* inertia);
 
+/// The same as spin_frame() would have it had the step begun here: what a body has of velocities
+/// and inertia is turned into world axes, and goes along with it from here on. Returns the turn.
+template <class Real>
+Quat take_axes_anew(SolverBody<Real>& body, GyroscopicInertia<Real>* inertia);
+
 /// Turns the bodies that turn by kFastTurn and more in a time, and no other: the exponential map,
 /// exact for a constant angular velocity. The wide kernels turn the rest.
 ///

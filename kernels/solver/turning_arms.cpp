@@ -2,6 +2,7 @@
 
 #include "kernels/solver/contact_packing.hpp"
 #include "kernels/solver/solver_bodies.hpp"
+#include "throng/rotation.hpp"
 
 #include <algorithm>
 
@@ -46,6 +47,27 @@ Vec3 impulse_of(const ContactConstraintsView<Real>& constraints,
     return normal * load + tangent * along + normal.cross(tangent) * other;
 }
 
+// N m s on b beside that: of points beside the center, and of what resists turning.
+template <class Real>
+Vec3 couple_of(const ContactConstraintsView<Real>& constraints,
+               const ContactConstraintWide<Real>& block,
+               std::size_t lane)
+{
+    Vec3 couple(0, 0, double{block.torsional_impulse.at[lane]});
+    for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
+        const ContactPointWide<Real>& point = constraints.points[block.first_point + k];
+        const double impulse{point.impulse.at[lane]};
+        couple.x() += double{point.lever_arm[0].at[lane]} * impulse;
+        couple.y() += double{point.lever_arm[1].at[lane]} * impulse;
+    }
+    if (constraints.rolling_frictions != nullptr) {
+        const auto place = static_cast<std::size_t>(&block - constraints.blocks);
+        couple += in_double(constraints.rolling_frictions[place].impulse, lane);
+    }
+    const Vec3 normal = in_double(block.normal, lane), tangent = in_double(block.tangent, lane);
+    return tangent * couple.x() + normal.cross(tangent) * couple.y() + normal * couple.z();
+}
+
 bool has(std::uint16_t lanes, std::size_t lane) { return (lanes >> lane & 1) != 0; }
 
 void set(std::uint16_t& lanes, std::size_t lane, bool to)
@@ -54,9 +76,22 @@ void set(std::uint16_t& lanes, std::size_t lane, bool to)
     lanes = static_cast<std::uint16_t>(to ? lanes | bit : lanes & ~bit);
 }
 
+// The rim that rolls in a lane, or none.
+template <class Real>
+RoundRim rim_of(const ContactConstraintsView<Real>& constraints,
+                const ContactConstraintWide<Real>& block,
+                const TurningArmsWide<Real>& begun,
+                std::size_t lane)
+{
+    if (!has(begun.rims, lane)) return {};
+    const auto& side = has(begun.flat_a, lane) ? block.b : block.a;
+    return constraints.rims[static_cast<std::size_t>(side[lane])];
+}
+
 // A contact of which both bodies are where they were as the step began.
 template <class Real>
-MovedContact begun_contact(const ContactConstraintWide<Real>& block,
+MovedContact begun_contact(const ContactConstraintsView<Real>& constraints,
+                           const ContactConstraintWide<Real>& block,
                            const TurningArmsWide<Real>& begun,
                            std::size_t lane)
 {
@@ -70,15 +105,30 @@ MovedContact begun_contact(const ContactConstraintWide<Real>& block,
     contact.flat = has(begun.flat_a, lane) ? RollsFlat::a
         : has(begun.flat_b, lane)          ? RollsFlat::b
                                            : RollsFlat::no;
+    contact.rim = rim_of(constraints, block, begun, lane);
     return contact;
 }
 
-// Whether the contact that was there as the step began says nothing of where that leads to.
-bool is_far(const MovedContact& contact, const PlacedContact& placed)
+// Axes of a rim: where it is lowest, and its own.
+Mat3 axes_of_rim(const Vec3& axis, const Vec3& outward)
 {
-    const double half = std::max(contact.turn_a.vec().norm(), contact.turn_b.vec().norm());
-    return half > (contact.flat == RollsFlat::no ? kFarthestTurn : kFarthestFlatTurn) / 2
-        || placed.rolled > kFarthestFlatRoll;
+    const Vec3 lowest = (outward - axis * axis.dot(outward)).normalized();
+    Mat3 axes;
+    axes << lowest, axis.cross(lowest), axis;
+    return axes;
+}
+
+// The places of touch round a rim go with that where it is lowest.
+void run_round(const MovedContact& contact, PlacedContact& now)
+{
+    const bool is_b = contact.flat == RollsFlat::a;
+    Quat& turn = is_b ? now.turn_b : now.turn_a;
+    const Vec3 axis = vector_at(contact.rim.axis);
+    const double outward = is_b ? -1 : 1;
+    const Mat3 before = axes_of_rim(axis, contact.normal * outward),
+               by_now = axes_of_rim(turn * axis, now.normal * outward);
+    now.rolled = (by_now.col(0) - before.col(0)).norm();
+    turn = Quat(Mat3(by_now * before.transpose()));
 }
 
 // m, what a constraint that is placed there, and adds what has moved since the step began, is to
@@ -101,42 +151,71 @@ double separation_for(const MovedContact& contact,
     const Vec3 off = contact.normal.cross(begun) * first - begun * second;
     const Vec3 turn_a = contact.turn_a.conjugate() * normal - normal,
                turn_b = contact.turn_b.conjugate() * normal - normal;
-    const double now = placed.separation + normal.dot(contact.turn_b * off - contact.turn_a * off);
+    const double now = placed.separation + normal.dot(placed.turn_b * off - placed.turn_a * off);
     const double added = normal.dot(moved) + turn_b.dot(placed.arm_b + normal * contact.round_b)
         - turn_a.dot(placed.arm_a - normal * contact.round_a);
     const Vec3 turn = turn_b - turn_a;
     return now - added - first * turn.dot(normal.cross(tangent)) + second * turn.dot(tangent);
 }
 
+// Goes with a flat side, and with a place round a rim.
+Vec3 tangent_by_now(const MovedContact& contact, const PlacedContact& placed, const Vec3& begun)
+{
+    const bool by_a = (contact.flat == RollsFlat::a) != (contact.rim.radius > 0);
+    if (contact.flat == RollsFlat::no) return begun;
+    const Vec3 turned = (by_a ? placed.turn_a : placed.turn_b) * begun;
+    if (!(contact.rim.radius > 0)) return turned;
+    return (turned - placed.normal * placed.normal.dot(turned)).normalized();
+}
+
 template <class Real>
-void turn_lane(const ContactConstraintsView<Real>& constraints, std::size_t at, std::size_t lane)
+void turn_lane(const ContactConstraintsView<Real>& constraints,
+               std::size_t at,
+               std::size_t lane,
+               double time)
 {
     ContactConstraintWide<Real>& block = constraints.blocks[at];
     TurningArmsWide<Real>& begun = constraints.turning_arms[at];
     SolverBody<Real>& a = constraints.bodies[block.a[lane]];
     SolverBody<Real>& b = constraints.bodies[block.b[lane]];
-    const MovedContact still = begun_contact(block, begun, lane);
+    const MovedContact still = begun_contact(constraints, block, begun, lane);
     MovedContact contact = still;
     Vec3 moved = vector_at(b.delta_pose) - vector_at(a.delta_pose);
     contact.center_offset -= moved;
     contact.turn_a = turn_of(a);
     contact.turn_b = turn_of(b);
-    PlacedContact now = place(contact);
+    const bool on_rim = contact.rim.radius > 0, is_b = contact.flat == RollsFlat::a;
+    SolverBody<Real>& rolling = is_b ? b : a;
+    GyroscopicInertia<Real>* const inertia = constraints.inertias == nullptr
+        ? nullptr
+        : constraints.inertias + (is_b ? block.b[lane] : block.a[lane]);
+    PlacedContact now;
+    if (on_rim) {
+        const Vec3 spin = spin_frame(rolling, inertia) * vector_at(rolling.motion + 4);
+        now = place_ahead(contact, spin, time / 2);
+    } else {
+        now = place(contact);
+    }
     if (is_far(contact, now)) {
+        set(begun.lanes, lane, false);
+        // A rim has its last place as good as any.
+        if (on_rim) return;
         contact = still;
         moved = Vec3::Zero();
         now = place(still);
-        set(begun.lanes, lane, false);
     }
+    // The arms of a rim are in world axes, and so is to be what they turn, if no other contact has
+    // a say in that.
+    Quat frame_a = Quat::Identity(), frame_b = Quat::Identity();
+    if (on_rim && contact.rim.contacts == 1)
+        (is_b ? frame_b : frame_a) = take_axes_anew(rolling, inertia);
     const Vec3 begun_tangent = in_double(begun.tangent, lane);
-    const Vec3 tangent = (contact.flat == RollsFlat::a       ? contact.turn_a
-                              : contact.flat == RollsFlat::b ? contact.turn_b
-                                                             : Quat(Quat::Identity()))
-        * begun_tangent;
+    const Vec3 tangent = tangent_by_now(contact, now, begun_tangent);
 
     const Vec3 before = impulse_of(constraints, block, lane);
-    const Vec3 torque_a = vector_at(begun.now_a, lane).cross(before),
-               torque_b = vector_at(begun.now_b, lane).cross(before);
+    const Vec3 turns = couple_of(constraints, block, lane);
+    const Vec3 torque_a = frame_a * (vector_at(begun.now_a, lane).cross(before) + turns),
+               torque_b = frame_b * (vector_at(begun.now_b, lane).cross(before) + turns);
     store(now.normal, block.normal, lane);
     store(tangent, block.tangent, lane);
     store(now.arm_a, block.center_a, lane);
@@ -144,8 +223,10 @@ void turn_lane(const ContactConstraintsView<Real>& constraints, std::size_t at, 
     store(now.arm_a, begun.now_a, lane);
     store(now.arm_b, begun.now_b, lane);
     const Vec3 impulse = impulse_of(constraints, block, lane), more = impulse - before;
-    if (has(block.writes_a, lane)) push(a, -more, torque_a - now.arm_a.cross(impulse));
-    if (has(block.writes_b, lane)) push(b, more, now.arm_b.cross(impulse) - torque_b);
+    const Vec3 turn_on = couple_of(constraints, block, lane);
+    const Vec3 on_a = now.arm_a.cross(impulse) + turn_on, on_b = now.arm_b.cross(impulse) + turn_on;
+    if (has(block.writes_a, lane)) push(a, -more, torque_a - on_a);
+    if (has(block.writes_b, lane)) push(b, more, on_b - torque_b);
     for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
         ContactPointWide<Real>& point = constraints.points[block.first_point + k];
         point.separation.at[lane] = static_cast<Real>(
@@ -162,11 +243,21 @@ PlacedContact place(const MovedContact& contact)
     now.normal = contact.normal;
     if (contact.flat == RollsFlat::a) now.normal = contact.turn_a * contact.normal;
     if (contact.flat == RollsFlat::b) now.normal = contact.turn_b * contact.normal;
-    now.arm_a = contact.turn_a * contact.core_a + now.normal * contact.round_a;
-    now.arm_b = contact.turn_b * contact.core_b - now.normal * contact.round_b;
+    now.turn_a = contact.turn_a;
+    now.turn_b = contact.turn_b;
+    double round_a = contact.round_a, round_b = contact.round_b;
+    Vec3 core_a = contact.core_a, core_b = contact.core_b;
+    if (contact.rim.radius > 0) {
+        run_round(contact, now);
+        core_a += contact.normal * round_a;
+        core_b -= contact.normal * round_b;
+        round_a = round_b = 0;
+    }
+    now.arm_a = now.turn_a * core_a + now.normal * round_a;
+    now.arm_b = now.turn_b * core_b - now.normal * round_b;
     now.separation = now.normal.dot(now.arm_b - contact.center_offset - now.arm_a);
     const auto roll = [&](Vec3& arm, const Vec3& there, double round) {
-        now.rolled = (there - arm).norm() / (arm.norm() + round);
+        if (!(contact.rim.radius > 0)) now.rolled = (there - arm).norm() / (arm.norm() + round);
         arm = there;
     };
     const Vec3 apart = contact.center_offset + now.normal * now.separation;
@@ -175,17 +266,46 @@ PlacedContact place(const MovedContact& contact)
     return now;
 }
 
+PlacedContact place_ahead(const MovedContact& contact, const Vec3& spin, double time)
+{
+    MovedContact later = contact;
+    Quat& turn = contact.flat == RollsFlat::a ? later.turn_b : later.turn_a;
+    turn = exponential(spin * time) * turn;
+    PlacedContact ahead = place(later);
+    ahead.separation = place(contact).separation;
+    return ahead;
+}
+
+bool is_far(const MovedContact& contact, const PlacedContact& placed)
+{
+    const double half_a = contact.turn_a.vec().norm(), half_b = contact.turn_b.vec().norm();
+    if (contact.rim.radius > 0)
+        return (contact.flat == RollsFlat::a ? half_a : half_b) > kFarthestFlatTurn / 2
+            || placed.rolled > kFarthestRimRun;
+    return std::max(half_a, half_b)
+        > (contact.flat == RollsFlat::no ? kFarthestTurn : kFarthestFlatTurn) / 2
+        || placed.rolled > kFarthestFlatRoll;
+}
+
 template <class Real>
 void note_turning_arms(const ContactConstraintsView<Real>& constraints,
                        std::size_t place,
                        std::size_t lane,
                        const Contact<Real>& contact,
-                       double extent)
+                       double extent,
+                       RollsFlat on_rim)
 {
-    const ContactConstraintWide<Real>& block = constraints.blocks[place];
+    ContactConstraintWide<Real>& block = constraints.blocks[place];
     TurningArmsWide<Real>& begun = constraints.turning_arms[place];
     const bool moves_a = has(block.writes_a, lane), moves_b = has(block.writes_b, lane);
-    const RollsFlat flat = rolls_flat(contact, extent, moves_a, moves_b);
+    const RollsFlat flat =
+        on_rim != RollsFlat::no ? on_rim : rolls_flat(contact, extent, moves_a, moves_b);
+    set(begun.rims, lane, on_rim != RollsFlat::no);
+    // It is told in axes taken anew.
+    if (on_rim != RollsFlat::no) {
+        set(block.axis_turns_a, lane, false);
+        set(block.axis_turns_b, lane, false);
+    }
     const Vec3T<Real> outward = vector_at(block.normal, lane);
     const bool held =
         (moves_a && is_held_beyond<Real>(vector_at(block.center_a, lane), outward, contact.round_a))
@@ -212,21 +332,27 @@ void note_turning_arms(const ContactConstraintsView<Real>& constraints,
 }
 
 template <class Real>
-void turn_arms(const ContactConstraintsView<Real>& constraints, std::size_t begin, std::size_t end)
+void turn_arms(const ContactConstraintsView<Real>& constraints,
+               std::size_t begin,
+               std::size_t end,
+               double time,
+               bool first)
 {
     for (std::size_t place = begin; place < end; ++place) {
-        const std::uint16_t lanes = constraints.turning_arms[place].lanes;
+        const TurningArmsWide<Real>& begun = constraints.turning_arms[place];
+        const auto lanes = static_cast<std::uint16_t>(begun.lanes & (first ? begun.rims : ~0u));
         if (lanes == 0) continue;
         for (std::size_t lane = 0; lane < kBlock; ++lane)
-            if (has(lanes, lane)) turn_lane(constraints, place, lane);
+            if (has(lanes, lane)) turn_lane(constraints, place, lane, time);
         solve_kernels<Real>().update_masses(constraints, place);
     }
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void note_turning_arms<Real>(const ContactConstraintsView<Real>&, std::size_t,        \
-                                          std::size_t, const Contact<Real>&, double);              \
-    template void turn_arms<Real>(const ContactConstraintsView<Real>&, std::size_t, std::size_t);
+                                          std::size_t, const Contact<Real>&, double, RollsFlat);   \
+    template void turn_arms<Real>(const ContactConstraintsView<Real>&, std::size_t, std::size_t,   \
+                                  double, bool);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -8,9 +8,15 @@
 // it does. So these contacts, and no other, follow their bodies from substep to substep.
 //
 // Who stands on what is below his center does not swing: he falls, or several points hold him.
+//
+// A rim that rolls is the other reason: where a can, a coin or a rod that is set upright touches,
+// the place runs round the rim many times as fast as anything moves. Held where the step found it,
+// it lags, and its push turns the body on the way that it goes. So this place is told for the
+// middle of each substep, and the body's spin in axes taken anew there.
 #pragma once
 
 #include "kernels/data/contacts.hpp"
+#include "kernels/math/numbers.hpp"
 #include "kernels/solver/solve_kernels.hpp"
 
 #include <algorithm>
@@ -60,14 +66,52 @@ RollsFlat rolls_flat(const Contact<Real>& contact, double extent, bool moves_a, 
     return round_b ? RollsFlat::a : RollsFlat::b;
 }
 
+/// How far the place of touch may run round a rim in a step, as a share of its radius.
+inline constexpr double kFarthestRimRun = 1;
+
+/// Whether all points of a contact are on rims of one of its bodies, b or else a, which is tilted
+/// enough for one place to be the lowest.
+template <class Real>
+bool is_on_rim(const Contact<Real>& contact, const RoundRim& rim, bool is_b)
+{
+    constexpr double kFlattest = 3e-3, kLying = 5e-2, kBeside = 1e-2;  // sines; of the radius
+    if (!(rim.radius > 0)) return false;
+    const Vec3 axis = vector_at(rim.axis), normal = contact.normal.template cast<double>();
+    if (!(axis.cross(normal).squaredNorm() > kFlattest * kFlattest)) return false;
+    if (contact.count > 1 && !(std::abs(axis.dot(normal)) > kLying)) return false;
+    for (int k = 0; k < contact.count; ++k) {
+        const Vec3T<Real> on_a = contact.points[static_cast<std::size_t>(k)].anchor_a;
+        const Vec3 arm = (is_b ? contact.anchor_b(k) : on_a).template cast<double>();
+        if (std::abs(axis.cross(arm).norm() - rim.radius) > kBeside * rim.radius) return false;
+    }
+    return true;
+}
+
+/// The flat side, round in no way, on which a rim of the other body rolls.
+template <class Real>
+RollsFlat rolls_on_rim(const Contact<Real>& contact,
+                       const RoundRim& rim_a,
+                       const RoundRim& rim_b,
+                       bool moves_a,
+                       bool moves_b)
+{
+    const bool on_a = is_on_rim(contact, rim_a, false), on_b = is_on_rim(contact, rim_b, true);
+    if (on_b && !on_a && moves_b && !(contact.round_a > 0)) return RollsFlat::a;
+    if (on_a && !on_b && moves_a && !(contact.round_b > 0)) return RollsFlat::b;
+    return RollsFlat::no;
+}
+
 /// A contact as the step began, and how its two bodies have gone since.
 ///
 ///   core_a, core_b  m, arms without the radius of a round side, which does not turn along
+///   flat            that on which something rolls
+///   rim             of what rolls there; its radius is 0 where that is not a rim
 ///   center_offset   m, from b's center of mass to a's, as they are by now
 struct MovedContact {
     Vec3 normal, core_a, core_b;
     double round_a = 0, round_b = 0;
     RollsFlat flat = RollsFlat::no;
+    RoundRim rim;
     Vec3 center_offset;
     Quat turn_a = Quat::Identity(), turn_b = Quat::Identity();
 };
@@ -75,26 +119,47 @@ struct MovedContact {
 /// Where a contact is by now: the normal goes with a flat side that rolls, and the point on that
 /// with the round one.
 ///
-///   rolled  along a flat side, as a share of the arm there and the radius of the other
+///   turn_a, turn_b  of the points on either side: that of the body, or of the place round its rim
+///   rolled  along a flat side, as a share of the arm there and the radius of the other; of a rim
+///           round it, as a share of its radius
 struct PlacedContact {
     Vec3 normal, arm_a, arm_b;
+    Quat turn_a = Quat::Identity(), turn_b = Quat::Identity();
     double separation = 0, rolled = 0;
 };
 PlacedContact place(const MovedContact& contact);
 
+/// The same a time later, if the body whose rim rolls turns on as it does; the separation is that
+/// of now.
+///
+///   spin  rad/s, in world axes
+PlacedContact place_ahead(const MovedContact& contact, const Vec3& spin, double time);
+
+/// Whether that leads farther than the contact that was there as the step began can tell.
+bool is_far(const MovedContact& contact, const PlacedContact& placed);
+
 /// Notes whether a contact is one of those, once its constraint is made.
 ///
 ///   extent  m, as of rolls_flat()
+///   on_rim  as rolls_on_rim() has it
 template <class Real>
 void note_turning_arms(const ContactConstraintsView<Real>& constraints,
                        std::size_t place,
                        std::size_t lane,
                        const Contact<Real>& contact,
-                       double extent);
+                       double extent,
+                       RollsFlat on_rim);
 
 /// Puts the contacts of blocks where their bodies are, once velocities of a substep are integrated,
-/// and what they gave in the last one with them.
+/// and what they gave in the last one with them. In the first substep of a step there are no others
+/// to put anywhere than rims.
+///
+///   time  s, of the substep
 template <class Real>
-void turn_arms(const ContactConstraintsView<Real>& constraints, std::size_t begin, std::size_t end);
+void turn_arms(const ContactConstraintsView<Real>& constraints,
+               std::size_t begin,
+               std::size_t end,
+               double time,
+               bool first);
 
 }  // namespace throng

@@ -3,7 +3,6 @@
 #include "kernels/solver/carried_points.hpp"
 #include "kernels/solver/driven_contacts.hpp"
 #include "kernels/solver/solver_bodies.hpp"
-#include "kernels/solver/turning_arms.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -104,6 +103,7 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
     block.points = layout_.points[at];
     block.first_point = constraints_.first_point[at];
     block.writes_a = block.writes_b = block.axis_turns_a = block.axis_turns_b = 0;
+    RollsFlat on_rim[kBlock] = {};
     for (std::size_t lane = 0; lane < kBlock; ++lane) {
         const std::size_t place = at * kBlock + lane;
         const int lane_at = static_cast<int>(lane);
@@ -121,10 +121,13 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
         };
         block.writes_a = static_cast<std::uint16_t>(block.writes_a | writes(block.a[lane]));
         block.writes_b = static_cast<std::uint16_t>(block.writes_b | writes(block.b[lane]));
-        pack_contact(contact_of(source),
+        const Contact<Real>& contact = contact_of(source);
+        on_rim[lane] = rolls_on_rim(place, contact);
+        pack_contact(contact,
                      {Real(materials.friction), Real(materials.restitution),
                       Real(materials.rolling_friction), softness_[source.points - 1u],
-                      static_cast<Real>(kDeep * double{source.extent})},
+                      static_cast<Real>(kDeep * double{source.extent}),
+                      on_rim[lane] != RollsFlat::no},
                      lane_at, packed);
     }
     kernels_.prepare(packed, at, view_, turns_);
@@ -144,7 +147,8 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
         if (uncut_) pack_unclamped_friction(contact, static_cast<int>(lane), block);
         if (settles_) settle_separation(contact, lane, block);
         if (turn)
-            note_turning_arms(view_, at, lane, contact, double{active_.entries[entry].extent});
+            note_turning_arms(view_, at, lane, contact, double{active_.entries[entry].extent},
+                              on_rim[lane]);
     }
 }
 
@@ -276,6 +280,16 @@ std::vector<std::uint8_t> ConstraintBuilder<Real>::pressed(const Slice& slice) c
         }
     }
     return of_place;
+}
+
+template <class Real>
+RollsFlat ConstraintBuilder<Real>::rolls_on_rim(std::size_t place,
+                                                const Contact<Real>& contact) const
+{
+    if (constraints_.rims.empty()) return RollsFlat::no;
+    const std::int32_t a = layout_.solver_index_a[place], b = layout_.solver_index_b[place];
+    return throng::rolls_on_rim(contact, rim_of(a), rim_of(b), layout_.movable(a),
+                                layout_.movable(b));
 }
 
 template <class Real>

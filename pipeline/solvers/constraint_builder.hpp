@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kernels/solver/contact_packing.hpp"
+#include "kernels/solver/turning_arms.hpp"
 #include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/step/step_data.hpp"
 
@@ -48,6 +49,14 @@ public:
     /// 1 for each body of a slice that can be moved, by place, at whose contacts there is an
     /// impulse.
     std::vector<std::uint8_t> pressed(const Slice& slice) const;
+
+    /// The flat side on which the contact of a lane, by its place in the layout, rolls on a rim.
+    RollsFlat rolls_on_rim(std::size_t place, const Contact<Real>& contact) const;
+    /// The rims of a body by its solver index.
+    RoundRim rim_of(std::int32_t solver_index) const
+    {
+        return constraints_.rims[static_cast<std::size_t>(solver_index)];
+    }
 
     Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const
     {

@@ -172,10 +172,12 @@ void IslandSolver::take_contact(const IslandScene<Real>& scene,
     const auto& entry = scene.active.entries[scene.layout.contacts[place]];
     const Contact<Real>& contact = scene.builder.contact_of(entry);
     const std::uint32_t lane = scene.layout.lane[place];
+    const std::int32_t solver_a = scene.layout.solver_index_a[lane],
+                       solver_b = scene.layout.solver_index_b[lane];
     IslandContact island_contact;
     island_contact.contact = place;
-    island_contact.a = index_of(scene.layout, slice, scene.layout.solver_index_a[lane]);
-    island_contact.b = index_of(scene.layout, slice, scene.layout.solver_index_b[lane]);
+    island_contact.a = index_of(scene.layout, slice, solver_a);
+    island_contact.b = index_of(scene.layout, slice, solver_b);
     island_contact.normal = in_double(contact.normal).normalized();
     island_contact.round_a = double{contact.round_a};
     island_contact.round_b = double{contact.round_b};
@@ -184,9 +186,13 @@ void IslandSolver::take_contact(const IslandScene<Real>& scene,
         ? scene.active.materials[scene.layout.contacts[place]]
         : Surfaces::MaterialPair{double{entry.friction}, double{entry.restitution},
                                  double{entry.rolling_friction}};
-    island_contact.rolls_flat = rolls_flat(contact, double{entry.extent},
-                                           scene.layout.movable(scene.layout.solver_index_a[lane]),
-                                           scene.layout.movable(scene.layout.solver_index_b[lane]));
+    const RollsFlat on_rim = scene.builder.rolls_on_rim(lane, contact);
+    if (on_rim != RollsFlat::no)
+        island_contact.rim = scene.builder.rim_of(on_rim == RollsFlat::a ? solver_b : solver_a);
+    island_contact.rolls_flat = on_rim != RollsFlat::no
+        ? on_rim
+        : rolls_flat(contact, double{entry.extent}, scene.layout.movable(solver_a),
+                     scene.layout.movable(solver_b));
     island_contact.center_offset = in_double(contact.center_offset);
     island_contact.restitution = materials.restitution;
     island_contact.extent = double{entry.extent};
@@ -202,8 +208,8 @@ void IslandSolver::take_contact(const IslandScene<Real>& scene,
                    scene.layout.body_of_solver_index[static_cast<std::size_t>(solver_index)])
                                                   : nullptr;
     };
-    const PrescribedVelocity* const by_a = drive(scene.layout.solver_index_a[lane]);
-    const PrescribedVelocity* const by_b = drive(scene.layout.solver_index_b[lane]);
+    const PrescribedVelocity* const by_a = drive(solver_a);
+    const PrescribedVelocity* const by_b = drive(solver_b);
     for (int k = 0; k < contact.count; ++k) {
         const auto& from = contact.points[static_cast<std::size_t>(k)];
         island_contact.point = static_cast<std::uint32_t>(k);

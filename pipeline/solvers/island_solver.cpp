@@ -42,13 +42,14 @@ double IslandSolver::separation_now(std::size_t at) const
     return contact.separation + contact.normal.dot(by_b - by_a);
 }
 
-// Arms and separations by where the bodies are now.
-void IslandSolver::place_points()
+// Arms and separations by where the bodies are now; of rims by where they are that time ahead.
+void IslandSolver::place_points(double ahead)
 {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const IslandContact& contact = contacts_[i];
         DirectPoint& point = points_[i];
-        if (contact.rolls_flat != RollsFlat::no && place_rolling(contact, point, separations_[i]))
+        if (contact.rolls_flat != RollsFlat::no
+            && place_rolling(contact, ahead, point, separations_[i]))
             continue;
         point.normal = contact.normal;
         const Vec3 round_a = contact.normal * contact.round_a,
@@ -62,6 +63,7 @@ void IslandSolver::place_points()
 
 // False where the flat side goes too far.
 bool IslandSolver::place_rolling(const IslandContact& contact,
+                                 double ahead,
                                  DirectPoint& point,
                                  double& separation) const
 {
@@ -69,14 +71,18 @@ bool IslandSolver::place_rolling(const IslandContact& contact,
         return index < 0 ? Quat(Quat::Identity()) : bodies_[static_cast<std::size_t>(index)].turned;
     };
     const Vec3 offset = contact.center_offset + moved(contact.a) - moved(contact.b);
-    const MovedContact now{contact.normal,  contact.arm_a,     contact.arm_b,
-                           contact.round_a, contact.round_b,   contact.rolls_flat,
-                           offset,          turned(contact.a), turned(contact.b)};
-    const PlacedContact placed = place(now);
+    const MovedContact now{contact.normal,    contact.arm_a,      contact.arm_b, contact.round_a,
+                           contact.round_b,   contact.rolls_flat, contact.rim,   offset,
+                           turned(contact.a), turned(contact.b)};
+    const std::int32_t rolling = contact.rolls_flat == RollsFlat::a ? contact.b : contact.a;
+    const PlacedContact placed = ahead > 0 && contact.rim.radius > 0
+        ? place_ahead(now, after_[static_cast<std::size_t>(rolling)].spin, ahead)
+        : place(now);
     point.normal = placed.normal;
     point.arm_a = placed.arm_a;
     point.arm_b = placed.arm_b;
     separation = placed.separation;
+    if (contact.rim.radius > 0) return !is_far(now, placed);
     const Quat& flat = contact.rolls_flat == RollsFlat::a ? now.turn_a : now.turn_b;
     return flat.vec().norm() <= kFarthestFlatTurn / 2 && placed.rolled <= kFarthestFlatRoll;
 }
@@ -322,8 +328,9 @@ void IslandSolver::advance_bodies(const StepContext&, double time)
 // substep.
 void IslandSolver::place_contacts(const StepContext& context, double time)
 {
-    place_points();
-    if (context.response == Response::impulse) carry_arms(time / 2, context.dt);
+    const bool impulses = context.response == Response::impulse;
+    place_points(impulses ? time / 2 : 0);
+    if (impulses) carry_arms(time / 2, context.dt);
 }
 
 // What a substep goes through, in order. Who bounces does so as it begins, and goes on as he

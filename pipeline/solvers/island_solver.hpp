@@ -38,6 +38,7 @@ struct IslandContact {
     Vec3 arm_a = Vec3::Zero(), arm_b = Vec3::Zero();  // m, without the radius of a round side
     double round_a = 0, round_b = 0;
     RollsFlat rolls_flat = RollsFlat::no;
+    RoundRim rim;                       // of what rolls there
     Vec3 center_offset = Vec3::Zero();  // m, from b's center of mass to a's
     double separation = 0;
     double restitution = 0;
@@ -93,14 +94,17 @@ private:
     std::int32_t
     index_of(const Layout& layout, const Slice& slice, std::int32_t solver_index) const;
     Vec3 arm_now(const Vec3& arm, std::int32_t index, const Vec3& round) const;
-    void place_points();
+    void place_points(double ahead = 0);
     void place_contacts(const StepContext& context, double time);
     void carry_arms(double half, double dt);
     void find_walks();
     void turn_inertias();
     double separation_now(std::size_t at) const;
     Vec3 moved(std::int32_t index) const;
-    bool place_rolling(const IslandContact& contact, DirectPoint& point, double& separation) const;
+    bool place_rolling(const IslandContact& contact,
+                       double ahead,
+                       DirectPoint& point,
+                       double& separation) const;
     Vec3
     turned_freely(std::size_t at, const Vec3& spin, const StepContext& context, double time) const;
     void move_freely(const StepContext& context, double time);

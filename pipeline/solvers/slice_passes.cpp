@@ -121,7 +121,7 @@ void SlicePasses<Real>::run_pass(const SlicePass& pass, const Slice& slice, bool
         });
     case SlicePass::Kind::turn_arms:
         return for_colors(slice, shared, pass.backward, [&](std::size_t from, std::size_t end) {
-            throng::turn_arms(view_, from, end);
+            throng::turn_arms(view_, from, end, double{time_}, pass.first);
         });
     case SlicePass::Kind::apply_restitution:
         return apply_restitution_of(slice, shared, pass.backward);

@@ -177,10 +177,11 @@ private:
 
     void warm_start() { add(SlicePass::Kind::warm_start); }
 
-    // Before the first substep nobody has turned.
+    // Before the first substep nobody has turned; but rims are told ahead.
     void turn_arms()
     {
-        if (!constraints_.turning_arms.empty() && substep_ > 0) add(SlicePass::Kind::turn_arms);
+        const bool any = !constraints_.turning_arms.empty();
+        if (any && (substep_ > 0 || !constraints_.rims.empty())) add(SlicePass::Kind::turn_arms);
     }
 
     void update_surface_velocity()

@@ -102,10 +102,37 @@ bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
 bool anybody_swings(const Layout& layout, const Shapes& shapes, const Colliders& colliders)
 {
     const bool rounds = !shapes.capsules.empty() || !shapes.cylinders.empty();
-    const unsigned how = Colliders::kMayHang | (rounds ? Colliders::kFlat : 0u);
+    const unsigned how = Colliders::kMayHang | Colliders::kRim | (rounds ? Colliders::kFlat : 0u);
     const auto first = layout.body_of_solver_index.begin() + 1;
     return std::any_of(first, first + layout.dynamic,
                        [&](std::uint32_t body) { return (colliders.may_swing[body] & how) != 0; });
+}
+
+// None where nobody has any.
+void find_rims(const Layout& layout,
+               const Poses& poses,
+               const Shapes& shapes,
+               const Colliders& colliders,
+               std::vector<RoundRim>& rims)
+{
+    rims.clear();
+    if (shapes.cylinders.empty()) return;
+    for (std::size_t i = 1; i <= layout.dynamic; ++i) {
+        const std::uint32_t body = layout.body_of_solver_index[i];
+        if ((colliders.may_swing[body] & Colliders::kRim) == 0) continue;
+        rims.resize(layout.body_of_solver_index.size());
+        const std::uint32_t collider = colliders.begin[body];
+        const Quat turn = poses.orientation[body] * colliders.local[collider].orientation;
+        const Vec3 axis = turn * Vec3::UnitZ();
+        for (int k = 0; k < 3; ++k) rims[i].axis[k] = axis[k];
+        rims[i].radius = shapes.cylinders[colliders.shape[collider].index].radius;
+    }
+    if (rims.empty()) return;
+    for (std::size_t place = 0; place < layout.lanes.size(); ++place) {
+        if (layout.lanes[place].entry == LaneSource{}.entry) continue;
+        ++rims[static_cast<std::size_t>(layout.solver_index_a[place])].contacts;
+        ++rims[static_cast<std::size_t>(layout.solver_index_b[place])].contacts;
+    }
 }
 
 template <class Real>
@@ -225,6 +252,7 @@ void prepare_constraints(const StepContext& context,
                                                   || !constraints.prescribed.empty()
                                               ? blocks
                                               : 0);
+    find_rims(layout, poses, shapes, colliders, constraints.rims);
     constraints.turning_arms.resize(anybody_swings(layout, shapes, colliders) ? blocks : 0);
     constraints.point_frictions.resize(
         parameters.friction_at_points_or_pyramid(context.effects) ? points : 0);

@@ -228,7 +228,7 @@ std::size_t World::memory_bytes() const
                          constraints.blocks, constraints.points, constraints.restitutions,
                          constraints.rolling_frictions, constraints.surface_velocities,
                          constraints.turning_arms, constraints.prescribed, constraints.bodies,
-                         constraints.inertias, joined.contacts, joined.sources,
+                         constraints.inertias, constraints.rims, joined.contacts, joined.sources,
                          joined.scratch.candidates, joined.scratch.joined, joined.scratch.touches);
         },
         state_->step);

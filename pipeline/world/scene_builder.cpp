@@ -281,6 +281,8 @@ void SceneBuilder::place_colliders(std::uint32_t body,
         // By what is not convex, or round about another point.
         if (part.kind == ShapeKind::solid || !local.position.isZero(0))
             swings |= Colliders::kMayHang;
+        if (part.kind == ShapeKind::cylinder && count == 1 && local.position.isZero(0))
+            swings |= Colliders::kRim;
         if (part.kind == ShapeKind::box || part.kind == ShapeKind::hull) swings |= Colliders::kFlat;
         put(colliders.body, at, body);
         put(colliders.shape, at, part);

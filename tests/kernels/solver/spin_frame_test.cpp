@@ -197,5 +197,42 @@ TEST(SpinFrame, IsThatOfTheWorldWhereNothingIsToldOfTheInertia)
     EXPECT_EQ(spin_frame<float>(body, &none).coeffs(), Quat::Identity().coeffs());
 }
 
+// Axes that follow a body in two ways rather than one lose nothing: of what is the same about no
+// axis they are the same, and of what is, closer to how it turns.
+TEST(SpinFrame, ATopKeepsMoreOfItsMomentumByAxesTakenAnew)
+{
+    std::mt19937 random(7);
+    double worst[2] = {};
+    for (int i = 0; i < 60; ++i) {
+        const Vec3 moments = moments_of(random_shape(random, i));
+        Top<double> tops[2] = {Top<double>{moments}, Top<double>{moments}};
+        const Quat orientation = exponential(random_vector(random, 2));
+        const Vec3 spin = random_vector(random, 40);
+        for (const bool anew : {false, true}) {
+            Top<double>& top = tops[anew];
+            top.orientation = orientation;
+            top.spin = spin;
+            const double energy = top.energy();
+            const Vec3 momentum = top.momentum();
+            top.take_up();
+            for (int k = 0; k < 4; ++k) {
+                if (anew && k > 0) {
+                    take_axes_anew(top.body, &top.inertia);
+                    EXPECT_LT(spin_frame(top.body, &top.inertia).vec().norm(), 1e-14);
+                }
+                top.begin(k == 0);
+                top.advance();
+            }
+            top.give_back();
+            EXPECT_LE(top.energy(), energy * (1 + 1e-9)) << i;
+            worst[anew] =
+                std::max(worst[anew], (top.momentum() - momentum).norm() / momentum.norm());
+        }
+        if (tops[0].inertia.axis[3] > 0) continue;
+        EXPECT_LT((tops[0].spin - tops[1].spin).norm(), 1e-9 * spin.norm()) << i;
+    }
+    EXPECT_LT(worst[1], worst[0]);
+}
+
 }  // namespace
 }  // namespace throng

@@ -40,7 +40,7 @@ struct TwoBodies {
     Vec3 at(const Lane16<double> (&from)[3]) const { return in_double(from, 0); }
 
     // Its constraint, of points beside the middle of theirs, and what there is to be noted.
-    void make(const Vec3& arm_a, std::span<const Vec3> beside)
+    void make(const Vec3& arm_a, std::span<const Vec3> beside, RollsFlat on_rim = RollsFlat::no)
     {
         const Vec3 arm_b = arm_a + contact.center_offset;
         const Vec3 tangent = std::abs(contact.normal.x()) > 0.5 ? Vec3::UnitY() : Vec3::UnitX();
@@ -58,7 +58,7 @@ struct TwoBodies {
             point(k).lever_arm[0].at[0] = beside[k].dot(contact.normal.cross(tangent));
             point(k).lever_arm[1].at[0] = -beside[k].dot(tangent);
         }
-        note_turning_arms(view(), 0, 0, contact, 0.03);
+        note_turning_arms(view(), 0, 0, contact, 0.03, on_rim);
     }
 
     ContactConstraintsView<double> view()
@@ -105,6 +105,39 @@ TwoBodies weighted_ball()
     two.contact.center_offset = Vec3(0, 0, kRadius - kBelow);
     const Vec3 beside[] = {Vec3::Zero()};
     two.make(Vec3(0, 0, kBelow - kRadius), beside);
+    return two;
+}
+
+// A can that stands tilted on its rim, on a floor: its axis leans by this angle in a direction.
+constexpr double kLean = 0.4, kHalfLength = 0.2;  // rad, m
+
+Vec3 axis_towards(double direction, double lean)
+{
+    return {std::sin(lean) * std::cos(direction), std::sin(lean) * std::sin(direction),
+            std::cos(lean)};
+}
+
+// From the can's center to where it touches.
+Vec3 lowest_arm(double direction, double lean)
+{
+    const Vec3 along(std::cos(direction), std::sin(direction), 0);
+    const Vec3 down = axis_towards(direction, lean) * std::sin(lean) - along;
+    return down.normalized() * -kRadius - axis_towards(direction, lean) * kHalfLength;
+}
+
+TwoBodies tilted_can()
+{
+    TwoBodies two;
+    const Vec3 axis = axis_towards(0, kLean), arm = lowest_arm(0, kLean);
+    two.constraints.rims.resize(3);
+    two.constraints.rims[1].radius = kRadius;
+    two.constraints.rims[1].contacts = 1;
+    for (int k = 0; k < 3; ++k) two.constraints.rims[1].axis[k] = axis[k];
+    two.contact.normal = -Vec3::UnitZ();
+    two.contact.center_offset = -arm;
+    two.contact.points[0].anchor_a = arm;
+    const Vec3 beside[] = {Vec3::Zero()};
+    two.make(arm, beside, RollsFlat::b);
     return two;
 }
 
@@ -159,7 +192,7 @@ TEST(TurningArms, ABallThatRollsTouchesBelowItsMiddle)
         const Quat turned = exponential(Vec3(0, angle, 0));
         const Vec3 to_middle = turned * Vec3(0, 0, kBelow);
         two.go(1, Vec3(kRadius * angle, 0, kBelow) - to_middle, turned);
-        turn_arms(two.view(), 0, 1);
+        turn_arms(two.view(), 0, 1, 0, false);
         EXPECT_LT((two.at(two.block().center_a) - (to_middle - Vec3(0, 0, kRadius))).norm(), 1e-15);
         EXPECT_NEAR(two.separation(0), 0, 1e-15) << angle;
     }
@@ -176,7 +209,7 @@ TEST(TurningArms, ABoardThatRollsOnADrumTouchesWhereItIsLevelWithIt)
         const Vec3 on_drum = turned * Vec3(0, 0, kRadius),
                    arm = turned * Vec3(kRadius * angle, 0, -half_height);
         two.go(1, on_drum - arm - Vec3(0, 0, kRadius + half_height), turned);
-        turn_arms(two.view(), 0, 1);
+        turn_arms(two.view(), 0, 1, 0, false);
         EXPECT_LT((two.at(two.block().normal) + turned * Vec3::UnitZ()).norm(), 1e-15);
         EXPECT_LT((two.at(two.block().center_a) - arm).norm(), 1e-15);
         EXPECT_LT((two.at(two.block().center_b) - on_drum).norm(), 1e-15);
@@ -200,9 +233,89 @@ TEST(TurningArms, TakeAlongWhatContactsGave)
     const Vec3 begun = spin_of(two.at(two.block().center_a));
     for (int k = 0; k < 3; ++k) ball.motion[4 + k] = begun[k];
     two.go(1, Vec3(0.1, 0, 0), exponential(Vec3(0.1, 0.2, -0.1)));
-    turn_arms(two.view(), 0, 1);
+    turn_arms(two.view(), 0, 1, 0, false);
     EXPECT_LT((vector_at(ball.motion + 4) - spin_of(two.at(two.block().center_a))).norm(), 1e-14);
     EXPECT_LT(vector_at(ball.motion).norm(), 1e-15);
+}
+
+TEST(TurningArms, AreThoseOfARimThatRolls)
+{
+    const TwoBodies two = tilted_can();
+    const RoundRim none;
+    RoundRim rim = two.constraints.rims[1];
+    const auto rolls = [&](const Contact<double>& contact) {
+        return rolls_on_rim(contact, rim, none, true, false);
+    };
+    EXPECT_EQ(rolls(two.contact), RollsFlat::b);
+    EXPECT_EQ(rolls_on_rim(two.contact, rim, none, false, true), RollsFlat::no);
+    EXPECT_EQ(rolls_on_rim(two.contact, none, none, true, true), RollsFlat::no);
+    // Not on what is round; nor with the middle of an end; nor standing upright on all of it.
+    Contact<double> contact = two.contact;
+    contact.round_b = 0.1;
+    EXPECT_EQ(rolls(contact), RollsFlat::no);
+    contact = two.contact;
+    contact.points[0].anchor_a = -axis_towards(0, kLean) * kHalfLength;
+    EXPECT_EQ(rolls(contact), RollsFlat::no);
+    for (int k = 0; k < 3; ++k) rim.axis[k] = Vec3::UnitZ()[k];
+    contact.points[0].anchor_a = Vec3(kRadius, 0, -kHalfLength);
+    EXPECT_EQ(rolls(contact), RollsFlat::no);
+}
+
+TEST(TurningArms, ACanThatWobblesTouchesWhereItsRimIsLowest)
+{
+    for (const double direction : {0.0, 0.3, -0.8})
+        for (const double lean : {kLean, kLean - 0.1}) {
+            TwoBodies two = tilted_can();
+            const Vec3 begun = lowest_arm(0, kLean);
+            // However it turned about its own axis.
+            const Quat lies = exponential(Vec3(0, 0, direction))
+                * exponential(Vec3(0, lean - kLean, 0))
+                * exponential(Vec3(axis_towards(0, kLean) * 1.7));
+            const Vec3 arm = lowest_arm(direction, lean);
+            const double deeper = 1e-3;
+            two.go(1, Vec3(0, 0, begun.z() - arm.z() - deeper), lies);
+            turn_arms(two.view(), 0, 1, 0, false);
+            EXPECT_LT((two.at(two.block().center_a) - arm).norm(), 1e-14) << direction;
+            EXPECT_NEAR(two.separation(0), -deeper, 1e-14) << direction;
+        }
+}
+
+TEST(TurningArms, ARimIsToldForTheMiddleOfTheSubstep)
+{
+    TwoBodies two = tilted_can();
+    const double time = 0.02, rate = 9;  // s, rad/s
+    two.constraints.bodies[1].motion[6] = rate;
+    turn_arms(two.view(), 0, 1, time, true);
+    const Vec3 arm = lowest_arm(rate * time / 2, kLean);
+    EXPECT_LT((two.at(two.block().center_a) - arm).norm(), 1e-14);
+    EXPECT_NEAR(two.separation(0), 0, 1e-14);
+    // One that would run round farther than the contact tells of stays where it is.
+    two.constraints.bodies[1].motion[6] = 2 * kFarthestRimRun / time * 1.5;
+    turn_arms(two.view(), 0, 1, time, false);
+    EXPECT_LT((two.at(two.block().center_a) - arm).norm(), 1e-14);
+    EXPECT_EQ(two.constraints.turning_arms[0].lanes, 0);
+}
+
+// Points beside the middle, and what resists torsion, turn a body too.
+TEST(TurningArms, TakeAlongTheCouplesThatContactsGave)
+{
+    TwoBodies two = board_on_drum(0.03);
+    SolverBody<double>& board = two.constraints.bodies[1];
+    for (int k = 1; k < 4; ++k) board.inertia[k] = 2;
+    two.point(0).impulse.at[0] = 5;
+    two.block().torsional_impulse.at[0] = 0.7;
+    const auto spin_of = [&] {
+        const Vec3 normal = two.at(two.block().normal), tangent = two.at(two.block().tangent);
+        const Vec3 beside = normal.cross(tangent) * two.point(0).lever_arm[0].at[0]
+            - tangent * two.point(0).lever_arm[1].at[0];
+        const Vec3 arm = two.at(two.block().center_a) + beside;
+        return Vec3(-2 * (arm.cross(normal) * 5 + normal * 0.7));
+    };
+    const Vec3 begun = spin_of();
+    for (int k = 0; k < 3; ++k) board.motion[4 + k] = begun[k];
+    two.go(1, Vec3(0.001, 0, 0), exponential(Vec3(0, 0.004, 0.01)));
+    turn_arms(two.view(), 0, 1, 0, false);
+    EXPECT_LT((vector_at(board.motion + 4) - spin_of()).norm(), 1e-13);
 }
 
 }  // namespace
