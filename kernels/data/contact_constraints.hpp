@@ -296,7 +296,7 @@ struct Layout {
 ///   prescribed          [bodies] while bodies that contacts push are driven
 ///   point_frictions     [points] while friction acts at points or within a pyramid
 ///   inertias            [bodies] while the gyroscopic torque acts
-///   rims                [bodies] while a cylinder moves
+///   rims                [bodies] while a cylinder turns
 ///   accelerations       [bodies] while forces act
 ///   settled             [bodies] while the direct solver acts: who has its new state already, and
 ///                       who turned non-finite

@@ -109,13 +109,18 @@ MovedContact begun_contact(const ContactConstraintsView<Real>& constraints,
     return contact;
 }
 
-// Axes of a rim: where it is lowest, and its own.
-Mat3 axes_of_rim(const Vec3& axis, const Vec3& outward)
+// Axes of a direction that another one is not, as near to that as can be.
+Mat3 axes_towards(const Vec3& direction, const Vec3& other)
 {
-    const Vec3 lowest = (outward - axis * axis.dot(outward)).normalized();
+    const Vec3 across = (other - direction * direction.dot(other)).normalized();
     Mat3 axes;
-    axes << lowest, axis.cross(lowest), axis;
+    axes << across, direction.cross(across), direction;
     return axes;
+}
+
+Quat turn_of_axes(const Mat3& before, const Mat3& now)
+{
+    return Quat(Mat3(now * before.transpose()));
 }
 
 // The places of touch round a rim go with that where it is lowest.
@@ -123,12 +128,13 @@ void run_round(const MovedContact& contact, PlacedContact& now)
 {
     const bool is_b = contact.flat == RollsFlat::a;
     Quat& turn = is_b ? now.turn_b : now.turn_a;
-    const Vec3 axis = vector_at(contact.rim.axis);
     const double outward = is_b ? -1 : 1;
-    const Mat3 before = axes_of_rim(axis, contact.normal * outward),
-               by_now = axes_of_rim(turn * axis, now.normal * outward);
+    const Vec3 axis = vector_at(contact.rim.axis), axis_now = turn * axis;
+    const Mat3 before = axes_towards(axis, contact.normal * outward),
+               by_now = axes_towards(axis_now, now.normal * outward);
     now.rolled = (by_now.col(0) - before.col(0)).norm();
-    turn = Quat(Mat3(by_now * before.transpose()));
+    turn = turn_of_axes(before, by_now);
+    now.turn = turn_of_axes(axes_towards(contact.normal, axis), axes_towards(now.normal, axis_now));
 }
 
 // m, what a constraint that is placed there, and adds what has moved since the step began, is to
@@ -158,14 +164,46 @@ double separation_for(const MovedContact& contact,
     return now - added - first * turn.dot(normal.cross(tangent)) + second * turn.dot(tangent);
 }
 
-// Goes with a flat side, and with a place round a rim.
-Vec3 tangent_by_now(const MovedContact& contact, const PlacedContact& placed, const Vec3& begun)
+template <class Real>
+struct LaneBodies {
+    SolverBody<Real>&a, &b;
+    Vec3 moved;  // m, b against a since the step began
+
+    LaneBodies(const ContactConstraintsView<Real>& constraints,
+               const ContactConstraintWide<Real>& block,
+               std::size_t lane)
+        : a(constraints.bodies[block.a[lane]]), b(constraints.bodies[block.b[lane]]),
+          moved(vector_at(b.delta_pose) - vector_at(a.delta_pose))
+    { }
+    MovedContact contact_now(const MovedContact& begun) const
+    {
+        MovedContact contact = begun;
+        contact.center_offset -= moved;
+        contact.turn_a = turn_of(a);
+        contact.turn_b = turn_of(b);
+        return contact;
+    }
+};
+
+// Of points where a constraint is placed.
+template <class Real>
+void store_separations(const ContactConstraintsView<Real>& constraints,
+                       std::size_t at,
+                       std::size_t lane,
+                       const MovedContact& contact,
+                       const PlacedContact& placed,
+                       const Vec3& moved)
 {
-    const bool by_a = (contact.flat == RollsFlat::a) != (contact.rim.radius > 0);
-    if (contact.flat == RollsFlat::no) return begun;
-    const Vec3 turned = (by_a ? placed.turn_a : placed.turn_b) * begun;
-    if (!(contact.rim.radius > 0)) return turned;
-    return (turned - placed.normal * placed.normal.dot(turned)).normalized();
+    const ContactConstraintWide<Real>& block = constraints.blocks[at];
+    const TurningArmsWide<Real>& begun = constraints.turning_arms[at];
+    const Vec3 begun_tangent = in_double(begun.tangent, lane),
+               tangent = in_double(block.tangent, lane);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
+        ContactPointWide<Real>& point = constraints.points[block.first_point + k];
+        point.separation.at[lane] = static_cast<Real>(
+            double{begun.beyond[k].at[lane]}
+            + separation_for(contact, placed, moved, begun_tangent, tangent, point, lane));
+    }
 }
 
 template <class Real>
@@ -176,16 +214,12 @@ void turn_lane(const ContactConstraintsView<Real>& constraints,
 {
     ContactConstraintWide<Real>& block = constraints.blocks[at];
     TurningArmsWide<Real>& begun = constraints.turning_arms[at];
-    SolverBody<Real>& a = constraints.bodies[block.a[lane]];
-    SolverBody<Real>& b = constraints.bodies[block.b[lane]];
+    const LaneBodies<Real> bodies(constraints, block, lane);
     const MovedContact still = begun_contact(constraints, block, begun, lane);
-    MovedContact contact = still;
-    Vec3 moved = vector_at(b.delta_pose) - vector_at(a.delta_pose);
-    contact.center_offset -= moved;
-    contact.turn_a = turn_of(a);
-    contact.turn_b = turn_of(b);
+    MovedContact contact = bodies.contact_now(still);
+    Vec3 moved = bodies.moved;
     const bool on_rim = contact.rim.radius > 0, is_b = contact.flat == RollsFlat::a;
-    SolverBody<Real>& rolling = is_b ? b : a;
+    SolverBody<Real>& rolling = is_b ? bodies.b : bodies.a;
     GyroscopicInertia<Real>* const inertia = constraints.inertias == nullptr
         ? nullptr
         : constraints.inertias + (is_b ? block.b[lane] : block.a[lane]);
@@ -209,15 +243,13 @@ void turn_lane(const ContactConstraintsView<Real>& constraints,
     Quat frame_a = Quat::Identity(), frame_b = Quat::Identity();
     if (on_rim && contact.rim.contacts == 1)
         (is_b ? frame_b : frame_a) = take_axes_anew(rolling, inertia);
-    const Vec3 begun_tangent = in_double(begun.tangent, lane);
-    const Vec3 tangent = tangent_by_now(contact, now, begun_tangent);
 
     const Vec3 before = impulse_of(constraints, block, lane);
     const Vec3 turns = couple_of(constraints, block, lane);
     const Vec3 torque_a = frame_a * (vector_at(begun.now_a, lane).cross(before) + turns),
                torque_b = frame_b * (vector_at(begun.now_b, lane).cross(before) + turns);
     store(now.normal, block.normal, lane);
-    store(tangent, block.tangent, lane);
+    store(now.turn * in_double(begun.tangent, lane), block.tangent, lane);
     store(now.arm_a, block.center_a, lane);
     store(now.arm_b, block.center_b, lane);
     store(now.arm_a, begun.now_a, lane);
@@ -225,14 +257,24 @@ void turn_lane(const ContactConstraintsView<Real>& constraints,
     const Vec3 impulse = impulse_of(constraints, block, lane), more = impulse - before;
     const Vec3 turn_on = couple_of(constraints, block, lane);
     const Vec3 on_a = now.arm_a.cross(impulse) + turn_on, on_b = now.arm_b.cross(impulse) + turn_on;
-    if (has(block.writes_a, lane)) push(a, -more, torque_a - on_a);
-    if (has(block.writes_b, lane)) push(b, more, on_b - torque_b);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
-        ContactPointWide<Real>& point = constraints.points[block.first_point + k];
-        point.separation.at[lane] = static_cast<Real>(
-            double{begun.beyond[k].at[lane]}
-            + separation_for(contact, now, moved, begun_tangent, tangent, point, lane));
-    }
+    if (has(block.writes_a, lane)) push(bodies.a, -more, torque_a - on_a);
+    if (has(block.writes_b, lane)) push(bodies.b, more, on_b - torque_b);
+    store_separations(constraints, at, lane, contact, now, moved);
+}
+
+// What a spin does to the height of a rim is nothing, and as constraints see it much.
+template <class Real>
+void place_rim(const ContactConstraintsView<Real>& constraints, std::size_t at, std::size_t lane)
+{
+    const ContactConstraintWide<Real>& block = constraints.blocks[at];
+    const TurningArmsWide<Real>& begun = constraints.turning_arms[at];
+    const LaneBodies<Real> bodies(constraints, block, lane);
+    const MovedContact contact = bodies.contact_now(begun_contact(constraints, block, begun, lane));
+    PlacedContact placed = place(contact);
+    placed.normal = in_double(block.normal, lane);
+    placed.arm_a = vector_at(begun.now_a, lane);
+    placed.arm_b = vector_at(begun.now_b, lane);
+    store_separations(constraints, at, lane, contact, placed, bodies.moved);
 }
 
 }  // namespace
@@ -247,6 +289,9 @@ PlacedContact place(const MovedContact& contact)
     now.turn_b = contact.turn_b;
     double round_a = contact.round_a, round_b = contact.round_b;
     Vec3 core_a = contact.core_a, core_b = contact.core_b;
+    now.turn = contact.flat == RollsFlat::a ? contact.turn_a
+        : contact.flat == RollsFlat::b      ? contact.turn_b
+                                            : Quat(Quat::Identity());
     if (contact.rim.radius > 0) {
         run_round(contact, now);
         core_a += contact.normal * round_a;
@@ -260,6 +305,10 @@ PlacedContact place(const MovedContact& contact)
         if (!(contact.rim.radius > 0)) now.rolled = (there - arm).norm() / (arm.norm() + round);
         arm = there;
     };
+    // The arm of a rim goes round, and does not tip with the body: see turning_arms.hpp.
+    if (contact.rim.radius > 0 && !contact.tips)
+        (contact.flat == RollsFlat::a ? now.arm_b : now.arm_a) =
+            now.turn * (contact.flat == RollsFlat::a ? core_b : core_a);
     const Vec3 apart = contact.center_offset + now.normal * now.separation;
     if (contact.flat == RollsFlat::a) roll(now.arm_a, now.arm_b - apart, contact.round_b);
     if (contact.flat == RollsFlat::b) roll(now.arm_b, now.arm_a + apart, contact.round_a);
@@ -348,11 +397,23 @@ void turn_arms(const ContactConstraintsView<Real>& constraints,
     }
 }
 
+template <class Real>
+void place_rims(const ContactConstraintsView<Real>& constraints, std::size_t begin, std::size_t end)
+{
+    for (std::size_t place = begin; place < end; ++place) {
+        const TurningArmsWide<Real>& begun = constraints.turning_arms[place];
+        for (std::size_t lane = 0; lane < kBlock; ++lane)
+            if (has(begun.lanes, lane) && has(begun.rims, lane))
+                place_rim(constraints, place, lane);
+    }
+}
+
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void note_turning_arms<Real>(const ContactConstraintsView<Real>&, std::size_t,        \
                                           std::size_t, const Contact<Real>&, double, RollsFlat);   \
     template void turn_arms<Real>(const ContactConstraintsView<Real>&, std::size_t, std::size_t,   \
-                                  double, bool);
+                                  double, bool);                                                   \
+    template void place_rims<Real>(const ContactConstraintsView<Real>&, std::size_t, std::size_t);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

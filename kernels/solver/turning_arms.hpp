@@ -12,7 +12,8 @@
 // A rim that rolls is the other reason: where a can, a coin or a rod that is set upright touches,
 // the place runs round the rim many times as fast as anything moves. Held where the step found it,
 // it lags, and its push turns the body on the way that it goes. So this place is told for the
-// middle of each substep, and the body's spin in axes taken anew there.
+// middle of each substep, and the body's spin in axes taken anew there. As the body tips over the
+// arm stays as long and steep as the step found it, like that of a box on its edge.
 #pragma once
 
 #include "kernels/data/contacts.hpp"
@@ -78,6 +79,7 @@ bool is_on_rim(const Contact<Real>& contact, const RoundRim& rim, bool is_b)
     if (!(rim.radius > 0)) return false;
     const Vec3 axis = vector_at(rim.axis), normal = contact.normal.template cast<double>();
     if (!(axis.cross(normal).squaredNorm() > kFlattest * kFlattest)) return false;
+    // On its side it rolls as what is round does.
     if (contact.count > 1 && !(std::abs(axis.dot(normal)) > kLying)) return false;
     for (int k = 0; k < contact.count; ++k) {
         const Vec3T<Real> on_a = contact.points[static_cast<std::size_t>(k)].anchor_a;
@@ -106,12 +108,14 @@ RollsFlat rolls_on_rim(const Contact<Real>& contact,
 ///   core_a, core_b  m, arms without the radius of a round side, which does not turn along
 ///   flat            that on which something rolls
 ///   rim             of what rolls there; its radius is 0 where that is not a rim
+///   tips            the arm of the rim is to be as steep as it is by now
 ///   center_offset   m, from b's center of mass to a's, as they are by now
 struct MovedContact {
     Vec3 normal, core_a, core_b;
     double round_a = 0, round_b = 0;
     RollsFlat flat = RollsFlat::no;
     RoundRim rim;
+    bool tips = false;
     Vec3 center_offset;
     Quat turn_a = Quat::Identity(), turn_b = Quat::Identity();
 };
@@ -120,11 +124,12 @@ struct MovedContact {
 /// with the round one.
 ///
 ///   turn_a, turn_b  of the points on either side: that of the body, or of the place round its rim
+///   turn    of tangents
 ///   rolled  along a flat side, as a share of the arm there and the radius of the other; of a rim
 ///           round it, as a share of its radius
 struct PlacedContact {
     Vec3 normal, arm_a, arm_b;
-    Quat turn_a = Quat::Identity(), turn_b = Quat::Identity();
+    Quat turn_a = Quat::Identity(), turn_b = Quat::Identity(), turn = Quat::Identity();
     double separation = 0, rolled = 0;
 };
 PlacedContact place(const MovedContact& contact);
@@ -161,5 +166,12 @@ void turn_arms(const ContactConstraintsView<Real>& constraints,
                std::size_t end,
                double time,
                bool first);
+
+/// Tells the separations of rims anew, once bodies have moved: what spins does not rise from where
+/// it touches.
+template <class Real>
+void place_rims(const ContactConstraintsView<Real>& constraints,
+                std::size_t begin,
+                std::size_t end);
 
 }  // namespace throng

@@ -71,11 +71,13 @@ bool IslandSolver::place_rolling(const IslandContact& contact,
         return index < 0 ? Quat(Quat::Identity()) : bodies_[static_cast<std::size_t>(index)].turned;
     };
     const Vec3 offset = contact.center_offset + moved(contact.a) - moved(contact.b);
-    const MovedContact now{contact.normal,    contact.arm_a,      contact.arm_b, contact.round_a,
-                           contact.round_b,   contact.rolls_flat, contact.rim,   offset,
-                           turned(contact.a), turned(contact.b)};
+    const MovedContact now{contact.normal,  contact.arm_a,      contact.arm_b,    contact.round_a,
+                           contact.round_b, contact.rolls_flat, contact.rim,      true,
+                           offset,          turned(contact.a),  turned(contact.b)};
     const std::int32_t rolling = contact.rolls_flat == RollsFlat::a ? contact.b : contact.a;
-    const PlacedContact placed = ahead > 0 && contact.rim.radius > 0
+    // Who may bounce does so as the substep begins.
+    const bool goes_on = ahead > 0 && !(contact.restitution > 0);
+    const PlacedContact placed = goes_on && contact.rim.radius > 0
         ? place_ahead(now, after_[static_cast<std::size_t>(rolling)].spin, ahead)
         : place(now);
     point.normal = placed.normal;

@@ -123,6 +123,10 @@ void SlicePasses<Real>::run_pass(const SlicePass& pass, const Slice& slice, bool
         return for_colors(slice, shared, pass.backward, [&](std::size_t from, std::size_t end) {
             throng::turn_arms(view_, from, end, double{time_}, pass.first);
         });
+    case SlicePass::Kind::place_rims:
+        return for_blocks(slice, shared, [&](std::size_t from, std::size_t end) {
+            throng::place_rims(view_, from, end);
+        });
     case SlicePass::Kind::apply_restitution:
         return apply_restitution_of(slice, shared, pass.backward);
     default:

@@ -23,6 +23,7 @@ struct SlicePass {
         turn_arms,
         solve_biased,
         advance,
+        place_rims,
         relax,
         apply_restitution,
         store,

@@ -215,6 +215,7 @@ private:
     {
         note_spins();
         add(SlicePass::Kind::advance);
+        if (!constraints_.rims.empty()) add(SlicePass::Kind::place_rims);
         if (parts_) add(SlicePass::Kind::restore);
     }
 

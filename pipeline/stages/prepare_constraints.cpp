@@ -102,24 +102,28 @@ bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
 bool anybody_swings(const Layout& layout, const Shapes& shapes, const Colliders& colliders)
 {
     const bool rounds = !shapes.capsules.empty() || !shapes.cylinders.empty();
-    const unsigned how = Colliders::kMayHang | Colliders::kRim | (rounds ? Colliders::kFlat : 0u);
+    const unsigned how = Colliders::kMayHang | (rounds ? Colliders::kFlat : 0u);
     const auto first = layout.body_of_solver_index.begin() + 1;
     return std::any_of(first, first + layout.dynamic,
                        [&](std::uint32_t body) { return (colliders.may_swing[body] & how) != 0; });
 }
 
-// None where nobody has any.
-void find_rims(const Layout& layout,
+// Of those that turn; none where nobody does.
+void find_rims(double dt,
+               const Layout& layout,
                const Poses& poses,
+               const Velocities& velocities,
                const Shapes& shapes,
                const Colliders& colliders,
                std::vector<RoundRim>& rims)
 {
+    constexpr double kSeen = 1e-4;  // rad, in a step
     rims.clear();
     if (shapes.cylinders.empty()) return;
     for (std::size_t i = 1; i <= layout.dynamic; ++i) {
         const std::uint32_t body = layout.body_of_solver_index[i];
         if ((colliders.may_swing[body] & Colliders::kRim) == 0) continue;
+        if (!((velocities.angular[body] * dt).squaredNorm() > kSeen * kSeen)) continue;
         rims.resize(layout.body_of_solver_index.size());
         const std::uint32_t collider = colliders.begin[body];
         const Quat turn = poses.orientation[body] * colliders.local[collider].orientation;
@@ -252,8 +256,9 @@ void prepare_constraints(const StepContext& context,
                                                   || !constraints.prescribed.empty()
                                               ? blocks
                                               : 0);
-    find_rims(layout, poses, shapes, colliders, constraints.rims);
-    constraints.turning_arms.resize(anybody_swings(layout, shapes, colliders) ? blocks : 0);
+    find_rims(context.dt, layout, poses, velocities, shapes, colliders, constraints.rims);
+    const bool turn = !constraints.rims.empty() || anybody_swings(layout, shapes, colliders);
+    constraints.turning_arms.resize(turn ? blocks : 0);
     constraints.point_frictions.resize(
         parameters.friction_at_points_or_pyramid(context.effects) ? points : 0);
     constraints.rolling_frictions.resize(context.has(Effect::rolling_friction) ? blocks : 0);

@@ -10,7 +10,8 @@
 // - its own partner does not rise above that plane, neither there nor a little beyond.
 //
 // A face that leans towards the body bears it itself and is never dropped; so of two contacts one
-// is left.
+// is left. What pushes almost as the face does is no bump but the body's own side, as it leans:
+// where that would come down next, the face beside is needed, and its contact is made level.
 #include "kernels/geometry/mesh_distance.hpp"
 #include "kernels/geometry/nearest_point.hpp"
 #include "kernels/parallel/blocks.hpp"
@@ -31,6 +32,9 @@ constexpr std::size_t kGrain = 2048;  // pairs a block
 constexpr double kAlike = 0.99995;
 // Cosine below which a face is the side of something and not a slope.
 constexpr double kSide = 0.1;
+// Cosine beyond which a ghost is the mover's own side that leans, if that is not round: a fifth of
+// a radian.
+constexpr double kLeans = 0.98;
 // Shares of the shape's smallest half extent: what is level, and how far a rise is looked for. A
 // slope of one by the other is still seen as a rise.
 constexpr double kLevel = 2e-3, kBeyond = 0.1;
@@ -43,11 +47,11 @@ struct Seen {
     bool mover_first = false;
     Contact<Real>* contact = nullptr;
 
-    bool face = false;           // the other pushes along one of its faces
-    bool hidden = false;         // it is a ghost
-    Vec3 normal = Vec3::Zero();  // from the other to the mover
-    std::array<Vec3, 4> at{};    // world, on the other's surface
-    double nearest = 0;          // m, separation of the nearest point
+    bool face = false;                // the other pushes along one of its faces
+    const Seen* hidden_by = nullptr;  // a face; then it is a ghost
+    Vec3 normal = Vec3::Zero();       // from the other to the mover
+    std::array<Vec3, 4> at{};         // world, on the other's surface
+    double nearest = 0;               // m, separation of the nearest point
 };
 
 template <class Real>
@@ -115,8 +119,13 @@ public:
             while (end < all.size() && all[end].moving == all[begin].moving) ++end;
             if (end - begin > 1) judge(all.subspan(begin, end - begin));
         }
-        for (const Seen<Real>& ghost : all)
-            if (ghost.hidden) ghost.contact->count = 0;
+        for (const Seen<Real>& ghost : all) {
+            if (ghost.hidden_by == nullptr || ghost.contact->count == 0) continue;
+            if (leans(ghost))
+                level(ghost);
+            else
+                ghost.contact->count = 0;
+        }
     }
 
 private:
@@ -324,9 +333,34 @@ private:
     {
         for (Seen<Real>& seen : of_shape) process(seen);
         for (Seen<Real>& ghost : of_shape)
-            ghost.hidden = std::any_of(of_shape.begin(), of_shape.end(), [&](const auto& face) {
-                return &face != &ghost && hides(face, ghost);
-            });
+            for (const Seen<Real>& face : of_shape)
+                if (ghost.hidden_by == nullptr && &face != &ghost && hides(face, ghost))
+                    ghost.hidden_by = &face;
+    }
+
+    bool leans(const Seen<Real>& ghost) const
+    {
+        const Contact<Real>& contact = *ghost.contact;
+        const bool round = (ghost.mover_first ? contact.round_a : contact.round_b) > 0;
+        const bool stands = (roles_[ghost.other] & kPushed) == 0;
+        return stands && !round && ghost.hidden_by->normal.dot(ghost.normal) > kLeans;
+    }
+
+    // As if the mover met the plane of the face there.
+    void level(const Seen<Real>& ghost) const
+    {
+        const Vec3 &up = ghost.hidden_by->normal, &on_face = ghost.hidden_by->at[0];
+        Contact<Real>& contact = *ghost.contact;
+        contact.normal = (ghost.mover_first ? Vec3(-up) : up).template cast<Real>();
+        for (int k = 0; k < contact.count; ++k) {
+            auto& point = contact.points[static_cast<std::size_t>(k)];
+            const Vec3& at = ghost.at[static_cast<std::size_t>(k)];
+            const Vec3 on_mover = at + ghost.normal * double{point.separation};
+            const double height = up.dot(on_mover - on_face);
+            if (!ghost.mover_first)
+                point.anchor_a += ((on_mover - up * height) - at).template cast<Real>();
+            point.separation = static_cast<Real>(height);
+        }
     }
 
     const Pairs& pairs_;

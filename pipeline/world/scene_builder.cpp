@@ -39,6 +39,14 @@ int sides_of(MeshTree tree)
     return kSides[static_cast<std::size_t>(tree)];
 }
 
+// Whether a cylinder may be followed as it runs round its rim. Of a needle the digits of float do
+// not tell how it turns about its length beside how it tips over, and nothing of it runs far.
+bool may_run_round(const Cylinder& cylinder)
+{
+    constexpr double kThinnest = 1e-2;
+    return cylinder.radius >= kThinnest * cylinder.half_length;
+}
+
 // Principal moments that differ by more than rounding.
 bool uneven(const Sym3& inertia)
 {
@@ -281,7 +289,8 @@ void SceneBuilder::place_colliders(std::uint32_t body,
         // By what is not convex, or round about another point.
         if (part.kind == ShapeKind::solid || !local.position.isZero(0))
             swings |= Colliders::kMayHang;
-        if (part.kind == ShapeKind::cylinder && count == 1 && local.position.isZero(0))
+        if (part.kind == ShapeKind::cylinder && count == 1 && local.position.isZero(0)
+            && may_run_round(shapes.cylinders[part.index]))
             swings |= Colliders::kRim;
         if (part.kind == ShapeKind::box || part.kind == ShapeKind::hull) swings |= Colliders::kFlat;
         put(colliders.body, at, body);

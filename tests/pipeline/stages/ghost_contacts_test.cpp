@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace throng {
 namespace {
 
@@ -124,6 +126,34 @@ TEST(GhostContacts, SeamsOfABodyThatMovesTakeNoSpeed)
     made.body(made.shape(cart), Vec3(0, 0, 0.25));
     made.box(Vec3::Constant(0.1), Vec3(-0.8, 0.03, 0.6)).velocity = Vec3(4, 0, 0);
     EXPECT_NEAR(speed_after(made.scene, 20), 4, 4e-3);
+}
+
+// A board that leans as it lands lies on all the tiles below it, not by turns on those at its ends.
+TEST(GhostContacts, BoardsThatLandOnSmallTilesComeToRest)
+{
+    SceneOf made;
+    made.scene.settings.solver = Solver::direct;
+    made.scene.materials[0].restitution = 0.1;
+    const std::uint32_t tile = made.shape(BoxShape{Vec3(0.05, 0.05, 0.025)});
+    for (int i = -20; i <= 20; ++i)
+        for (int j = -20; j <= 20; ++j)
+            made.body(tile, Vec3(0.1 * i, 0.1 * j, -0.025)).motion = Motion::static_;
+    std::mt19937 random(3);
+    const auto within = [&](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    for (int i = 0; i < 36; ++i) {
+        const Vec3 half(within(0.06, 0.2), within(0.02, 0.1), within(0.003, 0.02));
+        const Vec3 place(0.6 * (i % 6) - 1.5, 0.6 * (i / 6) - 1.5, 0.25);
+        BodyDescription& board = made.box(half, place);
+        board.orientation = exponential(Vec3(within(-2, 2), within(-2, 2), within(-2, 2)));
+        board.angular_velocity = Vec3(within(-4, 4), within(-4, 4), 0);
+    }
+    World world(made.scene, 2);
+    world.step(300);
+    EXPECT_LT(world.measure().greatest_overlap, 1e-3);
+    for (const BodyId body : world.bodies())
+        EXPECT_LT(world.velocity(body).norm() + world.angular_velocity(body).norm(), 1e-2);
 }
 
 TEST(GhostContacts, AreCalledForByWhatMayLieFlush)
