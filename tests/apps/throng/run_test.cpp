@@ -110,7 +110,7 @@ TEST(RunStats, CountTheThreadsThatWorked)
         return stats.number(stats.find(JsonDocument::kRoot, "threads_used"));
     };
     EXPECT_EQ(used("pile:20", "0"), 0);
-    EXPECT_EQ(used("pile:3000", "30"), 3);
+    EXPECT_EQ(used("pile:3000", "100"), 3);
 }
 
 TEST(Run, StatsGoToStandardOutputByADash)
