@@ -32,7 +32,10 @@ bool IslandSolver::list_touching(double time)
         const double least =
             touches ? contact.least_speed : std::max(contact.least_speed, separations_[i] / time);
         add_impact(i, least);
-        any = any || (touches && contact.restitution > 0 && approach(i, struck_) < -least);
+        // Who would touch later in the substep does so by what forces leave of his way.
+        const bool comes =
+            approach(i, struck_) < -least && (touches || approach(i, free_) < -least);
+        any = any || (contact.restitution > 0 && comes);
     }
     return any;
 }
