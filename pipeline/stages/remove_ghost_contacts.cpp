@@ -50,8 +50,9 @@ struct Seen {
     bool face = false;                // the other pushes along one of its faces
     const Seen* hidden_by = nullptr;  // a face; then it is a ghost
     Vec3 normal = Vec3::Zero();       // from the other to the mover
-    std::array<Vec3, 4> at{};         // world, on the other's surface
-    double nearest = 0;               // m, separation of the nearest point
+    // world, on the other's surface
+    std::array<Vec3, 4> at{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    double nearest = 0;  // m, separation of the nearest point
 };
 
 template <class Real>
