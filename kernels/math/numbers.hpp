@@ -11,6 +11,14 @@ Vec3 vector_at(const Real* numbers)
     return {double{numbers[0]}, double{numbers[1]}, double{numbers[2]}};
 }
 
+/// xx, yy, zz, xy, xz, yz.
+template <class Real>
+Sym3 tensor_at(const Real* numbers)
+{
+    return {double{numbers[0]}, double{numbers[1]}, double{numbers[2]},
+            double{numbers[3]}, double{numbers[4]}, double{numbers[5]}};
+}
+
 /// Anything of Eigen's as the numbers that it is of, in the order in which it holds them.
 template <class Numbers>
 void put(const Eigen::DenseBase<Numbers>& from, double* to)

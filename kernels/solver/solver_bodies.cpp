@@ -33,13 +33,10 @@ void turn_vector(const Quat& by, Real* vector)
     for (int k = 0; k < 3; ++k) vector[k] = static_cast<Real>(turned[k]);
 }
 
-// xx, yy, zz, xy, xz, yz.
 template <class Real>
 void turn_tensor(const Quat& by, Real* six)
 {
-    const Sym3 tensor{double{six[0]}, double{six[1]}, double{six[2]},
-                      double{six[3]}, double{six[4]}, double{six[5]}};
-    const Sym3 turned = in_world_axes(tensor, by);
+    const Sym3 turned = in_world_axes(tensor_at(six), by);
     const double numbers[6] = {turned.xx, turned.yy, turned.zz, turned.xy, turned.xz, turned.yz};
     for (int k = 0; k < 6; ++k) six[k] = static_cast<Real>(numbers[k]);
 }

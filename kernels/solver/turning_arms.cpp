@@ -16,10 +16,8 @@ constexpr double kFarthestTurn = 0.3;  // rad, in a step
 template <class Real>
 void push(SolverBody<Real>& body, const Vec3& impulse, const Vec3& torque)
 {
-    const Real* const inertia = body.inertia;
-    const Sym3 inverse{double{inertia[1]}, double{inertia[2]}, double{inertia[3]},
-                       double{inertia[4]}, double{inertia[5]}, double{inertia[6]}};
-    const Vec3 velocity = impulse * double{inertia[0]}, spin = inverse.matrix() * torque;
+    const Vec3 velocity = impulse * double{body.inertia[0]},
+               spin = tensor_at(body.inertia + 1).matrix() * torque;
     for (int k = 0; k < 3; ++k) {
         body.motion[k] += static_cast<Real>(velocity[k]);
         body.motion[4 + k] += static_cast<Real>(spin[k]);
@@ -123,18 +121,33 @@ Quat turn_of_axes(const Mat3& before, const Mat3& now)
     return Quat(Mat3(now * before.transpose()));
 }
 
-// The places of touch round a rim go with that where it is lowest.
-void run_round(const MovedContact& contact, PlacedContact& now)
+// The places of touch round a rim go with that where it is lowest. The arm goes round, and tips
+// with the body only if that is asked: see turning_arms.hpp.
+void place_on_rim(const MovedContact& contact, PlacedContact& now)
 {
     const bool is_b = contact.flat == RollsFlat::a;
-    Quat& turn = is_b ? now.turn_b : now.turn_a;
     const double outward = is_b ? -1 : 1;
+    Quat& turn = is_b ? now.turn_b : now.turn_a;
     const Vec3 axis = vector_at(contact.rim.axis), axis_now = turn * axis;
     const Mat3 before = axes_towards(axis, contact.normal * outward),
                by_now = axes_towards(axis_now, now.normal * outward);
     now.rolled = (by_now.col(0) - before.col(0)).norm();
     turn = turn_of_axes(before, by_now);
     now.turn = turn_of_axes(axes_towards(contact.normal, axis), axes_towards(now.normal, axis_now));
+
+    const Vec3 begun_a = contact.core_a + contact.normal * contact.round_a,
+               begun_b = contact.core_b - contact.normal * contact.round_b;
+    now.arm_a = now.turn_a * begun_a;
+    now.arm_b = now.turn_b * begun_b;
+    now.separation = now.normal.dot(now.arm_b - contact.center_offset - now.arm_a);
+    const Vec3 apart = contact.center_offset + now.normal * now.separation;
+    if (is_b) {
+        if (!contact.tips) now.arm_b = now.turn * begun_b;
+        now.arm_a = now.arm_b - apart;
+    } else {
+        if (!contact.tips) now.arm_a = now.turn * begun_a;
+        now.arm_b = now.arm_a + apart;
+    }
 }
 
 // m, what a constraint that is placed there, and adds what has moved since the step began, is to
@@ -164,6 +177,7 @@ double separation_for(const MovedContact& contact,
     return now - added - first * turn.dot(normal.cross(tangent)) + second * turn.dot(tangent);
 }
 
+// The two bodies of a lane, and its contact where they are by now.
 template <class Real>
 struct LaneBodies {
     SolverBody<Real>&a, &b;
@@ -282,33 +296,22 @@ void place_rim(const ContactConstraintsView<Real>& constraints, std::size_t at, 
 PlacedContact place(const MovedContact& contact)
 {
     PlacedContact now;
-    now.normal = contact.normal;
-    if (contact.flat == RollsFlat::a) now.normal = contact.turn_a * contact.normal;
-    if (contact.flat == RollsFlat::b) now.normal = contact.turn_b * contact.normal;
     now.turn_a = contact.turn_a;
     now.turn_b = contact.turn_b;
-    double round_a = contact.round_a, round_b = contact.round_b;
-    Vec3 core_a = contact.core_a, core_b = contact.core_b;
-    now.turn = contact.flat == RollsFlat::a ? contact.turn_a
-        : contact.flat == RollsFlat::b      ? contact.turn_b
-                                            : Quat(Quat::Identity());
+    if (contact.flat == RollsFlat::a) now.turn = contact.turn_a;
+    if (contact.flat == RollsFlat::b) now.turn = contact.turn_b;
+    now.normal = now.turn * contact.normal;
     if (contact.rim.radius > 0) {
-        run_round(contact, now);
-        core_a += contact.normal * round_a;
-        core_b -= contact.normal * round_b;
-        round_a = round_b = 0;
+        place_on_rim(contact, now);
+        return now;
     }
-    now.arm_a = now.turn_a * core_a + now.normal * round_a;
-    now.arm_b = now.turn_b * core_b - now.normal * round_b;
+    now.arm_a = contact.turn_a * contact.core_a + now.normal * contact.round_a;
+    now.arm_b = contact.turn_b * contact.core_b - now.normal * contact.round_b;
     now.separation = now.normal.dot(now.arm_b - contact.center_offset - now.arm_a);
     const auto roll = [&](Vec3& arm, const Vec3& there, double round) {
-        if (!(contact.rim.radius > 0)) now.rolled = (there - arm).norm() / (arm.norm() + round);
+        now.rolled = (there - arm).norm() / (arm.norm() + round);
         arm = there;
     };
-    // The arm of a rim goes round, and does not tip with the body: see turning_arms.hpp.
-    if (contact.rim.radius > 0 && !contact.tips)
-        (contact.flat == RollsFlat::a ? now.arm_b : now.arm_a) =
-            now.turn * (contact.flat == RollsFlat::a ? core_b : core_a);
     const Vec3 apart = contact.center_offset + now.normal * now.separation;
     if (contact.flat == RollsFlat::a) roll(now.arm_a, now.arm_b - apart, contact.round_b);
     if (contact.flat == RollsFlat::b) roll(now.arm_b, now.arm_a + apart, contact.round_a);
@@ -350,7 +353,7 @@ void note_turning_arms(const ContactConstraintsView<Real>& constraints,
     const RollsFlat flat =
         on_rim != RollsFlat::no ? on_rim : rolls_flat(contact, extent, moves_a, moves_b);
     set(begun.rims, lane, on_rim != RollsFlat::no);
-    // It is told in axes taken anew.
+    // A rim does not roll as a round side does.
     if (on_rim != RollsFlat::no) {
         set(block.axis_turns_a, lane, false);
         set(block.axis_turns_b, lane, false);

@@ -93,7 +93,7 @@ public:
     }
 
 private:
-    static constexpr std::array<Pass<Task>, 19> passes_with(Set<Effect> limited,
+    static constexpr std::array<Pass<Task>, 20> passes_with(Set<Effect> limited,
                                                             const Pass<Task>& after_moving)
     {
         using enum Effect;
@@ -113,6 +113,7 @@ private:
             pass<&Task::solve_velocities>({contact}, each_iteration),
             pass<&Task::solve_split_impulse>({contact}, each_iteration),
             pass<&Task::advance_bodies>({contact}, each_substep),
+            pass<&Task::place_rims>({rotation}, each_substep),
             pass<&Task::end_state_forces>(kFollowBodies, each_substep),
             after_moving,
             pass<&Task::limit_contacts>({contact}, each_substep),
@@ -215,8 +216,12 @@ private:
     {
         note_spins();
         add(SlicePass::Kind::advance);
-        if (!constraints_.rims.empty()) add(SlicePass::Kind::place_rims);
         if (parts_) add(SlicePass::Kind::restore);
+    }
+
+    void place_rims()
+    {
+        if (!constraints_.rims.empty()) add(SlicePass::Kind::place_rims);
     }
 
     void relax()
