@@ -320,6 +320,7 @@ private:
             slices_.run();
             return limiter_->take_share(constraints_);
         }
+        if (parts_) return limit_while_parting();
         const Slice& slice = layout_.slices[batch_.first_slice];
         const double speed = kBlow * context_.gravity.norm() * context_.substep();
         if (batch_.slices > 1 || slice.kinematic > 0 || !constraints_.prescribed.empty()) return;
@@ -334,13 +335,24 @@ private:
         if (gains) blow_limiter_->take_share_of_blow(speed, constraints_);
     }
 
+    // While bodies part contacts are stiff and push nobody, so they give no energy; but of what
+    // lies between heavy bodies a warm start that they do not take back does.
+    void limit_while_parting()
+    {
+        if (!constraints_.prescribed.empty()) return;
+        slices_.run();
+        if (!blow_limiter_)
+            blow_limiter_.emplace(layout_, batch_, facts_, nullptr, EnergyLimiter<Real>::Whose::all,
+                                  Vec3::Zero());
+        blow_limiter_->take_share(constraints_);
+    }
+
     // What acts once bodies have moved is no work of contacts.
     void limit_contacts()
     {
-        if (parts_) return;
         if (blow_limiter_ && !late_)
             blow_limiter_->limit_contacts(context_.gravity.norm() * context_.dt, constraints_);
-        if (!spin_limiter_) return;
+        if (!spin_limiter_ || parts_) return;
         slices_.run();
         spin_limiter_->close_free(constraints_);
     }

@@ -1,6 +1,7 @@
 #include "pipeline/solvers/split_impulse.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -12,8 +13,9 @@ namespace {
 // half extent): who is put deeper than four tenths of the half extent has to part, and is done at a
 // twenty-thousandth, from where the usual push gives no speed to speak of.
 constexpr double kDeep = 80, kFlat = 0.01;
-// Of who is wedged: depth as a share of the half extent, and steps, which begin anew while it is as
-// deep. The rest is left to the usual push.
+// Of who is wedged: depth as a share of the half extent, and steps. The rest is left to the usual
+// push; and, by turns of as many steps, who is still as deep after them: pushes that begin anew in
+// each substep do not lift who is much heavier.
 constexpr double kWedged = 0.2;
 constexpr std::uint16_t kWedgedSteps = 60;
 
@@ -109,11 +111,14 @@ void start_split_impulse(const Layout& layout, SplitImpulse& split_impulse)
 }
 
 template <class Real>
-void split_wedged(const ActiveContacts& active,
+void split_wedged(const StepContext& context,
+                  const ActiveContacts& active,
                   const Colliders& colliders,
                   const ConstraintBuilder<Real>& builder,
                   SplitImpulse& split_impulse)
 {
+    const long turn = std::lround(context.time / context.dt) / kWedgedSteps;
+    if (turn % 2 != 0) return;
     const auto many = [&](std::uint32_t body) { return colliders.count[body] > 1; };
     for (const ActiveContacts::Entry& entry : active.entries) {
         const bool wedges =
@@ -122,7 +127,7 @@ void split_wedged(const ActiveContacts& active,
         const double depth{builder.contact_of(entry).overlap(entry.points)};
         if (!(depth > kWedged * double{entry.extent})) continue;
         for (const std::uint32_t body : {entry.body_a, entry.body_b})
-            split_impulse.steps[body] = std::max(split_impulse.steps[body], kWedgedSteps);
+            if (left_of(split_impulse.steps[body]) == 0) split_impulse.steps[body] |= kWedgedSteps;
         split_impulse.some = true;
     }
 }
@@ -208,7 +213,7 @@ void SavedMotion<Real>::restore(const Slice& slice,
     template bool note_split_impulse<Real>(const Layout&, const Batch&,                            \
                                            const ContactConstraints<Real>&, SplitImpulse&);        \
     template void stiffen<Real>(const Layout&, const Batch&, ContactConstraints<Real>&);           \
-    template void split_wedged<Real>(const ActiveContacts&, const Colliders&,                      \
+    template void split_wedged<Real>(const StepContext&, const ActiveContacts&, const Colliders&,  \
                                      const ConstraintBuilder<Real>&, SplitImpulse&);               \
     template class SavedMotion<Real>;
 THRONG_INSTANTIATE(float)

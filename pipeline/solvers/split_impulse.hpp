@@ -28,7 +28,8 @@ void start_split_impulse(const Layout& layout, SplitImpulse& split_impulse);
 /// Bodies that are solids, or have several shapes, and lie deep in another part, however they came
 /// there: they meet it in many places, whose ways out may be to all sides.
 template <class Real>
-void split_wedged(const ActiveContacts& active,
+void split_wedged(const StepContext& context,
+                  const ActiveContacts& active,
                   const Colliders& colliders,
                   const ConstraintBuilder<Real>& builder,
                   SplitImpulse& split_impulse);
