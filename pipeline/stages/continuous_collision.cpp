@@ -3,8 +3,9 @@
 //
 // The ways are those from the poses before the step to the poses after it. Of two fast bodies that
 // meet both are held. One that meets what is not fast goes on with that: it stays where it is
-// against a wall, and rides on a plate that moves by itself. Impacts are taken in the order of
-// their times, so that one held out of the way of another is not met there any more.
+// against a wall, and on a pivot; else it rides on a plate that moves by itself. Impacts are taken
+// in the order of their times, so that one held out of the way of another is not met there any
+// more.
 //
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
@@ -85,9 +86,10 @@ public:
                         Velocities& velocities,
                         FastBodies& fast)
         : context_(context), parameters_(parameters), shapes_(shapes), colliders_(colliders),
-          surfaces_(surfaces), filter_(filter), bounds_(bounds), pairs_(pairs), states_(states),
-          followed_(followed), on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
-          fast_(fast), held_energy_(context, forces, masses, states, poses, velocities)
+          surfaces_(surfaces), filter_(filter), masses_(masses), bounds_(bounds), pairs_(pairs),
+          states_(states), followed_(followed), on_meshes_(on_meshes), poses_(poses),
+          velocities_(velocities), fast_(fast),
+          held_energy_(context, forces, masses, states, poses, velocities)
     { }
 
     void run(const std::vector<std::uint32_t>& woke)
@@ -484,11 +486,11 @@ private:
         const bool yields_a = free_a && (a.fast || !free_b);
         if (!free_a && !free_b) return;
         Way &yields = yields_a ? a : b, &other = yields_a ? b : a;
-        if (candidate.pressed && !states_.dynamic(other.body))
+        if (candidate.pressed && !states_.dynamic(other.body) && !only_turns(yields.body))
             stop_pressing(yields.body, other.body,
                           yields_a ? candidate.normal : Vec3(-candidate.normal),
                           restitution_of(candidate.key));
-        if (yields.rides != kNoBody || other.trajectory.still())
+        if (yields.rides != kNoBody || other.trajectory.still() || only_turns(yields.body))
             hold(yields, time);
         else
             ride(yields, other.body, time);
@@ -504,6 +506,9 @@ private:
         const double pressing = normal.dot(velocity - velocities_.linear[on]);
         if (pressing > 0) velocity -= (1 + restitution) * pressing * normal;
     }
+
+    // A pivot stays where it is, whatever runs into the body that turns about it.
+    bool only_turns(std::uint32_t body) const { return !(masses_.inverse_mass[body] > 0); }
 
     double restitution_of(PairKey key) const
     {
@@ -599,6 +604,7 @@ private:
     const Colliders& colliders_;
     const Surfaces& surfaces_;
     const PairFilter& filter_;
+    const Masses& masses_;
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;
