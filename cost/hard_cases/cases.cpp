@@ -173,6 +173,7 @@ constexpr HardCase kCases[] = {
     {"H118", "who closes in on somebody light before a wall is turned back, and not thrown",
      case_closing_in, Fault::restitution},
     {"H119", "cans and coins that wobble on their rim make no energy", case_wobbling, Fault::whirl},
+    {"H120", "plates that fall on ridges and bars come to lie still", case_on_ridges, Fault::whirl},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -28,6 +28,7 @@ struct PolytopeView {
     // than a line.
     bool round = false;
 
+    bool is_round_side(std::size_t index) const { return round && normals[index].z() == 0; }
     std::span<const std::uint16_t> face(std::size_t index) const
     {
         return face_vertices.subspan(face_begin[index], face_begin[index + 1] - face_begin[index]);

@@ -7,6 +7,7 @@
 #include "narrowphase/convex/pair_functions.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
 #include "narrowphase/manifold/edge_on_edge.hpp"
+#include "narrowphase/manifold/edge_over_face.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -338,6 +339,8 @@ void box_box(const PairInput<Real>& in, PairCache& cache, LocalManifold<Real>& o
         has_edge && edge_normal(pair, edge.index).dot(face_normal(pair, face.index)) > kAlike<Real>;
     if (edge_better && !alike) {
         edge_manifold(pair, edge, speculative_margin, out);
+        lay_edge_over_face<Real>(pair.half_a, pair.half_b, pair.turn, pair.center,
+                                 speculative_margin, out);
         return;
     }
     // A face that has lost its deepest corner over the other's side still tells the depth, if what

@@ -11,6 +11,7 @@
 #include "narrowphase/convex/wide_shapes.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
 #include "narrowphase/manifold/edge_on_edge.hpp"
+#include "narrowphase/manifold/edge_over_face.hpp"
 #include "narrowphase/manifold/polytope_foot.hpp"
 
 #include <algorithm>
@@ -215,6 +216,7 @@ void find_points(const Sides& sides, const Axes& axes, LocalManifold<double>& ou
     const bool alike = has_edge && edge.normal.dot(normal) > kAlike;
     if (edge_better && !alike) {
         cross_edges(pair, edge, speculative_margin + bias, out);
+        lay_edge_over_face(pair, edge.edge_a, edge.edge_b, speculative_margin, out);
         return;
     }
     // A face that has lost its deepest corner over the other's side still tells the depth, if what
@@ -312,7 +314,12 @@ void collide_polytopes(const PolytopePair& pair,
 constexpr float kUnlike = 2e-3F;
 
 // False where float will not do.
-bool meet_wide(const PairInput<float>& in, PairCache& cache, LocalManifold<float>& out)
+//
+//   over_face  whether it is two edges that cross, one of them all but along a face of the other
+bool meet_wide(const PairInput<float>& in,
+               PairCache& cache,
+               LocalManifold<float>& out,
+               bool& over_face)
 {
     const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const WideShape wide_a(shapes, a), wide_b(shapes, b);
@@ -334,6 +341,7 @@ bool meet_wide(const PairInput<float>& in, PairCache& cache, LocalManifold<float
     static const HullKernel& collide = hull_kernel();
     collide(pair, guess, overlap);
     cache = {guess.a, guess.b, guess.kind, overlap.count == 0 ? overlap.apart : 0};
+    over_face = double{overlap.edge_to_face} > kAllButFace;
     out.count = 0;
     if (overlap.count == 0) return true;
     out.normal = {overlap.normal[0], overlap.normal[1], overlap.normal[2]};
@@ -377,15 +385,23 @@ bool may_be_edges(const PairInput<float>& in,
 }
 
 // As above, for what the wide kernels found.
-void finish_wide(const PairInput<float>& in, const PairCache& cache, LocalManifold<float>& out)
+void finish_wide(const PairInput<float>& in,
+                 const PairCache& cache,
+                 bool over_face,
+                 LocalManifold<float>& out)
 {
     const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     const bool spreads = may_spread(in, out);
-    if (!spreads && !may_be_edges(in, cache, out)) return;
+    if (!spreads && !over_face && !may_be_edges(in, cache, out)) return;
     const PolytopeShape shape_a(shapes, a), shape_b(shapes, b);
     const PolytopePair pair(shape_a.view(), shape_b.view(),
                             {b_in_a.position.cast<double>(), b_in_a.orientation.cast<double>()});
     LocalManifold<double> finished = out.cast<double>();
+    if (over_face && finished.count == 1) {
+        const std::uint32_t edges = finished.points[0].feature;
+        lay_edge_over_face(pair, edges >> 8 & 0xff, edges & 0xff, double{speculative_margin},
+                           finished);
+    }
     if (spreads) spread_feet(pair, double{speculative_margin}, finished);
     meet_edge_on_edge(pair, leading_face(cache), double{speculative_margin}, finished);
     out = finished.cast<float>();
@@ -420,10 +436,11 @@ void meet_plain(const PairInput<Real>& in,
 template <>
 void hull_hull<float>(const PairInput<float>& in, PairCache& cache, LocalManifold<float>& out)
 {
-    if (!meet_wide(in, cache, out))
+    bool over_face = false;
+    if (!meet_wide(in, cache, out, over_face))
         meet_plain(in, true, cache, out);
     else
-        finish_wide(in, cache, out);
+        finish_wide(in, cache, over_face, out);
 }
 
 template <>

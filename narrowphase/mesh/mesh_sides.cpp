@@ -14,6 +14,10 @@ namespace {
 // What is hidden is looked for along this share of the way to it: not where it is itself.
 constexpr double kNearly = 0.999;
 
+// So far from its nearest place towards the middle of a triangle, as a share of the way there, is
+// looked whether it is hidden: what lies on a ridge sees the edge of the far flank.
+constexpr double kInward = 0.05;
+
 // Over a seam, by this share of the shape's size, a center is over both triangles.
 constexpr double kSeam = 1e-4;
 
@@ -119,8 +123,12 @@ MeshSides::Approach MeshSides::approach(std::uint32_t triangle) const
 
 bool MeshSides::is_hidden(const Vec3& point, std::uint32_t triangle) const
 {
-    const Vec3 place = nearest_to(point, MeshTriangle(mesh_, triangle)).point;
-    const Vec3 way = kNearly * (place - center_);
+    const MeshTriangle seen(mesh_, triangle);
+    const Vec3 place = nearest_to(point, seen).point;
+    const auto& [a, b, c] = seen.corners;
+    const Vec3 inward = kInward * ((a + b + c) / 3 - place);
+    const double most = through_ / std::max(inward.norm(), through_);
+    const Vec3 way = kNearly * (place + most * inward - center_);
     return std::any_of(near_.begin(), near_.end(), [&](std::uint32_t other) {
         return other != triangle && MeshTriangle(mesh_, other).is_crossed(center_, center_ + way);
     });

@@ -3,6 +3,7 @@
 #include "kernels/geometry/closest_points.hpp"
 #include "kernels/geometry/polytope_contacts.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
+#include "narrowphase/manifold/edge_over_face.hpp"
 #include "narrowphase/manifold/polytope_foot.hpp"
 #include "narrowphase/mesh/triangle_contacts.hpp"
 
@@ -230,6 +231,28 @@ void push_by_edges(const FrontedPair& fronted,
     const Vec3& place = out.points[0].position;
     const Vec3 apart = place - closest_on_triangle<double>(place, a, b, c).point;
     if (apart.norm() > limit - std::min(edge.separation, 0.0)) out.count = 0;
+    lay_edge_over_face(outward.pair, edge.edge_a, edge.edge_b, fronted.speculative_margin, out);
+}
+
+// Points along a face that the shape's edge borders, where the axis of the two edges is that face's
+// by a hair: a plate that lies on a ridge. The face may not be asked itself, as beyond the plate
+// the ridge goes on and rises above it.
+void push_by_face(const FrontedPair& fronted,
+                  const TriangleAxis& best,
+                  const EdgeAxis& edge,
+                  LocalManifold<double>& out)
+{
+    const PolytopePair& turned = fronted.turned;
+    const Vec3 direction = -(fronted.pair.turn.transpose() * edge.normal);
+    const Hull::Edge& borders = turned.a.edges[edge.edge_b];
+    const auto along = [&](std::uint16_t face) { return turned.a.normals[face].dot(direction); };
+    const std::uint16_t face =
+        along(borders.left) > along(borders.right) ? borders.left : borders.right;
+    if (!(along(face) > kAlike) || turned.a.is_round_side(face)) return;
+    TriangleAxis by_face = best;
+    by_face.kind = TriangleAxis::Kind::face;
+    by_face.face = face_axis(turned, face);
+    lay_face(fronted, by_face, out);
 }
 
 // By what tells them apart best, or least of all overlaps.
@@ -253,7 +276,9 @@ void collide_along_best(const FrontedPair& fronted,
         if (!edge.normal.isZero(0) && yields_to_faces(triangle, turned, most)) return;
     }
     if (!edge.normal.isZero(0)) {
-        if (edge.separation <= speculative_margin) push_by_edges(fronted, outward, edge, out);
+        if (edge.separation > speculative_margin) return;
+        push_by_face(fronted, best, edge, out);
+        if (out.count == 0) push_by_edges(fronted, outward, edge, out);
         return;
     }
     lay_face(fronted, best, out);

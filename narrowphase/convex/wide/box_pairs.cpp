@@ -2,6 +2,7 @@
 
 #include "kernels/check.hpp"
 #include "narrowphase/manifold/edge_on_edge.hpp"
+#include "narrowphase/manifold/edge_over_face.hpp"
 
 #include <algorithm>
 
@@ -19,12 +20,20 @@ static_assert(sizeof(LocalManifold<float>::Point) == 5 * sizeof(float));
 static_assert(offsetof(LocalManifold<float>, points) == 3 * sizeof(float));
 static_assert(offsetof(LocalManifold<float>, count) == 23 * sizeof(float));
 
-void meet_edge_on_edge(const BoxPair& pair, LocalManifold<float>& manifold)
+// Hands a pair and its manifold to what holds edges: half extents, b's axes and center, margin.
+using HoldEdges = void (*)(const Vec3T<float>&,
+                           const Vec3T<float>&,
+                           const Mat3T<float>&,
+                           const Vec3T<float>&,
+                           float,
+                           LocalManifold<float>&);
+
+void hold_edges(const BoxPair& pair, LocalManifold<float>& manifold, HoldEdges hold)
 {
     using Numbers = Eigen::Map<const Vec3T<float>>;
     const QuatT<float> turn(pair.place[7], pair.place[4], pair.place[5], pair.place[6]);
-    meet_edge_on_edge<float>(Numbers(pair.size), Numbers(pair.size + 4), turn.toRotationMatrix(),
-                             Numbers(pair.place), pair.place[3], manifold);
+    hold(Numbers(pair.size), Numbers(pair.size + 4), turn.toRotationMatrix(), Numbers(pair.place),
+         pair.place[3], manifold);
 }
 
 }  // namespace
@@ -46,7 +55,12 @@ void collide_boxes(const BoxKernels& kernels,
         kernels.cross(from, edges, to);
         for (std::int32_t k = 0; k < faces.count; ++k) {
             const auto i = begin + static_cast<std::size_t>(faces.at[k].pair);
-            meet_edge_on_edge(pairs[i], manifolds[i]);
+            hold_edges(pairs[i], manifolds[i], meet_edge_on_edge<float>);
+        }
+        for (std::int32_t k = 0; k < edges.count; ++k) {
+            const auto i = begin + static_cast<std::size_t>(edges.at[k].pair);
+            if (manifolds[i].count > 0)
+                hold_edges(pairs[i], manifolds[i], lay_edge_over_face<float>);
         }
     }
 }

@@ -262,6 +262,12 @@ void Search::cross_edges(HullOverlap& out) const
     if (edge_.separation > 0 && dot(apart, apart) > limit * limit) return;
     store(edge_.normal, out.normal);
     out.count = 1;
+    const WideEdge &of_a = pair_.a.edges[edge_.a], &of_b = pair_.b.edges[edge_.b];
+    const F3 seen_from_b = by_a_.to_other(edge_.normal);
+    out.edge_to_face = most(most(dot(edge_.normal, normal_of(pair_.a, of_a.left)),
+                                 dot(edge_.normal, normal_of(pair_.a, of_a.right))),
+                            -least(dot(seen_from_b, normal_of(pair_.b, of_b.left)),
+                                   dot(seen_from_b, normal_of(pair_.b, of_b.right))));
     const std::uint32_t edges =
         static_cast<std::uint32_t>(edge_.a) << 8 | static_cast<std::uint32_t>(edge_.b);
     out.points[0] = {{middle.x, middle.y, middle.z}, edge_.separation, 3u << 30 | edges};
@@ -361,6 +367,7 @@ float Search::apart() const
 void collide_hulls(const HullPair& pair, HullGuess& guess, HullOverlap& out)
 {
     out.count = 0;
+    out.edge_to_face = 0;
     Search search(pair);
     if (!search.parted_at_once(guess) && search.find_axes(guess)) {
         search.collide(out);

@@ -38,6 +38,9 @@ struct HullOverlap {
     float normal[3];  // from a to b
     int count;
     float apart;  // m, how far the best axis parts them where there is no point; 0 for not at all
+    // Of two edges that cross: the cosine of the angle from the normal to the nearest of that of
+    // their faces. Else 0.
+    float edge_to_face;
     Point points[kMost];
 };
 

@@ -5,6 +5,8 @@
 #include "cooking/repair/build_mesh.hpp"
 #include "cooking/repair/mesh_health.hpp"
 #include "scene/catalog/sheets.hpp"
+#include "tests/support/dice.hpp"
+#include "throng/rotation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -188,6 +190,30 @@ TEST(MeshSides, AStillMeshWoundInwardIsTurnedOverAndToldOf)
     for (std::size_t t = 0; t < repaired.mesh.triangles.size(); ++t)
         EXPECT_GT(
             repaired.mesh.normals[t].dot(repaired.mesh.vertices[repaired.mesh.triangles[t][0]]), 0);
+}
+
+// A plate across ridges is behind the planes of their far flanks. Where it lies on a ridge it meets
+// that flank's edge, seen from where it is; but not the flank from below.
+TEST(MeshSides, AFarFlankOfARidgeIsNotMetFromBehind)
+{
+    const TriangleSoup soup = sheet_mesh(
+        24, [](int i, int k) { return Vec3(0.15 * (i - 12), 0.4 * (k - 12), 0.1 * (i % 2)); });
+    Stage stage(Soup{soup.vertices, soup.triangles});
+    stage.shapes.boxes = {{{0.3, 0.21, 0.02}}};
+    const Guest plate{"plate", {ShapeKind::box, 0}, 0.02};
+    test::Dice dice(1);
+    for (int i = 0; i < 3000; ++i) {
+        const Quat yaw = exponential(Vec3(0, 0, dice.between(0, 3)));
+        Quat turn = exponential(dice.point(0.1)) * yaw;
+        Vec3 at(dice.between(-0.3, 0.3), dice.between(-0.4, 0.4), dice.between(0.115, 0.125));
+        Stage::Found found;
+        for (int step = 0; step < 4; ++step) {
+            found = stage.collide(plate, at, found, turn);
+            for (const auto& one : found) ASSERT_GT(one.manifold.normal.z(), 0) << i << ' ' << step;
+            at += dice.point(0.005);
+            turn = exponential(dice.point(0.05)) * turn;
+        }
+    }
 }
 
 TEST(MeshSides, AStillMeshWithNothingWrongStaysAsItIs)
