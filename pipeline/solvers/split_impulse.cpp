@@ -14,10 +14,11 @@ namespace {
 // twenty-thousandth, from where the usual push gives no speed to speak of.
 constexpr double kDeep = 80, kFlat = 0.01;
 // Of who is wedged: depth as a share of the half extent, and steps. The rest is left to the usual
-// push; and, by turns of as many steps, who is still as deep after them: pushes that begin anew in
+// push; and so is, every fourth time, who is still as deep after them: pushes that begin anew in
 // each substep do not lift who is much heavier.
 constexpr double kWedged = 0.2;
 constexpr std::uint16_t kWedgedSteps = 60;
+constexpr long kWedgedTurns = 4;
 
 // Steps that a body has to part in: a tenth comes down to flat in some 60, whatever their length,
 // and a crowd of a thousand takes ten times as many. While a step runs kGoesOn marks who does.
@@ -118,7 +119,7 @@ void split_wedged(const StepContext& context,
                   SplitImpulse& split_impulse)
 {
     const long turn = std::lround(context.time / context.dt) / kWedgedSteps;
-    if (turn % 2 != 0) return;
+    if (turn % kWedgedTurns == kWedgedTurns - 1) return;
     const auto many = [&](std::uint32_t body) { return colliders.count[body] > 1; };
     for (const ActiveContacts::Entry& entry : active.entries) {
         const bool wedges =
