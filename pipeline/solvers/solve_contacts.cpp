@@ -85,7 +85,7 @@ public:
         start_split_impulse(layout_, split_impulse_);
         const auto& colliders = problem.template get<const Colliders>();
         if (!solids_.entries.empty() || any_compound(colliders))
-            split_wedged(context_, active_, colliders, builder_, split_impulse_);
+            split_wedged(context_, active_, colliders, facts_.masses, builder_, split_impulse_);
     }
 
     // Each batch by iterations, or by what it is escalated to. No island is escalated while bodies

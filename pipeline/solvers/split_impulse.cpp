@@ -13,12 +13,14 @@ namespace {
 // half extent): who is put deeper than four tenths of the half extent has to part, and is done at a
 // twenty-thousandth, from where the usual push gives no speed to speak of.
 constexpr double kDeep = 80, kFlat = 0.01;
-// Of who is wedged: depth as a share of the half extent, and steps. The rest is left to the usual
-// push; and so is, every fourth time, who is still as deep after them: pushes that begin anew in
-// each substep do not lift who is much heavier.
+// Of who is wedged: depth as a share of the half extent, and steps, which begin anew while it is as
+// deep. The rest is left to the usual push.
 constexpr double kWedged = 0.2;
 constexpr std::uint16_t kWedgedSteps = 60;
-constexpr long kWedgedTurns = 4;
+// Pushes that begin anew in each substep do not lift who is so many times as heavy: in half of such
+// spans of steps he is left to the usual push.
+constexpr double kHeavy = 8;
+constexpr long kTurn = 2 * kWedgedSteps;
 
 // Steps that a body has to part in: a tenth comes down to flat in some 60, whatever their length,
 // and a crowd of a thousand takes ten times as many. While a step runs kGoesOn marks who does.
@@ -115,20 +117,24 @@ template <class Real>
 void split_wedged(const StepContext& context,
                   const ActiveContacts& active,
                   const Colliders& colliders,
+                  const Masses& masses,
                   const ConstraintBuilder<Real>& builder,
                   SplitImpulse& split_impulse)
 {
-    const long turn = std::lround(context.time / context.dt) / kWedgedSteps;
-    if (turn % kWedgedTurns == kWedgedTurns - 1) return;
+    const bool lifts = std::lround(context.time / context.dt) / kTurn % 2 != 0;
     const auto many = [&](std::uint32_t body) { return colliders.count[body] > 1; };
+    const auto unlike = [&](const ActiveContacts::Entry& entry) {
+        const double a = masses.inverse_mass[entry.body_a], b = masses.inverse_mass[entry.body_b];
+        return std::min(a, b) > 0 && std::max(a, b) > kHeavy * std::min(a, b);
+    };
     for (const ActiveContacts::Entry& entry : active.entries) {
         const bool wedges =
             entry.list == ContactList::solid || (many(entry.body_a) && many(entry.body_b));
         if (!wedges) continue;
         const double depth{builder.contact_of(entry).overlap(entry.points)};
-        if (!(depth > kWedged * double{entry.extent})) continue;
+        if (!(depth > kWedged * double{entry.extent}) || (lifts && unlike(entry))) continue;
         for (const std::uint32_t body : {entry.body_a, entry.body_b})
-            if (left_of(split_impulse.steps[body]) == 0) split_impulse.steps[body] |= kWedgedSteps;
+            split_impulse.steps[body] = std::max(split_impulse.steps[body], kWedgedSteps);
         split_impulse.some = true;
     }
 }
@@ -215,7 +221,8 @@ void SavedMotion<Real>::restore(const Slice& slice,
                                            const ContactConstraints<Real>&, SplitImpulse&);        \
     template void stiffen<Real>(const Layout&, const Batch&, ContactConstraints<Real>&);           \
     template void split_wedged<Real>(const StepContext&, const ActiveContacts&, const Colliders&,  \
-                                     const ConstraintBuilder<Real>&, SplitImpulse&);               \
+                                     const Masses&, const ConstraintBuilder<Real>&,                \
+                                     SplitImpulse&);                                               \
     template class SavedMotion<Real>;
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

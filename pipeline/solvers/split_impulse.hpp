@@ -31,6 +31,7 @@ template <class Real>
 void split_wedged(const StepContext& context,
                   const ActiveContacts& active,
                   const Colliders& colliders,
+                  const Masses& masses,
                   const ConstraintBuilder<Real>& builder,
                   SplitImpulse& split_impulse);
 
