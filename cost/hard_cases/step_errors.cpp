@@ -160,8 +160,8 @@ void case_step_errors(CaseBench& bench)
     const std::size_t settings = bench.brief() ? 4 : std::size(kSettings);
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < scenes; ++i) {
-        const Scene scene =
-            make_scene(kScenes[i].scene, bench.brief() ? 1 + kScenes[i].size / 3 : kScenes[i].size);
+        const Scene scene = make_scene(
+            kScenes[i].scene, bench.brief() ? 1 + 2 * kScenes[i].size / 3 : kScenes[i].size);
         for (std::size_t k = 0; k < settings; ++k)
             sample_steps(bench, scene, kSettings[k], 6, pairs);
     }
