@@ -95,7 +95,8 @@ public:
         for_batches([&](const Batch& batch) {
             const bool parts =
                 split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_);
-            if (!parts && batch.direct && !is_stiff(context_, facts_, layout_, batch))
+            if (!parts && batch.direct && !spins(batch)
+                && !is_stiff(context_, facts_, layout_, batch))
                 solve_island(islands_, batch, constraints_, diagnostics_);
             else if (!parts && batch.times > 1)
                 return iterate_finer(batch);
@@ -137,6 +138,19 @@ private:
     {
         solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
                     split_impulse_);
+    }
+
+    // Whether somebody in it can only turn: pressed by a lever arm of next to none, he is spun by
+    // the impulses that an exact answer has. By iterations they are limited.
+    bool spins(const Batch& batch) const
+    {
+        const auto slices = std::span(layout_.slices).subspan(batch.first_slice, batch.slices);
+        return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
+            const auto bodies = layout_.bodies_of(slice);
+            return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
+                return !(facts_.masses.inverse_mass[body] > 0);
+            });
+        });
     }
 
     void iterate_finer(const Batch& batch)
