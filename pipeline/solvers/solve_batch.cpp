@@ -4,6 +4,7 @@
 #include "kernels/solver/solver_bodies.hpp"
 #include "pipeline/forces/energy_limiter.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/solvers/batch_bodies.hpp"
 #include "pipeline/solvers/borne_bodies.hpp"
 #include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/solvers/slice_passes.hpp"
@@ -298,15 +299,11 @@ private:
 
     bool somebody_only_turns() const
     {
-        if (!context_.has(Effect::rotation)) return false;
-        const auto slices = std::span(layout_.slices).subspan(batch_.first_slice, batch_.slices);
-        return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
-            const auto bodies = layout_.bodies_of(slice);
-            return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
-                return !(facts_.masses.inverse_mass[body] > 0);
-            });
-        });
+        return context_.has(Effect::rotation) && any_only_turns(layout_, batch_, facts_.masses);
     }
+
+    // m/s, beyond which what contacts gave is a blow.
+    double blow_speed() const { return kBlow * context_.gravity.norm() * context_.substep(); }
 
     // Of soft_step what a warm start adds after a blow alone: a tower stands by what its contacts
     // remember. Of who is carried along nobody here knows what drives him, nor without gravity of
@@ -323,7 +320,7 @@ private:
         }
         if (parts_) return limit_while_parting();
         const Slice& slice = layout_.slices[batch_.first_slice];
-        const double speed = kBlow * context_.gravity.norm() * context_.substep();
+        const double speed = blow_speed();
         if (batch_.slices > 1 || slice.kinematic > 0 || !constraints_.prescribed.empty()) return;
         if (!(speed > 0) && (context_.effects.meets(kForces) || facts_.forces.field)) return;
         const auto bodies = std::span(constraints_.bodies).subspan(slice.first_body, slice.dynamic);
@@ -347,9 +344,7 @@ private:
         if (!blow_limiter_)
             blow_limiter_.emplace(layout_, batch_, facts_, nullptr, EnergyLimiter<Real>::Whose::all,
                                   Vec3::Zero());
-        if (state_forces_)
-            blow_limiter_->take_share_of_blow(kBlow * context_.gravity.norm() * context_.substep(),
-                                              constraints_);
+        if (state_forces_) blow_limiter_->take_share_of_blow(blow_speed(), constraints_);
     }
 
     // What acts once bodies have moved is no work of contacts.

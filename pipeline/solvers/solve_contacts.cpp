@@ -2,6 +2,7 @@
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/forces/velocity_lag.hpp"
+#include "pipeline/solvers/batch_bodies.hpp"
 #include "pipeline/solvers/escalation.hpp"
 #include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/solvers/solve_batch.hpp"
@@ -90,12 +91,14 @@ public:
 
     // Each batch by iterations, or by what it is escalated to. No island is escalated while bodies
     // of it part: what makes contacts stiffer would throw those apart that are deep in one another.
+    // Nor is one solved exactly where somebody can only turn: pressed by a lever arm of next to
+    // none he is spun by the impulses that an exact answer has, which iterations limit.
     void by_iterations()
     {
         for_batches([&](const Batch& batch) {
             const bool parts =
                 split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_);
-            if (!parts && batch.direct && !spins(batch)
+            if (!parts && batch.direct && !any_only_turns(layout_, batch, facts_.masses)
                 && !is_stiff(context_, facts_, layout_, batch))
                 solve_island(islands_, batch, constraints_, diagnostics_);
             else if (!parts && batch.times > 1)
@@ -138,19 +141,6 @@ private:
     {
         solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
                     split_impulse_);
-    }
-
-    // Whether somebody in it can only turn: pressed by a lever arm of next to none, he is spun by
-    // the impulses that an exact answer has. By iterations they are limited.
-    bool spins(const Batch& batch) const
-    {
-        const auto slices = std::span(layout_.slices).subspan(batch.first_slice, batch.slices);
-        return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
-            const auto bodies = layout_.bodies_of(slice);
-            return std::any_of(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
-                return !(facts_.masses.inverse_mass[body] > 0);
-            });
-        });
     }
 
     void iterate_finer(const Batch& batch)

@@ -1,5 +1,7 @@
 #include "pipeline/solvers/split_impulse.hpp"
 
+#include "pipeline/solvers/batch_bodies.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -141,12 +143,8 @@ void split_wedged(const StepContext& context,
 
 bool uses_split_impulse(const Layout& layout, const Batch& batch, const SplitImpulse& split_impulse)
 {
-    const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
-    return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
-        const auto bodies = layout.bodies_of(slice);
-        return std::any_of(bodies.begin(), bodies.end(),
-                           [&](std::uint32_t body) { return split_impulse.parts(body); });
-    });
+    return any_body_of(layout, batch,
+                       [&](std::uint32_t body) { return split_impulse.parts(body); });
 }
 
 template <class Real>
