@@ -129,7 +129,8 @@ void lay_over_polytope(const PolytopePair& pair,
              std::uint32_t{face} * 32749u + edge, manifold);
 }
 
-// Of the two faces beside an edge the flat one that looks most along a direction.
+}  // namespace
+
 std::uint16_t
 face_beside(const PolytopeView& shape, std::uint16_t edge, const Vec3& direction, double& cosine)
 {
@@ -144,8 +145,6 @@ face_beside(const PolytopeView& shape, std::uint16_t edge, const Vec3& direction
     }
     return best;
 }
-
-}  // namespace
 
 template <class Real>
 void lay_edge_over_face(const Vec3T<Real>& half_a,

@@ -14,6 +14,12 @@ namespace throng {
 /// Cosine from which the axis of two edges that cross is all but that of a face: 8 degrees.
 inline constexpr double kAllButFace = 0.99;
 
+/// Of the two faces beside an edge the flat one that looks most along a direction.
+///
+///   cosine  of the angle between the two; -2 where neither is flat
+std::uint16_t
+face_beside(const PolytopeView& shape, std::uint16_t edge, const Vec3& direction, double& cosine);
+
 /// Makes two points of the one where two edges cross, if their axis is all but that of a face that
 /// one of them borders: the ends of what of the other is over that face, if both are within the
 /// margin. The normal stays.

@@ -244,11 +244,9 @@ void push_by_face(const FrontedPair& fronted,
 {
     const PolytopePair& turned = fronted.turned;
     const Vec3 direction = -(fronted.pair.turn.transpose() * edge.normal);
-    const Hull::Edge& borders = turned.a.edges[edge.edge_b];
-    const auto along = [&](std::uint16_t face) { return turned.a.normals[face].dot(direction); };
-    const std::uint16_t face =
-        along(borders.left) > along(borders.right) ? borders.left : borders.right;
-    if (!(along(face) > kAlike) || turned.a.is_round_side(face)) return;
+    double cosine = 0;
+    const std::uint16_t face = face_beside(turned.a, edge.edge_b, direction, cosine);
+    if (!(cosine > kAlike)) return;
     TriangleAxis by_face = best;
     by_face.kind = TriangleAxis::Kind::face;
     by_face.face = face_axis(turned, face);
