@@ -174,6 +174,10 @@ constexpr HardCase kCases[] = {
      case_closing_in, Fault::restitution},
     {"H119", "cans and coins that wobble on their rim make no energy", case_wobbling, Fault::whirl},
     {"H120", "plates that fall on ridges and bars come to lie still", case_on_ridges, Fault::whirl},
+    {"H121", "cans and coins that lean on one another make no energy", case_leaning_discs,
+     Fault::whirl},
+    {"H122", "piles of coins stand, and many light ones bear somebody heavy", case_piles_of_coins,
+     Fault::sink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -128,6 +128,8 @@ void case_under_pivots(CaseBench& bench);       // H117, under_pivots.cpp
 void case_closing_in(CaseBench& bench);         // H118, closing_in.cpp
 void case_wobbling(CaseBench& bench);           // H119, wobbling.cpp
 void case_on_ridges(CaseBench& bench);          // H120, on_ridges.cpp
+void case_leaning_discs(CaseBench& bench);      // H121, leaning_discs.cpp
+void case_piles_of_coins(CaseBench& bench);     // H122, piles_of_coins.cpp
 
 /// Runs a scene: energy that nobody gave, as a share of the greatest in motion; without end where a
 /// body was quarantined.

@@ -68,10 +68,12 @@ struct GyroscopicInertia {
 ///   axis      as the step began
 ///   radius    m; 0: the body has none
 ///   contacts  that it has in this step
+///   rolls     whether it turns, or somebody who touches it does
 struct RoundRim {
     double axis[3] = {0, 0, 1};
     double radius = 0;
     std::uint32_t contacts = 0;
+    bool rolls = false;
 };
 
 /// What forces add to a body's motion, as SolverBody::motion has it, a second.

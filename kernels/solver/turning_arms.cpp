@@ -233,14 +233,16 @@ void turn_lane(const ContactConstraintsView<Real>& constraints,
     MovedContact contact = bodies.contact_now(still);
     Vec3 moved = bodies.moved;
     const bool on_rim = contact.rim.radius > 0, is_b = contact.flat == RollsFlat::a;
-    SolverBody<Real>& rolling = is_b ? bodies.b : bodies.a;
-    GyroscopicInertia<Real>* const inertia = constraints.inertias == nullptr
-        ? nullptr
-        : constraints.inertias + (is_b ? block.b[lane] : block.a[lane]);
+    const auto inertia_of = [&](std::int32_t body) {
+        return constraints.inertias == nullptr ? nullptr : constraints.inertias + body;
+    };
     PlacedContact now;
     if (on_rim) {
-        const Vec3 spin = spin_frame(rolling, inertia) * vector_at(rolling.motion + 4);
-        now = place_ahead(contact, spin, time / 2);
+        const auto spin_of = [&](const SolverBody<Real>& body, std::int32_t index) -> Vec3 {
+            return spin_frame(body, inertia_of(index)) * vector_at(body.motion + 4);
+        };
+        now = place_ahead(contact, spin_of(bodies.a, block.a[lane]),
+                          spin_of(bodies.b, block.b[lane]), time / 2);
     } else {
         now = place(contact);
     }
@@ -256,7 +258,8 @@ void turn_lane(const ContactConstraintsView<Real>& constraints,
     // a say in that.
     Quat frame_a = Quat::Identity(), frame_b = Quat::Identity();
     if (on_rim && contact.rim.contacts == 1)
-        (is_b ? frame_b : frame_a) = take_axes_anew(rolling, inertia);
+        (is_b ? frame_b : frame_a) = take_axes_anew(
+            is_b ? bodies.b : bodies.a, inertia_of(is_b ? block.b[lane] : block.a[lane]));
 
     const Vec3 before = impulse_of(constraints, block, lane);
     const Vec3 turns = couple_of(constraints, block, lane);
@@ -318,11 +321,12 @@ PlacedContact place(const MovedContact& contact)
     return now;
 }
 
-PlacedContact place_ahead(const MovedContact& contact, const Vec3& spin, double time)
+PlacedContact
+place_ahead(const MovedContact& contact, const Vec3& spin_a, const Vec3& spin_b, double time)
 {
     MovedContact later = contact;
-    Quat& turn = contact.flat == RollsFlat::a ? later.turn_b : later.turn_a;
-    turn = exponential(spin * time) * turn;
+    later.turn_a = exponential(spin_a * time) * contact.turn_a;
+    later.turn_b = exponential(spin_b * time) * contact.turn_b;
     PlacedContact ahead = place(later);
     ahead.separation = place(contact).separation;
     return ahead;

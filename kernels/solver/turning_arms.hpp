@@ -13,7 +13,8 @@
 // the place runs round the rim many times as fast as anything moves. Held where the step found it,
 // it lags, and its push turns the body on the way that it goes. So this place is told for the
 // middle of each substep, and the body's spin in axes taken anew there. As the body tips over the
-// arm stays as long and steep as the step found it, like that of a box on its edge.
+// arm stays as long and steep as the step found it, like that of a box on its edge. It runs as far
+// where it is the flat side that turns, of somebody who leans on a can.
 #pragma once
 
 #include "kernels/data/contacts.hpp"
@@ -89,7 +90,7 @@ bool is_on_rim(const Contact<Real>& contact, const RoundRim& rim, bool is_b)
     return true;
 }
 
-/// The flat side, round in no way, on which a rim of the other body rolls.
+/// The flat side, round in no way, on which a rim of the other body rolls, or which rolls on it.
 template <class Real>
 RollsFlat rolls_on_rim(const Contact<Real>& contact,
                        const RoundRim& rim_a,
@@ -98,8 +99,9 @@ RollsFlat rolls_on_rim(const Contact<Real>& contact,
                        bool moves_b)
 {
     const bool on_a = is_on_rim(contact, rim_a, false), on_b = is_on_rim(contact, rim_b, true);
-    if (on_b && !on_a && moves_b && !(contact.round_a > 0)) return RollsFlat::a;
-    if (on_a && !on_b && moves_a && !(contact.round_b > 0)) return RollsFlat::b;
+    if (!moves_a && !moves_b) return RollsFlat::no;
+    if (on_b && !on_a && !(contact.round_a > 0)) return RollsFlat::a;
+    if (on_a && !on_b && !(contact.round_b > 0)) return RollsFlat::b;
     return RollsFlat::no;
 }
 
@@ -134,11 +136,11 @@ struct PlacedContact {
 };
 PlacedContact place(const MovedContact& contact);
 
-/// The same a time later, if the body whose rim rolls turns on as it does; the separation is that
-/// of now.
+/// The same a time later, if both bodies turn on as they do; the separation is that of now.
 ///
-///   spin  rad/s, in world axes
-PlacedContact place_ahead(const MovedContact& contact, const Vec3& spin, double time);
+///   spin_a, spin_b  rad/s, in world axes
+PlacedContact
+place_ahead(const MovedContact& contact, const Vec3& spin_a, const Vec3& spin_b, double time);
 
 /// Whether that leads farther than the contact that was there as the step began can tell.
 bool is_far(const MovedContact& contact, const PlacedContact& placed);

@@ -2,6 +2,7 @@
 
 #include "kernels/geometry/clip.hpp"
 #include "narrowphase/manifold/contact_points.hpp"
+#include "narrowphase/manifold/foot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@ using Point = LocalManifold<double>::Point;
 
 constexpr double kFacing = 0.995;  // cosine: a face that leans more is an edge or a corner
 constexpr double kSlack = 1e-6;    // of the size, by which a corner may stand beside a face
+constexpr double kLeaning = 0.01;  // of the size, between the lowest point of a rim and the highest
 constexpr std::uint32_t kWitness = 0x80000000u;
 constexpr std::uint32_t kByB = 0x40000000u;
 
@@ -187,6 +189,37 @@ void clip_over(Facing& facing, bool face_is_b, double slack)
     clip_polygon(facing, face, face_is_b, other, slack);
 }
 
+// The points found, as places that bear who leans.
+struct RimPlaces {
+    std::span<const Point> points;
+
+    std::size_t size() const { return points.size(); }
+    const Vec3& at(std::size_t i) const { return points[i].position; }
+    double height(std::size_t i) const { return points[i].separation; }
+};
+
+// A rim that leans on a face touches it in one place, which runs along the rim as the body tilts
+// sideways: by so far that points apart, each by itself, would take turns in bearing it. Those that
+// the step may bring down keep it where it is.
+bool keep_leaning_rim(const Facing& facing, double size, LocalManifold<double>& out)
+{
+    const RimPlaces found{std::span<const Point>(facing.points.data(), facing.count)};
+    if (found.size() <= 4) return false;
+    Foot<double, RimPlaces> foot(found, facing.axis.normal, facing.speculative_margin);
+    double highest = foot.lowest();
+    for (const Point& point : found.points) highest = std::max(highest, point.separation);
+    if (!(highest - foot.lowest() > kLeaning * size)) return false;
+    // The lowest is told as the lowest: it is a corner that is where it is, and no rounding.
+    constexpr double kAsLow = 1e-3;
+    foot.spread(kAsLow * size, (facing.speculative_margin - foot.lowest()) / size, foot.lowest());
+    for (const std::size_t i : foot.chosen()) {
+        if (i == foot.kNone) continue;
+        const Point& point = found.points[i];
+        out.add(point.position, point.separation, point.feature);
+    }
+    return true;
+}
+
 // How squarely a shape's face looks along the axis; 0 where it has no true face there.
 double squareness(const Face& face, const Vec3& normal)
 {
@@ -279,6 +312,9 @@ void fill_points(const ConvexCorePair& pair,
         const Vec3 middle = (axis.on_a + axis.on_b) / 2;
         facing.add(middle - axis.normal * (axis.separation / 2), axis.separation, kWitness);
     }
+    if (rim && square > kFacing
+        && keep_leaning_rim(facing, std::min(pair.a.size, pair.b.size), out))
+        return;
     reduce_to_four<double>(std::span<const Point>(facing.points.data(), facing.count), out);
 }
 

@@ -15,9 +15,9 @@ namespace {
 constexpr double kByTwo = 4 * kStrained, kByFour = 16 * kStrained;
 constexpr double kFinestSubstep = 5e-5;  // s
 
-// Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 8 ms
+// Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 16 ms
 // of one core. An exact solve is counted as so many substeps.
-constexpr std::size_t kBudget = 1 << 15, kExactCost = 128;
+constexpr std::size_t kBudget = 1 << 16, kExactCost = 128;
 
 // The greatest strain of an island, whether any body of it is known to need an exact solve, and
 // whether contacts gave any of it energy of late.
@@ -57,32 +57,47 @@ void escalate_islands(const StepContext& context,
     overloaded.efforts.assign(islands.size(), {});
     overloaded.escalated = overloaded.missed = overloaded.work = 0;
     const auto substeps = static_cast<std::size_t>(context.substeps);
-    std::size_t left = kBudget;
+    const auto contacts_of = [&](std::size_t island) -> std::size_t {
+        return islands.contact_begin[island + 1] - islands.contact_begin[island];
+    };
+    const auto cost = [&](std::size_t island, const Effort& effort) {
+        return contacts_of(island) * (effort.direct ? kExactCost : substeps * (effort.times - 1u));
+    };
+
+    auto& wishes = overloaded.scratch.wishes;
+    wishes.clear();
+    std::size_t wished = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const IslandStrain strain = strain_of(islands, island, overloaded);
         overloaded.efforts[island].limited = strain.gained;
         if (!(strain.greatest > 0)) continue;
-        const std::size_t contacts =
-            islands.contact_begin[island + 1] - islands.contact_begin[island];
         const std::size_t bodies = islands.body_begin[island + 1] - islands.body_begin[island];
-        const bool exact = may_be_exact(bodies, contacts);
+        const bool exact = may_be_exact(bodies, contacts_of(island));
         const Effort wanted = effort_for(strain.greatest, exact);
-        Effort effort{wanted.times, exact && (wanted.direct || strain.exactly), true};
-        const auto cost = [&] {
-            return contacts * (effort.direct ? kExactCost : substeps * (effort.times - 1u));
-        };
+        const bool direct = exact && (wanted.direct || strain.exactly);
+        wishes.push_back({static_cast<std::uint32_t>(island),
+                          {wanted.times, direct, true},
+                          wanted.direct && !direct});
+        wished += cost(island, wishes.back().effort);
+    }
+
+    // Where they wish for more than there is, all have some before any has most.
+    std::size_t left = kBudget;
+    const std::uint8_t most = wished > left ? 4 : 16;
+    for (const auto& wish : wishes) {
+        Effort effort = wish.effort;
+        if (!effort.direct) effort.times = std::min(effort.times, most);
         while (effort.times > 1
-               && (cost() > left
+               && (cost(wish.island, effort) > left
                    || (!effort.direct && context.substep() / effort.times < kFinestSubstep))) {
             effort.times = static_cast<std::uint8_t>(effort.times > 4 ? 4 : effort.times / 2);
             effort.direct = false;
         }
-        left -= cost();
-        overloaded.work += cost();
-        overloaded.efforts[island] = effort;
+        left -= cost(wish.island, effort);
+        overloaded.work += cost(wish.island, effort);
+        overloaded.efforts[wish.island] = effort;
         overloaded.escalated += effort.times > 1 ? 1 : 0;
-        overloaded.missed +=
-            effort.times < wanted.times || (wanted.direct && !effort.direct) ? 1 : 0;
+        overloaded.missed += wish.too_great || effort.times < wish.effort.times ? 1 : 0;
     }
 }
 

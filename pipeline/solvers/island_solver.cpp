@@ -74,11 +74,13 @@ bool IslandSolver::place_rolling(const IslandContact& contact,
     const MovedContact now{contact.normal,  contact.arm_a,      contact.arm_b,    contact.round_a,
                            contact.round_b, contact.rolls_flat, contact.rim,      true,
                            offset,          turned(contact.a),  turned(contact.b)};
-    const std::int32_t rolling = contact.rolls_flat == RollsFlat::a ? contact.b : contact.a;
+    const auto spin = [&](std::int32_t index) -> Vec3 {
+        return index < 0 ? Vec3(Vec3::Zero()) : after_[static_cast<std::size_t>(index)].spin;
+    };
     // Who may bounce does so as the substep begins.
     const bool goes_on = ahead > 0 && !(contact.restitution > 0);
     const PlacedContact placed = goes_on && contact.rim.radius > 0
-        ? place_ahead(now, after_[static_cast<std::size_t>(rolling)].spin, ahead)
+        ? place_ahead(now, spin(contact.a), spin(contact.b), ahead)
         : place(now);
     point.normal = placed.normal;
     point.arm_a = placed.arm_a;

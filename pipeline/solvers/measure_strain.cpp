@@ -15,6 +15,7 @@
 #include "kernels/solver/coloring.hpp"
 #include "pipeline/solvers/constraint_builder.hpp"
 #include "pipeline/solvers/escalation.hpp"
+#include "pipeline/solvers/unlike_masses.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ constexpr double kFirst = 16, kFading = 0.95, kSettled = 0.85 * kStrained;
 constexpr double kDeep = 0.5;
 // A blow is too much where somebody so much lighter than who he touches is driven in by such a
 // share of the extent in a step; and what is small enough to be solved exactly at once.
-constexpr double kHeavy = 8, kDriven = 0.1, kCrushed = 2 * kExactStrain;
+constexpr double kDriven = 0.1, kCrushed = 2 * kExactStrain;
 constexpr std::size_t kCrushedContacts = 16;
 // Strain of an island that overlaps in spite of finer substeps: solved exactly as long as it rests.
 constexpr double kInVain = 4 * kExactStrain;
@@ -379,8 +380,11 @@ private:
             const std::uint32_t light = lighter(entry(place));
             return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t other) {
                 const std::uint32_t a = entry(other).body_a, b = entry(other).body_b;
-                return (a == light && is_heavy_for(b, light))
-                    || (b == light && is_heavy_for(a, light));
+                const auto is_light_beside = [&](std::uint32_t heavy) {
+                    return masses_.mass[light] < masses_.mass[heavy]
+                        && are_unlike(masses_, light, heavy);
+                };
+                return (a == light && is_light_beside(b)) || (b == light && is_light_beside(a));
             });
         });
     }
@@ -391,12 +395,6 @@ private:
         return inverse_mass[entry.body_a] > inverse_mass[entry.body_b] ? entry.body_a
                                                                        : entry.body_b;
     }
-    // Of who can be moved.
-    bool is_heavy_for(std::uint32_t body, std::uint32_t light) const
-    {
-        return masses_.inverse_mass[body] > 0 && masses_.mass[body] > kHeavy * masses_.mass[light];
-    }
-
     // m/s, of the middles of two bodies.
     double approach(const ActiveContacts::Entry& entry) const
     {

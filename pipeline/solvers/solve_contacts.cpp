@@ -8,6 +8,7 @@
 #include "pipeline/solvers/solve_batch.hpp"
 #include "pipeline/solvers/solve_island.hpp"
 #include "pipeline/solvers/split_impulse.hpp"
+#include "pipeline/solvers/unlike_masses.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
@@ -98,7 +99,8 @@ public:
         for_batches([&](const Batch& batch) {
             const bool parts =
                 split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_);
-            if (!parts && batch.direct && !any_only_turns(layout_, batch, facts_.masses)
+            if (!parts && batch.direct && !rolls_on_rims(batch)
+                && !any_only_turns(layout_, batch, facts_.masses)
                 && !is_stiff(context_, facts_, layout_, batch))
                 solve_island(islands_, batch, constraints_, diagnostics_);
             else if (!parts && batch.times > 1)
@@ -137,6 +139,27 @@ private:
         update_split_impulse(split_impulse_);
     }
 
+    bool rolls_on_rims(const Batch& batch) const
+    {
+        return !constraints_.rims.empty() && any_body_of(layout_, batch, [&](std::uint32_t body) {
+            const RoundRim& rim =
+                constraints_.rims[static_cast<std::size_t>(layout_.solver_index[body])];
+            return rim.rolls;
+        });
+    }
+
+    // Whether two in touch are so unlike. The impulses that relaxing takes from who bears so much
+    // are slow to come back, and he sinks in; where he is held by a face they come soon enough.
+    bool any_unlike(const Slice& slice) const
+    {
+        const auto contacts =
+            std::span(layout_.contacts).subspan(slice.first_contact, slice.contacts);
+        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t contact) {
+            const ActiveContacts::Entry& entry = active_.entries[contact];
+            return are_unlike(facts_.masses, entry.body_a, entry.body_b);
+        });
+    }
+
     void iterate(const Batch& batch)
     {
         solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
@@ -145,16 +168,18 @@ private:
 
     void iterate_finer(const Batch& batch)
     {
+        const Slice& slice = layout_.slices[batch.first_slice];
         StepContext finer = context_;
         SolverParameters parameters = parameters_;
         finer.substeps *= batch.times;
         finer.times_finer = batch.times;
         // Its overlap is that of the usual ones, which these would push apart as much faster.
         parameters.push_limit /= batch.times;
-        parameters.relax_iterations = finer_relax_iterations(parameters, finer.substeps, batch);
+        parameters.relax_iterations = !lies_on_faces(batch) && any_unlike(slice)
+            ? relax_iterations(parameters, finer.substeps, batch)
+            : finer_relax_iterations(parameters, finer.substeps, batch);
         const ConstraintBuilder<Real> with(finer, parameters, layout_, active_, convex_, meshes_,
                                            solids_, joined_, constraints_);
-        const Slice& slice = layout_.slices[batch.first_slice];
         // Impulses are kept as of the substep that the settings say.
         with.scale_impulses(slice, Real(1) / Real(batch.times));
         lag_by_finer(context_, facts_.forces,

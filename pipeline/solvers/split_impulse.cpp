@@ -1,6 +1,7 @@
 #include "pipeline/solvers/split_impulse.hpp"
 
 #include "pipeline/solvers/batch_bodies.hpp"
+#include "pipeline/solvers/unlike_masses.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +20,8 @@ constexpr double kDeep = 80, kFlat = 0.01;
 // deep. The rest is left to the usual push.
 constexpr double kWedged = 0.2;
 constexpr std::uint16_t kWedgedSteps = 60;
-// Pushes that begin anew in each substep do not lift who is so many times as heavy: in half of such
-// spans of steps he is left to the usual push.
-constexpr double kHeavy = 8;
+// Pushes that begin anew in each substep do not lift who is so much heavier: in half of such spans
+// of steps he is left to the usual push.
 constexpr long kTurn = 2 * kWedgedSteps;
 
 // Steps that a body has to part in: a tenth comes down to flat in some 60, whatever their length,
@@ -125,16 +125,14 @@ void split_wedged(const StepContext& context,
 {
     const bool lifts = std::lround(context.time / context.dt) / kTurn % 2 != 0;
     const auto many = [&](std::uint32_t body) { return colliders.count[body] > 1; };
-    const auto unlike = [&](const ActiveContacts::Entry& entry) {
-        const double a = masses.inverse_mass[entry.body_a], b = masses.inverse_mass[entry.body_b];
-        return std::min(a, b) > 0 && std::max(a, b) > kHeavy * std::min(a, b);
-    };
     for (const ActiveContacts::Entry& entry : active.entries) {
         const bool wedges =
             entry.list == ContactList::solid || (many(entry.body_a) && many(entry.body_b));
         if (!wedges) continue;
         const double depth{builder.contact_of(entry).overlap(entry.points)};
-        if (!(depth > kWedged * double{entry.extent}) || (lifts && unlike(entry))) continue;
+        if (!(depth > kWedged * double{entry.extent})
+            || (lifts && are_unlike(masses, entry.body_a, entry.body_b)))
+            continue;
         for (const std::uint32_t body : {entry.body_a, entry.body_b})
             split_impulse.steps[body] = std::max(split_impulse.steps[body], kWedgedSteps);
         split_impulse.some = true;

@@ -108,7 +108,7 @@ bool anybody_swings(const Layout& layout, const Shapes& shapes, const Colliders&
                        [&](std::uint32_t body) { return (colliders.may_swing[body] & how) != 0; });
 }
 
-// Of those that turn; none where nobody does.
+// Of those that turn, or touch somebody who does; none where nobody does.
 void find_rims(double dt,
                const Layout& layout,
                const Poses& poses,
@@ -125,7 +125,6 @@ void find_rims(double dt,
     for (std::size_t i = 1; i <= layout.dynamic; ++i) {
         const std::uint32_t body = layout.body_of_solver_index[i];
         if ((colliders.may_swing[body] & Colliders::kRim) == 0) continue;
-        if (!((velocities.angular[body] * dt).squaredNorm() > kSeen * kSeen)) continue;
         rims.resize(layout.body_of_solver_index.size());
         const std::uint32_t collider = colliders.begin[body];
         const Quat turn = poses.orientation[body] * colliders.local[collider].orientation;
@@ -134,15 +133,25 @@ void find_rims(double dt,
         rims[i].radius = shapes.cylinders[colliders.shape[collider].index].radius;
     }
     if (rims.empty()) return;
+    const auto turns = [&](std::size_t i) {
+        return i > 0 && i <= layout.dynamic
+            && (velocities.angular[layout.body_of_solver_index[i]] * dt).squaredNorm()
+            > kSeen * kSeen;
+    };
     for (std::size_t place = 0; place < layout.lanes.size(); ++place) {
         if (layout.lanes[place].entry == LaneSource{}.entry) continue;
-        ++rims[static_cast<std::size_t>(layout.solver_index_a[place])].contacts;
-        ++rims[static_cast<std::size_t>(layout.solver_index_b[place])].contacts;
+        const auto a = static_cast<std::size_t>(layout.solver_index_a[place]),
+                   b = static_cast<std::size_t>(layout.solver_index_b[place]);
+        const bool rolls = turns(a) || turns(b);
+        for (const std::size_t i : {a, b}) {
+            ++rims[i].contacts;
+            rims[i].rolls = rims[i].rolls || rolls;
+        }
     }
     bool some = false;
     for (RoundRim& rim : rims) {
-        if (rim.contacts > kMostContacts) rim.radius = 0;
-        some = some || rim.radius > 0;
+        if (!rim.rolls || rim.contacts > kMostContacts) rim.radius = 0;
+        some = some || rim.rolls;
     }
     if (!some) rims.clear();
 }

@@ -81,7 +81,14 @@ struct OverloadedIslands {
     std::vector<std::uint32_t> gainers;
     std::vector<Effort> efforts;
     std::size_t escalated = 0, missed = 0, work = 0;
+    // What an island is to have, and whether it is too great for what it needs.
+    struct Wish {
+        std::uint32_t island;
+        Effort effort;
+        bool too_great;
+    };
     struct Scratch {
+        std::vector<Wish> wishes;
         std::vector<float> of_island;       // [islands] strain
         std::vector<std::uint8_t> limited;  // [islands]
         std::vector<std::uint16_t> height;  // [solver bodies] above what stands still

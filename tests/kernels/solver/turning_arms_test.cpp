@@ -247,7 +247,9 @@ TEST(TurningArms, AreThoseOfARimThatRolls)
         return rolls_on_rim(contact, rim, none, true, false);
     };
     EXPECT_EQ(rolls(two.contact), RollsFlat::b);
-    EXPECT_EQ(rolls_on_rim(two.contact, rim, none, false, true), RollsFlat::no);
+    // Whoever of the two moves; but one of them.
+    EXPECT_EQ(rolls_on_rim(two.contact, rim, none, false, true), RollsFlat::b);
+    EXPECT_EQ(rolls_on_rim(two.contact, rim, none, false, false), RollsFlat::no);
     EXPECT_EQ(rolls_on_rim(two.contact, none, none, true, true), RollsFlat::no);
     // Not on what is round; nor with the middle of an end; nor standing upright on all of it.
     Contact<double> contact = two.contact;
@@ -280,6 +282,28 @@ TEST(TurningArms, ACanThatWobblesTouchesWhereItsRimIsLowest)
             EXPECT_LT((two.at(two.block().center_a) - round).norm(), 1e-14) << direction;
             EXPECT_NEAR(two.separation(0), -deeper, 1e-14) << direction;
         }
+}
+
+TEST(TurningArms, AFlatSideThatRollsOnARimTouchesItWhereItIsNearest)
+{
+    // About the can's axis it turns against it as the can would against what stands still.
+    const Vec3 axis = axis_towards(0, kLean);
+    const Quat turned = exponential(Vec3(axis * 0.04));
+    TwoBodies two = tilted_can();
+    two.block().b[0] = 2;
+    two.go(2, Vec3::Zero(), turned);
+    turn_arms(two.view(), 0, 1, 0, false);
+    const Vec3 round = turned * lowest_arm(0, kLean);
+    EXPECT_LT((two.at(two.block().center_a) - round).norm(), 1e-14);
+    EXPECT_LT((two.at(two.block().normal) + turned * Vec3::UnitZ()).norm(), 1e-14);
+    // And is told for the middle of the substep.
+    const double time = 0.02, rate = 3;  // s, rad/s
+    TwoBodies ahead = tilted_can();
+    ahead.block().b[0] = 2;
+    for (int k = 0; k < 3; ++k) ahead.constraints.bodies[2].motion[4 + k] = axis[k] * rate;
+    turn_arms(ahead.view(), 0, 1, time, true);
+    const Vec3 arm = exponential(Vec3(axis * (rate * time / 2))) * lowest_arm(0, kLean);
+    EXPECT_LT((ahead.at(ahead.block().center_a) - arm).norm(), 1e-14);
 }
 
 TEST(TurningArms, ARimThatSpinsRisesFromNothing)

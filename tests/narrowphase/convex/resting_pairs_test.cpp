@@ -362,6 +362,33 @@ TEST(CylinderPairs, CansStackOnFourPoints)
     }
 }
 
+TEST(CylinderPairs, LeaningCanIsHeldEitherSideOfWhereItsFlatSideTouchesARim)
+{
+    // Another stands beside its middle, and the rim of that is nearest straight below its axis.
+    for (const double direction : {0.0, 0.4, 2.0}) {
+        const Vec3 along(std::cos(direction), std::sin(direction), 0);
+        const double lean = 0.15;
+        const Quat turn = turn_about(Vec3::UnitZ().cross(along), lean);
+        const Vec3 nearest = along * 0.3 + Vec3::UnitZ() * 0.5;
+        const Vec3 middle = nearest + turn * Vec3(along * 0.05 + Vec3::UnitZ() * 0.499);
+        const LocalManifold<double> manifold = collide(kCylinder, kCylinder, {middle, turn}, 0.1);
+        ASSERT_GE(manifold.count, 3) << direction;
+        const Vec3 beside = Vec3::UnitZ().cross(along);
+        double left = 0, right = 0, deepest = 1;
+        for (int i = 0; i < manifold.count; ++i) {
+            const auto& point = manifold.points[static_cast<std::size_t>(i)];
+            deepest = std::min(deepest, point.separation);
+            // Near enough for a tilt of a tenth to bring it down.
+            if (point.separation > 0.1 * 0.3) continue;
+            left = std::max(left, point.position.dot(beside));
+            right = std::min(right, point.position.dot(beside));
+        }
+        EXPECT_NEAR(deepest, -0.001, 1e-4) << direction;
+        EXPECT_GT(left, 0.1) << direction;
+        EXPECT_LT(right, -0.1) << direction;
+    }
+}
+
 TEST(CylinderPairs, OverhangingLogRestsOnTheEdgesOfTheBox)
 {
     // A box narrower than the log is long: points at the box's sides, not at the log's ends.

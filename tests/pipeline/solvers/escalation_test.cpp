@@ -122,6 +122,41 @@ TEST(Escalation, DoesNotThrowAColumnThatIsDropped)
 
 // A column with a small one in it that stays where it is, but turns: lever arms press it in as its
 // mass would be. Its upper half rocks on it, and is not thrown higher from time to time.
+TEST(Escalation, IsSharedByAllWhoNeedIt)
+{
+    // Coins: each pile alone would get sixteen times the substeps.
+    given::SceneOf made;
+    made.floor();
+    constexpr int kPiles = 9, kHigh = 30;
+    constexpr double kThick = 0.002;  // m
+    const std::uint32_t coin = made.shape(CylinderShape{0.012, kThick / 2});
+    for (int pile = 0; pile < kPiles; ++pile)
+        for (int k = 0; k < kHigh; ++k) made.body(coin, Vec3(0.1 * pile, 0, kThick * (k + 0.5)));
+    made.scene.settings.sleep = false;
+    World world(made.scene);
+    world.step(60);
+    EXPECT_EQ(world.report().islands_escalated % kPiles, 0u);
+    const std::vector<BodyId> bodies = world.bodies();
+    for (int pile = 0; pile < kPiles; ++pile) {
+        const BodyId top = bodies[static_cast<std::size_t>(1 + kHigh * pile + kHigh - 1)];
+        EXPECT_NEAR(world.pose(top).position.z(), kThick * (kHigh - 0.5), kThick / 4) << pile;
+    }
+}
+
+TEST(Escalation, LetsNobodySinkWhoBearsTheHeavyWithOthers)
+{
+    // A ton on a plate on a hundred balls.
+    given::SceneOf made;
+    made.floor();
+    for (int i = 0; i < 100; ++i)
+        made.ball(0.05, Vec3(0.1 * (i % 10), 0.1 * (i / 10), 0.05)).mass = 0.5;
+    made.box(Vec3(0.6, 0.6, 0.02), Vec3(0.45, 0.45, 0.12)).mass = 58;
+    made.ball(0.4, Vec3(0.45, 0.45, 1.04)).mass = 1000;
+    World world(made.scene);
+    world.step(180);
+    EXPECT_NEAR(height_of_top(world), 0.54, 1e-3);
+}
+
 TEST(Escalation, HoldsTheHeavyOnWhoCanOnlyTurn)
 {
     for (const double small : {0.04, 0.08})
