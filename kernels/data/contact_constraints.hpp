@@ -66,9 +66,9 @@ struct GyroscopicInertia {
 /// The rims of a cylinder, on which it may roll.
 ///
 ///   axis      as the step began
-///   radius    m; 0: the body has none
+///   radius    m; 0: the body has none, or none that is followed
 ///   contacts  that it has in this step
-///   rolls     whether it turns, or somebody who touches it does
+///   rolls     whether it turns, or somebody who touches it does; followed or not
 struct RoundRim {
     double axis[3] = {0, 0, 1};
     double radius = 0;

@@ -93,7 +93,8 @@ public:
     // Each batch by iterations, or by what it is escalated to. No island is escalated while bodies
     // of it part: what makes contacts stiffer would throw those apart that are deep in one another.
     // Nor is one solved exactly where somebody can only turn: pressed by a lever arm of next to
-    // none he is spun by the impulses that an exact answer has, which iterations limit.
+    // none he is spun by the impulses that an exact answer has, which iterations limit. Nor where a
+    // rim turns: held exactly where it touches now, it is thrown to where it touches next.
     void by_iterations()
     {
         for_batches([&](const Batch& batch) {

@@ -142,8 +142,10 @@ void find_rims(double dt,
         if (layout.lanes[place].entry == LaneSource{}.entry) continue;
         const auto a = static_cast<std::size_t>(layout.solver_index_a[place]),
                    b = static_cast<std::size_t>(layout.solver_index_b[place]);
+        if (!(rims[a].radius > 0) && !(rims[b].radius > 0)) continue;
         const bool rolls = turns(a) || turns(b);
         for (const std::size_t i : {a, b}) {
+            if (!(rims[i].radius > 0)) continue;
             ++rims[i].contacts;
             rims[i].rolls = rims[i].rolls || rolls;
         }
