@@ -133,7 +133,13 @@ void case_piles_of_coins(CaseBench& bench);     // H122, piles_of_coins.cpp
 
 /// Runs a scene: energy that nobody gave, as a share of the greatest in motion; without end where a
 /// body was quarantined.
-double energy_made(CaseBench& bench, const Scene& scene, double seconds);
+///
+///   watch  is shown the world after every step, and how many s have passed
+double energy_made(
+    CaseBench& bench,
+    const Scene& scene,
+    double seconds,
+    const std::function<void(World&, double)>& watch = [](World&, double) {});
 
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);

@@ -8,7 +8,6 @@
 // told as the step found them they lag behind, and feed the rocking.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "scene/catalog/parts.hpp"
-#include "throng/energy_ledger.hpp"
 #include "throng/rotation.hpp"
 #include "throng/world.hpp"
 
@@ -48,30 +47,26 @@ Scene strewn(const CaseBench& bench, double radius, double aspect, const How& ho
     parts.scene().settings.sleep = false;
     parts.scene().gravity = how.place.orientation * Vec3(0, 0, -kGravity);
     Random random(static_cast<std::uint64_t>(draw));
-    const double half = aspect * radius;
-    BodyDescription body;
-    body.material = parts.material(0.3);
-    const auto put = [&](auto shape, const Vec3& at, const Quat& turn) {
-        body.position = how.place.position + how.place.orientation * at;
-        body.orientation = how.place.orientation * turn;
-        parts.add(std::move(shape), body);
-    };
-    body.motion = Motion::static_;
+    const double half = aspect * radius, mass = 1000 * kPi * radius * radius * 2 * half;
+    const std::uint32_t material = parts.material(0.3);
+    const Vec3 up = how.place.orientation * Vec3::UnitZ();
     if (how.on_box)
-        put(BoxShape{Vec3(20, 20, 1) * radius}, -Vec3::UnitZ() * radius, Quat::Identity());
+        parts.hold(parts.box(material, 1, Vec3(20, 20, 1) * radius,
+                             how.place * Pose{-Vec3::UnitZ() * radius, Quat::Identity()}));
     else
-        put(PlaneShape{}, Vec3::Zero(), Quat::Identity());
-    body.motion = Motion::dynamic;
+        parts.plane(material, up, up.dot(how.place.position));
+    const auto put = [&](const Vec3& at, const Quat& turn) {
+        parts.cylinder(material, mass, radius, half, how.place * Pose{at, turn});
+    };
     const int under = 1 + draw % 3;
     const auto along = [&](int k) -> Vec3 { return Vec3::UnitX() * (2.02 * radius * k); };
-    const CylinderShape disc{radius, half};
-    for (int k = 0; k < under; ++k) put(disc, along(k) + Vec3::UnitZ() * half, Quat::Identity());
+    for (int k = 0; k < under; ++k) put(along(k) + Vec3::UnitZ() * half, Quat::Identity());
     for (int k = 0; k < under; ++k) {
         const double aside = random.uniform(-1.5, 1.5), before = random.uniform(-1.3, 1.3);
         const Vec3 at(aside * radius, before * radius,
                       3.1 * half + random.uniform(0.3, 0.7) * radius);
         const Vec3 lean(random.uniform(-0.14, 0.14), random.uniform(-0.14, 0.14), 0);
-        put(disc, along(k) + at, exponential(lean));
+        put(along(k) + at, exponential(lean));
     }
     return parts.scene();
 }
@@ -79,18 +74,13 @@ Scene strewn(const CaseBench& bench, double radius, double aspect, const How& ho
 Leans lean(CaseBench& bench, double radius, double aspect, const How& how, int draw)
 {
     Leans leans;
-    EnergyLedger ledger;
     const double seconds = bench.brief() ? kBriefSeconds : kSeconds;
-    bench.run(
-        strewn(bench, radius, aspect, how, draw), seconds,
-        [&](World& world, double now) {
-            if (now >= seconds - 0.1)
-                leans.deep =
-                    std::max(leans.deep, world.measure().greatest_overlap / (2 * aspect * radius));
-            return true;
-        },
-        &ledger);
-    leans.made = ledger.gained() / ledger.greatest_kinetic();
+    leans.made = energy_made(
+        bench, strewn(bench, radius, aspect, how, draw), seconds, [&](World& world, double now) {
+            if (now < seconds - 0.1) return;
+            leans.deep =
+                std::max(leans.deep, world.measure().greatest_overlap / (2 * aspect * radius));
+        });
     return leans;
 }
 

@@ -6,13 +6,17 @@
 
 namespace throng {
 
-double energy_made(CaseBench& bench, const Scene& scene, double seconds)
+double energy_made(CaseBench& bench,
+                   const Scene& scene,
+                   double seconds,
+                   const std::function<void(World&, double)>& watch)
 {
     EnergyLedger ledger;
     bool sound = true;
     bench.run(
         scene, seconds,
-        [&](World& world, double) {
+        [&](World& world, double now) {
+            watch(world, now);
             sound = world.report().bodies_quarantined == 0;
             return sound;
         },

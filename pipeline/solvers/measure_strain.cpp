@@ -380,11 +380,8 @@ private:
             const std::uint32_t light = lighter(entry(place));
             return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t other) {
                 const std::uint32_t a = entry(other).body_a, b = entry(other).body_b;
-                const auto is_light_beside = [&](std::uint32_t heavy) {
-                    return masses_.mass[light] < masses_.mass[heavy]
-                        && are_unlike(masses_, light, heavy);
-                };
-                return (a == light && is_light_beside(b)) || (b == light && is_light_beside(a));
+                return (a == light && is_heavy_for(masses_, b, light))
+                    || (b == light && is_heavy_for(masses_, a, light));
             });
         });
     }
@@ -395,6 +392,7 @@ private:
         return inverse_mass[entry.body_a] > inverse_mass[entry.body_b] ? entry.body_a
                                                                        : entry.body_b;
     }
+
     // m/s, of the middles of two bodies.
     double approach(const ActiveContacts::Entry& entry) const
     {

@@ -3,18 +3,22 @@
 
 #include "pipeline/step/step_data.hpp"
 
-#include <algorithm>
-
 namespace throng {
 
 /// Over the other's mass.
 inline constexpr double kHeavy = 8;
 
-/// Whether one of two bodies that can be moved is that much heavier than the other.
+/// Whether a body that can be moved is that much heavier than another.
+inline bool is_heavy_for(const Masses& masses, std::uint32_t body, std::uint32_t light)
+{
+    return masses.inverse_mass[body] > 0 && masses.mass[body] > kHeavy * masses.mass[light];
+}
+
+/// Whether either of two bodies that can both be moved is.
 inline bool are_unlike(const Masses& masses, std::uint32_t body_a, std::uint32_t body_b)
 {
-    const double a = masses.inverse_mass[body_a], b = masses.inverse_mass[body_b];
-    return std::min(a, b) > 0 && std::max(a, b) > kHeavy * std::min(a, b);
+    return masses.inverse_mass[body_a] > 0 && masses.inverse_mass[body_b] > 0
+        && (is_heavy_for(masses, body_a, body_b) || is_heavy_for(masses, body_b, body_a));
 }
 
 }  // namespace throng
