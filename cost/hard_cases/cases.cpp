@@ -178,6 +178,10 @@ constexpr HardCase kCases[] = {
      Fault::whirl},
     {"H122", "piles of coins stand, and many light ones bear somebody heavy", case_piles_of_coins,
      Fault::sink},
+    {"H123", "walls, towers and pyramids of hundreds of small pieces stand", case_small_structures,
+     Fault::skew},
+    {"H124", "somebody heavy falls into a pit of hundreds of light ones, and makes no energy",
+     case_heavy_on_crowd, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -27,7 +27,7 @@ struct StepReport {
     // Islands that were given more substeps or solved exactly, over all steps so far; and those of
     // them that needed more than they were given.
     std::uint64_t islands_escalated = 0, escalation_missed = 0;
-    // What that took: contacts times substeps beyond the usual, an exact solve as 128 of them.
+    // What that took: contacts times substeps beyond the usual, an exact solve as 256 of them.
     std::uint64_t escalation_work = 0;
     // Of solver direct: by how much contacts missed their law at worst, as a share of the greatest
     // speed they had to stop (see DirectAnswer), likewise.

@@ -1,4 +1,5 @@
 // Escalate islands: stubborn ones get what they need, as far as a step's budget goes.
+#include "kernels/solver/coloring.hpp"
 #include "pipeline/solvers/escalation.hpp"
 #include "pipeline/step/stages.hpp"
 
@@ -9,15 +10,21 @@ namespace throng {
 
 namespace {
 
-// Strain that half the substep brings down to kStrained, and a quarter; a sixteenth does up to
-// kExactStrain. Finer ones are lost in the digits of float: what is yet more stubborn is solved
-// exactly, where that is small.
-constexpr double kByTwo = 4 * kStrained, kByFour = 16 * kStrained;
-constexpr double kFinestSubstep = 5e-5;  // s
+// s. Finer ones are lost in the digits of float: what is yet more stubborn is solved exactly, where
+// that is small.
+constexpr double kFinestSubstep = 5e-5;
 
-// Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 16 ms
+// Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 32 ms
 // of one core. An exact solve is counted as so many substeps.
-constexpr std::size_t kBudget = 1 << 16, kExactCost = 128;
+constexpr std::size_t kBudget = 1 << 17, kExactCost = 256;
+
+// The most for who is greater than so many contacts: he holds himself up sideways as well.
+constexpr std::uint8_t kMostOfGreat = 4;
+constexpr std::size_t kGreat = 2 * kBatchContacts;
+
+// Neighbours of a body of the mean from which on contacts go one by one, as there are no colors
+// left, and not a block at a time.
+constexpr std::size_t kTangled = 48;
 
 // The greatest strain of an island, whether any body of it is known to need an exact solve, and
 // whether contacts gave any of it energy of late.
@@ -60,8 +67,14 @@ void escalate_islands(const StepContext& context,
     const auto contacts_of = [&](std::size_t island) -> std::size_t {
         return islands.contact_begin[island + 1] - islands.contact_begin[island];
     };
+    const auto bodies_of = [&](std::size_t island) -> std::size_t {
+        return islands.body_begin[island + 1] - islands.body_begin[island];
+    };
     const auto cost = [&](std::size_t island, const Effort& effort) {
-        return contacts_of(island) * (effort.direct ? kExactCost : substeps * (effort.times - 1u));
+        const std::size_t contacts = contacts_of(island);
+        if (effort.direct) return contacts * kExactCost;
+        const std::size_t finer = contacts * substeps * (effort.times - 1u);
+        return 2 * contacts > kTangled * bodies_of(island) ? finer * kBlock : finer;
     };
 
     auto& wishes = overloaded.scratch.wishes;
@@ -71,13 +84,14 @@ void escalate_islands(const StepContext& context,
         const IslandStrain strain = strain_of(islands, island, overloaded);
         overloaded.efforts[island].limited = strain.gained;
         if (!(strain.greatest > 0)) continue;
-        const std::size_t bodies = islands.body_begin[island + 1] - islands.body_begin[island];
-        const bool exact = may_be_exact(bodies, contacts_of(island));
+        const bool exact = may_be_exact(bodies_of(island), contacts_of(island));
         const Effort wanted = effort_for(strain.greatest, exact);
         const bool direct = exact && (wanted.direct || strain.exactly);
-        wishes.push_back({static_cast<std::uint32_t>(island),
-                          {wanted.times, direct, true},
-                          wanted.direct && !direct});
+        const bool great = contacts_of(island) > kGreat;
+        wishes.push_back(
+            {static_cast<std::uint32_t>(island),
+             {great ? std::min(wanted.times, kMostOfGreat) : wanted.times, direct, true},
+             wanted.direct && !direct});
         wished += cost(island, wishes.back().effort);
     }
 

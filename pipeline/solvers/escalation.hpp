@@ -19,8 +19,14 @@ inline constexpr double kStrained = 2, kRelieved = 1.2;
 /// Whether a body of that strain belongs to a stubborn island, and not to one on the way there.
 inline bool is_overloaded(double strain) { return strain < 0 || strain > 1; }
 
-/// Strain beyond which the finest substeps do not do.
-inline constexpr double kExactStrain = 256 * kStrained;
+/// Strain that half the substep brings down to kStrained, a quarter, a sixteenth: beyond that the
+/// finest do not do.
+inline constexpr double kByTwo = 4 * kStrained, kByFour = 16 * kStrained,
+                        kExactStrain = 256 * kStrained;
+
+/// Contacts up to which an island is looked at: twice the substeps for so many are half of what a
+/// step may cost beyond the usual.
+inline constexpr std::size_t kMostEscalated = 1 << 14;
 
 /// Contacts up to which an island may be solved exactly, and contacts times bodies: of more than
 /// that only columns, which are solved in a step or two as they stand. A heap of thirty bodies

@@ -8,8 +8,9 @@
 // told is how far it is on the way, from 0 to 1. It is told below 0 where the next step should be
 // exact: where an island has only become stubborn, or is pressed in further than finer substeps
 // would hold it, which would throw it off; or where a blow drives somebody light in before somebody
-// heavy, and while he is as deep. Islands of more than a batch of contacts are not looked at: what
-// is so great holds itself up sideways, or is beyond the budget. Nor is who is squeezed escalated.
+// heavy, and while he is as deep. Of islands of more than a batch of contacts only structures are
+// looked at, and those in which somebody bears somebody much heavier: a heap holds itself up
+// sideways. Nor is who is squeezed escalated.
 #include "kernels/math/numbers.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "kernels/solver/coloring.hpp"
@@ -125,7 +126,7 @@ public:
     // For how many steps contacts of the island are still to be held to making no energy.
     std::uint8_t limited(std::size_t island) const
     {
-        if (contacts_of(island).size() < 2 || contacts_of(island).size() > kBatchContacts) return 0;
+        if (!is_looked_at(island)) return 0;
         if (gains(island)) return kLimited;
         std::uint8_t before = 0;
         if (!overloaded_.gainers.empty())
@@ -135,12 +136,24 @@ public:
     }
 
 private:
+    // Who lies on what stands still, by one contact, has nobody to wait for.
+    bool is_looked_at(std::size_t island) const
+    {
+        const auto contacts = contacts_of(island);
+        if (contacts.size() <= kBatchContacts) return contacts.size() >= 2;
+        if (contacts.size() > kMostEscalated) return false;
+        const auto on_faces =
+            std::count_if(contacts.begin(), contacts.end(),
+                          [&](std::uint32_t place) { return active_.entries[place].points >= 3; });
+        return 2 * static_cast<std::size_t>(on_faces) > contacts.size()
+            || any_unlike(masses_, active_, contacts);
+    }
+
     double strain_if_free(std::size_t island) const
     {
         const std::size_t bodies = islands_.body_begin[island + 1] - islands_.body_begin[island];
         const auto contacts = contacts_of(island);
-        // Who lies on what stands still, by one contact, has nobody to wait for.
-        if (contacts.size() < 2 || contacts.size() > kBatchContacts) return 0;
+        if (!is_looked_at(island)) return 0;
         const bool exactly = may_be_exact(bodies, contacts.size());
         const double before = strain_before(island);
         // A load that stands at a corner of who bears it has a quarter of him to be held by. In a

@@ -108,8 +108,7 @@ public:
                 return iterate_finer(batch);
             else
                 iterate(batch);
-            for (std::uint32_t i = 0; i < batch.slices; ++i)
-                lag_by_usual(layout_.slices[batch.first_slice + i], 1);
+            for (const Slice& slice : slices_of(batch)) lag_by_usual(slice, 1);
         });
     }
 
@@ -151,14 +150,12 @@ private:
 
     // Whether two in touch are so unlike. The impulses that relaxing takes from who bears so much
     // are slow to come back, and he sinks in; where he is held by a face they come soon enough.
-    bool any_unlike(const Slice& slice) const
+    bool any_unlike(const Batch& batch) const
     {
-        const auto contacts =
-            std::span(layout_.contacts).subspan(slice.first_contact, slice.contacts);
-        return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t contact) {
-            const ActiveContacts::Entry& entry = active_.entries[contact];
-            return are_unlike(facts_.masses, entry.body_a, entry.body_b);
-        });
+        return throng::any_unlike(
+            facts_.masses, active_,
+            std::span(layout_.contacts)
+                .subspan(layout_.slices[batch.first_slice].first_contact, batch.contacts));
     }
 
     void iterate(const Batch& batch)
@@ -169,26 +166,34 @@ private:
 
     void iterate_finer(const Batch& batch)
     {
-        const Slice& slice = layout_.slices[batch.first_slice];
         StepContext finer = context_;
         SolverParameters parameters = parameters_;
         finer.substeps *= batch.times;
         finer.times_finer = batch.times;
         // Its overlap is that of the usual ones, which these would push apart as much faster.
         parameters.push_limit /= batch.times;
-        parameters.relax_iterations = !lies_on_faces(batch) && any_unlike(slice)
+        parameters.relax_iterations = !lies_on_faces(batch) && any_unlike(batch)
             ? relax_iterations(parameters, finer.substeps, batch)
             : finer_relax_iterations(parameters, finer.substeps, batch);
         const ConstraintBuilder<Real> with(finer, parameters, layout_, active_, convex_, meshes_,
                                            solids_, joined_, constraints_);
-        // Impulses are kept as of the substep that the settings say.
-        with.scale_impulses(slice, Real(1) / Real(batch.times));
-        lag_by_finer(context_, facts_.forces,
-                     {batch.times, layout_.bodies_of(slice), with.pressed(slice)}, flights_,
-                     solver_bodies_of(slice));
+        for (const Slice& slice : slices_of(batch)) {
+            // Impulses are kept as of the substep that the settings say.
+            with.scale_impulses(slice, Real(1) / Real(batch.times));
+            lag_by_finer(context_, facts_.forces,
+                         {batch.times, layout_.bodies_of(slice), with.pressed(slice)}, flights_,
+                         solver_bodies_of(slice));
+        }
         solve_batch(finer, parameters, facts_, layout_, batch, with, constraints_, split_impulse_);
-        with.scale_impulses(slice, Real(batch.times));
-        lag_by_usual(slice, batch.times);
+        for (const Slice& slice : slices_of(batch)) {
+            with.scale_impulses(slice, Real(batch.times));
+            lag_by_usual(slice, batch.times);
+        }
+    }
+
+    std::span<const Slice> slices_of(const Batch& batch) const
+    {
+        return std::span(layout_.slices).subspan(batch.first_slice, batch.slices);
     }
 
     // Of a slice that was solved by so many times the substeps, or comes from such a solve.

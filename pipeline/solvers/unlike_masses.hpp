@@ -3,6 +3,9 @@
 
 #include "pipeline/step/step_data.hpp"
 
+#include <algorithm>
+#include <span>
+
 namespace throng {
 
 /// Over the other's mass.
@@ -19,6 +22,17 @@ inline bool are_unlike(const Masses& masses, std::uint32_t body_a, std::uint32_t
 {
     return masses.inverse_mass[body_a] > 0 && masses.inverse_mass[body_b] > 0
         && (is_heavy_for(masses, body_a, body_b) || is_heavy_for(masses, body_b, body_a));
+}
+
+/// Whether any contact of some, places among the active ones, is of two such bodies.
+inline bool any_unlike(const Masses& masses,
+                       const ActiveContacts& active,
+                       std::span<const std::uint32_t> contacts)
+{
+    return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t contact) {
+        const ActiveContacts::Entry& entry = active.entries[contact];
+        return are_unlike(masses, entry.body_a, entry.body_b);
+    });
 }
 
 }  // namespace throng

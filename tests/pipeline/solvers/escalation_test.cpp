@@ -142,6 +142,48 @@ TEST(Escalation, IsSharedByAllWhoNeedIt)
     }
 }
 
+// A grid of cubes of 40 mm, of more contacts than a batch holds; a hair apart, or as far as they
+// are dropped into a heap.
+Scene many_cubes(double apart)
+{
+    given::SceneOf made;
+    made.floor();
+    for (int k = 0; k < 30; ++k)
+        for (int i = 0; i < 15; ++i) {
+            const double aside = apart > 0 ? 0.013 * ((7 * i + 11 * k) % 5) : 0;
+            made.box(Vec3::Constant(0.02),
+                     Vec3((0.041 + apart) * (i % 5) + aside, (0.041 + apart) * (i / 5) - aside,
+                          (0.04 + apart) * (k + 0.5)));
+        }
+    return made.scene;
+}
+
+TEST(Escalation, HoldsGreatStructuresAndOnAnyNumberOfThreads)
+{
+    const Scene scene = many_cubes(0);
+    World world(scene, 1), other(scene, 3);
+    world.step(60);
+    other.step(60);
+    EXPECT_GT(world.report().islands_escalated, 20u);
+    EXPECT_NEAR(height_of_top(world), 0.04 * 29.5, 0.004);
+    EXPECT_EQ(world.state_hash(), other.state_hash());
+    Scene left = scene;
+    left.settings.escalation = Escalation::off;
+    World falls(left);
+    falls.step(240);
+    EXPECT_LT(height_of_top(falls), 0.04 * 29);
+}
+
+TEST(Escalation, LeavesGreatHeapsAlone)
+{
+    World world(many_cubes(0.03));
+    world.step(150);
+    EXPECT_GT(world.report().contacts, 1500u);
+    const std::size_t before = world.report().islands_escalated;
+    world.step(60);
+    EXPECT_EQ(world.report().islands_escalated, before);
+}
+
 TEST(Escalation, IsTheSameWhoeverRollsElsewhere)
 {
     // A heavy box that is set down askew turns as it settles, while a can rolls far away.
