@@ -123,9 +123,11 @@ void case_piles_of_coins(CaseBench& bench)
         all.push_back({"1 t on a plate on 100 balls", on_balls(bench, how), 2 * kBall, false});
         if (!bench.brief()) {
             all.push_back({"9 piles of 30 coins", piles(bench, how, 3, 30), thick});
-            // More than a step's budget of finer substeps holds, so that it sways.
+            // More than a step's budget of finer substeps holds, so that they sway and tremble.
             all.push_back(
                 {"a pile of 100 coins", piles(bench, how, 1, 100), thick, true, "dt 1/240"});
+            all.push_back(
+                {"100 piles of 15 coins", piles(bench, how, 10, 15), thick, true, "dt 1/240"});
         }
         for (const Built& built : all) {
             const Stands stands = stand(bench, built);

@@ -47,6 +47,18 @@ strain_of(const Islands& islands, std::size_t island, const OverloadedIslands& o
     return strain;
 }
 
+// 16, 4, 2, 1 times the substeps.
+std::uint8_t fewer(std::uint8_t times)
+{
+    return static_cast<std::uint8_t>(times > 4 ? 4 : times / 2);
+}
+
+Effort at_most(Effort effort, std::uint8_t times)
+{
+    if (!effort.direct) effort.times = std::min(effort.times, times);
+    return effort;
+}
+
 }  // namespace
 
 Effort effort_for(double strain, bool exact)
@@ -79,7 +91,6 @@ void escalate_islands(const StepContext& context,
 
     auto& wishes = overloaded.scratch.wishes;
     wishes.clear();
-    std::size_t wished = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const IslandStrain strain = strain_of(islands, island, overloaded);
         overloaded.efforts[island].limited = strain.gained;
@@ -92,19 +103,23 @@ void escalate_islands(const StepContext& context,
             {static_cast<std::uint32_t>(island),
              {great ? std::min(wanted.times, kMostOfGreat) : wanted.times, direct, true},
              wanted.direct && !direct});
-        wished += cost(island, wishes.back().effort);
     }
 
     // Where they wish for more than there is, all have some before any has most.
+    const auto all_fit = [&](std::uint8_t most) {
+        std::size_t all = 0;
+        for (const auto& wish : wishes) all += cost(wish.island, at_most(wish.effort, most));
+        return all <= kBudget;
+    };
+    std::uint8_t most = 16;
+    while (most > 2 && !all_fit(most)) most = fewer(most);
     std::size_t left = kBudget;
-    const std::uint8_t most = wished > left ? 4 : 16;
     for (const auto& wish : wishes) {
-        Effort effort = wish.effort;
-        if (!effort.direct) effort.times = std::min(effort.times, most);
+        Effort effort = at_most(wish.effort, most);
         while (effort.times > 1
                && (cost(wish.island, effort) > left
                    || (!effort.direct && context.substep() / effort.times < kFinestSubstep))) {
-            effort.times = static_cast<std::uint8_t>(effort.times > 4 ? 4 : effort.times / 2);
+            effort.times = fewer(effort.times);
             effort.direct = false;
         }
         left -= cost(wish.island, effort);
