@@ -143,6 +143,13 @@ double energy_made(
     double seconds,
     const std::function<void(World&, double)>& watch = [](World&, double) {});
 
+/// How what was built stands in the last tenth of a second that a scene is run for: m/s, of the
+/// fastest body; m, of who is furthest from where it was built; m, the deepest overlap.
+struct Stands {
+    double speed = 0, moved = 0, deep = 0;
+};
+Stands stand_for(CaseBench& bench, const Scene& scene, double seconds);
+
 /// The settings for exact answers: solver direct, double precision, one substep.
 void ask_exactly(Settings& settings);
 
@@ -158,6 +165,8 @@ public:
     void pair_materials(std::uint32_t a, std::uint32_t b, double friction);
     /// Solid where normal . x < offset.
     std::uint32_t plane(std::uint32_t material, const Vec3& normal, double offset);
+    /// A plane through a place, turned as that is, with gravity straight down upon it.
+    std::uint32_t level_ground(std::uint32_t material, const Pose& place);
     /// Dynamic bodies of a mass; inertia from the shape.
     std::uint32_t
     box(std::uint32_t material, double mass, const Vec3& half_extents, const Pose& pose);

@@ -45,10 +45,8 @@ Scene filled(const CaseBench& bench, const Pit& pit, const How& how)
 {
     SceneParts parts(bench.scene());
     how.set(parts.scene().settings);
-    parts.scene().gravity = how.place.orientation * Vec3(0, 0, -kGravity);
     const std::uint32_t material = parts.material(0.5, pit.restitution);
-    const Vec3 up = how.place.orientation * Vec3::UnitZ();
-    parts.plane(material, up, up.dot(how.place.position));
+    parts.level_ground(material, how.place);
     const double wide = 0.07 * pit.across + 0.1;
     const auto at = [&](const Vec3& where) { return how.place * Pose{where, Quat::Identity()}; };
     for (const double side : {-1.0, 1.0}) {
@@ -71,7 +69,7 @@ Scene filled(const CaseBench& bench, const Pit& pit, const How& how)
     const std::uint32_t heavy = pit.cube
         ? parts.box(material, pit.mass, Vec3::Constant(pit.size), at(over))
         : parts.ball(material, pit.mass, pit.size, at(over).position);
-    parts.body(heavy).velocity = -pit.speed * up;
+    parts.body(heavy).velocity = how.place.orientation * Vec3(0, 0, -pit.speed);
     return parts.scene();
 }
 

@@ -7,12 +7,8 @@
 // within a few substeps: one of ten coins sinks into itself by the usual ones. A plate on a hundred
 // balls is borne by each a little, and they take many iterations to share what lies on it.
 #include "cost/hard_cases/hard_cases.hpp"
-#include "scene/catalog/parts.hpp"
 #include "throng/rotation.hpp"
-#include "throng/world.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <span>
 #include <string>
@@ -49,9 +45,7 @@ SceneParts on_floor(const CaseBench& bench, const How& how)
     SceneParts parts(bench.scene());
     how.set(parts.scene().settings);
     parts.scene().settings.sleep = false;
-    parts.scene().gravity = how.place.orientation * Vec3(0, 0, -kGravity);
-    const Vec3 up = how.place.orientation * Vec3::UnitZ();
-    parts.plane(parts.material(0.3), up, up.dot(how.place.position));
+    parts.level_ground(parts.material(0.3), how.place);
     return parts;
 }
 
@@ -81,28 +75,6 @@ Scene on_balls(const CaseBench& bench, const How& how)
     return parts.scene();
 }
 
-struct Stands {
-    double speed = 0, moved = 0, deep = 0;  // m/s; of the thickness
-};
-
-Stands stand(CaseBench& bench, const Built& built)
-{
-    Stands stands;
-    const double seconds = bench.brief() ? kBriefSeconds : kSeconds;
-    bench.run(built.scene, seconds, [&](World& world, double now) {
-        if (now < seconds - 0.1) return true;
-        const std::vector<BodyId> bodies = world.bodies();
-        for (std::size_t i = 0; i < bodies.size(); ++i) {
-            stands.speed = std::max(stands.speed, world.velocity(bodies[i]).norm());
-            const Vec3 off = world.pose(bodies[i]).position - built.scene.bodies[i].position;
-            stands.moved = std::max(stands.moved, off.norm() / built.thickness);
-        }
-        stands.deep = std::max(stands.deep, world.measure().greatest_overlap / built.thickness);
-        return true;
-    });
-    return stands;
-}
-
 }  // namespace
 
 void case_piles_of_coins(CaseBench& bench)
@@ -116,6 +88,7 @@ void case_piles_of_coins(CaseBench& bench)
         {"double", [](Settings& s) { s.precision = Precision::double_; }},
         {"16 substeps", [](Settings& s) { s.substeps = 16; }},
     };
+    const double seconds = bench.brief() ? kBriefSeconds : kSeconds;
     for (const How& how : std::span(hows).first(bench.brief() ? 1 : std::size(hows))) {
         std::vector<Built> all;
         const double thick = 2 * kHalf;
@@ -130,15 +103,16 @@ void case_piles_of_coins(CaseBench& bench)
                 {"100 piles of 15 coins", piles(bench, how, 10, 15), thick, true, "dt 1/240"});
         }
         for (const Built& built : all) {
-            const Stands stands = stand(bench, built);
+            const Stands stands = stand_for(bench, built.scene, seconds);
             bench.forgive_residual();
             const std::string of = std::string(built.name) + ": ";
             bench.report_default(how.setting, of + "fastest", stands.speed, kRests, "m/s",
                                  built.met_by);
-            bench.report(how.setting, of + "overlap, over the thickness", stands.deep, kDeep, "1");
+            bench.report(how.setting, of + "overlap, over the thickness",
+                         stands.deep / built.thickness, kDeep, "1");
             if (built.stays)
-                bench.report_default(how.setting, of + "moved, over the thickness", stands.moved,
-                                     kMoved, "1", built.met_by);
+                bench.report_default(how.setting, of + "moved, over the thickness",
+                                     stands.moved / built.thickness, kMoved, "1", built.met_by);
         }
     }
 }

@@ -2,7 +2,9 @@
 #include "throng/energy_ledger.hpp"
 #include "throng/world.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 namespace throng {
 
@@ -25,6 +27,23 @@ double energy_made(CaseBench& bench,
                  : std::numeric_limits<double>::infinity();
 }
 
+Stands stand_for(CaseBench& bench, const Scene& scene, double seconds)
+{
+    Stands stands;
+    bench.run(scene, seconds, [&](World& world, double now) {
+        if (now < seconds - 0.1) return true;
+        const std::vector<BodyId> bodies = world.bodies();
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            stands.speed = std::max(stands.speed, world.velocity(bodies[i]).norm());
+            const Vec3 off = world.pose(bodies[i]).position - scene.bodies[i].position;
+            stands.moved = std::max(stands.moved, off.norm());
+        }
+        stands.deep = std::max(stands.deep, world.measure().greatest_overlap);
+        return true;
+    });
+    return stands;
+}
+
 void ask_exactly(Settings& settings)
 {
     settings.solver = Solver::direct;
@@ -40,6 +59,13 @@ std::uint32_t SceneParts::material(double friction, double restitution)
     material.restitution = restitution;
     scene_.materials.push_back(material);
     return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+}
+
+std::uint32_t SceneParts::level_ground(std::uint32_t material, const Pose& place)
+{
+    const Vec3 up = place.orientation * Vec3::UnitZ();
+    scene_.gravity = place.orientation * Vec3(0, 0, -kGravity);
+    return plane(material, up, up.dot(place.position));
 }
 
 void SceneParts::hold(std::uint32_t id, Motion motion)

@@ -8,9 +8,7 @@
 // substeps.
 #include "cost/hard_cases/hard_cases.hpp"
 #include "throng/rotation.hpp"
-#include "throng/world.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -113,36 +111,12 @@ Scene built(const CaseBench& bench, const Structure& structure, const How& how)
 {
     SceneParts parts(bench.scene());
     how.set(parts.scene().settings);
-    parts.scene().gravity = how.place.orientation * Vec3(0, 0, -kGravity);
-    const Vec3 up = how.place.orientation * Vec3::UnitZ();
-    parts.plane(parts.material(0.5), up, up.dot(how.place.position));
+    parts.level_ground(parts.material(0.5), how.place);
     const std::size_t count = structure.poses.size();
     for (std::size_t i = 0; i < count; ++i)
         parts.box(0, structure.mass, structure.half,
                   how.place * structure.poses[how.from_above ? count - 1 - i : i]);
     return parts.scene();
-}
-
-struct Stands {
-    double speed = 0, moved = 0, deep = 0;  // m/s; m
-};
-
-Stands stand(CaseBench& bench, const Scene& scene)
-{
-    Stands stands;
-    const double seconds = bench.brief() ? kBriefSeconds : kSeconds;
-    bench.run(scene, seconds, [&](World& world, double now) {
-        if (now < seconds - 0.1) return true;
-        const std::vector<BodyId> bodies = world.bodies();
-        for (std::size_t i = 0; i < bodies.size(); ++i) {
-            stands.speed = std::max(stands.speed, world.velocity(bodies[i]).norm());
-            const Vec3 off = world.pose(bodies[i]).position - scene.bodies[i].position;
-            stands.moved = std::max(stands.moved, off.norm());
-        }
-        stands.deep = std::max(stands.deep, world.measure().greatest_overlap);
-        return true;
-    });
-    return stands;
 }
 
 }  // namespace
@@ -162,6 +136,7 @@ void case_small_structures(CaseBench& bench)
         {"pgs", [](Settings& s) { s.solver = Solver::pgs; }, {}, false, "default"},
         {"double", [](Settings& s) { s.precision = Precision::double_; }},
     };
+    const double seconds = bench.brief() ? kBriefSeconds : kSeconds;
     std::vector<Structure> structures;
     structures.push_back(tower_of_blocks());
     if (!bench.brief()) {
@@ -175,7 +150,7 @@ void case_small_structures(CaseBench& bench)
     for (const How& how : std::span(hows).first(bench.brief() ? 1 : std::size(hows)))
         for (const Structure& structure : structures) {
             if (!structure.always && &how != hows) continue;
-            const Stands stands = stand(bench, built(bench, structure, how));
+            const Stands stands = stand_for(bench, built(bench, structure, how), seconds);
             bench.forgive_residual();
             const double height = structure.poses.back().position.z();
             const std::string of = structure.name + ": ";
