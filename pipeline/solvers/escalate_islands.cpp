@@ -10,9 +10,11 @@ namespace throng {
 
 namespace {
 
-// s. Finer ones are lost in the digits of float: what is yet more stubborn is solved exactly, where
-// that is small.
-constexpr double kFinestSubstep = 5e-5;
+// Strain that half the substep brings down to kStrained, and a quarter; a sixteenth does up to
+// kExactStrain. Finer ones are lost in the digits of float: what is yet more stubborn is solved
+// exactly, where that is small.
+constexpr double kByTwo = 4 * kStrained, kByFour = 16 * kStrained;
+constexpr double kFinestSubstep = 5e-5;  // s
 
 // Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 32 ms
 // of one core. An exact solve is counted as so many substeps.

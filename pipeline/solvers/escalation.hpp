@@ -19,10 +19,8 @@ inline constexpr double kStrained = 2, kRelieved = 1.2;
 /// Whether a body of that strain belongs to a stubborn island, and not to one on the way there.
 inline bool is_overloaded(double strain) { return strain < 0 || strain > 1; }
 
-/// Strain that half the substep brings down to kStrained, a quarter, a sixteenth: beyond that the
-/// finest do not do.
-inline constexpr double kByTwo = 4 * kStrained, kByFour = 16 * kStrained,
-                        kExactStrain = 256 * kStrained;
+/// Strain beyond which the finest substeps do not do.
+inline constexpr double kExactStrain = 256 * kStrained;
 
 /// Contacts up to which an island is looked at: twice the substeps for so many are half of what a
 /// step may cost beyond the usual.

@@ -116,27 +116,8 @@ public:
         }
     }
 
-    // 0 for an island that is not stubborn; below 0 for one to be solved exactly in the next step.
-    double strain_of(std::size_t island) const
-    {
-        const double strain = strain_if_free(island);
-        return strain != 0 && is_squeezed(island) ? 0 : strain;
-    }
-
-    // For how many steps contacts of the island are still to be held to making no energy.
-    std::uint8_t limited(std::size_t island) const
-    {
-        if (!is_looked_at(island)) return 0;
-        if (gains(island)) return kLimited;
-        std::uint8_t before = 0;
-        if (!overloaded_.gainers.empty())
-            for (const std::uint32_t body : bodies_of(island))
-                before = std::max(before, overloaded_.limited_for(body));
-        return before > 0 ? static_cast<std::uint8_t>(before - 1) : before;
-    }
-
-private:
-    // Who lies on what stands still, by one contact, has nobody to wait for.
+    // Whether what is below is asked of it. Who lies on what stands still, by one contact, has
+    // nobody to wait for.
     bool is_looked_at(std::size_t island) const
     {
         const auto contacts = contacts_of(island);
@@ -149,11 +130,29 @@ private:
             || any_unlike(masses_, active_, contacts);
     }
 
+    // 0 for an island that is not stubborn; below 0 for one to be solved exactly in the next step.
+    double strain_of(std::size_t island) const
+    {
+        const double strain = strain_if_free(island);
+        return strain != 0 && is_squeezed(island) ? 0 : strain;
+    }
+
+    // For how many steps contacts of the island are still to be held to making no energy.
+    std::uint8_t limited(std::size_t island) const
+    {
+        if (gains(island)) return kLimited;
+        std::uint8_t before = 0;
+        if (!overloaded_.gainers.empty())
+            for (const std::uint32_t body : bodies_of(island))
+                before = std::max(before, overloaded_.limited_for(body));
+        return before > 0 ? static_cast<std::uint8_t>(before - 1) : before;
+    }
+
+private:
     double strain_if_free(std::size_t island) const
     {
         const std::size_t bodies = islands_.body_begin[island + 1] - islands_.body_begin[island];
         const auto contacts = contacts_of(island);
-        if (!is_looked_at(island)) return 0;
         const bool exactly = may_be_exact(bodies, contacts.size());
         const double before = strain_before(island);
         // A load that stands at a corner of who bears it has a quarter of him to be held by. In a
@@ -516,8 +515,9 @@ void measure_strain(const StepContext& context,
                             convex, meshes, solids, joined, constraints, overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
-            overloaded.scratch.of_island[i] = float(gauge.strain_of(i));
-            overloaded.scratch.limited[i] = gauge.limited(i);
+            const bool looked_at = gauge.is_looked_at(i);
+            overloaded.scratch.of_island[i] = looked_at ? float(gauge.strain_of(i)) : 0;
+            overloaded.scratch.limited[i] = looked_at ? gauge.limited(i) : 0;
         }
     });
 
