@@ -182,6 +182,8 @@ constexpr HardCase kCases[] = {
      Fault::skew},
     {"H124", "somebody heavy falls into a pit of hundreds of light ones, and makes no energy",
      case_heavy_on_crowd, Fault::haste},
+    {"H125", "boxes that springs join, thrown tumbling, keep their velocity and make no energy",
+     case_linked_in_flight, Fault::haste},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

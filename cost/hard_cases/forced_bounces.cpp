@@ -22,8 +22,8 @@ struct Bounce {
     const char* setting;
     Acts acts = Acts::faint_drag;
     double restitution = 1;
-    bool box = false;
-    double dt = 1.0 / 60;  // s
+    bool box = false, two = false;  // two: a heavier one lies on it
+    double dt = 1.0 / 60;           // s
     double scale = 1;
     Vec3 off = Vec3::Zero();
     Integrator integrator = Integrator::auto_;
@@ -78,6 +78,8 @@ void let_bounce(CaseBench& bench, const Bounce& bounce)
         ? parts.box(stuff, 1, Vec3::Constant(half), {at, Quat::Identity()})
         : parts.ball(stuff, 1, half, at);
     act(parts.scene(), id, bounce);
+    if (bounce.two)
+        act(parts.scene(), parts.ball(stuff, 3, half, at + Vec3(0, 0, 2.02 * half)), bounce);
 
     EnergyLedger ledger;
     const double span = bench.brief() ? 5 : 20;
@@ -90,7 +92,7 @@ void let_bounce(CaseBench& bench, const Bounce& bounce)
     bench.run(parts.scene(), span, watch, &ledger);
     bench.report(bounce.setting, "energy gained over the greatest of motion",
                  ledger.gained() / ledger.greatest_kinetic(), 1e-3, "1");
-    if (bounce.restitution < 1 || bounce.acts == Acts::drag)
+    if (bounce.restitution < 1 || bounce.acts == Acts::drag || bounce.two)
         bench.show(bounce.setting, "height of the last bounces over that of the first", highest,
                    "1");
     else
@@ -117,6 +119,10 @@ void case_forced_bounces(CaseBench& bench)
         {.setting = "default, a faint attractor", .acts = attractor},
         {.setting = "default, a faint spring", .acts = spring},
         {.setting = "default, faint drag, a box", .box = true},
+        {.setting = "default, nothing acts, two balls", .acts = nothing, .two = true},
+        {.setting = "default, faint drag, two balls", .two = true},
+        {.setting = "default, drag, two balls", .acts = drag, .two = true},
+        {.setting = "default, a faint attractor, two balls", .acts = attractor, .two = true},
         {.setting = "default, a faint attractor, a box", .acts = attractor, .box = true},
         {.setting = "default, a faint spring, a box", .acts = spring, .box = true},
         {.setting = "default, faint drag, e 0.5", .restitution = 0.5},

@@ -7,13 +7,7 @@ namespace throng {
 
 double spring_energy(const SpringForce& spring, const Forces& forces, const Poses& poses)
 {
-    const auto point = [&](std::uint32_t body, const Vec3& at) {
-        if (body == kNoBody) return at;
-        return Vec3(poses.at(body) * Vec3(forces.pivot_to_center_of(body) + at));
-    };
-    const double distance = (point(spring.b, spring.at_b) - point(spring.a, spring.at_a)).norm();
-    const double stretch = distance - spring.length;
-    return 0.5 * spring.stiffness * stretch * stretch;
+    return spring_energy(spring, forces, [&](std::uint32_t body) { return poses.at(body); });
 }
 
 double attraction_of(const Forces& forces,

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace throng {
 
 namespace {
 
-// What is gained up to this share of the kinetic energy is let be: rounding makes some.
+// What is gained up to this share of the kinetic energy that bodies have among them is let be.
 constexpr double kLetBe = 1e-4;
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
@@ -29,7 +30,8 @@ void scale_lane(Lane16<Real>& number, std::size_t lane, Real share)
     number.at[lane] *= share;
 }
 
-// Whether more than springs and gravity may give energy to a body.
+}  // namespace
+
 bool is_fed(const Forces& forces, std::uint32_t body)
 {
     const auto has = [&](const std::vector<Vec3>& of_bodies) {
@@ -39,7 +41,11 @@ bool is_fed(const Forces& forces, std::uint32_t body)
         || forces.on_pivot(body) || (!forces.linear_drag.empty() && !forces.wind.isZero(0));
 }
 
-}  // namespace
+double share_kept(double gained, double among_them, double rounding)
+{
+    if (!(gained > kLetBe * among_them + rounding)) return 1;
+    return gained < among_them ? std::sqrt(1 - gained / among_them) : 0;
+}
 
 template <class Real>
 bool may_gain(std::span<const SolverBody<Real>> bodies, bool one_island, double speed)
@@ -360,11 +366,17 @@ Vec3 EnergyLimiter<Real>::common_velocity(const Group& group,
 
 // With contacts and without, so that what contacts gave stays what it was.
 template <class Real>
-void EnergyLimiter<Real>::slow_down(const Group& group,
-                                    double share,
-                                    ContactConstraints<Real>& constraints) const
+void EnergyLimiter<Real>::take_energy(const Group& group,
+                                      double kinetic,
+                                      double taken,
+                                      ContactConstraints<Real>& constraints) const
 {
     const Vec3 common = common_velocity(group, constraints);
+    // What all of them go by together is not there to be taken.
+    const double among_them = kinetic - group.mass() * common.squaredNorm() / 2;
+    const double share =
+        share_kept(taken, among_them, kinetic * std::numeric_limits<Real>::epsilon());
+    if (!(share < 1)) return;
     for (const Member& member : group.members) {
         SolverBody<Real>& body = constraints.bodies[member.solver_index];
         for (int k = 0; k < 3; ++k) {
@@ -384,10 +396,8 @@ void EnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
         if (group.springs.empty() || is_fed(group, constraints)) continue;
-        const double kinetic = kinetic_of(group, constraints),
-                     more = gained(group, kinetic, constraints);
-        if (!(more > kLetBe * kinetic)) continue;
-        slow_down(group, std::sqrt(std::max(0.0, 1 - more / kinetic)), constraints);
+        const double kinetic = kinetic_of(group, constraints);
+        take_energy(group, kinetic, gained(group, kinetic, constraints), constraints);
     }
 }
 
@@ -399,8 +409,8 @@ void EnergyLimiter<Real>::limit_contacts(double slowest,
         const double given = given_by_contacts(group, constraints);
         if (!(given > 0)) continue;
         const double kinetic = kinetic_of(group, constraints);
-        if (given > kLetBe * kinetic && kinetic > group.mass() * slowest * slowest / 2)
-            slow_down(group, std::sqrt(std::max(0.0, 1 - given / kinetic)), constraints);
+        if (kinetic > group.mass() * slowest * slowest / 2)
+            take_energy(group, kinetic, given, constraints);
     }
 }
 
@@ -414,8 +424,7 @@ void EnergyLimiter<Real>::close_free(ContactConstraints<Real>& constraints) cons
                      + member.free_spin.dot(member.inertia * member.free_spin))
                 / 2;
         const double kinetic = kinetic_of(group, constraints), gained = kinetic - free;
-        if (gained > kLetBe * kinetic && counts(group, gained))
-            slow_down(group, std::sqrt(free / kinetic), constraints);
+        if (counts(group, gained)) take_energy(group, kinetic, gained, constraints);
     }
 }
 

@@ -30,6 +30,16 @@
 
 namespace throng {
 
+/// Whether more than springs and gravity may give energy to a body.
+bool is_fed(const Forces& forces, std::uint32_t body);
+
+/// By what share of it bodies are to move, beside what they go by together, once energy is taken
+/// that was gained, J: 1 where that is next to nothing.
+///
+///   among_them  J, of motion, without what they go by together
+///   rounding    J, that rounding may make of all of it
+double share_kept(double gained, double among_them, double rounding);
+
 /// Whether what contacts gave may take a group of these bodies to a speed, m/s, that it has not
 /// without: not where hardly anybody gains so much, as what lies alone takes a blow back by itself;
 /// nor, of a single island, where all together do not.
@@ -119,7 +129,10 @@ private:
     gained(const Group& group, double kinetic, const ContactConstraints<Real>& constraints) const;
     bool counts(const Group& group, double gained) const;
     Vec3 common_velocity(const Group& group, const ContactConstraints<Real>& constraints) const;
-    void slow_down(const Group& group, double share, ContactConstraints<Real>& constraints) const;
+    void take_energy(const Group& group,
+                     double kinetic,
+                     double taken,
+                     ContactConstraints<Real>& constraints) const;
 
     const StateDependentForces* springs_;
     Vec3 fall_;

@@ -81,6 +81,58 @@ bool HeldEnergy::take_back_energy(std::uint32_t body, double gained)
     return true;
 }
 
+// Whom the springs of a body join it to, and the velocity of their center of mass, m/s. Nobody
+// where one of them does not yield, whose velocity it is then.
+std::vector<std::uint32_t> HeldEnergy::joined_to(std::uint32_t body, Vec3& velocity) const
+{
+    std::vector<std::uint32_t> joined;
+    Vec3 momentum = Vec3::Zero();
+    double mass = 0;
+    const std::uint32_t end = forces_.first_spring[body + 1];
+    for (std::uint32_t k = forces_.first_spring[body]; k < end; ++k) {
+        const SpringForce& spring = forces_.springs[forces_.spring_of[k]];
+        const std::uint32_t other = spring.a == body ? spring.b : spring.a;
+        const bool yields =
+            other != kNoBody && states_.dynamic(other) && masses_.inverse_mass[other] > 0;
+        if (!yields) {
+            velocity = other == kNoBody ? Vec3(Vec3::Zero()) : velocities_.linear[other];
+            return {};
+        }
+        if (std::find(joined.begin(), joined.end(), other) != joined.end()) continue;
+        joined.push_back(other);
+        mass += masses_.mass[other];
+        momentum += masses_.mass[other] * velocities_.linear[other];
+    }
+    velocity = momentum / mass;
+    return joined;
+}
+
+// J, that its springs were drawn by: from how it moves beside those that they join it to, who keep
+// the momentum. Who fly together are held by one another alone, however fast all of them are.
+bool HeldEnergy::take_back_drawn(std::uint32_t body, double drawn)
+{
+    if (!(drawn > 0)) return true;
+    Vec3 about;
+    const std::vector<std::uint32_t> joined = joined_to(body, about);
+    double mass = 0;
+    for (const std::uint32_t other : joined) mass += masses_.mass[other];
+    const bool free = !joined.empty() && masses_.inverse_mass[body] > 0;
+    const double share = free ? mass / (mass + masses_.mass[body]) : 1;
+    Vec3& velocity = velocities_.linear[body];
+    const Vec3 beside = velocity - about;
+    const double all = kinetic_energy_of(body, masses_, poses_, velocities_),
+                 of_middle = masses_.mass[body] * velocity.squaredNorm() / 2,
+                 had = all - of_middle + share * masses_.mass[body] * beside.squaredNorm() / 2;
+    if (!(had >= drawn)) return false;
+    const double kept = std::sqrt(1 - drawn / had);
+    velocity -= share * (1 - kept) * beside;
+    velocities_.angular[body] *= kept;
+    if (!free) return true;
+    for (const std::uint32_t other : joined)
+        velocities_.linear[other] += (1 - share) * (1 - kept) * beside;
+    return true;
+}
+
 // What does not turn as far as it would have keeps the spin that it has in its own axes: its
 // inertia is in these.
 void HeldEnergy::turn_back(std::uint32_t body, const Quat& held)
@@ -106,9 +158,9 @@ bool HeldEnergy::hold(std::uint32_t body, const Pose& end, const Vec3& fell_to)
     take_back_swing(body, hanging_energy_of(body) - hung);
     // Nor have its springs drawn it down that way: what they hold the more for it goes. And
     // attractors have given up another amount. One that has not so much is left to contacts.
-    const double drawn = std::max(0.0, springs_energy_of(body, forces_, poses_) - before)
-        + (attraction_energy_of(body) - attracted);
-    if (take_back_energy(body, drawn)) return true;
+    const double given_up = attraction_energy_of(body) - attracted;
+    const double drawn = springs_energy_of(body, forces_, poses_) - before;
+    if (take_back_energy(body, given_up) && take_back_drawn(body, drawn)) return true;
     poses_.position[body] = went.position;
     poses_.orientation[body] = went.orientation;
     velocities_.linear[body] = velocity;

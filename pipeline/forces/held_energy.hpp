@@ -5,10 +5,13 @@
 #include "kernels/data/forces.hpp"
 #include "pipeline/step/step_context.hpp"
 
+#include <vector>
+
 namespace throng {
 
-/// Puts bodies back that were held on their way, and takes from their velocities what forces gave
-/// them for the rest of it. Else who is held high has what it fell down as well.
+/// Puts bodies back that were held on their way, and takes from their velocities, and of those that
+/// springs join them to, what forces gave them for the rest of it. Else who is held high has what
+/// it fell down as well.
 class HeldEnergy {
 public:
     HeldEnergy(const StepContext& context,
@@ -35,6 +38,8 @@ private:
     void take_back_swing(std::uint32_t body, double gained);
     double attraction_energy_of(std::uint32_t body) const;
     bool take_back_energy(std::uint32_t body, double gained);
+    std::vector<std::uint32_t> joined_to(std::uint32_t body, Vec3& velocity) const;
+    bool take_back_drawn(std::uint32_t body, double drawn);
     void turn_back(std::uint32_t body, const Quat& held);
 
     const StepContext& context_;

@@ -192,6 +192,32 @@ double StateDependentForces::least_change_of_step() const
     return least * context_.substeps;
 }
 
+double StateDependentForces::energy_of_springs() const
+{
+    const Forces& forces = facts_.forces;
+    const auto forced_of = [&](std::uint32_t body) -> const ForcedBody* {
+        const auto before = [](const ForcedBody& a, std::uint32_t b) { return a.body < b; };
+        const auto found =
+            std::lower_bound(forced_bodies_.begin(), forced_bodies_.end(), body, before);
+        return found != forced_bodies_.end() && found->body == body ? &*found : nullptr;
+    };
+    const auto pose_of = [&](std::uint32_t body) {
+        const ForcedBody* const forced = forced_of(body);
+        return forced != nullptr ? forced->pose : facts_.poses.at(body);
+    };
+    double energy = 0;
+    for (const ForcedBody& forced : forced_bodies_) {
+        if (!forces.has_springs(forced.body)) continue;
+        const std::uint32_t end = forces.first_spring[forced.body + 1];
+        for (std::uint32_t k = forces.first_spring[forced.body]; k < end; ++k) {
+            const SpringForce& spring = forces.springs[forces.spring_of[k]];
+            if (spring.a == forced.body || forced_of(spring.a) == nullptr)
+                energy += spring_energy(spring, forces, pose_of);
+        }
+    }
+    return energy;
+}
+
 // Whether contacts hold a body against its springs, too.
 bool StateDependentForces::is_held(const ForcedBody& forced) const
 {

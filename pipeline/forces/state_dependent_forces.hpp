@@ -82,6 +82,8 @@ public:
     /// Of stiff springs, group by group: the followers that they join, and themselves.
     std::span<const std::vector<std::uint32_t>> joined() const { return members_; }
     const StiffSprings& springs_of(std::size_t group) const { return stiff_[group]; }
+    /// J, of all springs on the followers, which are where their poses say.
+    double energy_of_springs() const;
     /// s, the longest step that their springs bear where none is stiff by itself.
     double longest_step() const { return longest_; }
 

@@ -21,7 +21,7 @@ public:
                 std::span<const ForcedBody> forced,
                 double substep)
         : constraints_(constraints), forced_(forced), substep_(substep),
-          given_(forced.size(), Vec3::Zero()), stands_(forced.size(), 0), slips_(forced.size(), 0)
+          given_(forced.size(), Vec3::Zero()), slips_(forced.size(), 0)
     { }
 
     // A contact of two bodies, by their places among the forced ones.
@@ -44,21 +44,37 @@ public:
             return;
         }
         const double speed = std::abs(normal_speed(block, lane, normal));
-        if (a != kNotForced) stand(a, -normal, speed, nearest);
-        if (b != kNotForced) stand(b, normal, speed, nearest);
+        if (a != kNotForced) stand(a, b, -normal, speed, nearest);
+        if (b != kNotForced) stand(b, a, normal, speed, nearest);
     }
 
-    void judge(std::size_t i, double inverse_mass, ForcedBody& forced) const
+    void judge(const Masses& masses, std::span<ForcedBody> forced) const
     {
-        forced.left = (forced.change + inverse_mass * given_[i]).norm();
-        forced.grips = slips_[i] == 0;
-        // A pivot bears whoever it holds, and what swings on it keeps its two halves.
-        if (!(inverse_mass > 0)) return;
-        forced.borne =
-            given_[i].isZero(0) ? stands_[i] != 0 : forced.left <= kLeft * forced.change.norm();
+        for (std::size_t i = 0; i < forced.size(); ++i) {
+            const double inverse_mass = masses.inverse_mass[forced[i].body];
+            forced[i].left = (forced[i].change + inverse_mass * given_[i]).norm();
+            forced[i].grips = slips_[i] == 0;
+            // A pivot bears whoever it holds, and what swings on it keeps its two halves.
+            forced[i].borne = inverse_mass > 0 && !given_[i].isZero(0)
+                && forced[i].left <= kLeft * forced[i].change.norm();
+        }
+        // Who stands on one that falls as he does is not borne: two that fly in touch.
+        const auto rises = [&](const Standing& standing) {
+            return !forced[standing.body].borne && given_[standing.body].isZero(0)
+                && masses.inverse_mass[forced[standing.body].body] > 0
+                && (standing.on == kNotForced || forced[standing.on].borne);
+        };
+        for (bool more = true; more;) {
+            more = false;
+            for (const Standing& standing : standing_)
+                if (rises(standing)) more = forced[standing.body].borne = true;
+        }
     }
 
 private:
+    struct Standing {
+        std::size_t body, on;  // places among the forced ones
+    };
     void press(std::size_t i, const Vec3& impulse, bool grips)
     {
         given_[i] += impulse;
@@ -90,20 +106,20 @@ private:
     }
 
     // In touch, no faster than what acts on it gives in a substep, with that against the contact.
-    void stand(std::size_t i, const Vec3& away, double speed, double separation)
+    void stand(std::size_t i, std::size_t on, const Vec3& away, double speed, double separation)
     {
         const double gives = forced_[i].change.norm();
         if (speed <= gives && separation <= gives * substep_
             && forced_[i].change.dot(away) <= -kLeft * gives && gives > 0)
-            stands_[i] = 1;
+            standing_.push_back({i, on});
     }
 
     const ContactConstraints<Real>& constraints_;
     std::span<const ForcedBody> forced_;
     double substep_;
-    std::vector<Vec3> given_;           // N s
-    std::vector<std::uint8_t> stands_;  // on a contact that has no impulse yet
-    std::vector<std::uint8_t> slips_;   // on one that gives way, or rolls
+    std::vector<Vec3> given_;          // N s
+    std::vector<Standing> standing_;   // on contacts that have no impulse yet
+    std::vector<std::uint8_t> slips_;  // on one that gives way, or rolls
 };
 
 // Places among the forced bodies of a batch, by those that constraints have.
@@ -154,8 +170,7 @@ void find_borne(const Layout& layout,
         const ContactConstraintWide<Real>& block = constraints.blocks[at];
         bodies.add(block, lane, places.of(block.a[lane]), places.of(block.b[lane]));
     });
-    for (std::size_t i = 0; i < forced.size(); ++i)
-        bodies.judge(i, masses.inverse_mass[forced[i].body], forced[i]);
+    bodies.judge(masses, forced);
 }
 
 template <class Real>

@@ -11,7 +11,7 @@ namespace throng {
 
 /// Which forced bodies of a batch are borne as the step begins: what contacts gave them in a
 /// substep, as their impulses say, takes back what acts on them in one; or, where none has an
-/// impulse yet, they stand on one of them. Who bounces gets many times as much, or nothing.
+/// impulse yet, they stand on somebody who is. Who bounces gets many times as much, or nothing.
 ///
 ///   forced   of the batch, with what acts on each
 ///   substep  s

@@ -1,7 +1,10 @@
 // Island exchange: an island taken from the step's data, and its answer given back.
 #include "kernels/solver/driven_contacts.hpp"
+#include "pipeline/forces/energy_limiter.hpp"
 #include "pipeline/solvers/borne_bodies.hpp"
 #include "pipeline/solvers/island_solver.hpp"
+
+#include <algorithm>
 
 namespace throng {
 
@@ -148,6 +151,9 @@ void IslandSolver::take_forces(const IslandScene<Real>& scene, const Slice& slic
     for (std::uint32_t i = 0; i < slice.dynamic; ++i) bodies.push_back(bodies_[i].body);
     state_forces_ = std::make_unique<StateDependentForces>(scene.context, scene.facts, bodies);
     if (state_forces_->forced_bodies().empty()) return state_forces_.reset();
+    is_fed_ = bodies_.size() > slice.dynamic
+        || std::any_of(bodies.begin(), bodies.end(),
+                       [&](std::uint32_t body) { return is_fed(scene.facts.forces, body); });
     update_forced_bodies();
     state_forces_->find_changes();
     restitution_threshold_ =

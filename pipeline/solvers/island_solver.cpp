@@ -295,7 +295,9 @@ void IslandSolver::push_out_of_overlap(const StepContext&, double time)
         any = true;
         others_[i].least = std::min(most, -separations_[i] * kPartShare / time);
     }
-    if (any && most > 0) push_as_far_as_goes();
+    if (!any || !(most > 0)) return;
+    push_as_far_as_goes();
+    leave_push_to_springs(time);
 }
 
 // Who is wedged between what does not move cannot part from all of it: each point is then asked
@@ -346,12 +348,14 @@ std::span<const IslandSolver::IslandPass> IslandSolver::passes_of(Response respo
     using enum When;
     static constexpr IslandPass kDirect[] = {
         pass<&IslandSolver::place_contacts>({contact}, each_substep),
+        pass<&IslandSolver::open_energy_limiter>({springs}, each_substep),
         pass<&IslandSolver::move_freely>({contact}, each_substep),
         pass<&IslandSolver::hold_contacts>({contact}, each_substep),
         pass<&IslandSolver::apply_restitution>({restitution}, each_substep),
         pass<&IslandSolver::push_out_of_overlap>({contact}, each_substep),
         pass<&IslandSolver::advance_bodies>({contact}, each_substep),
         pass<&IslandSolver::answer_late_forces>(kFollowBodies, each_substep),
+        pass<&IslandSolver::close_energy_limiter>({springs}, each_substep),
     };
     static constexpr IslandPass kPenalty[] = {
         pass<&IslandSolver::cut_substep>({contact}, each_substep),

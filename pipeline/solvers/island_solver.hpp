@@ -116,6 +116,15 @@ private:
     bool end_state_forces();
     void hold_contacts(const StepContext& context, double time);
     void answer_late_forces(const StepContext& context, double time);
+    // Energy of stiff springs: see island_energy.cpp.
+    double kinetic_energy() const;
+    double energy_of_springs();
+    double energy_of_springs_after(const std::vector<DirectBody>& going, double time);
+    double energy_among_them(double kinetic, const Vec3& common) const;
+    void leave_push_to_springs(double time);
+    Vec3 common_velocity() const;
+    void open_energy_limiter(const StepContext& context, double time);
+    void close_energy_limiter(const StepContext& context, double time);
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     double ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     // Impacts: see island_impacts.cpp.
@@ -170,10 +179,12 @@ private:
     std::vector<double> unearned_;                           // [touches] m, overlap without a push
     std::vector<Vec3> held_;                                 // [touches] N, by friction's springs
     std::unique_ptr<StateDependentForces> state_forces_;     // none: empty
-    double restitution_threshold_ = 0;                       // m/s
-    Vec3 up_ = Vec3::Zero();                                 // see driven_contacts.hpp
-    bool spins_ = true;                                      // contacts see how bodies spin
-    double elapsed_ = 0;                                     // s, since the step began
+    bool is_fed_ = false;               // may be given energy by more than springs and gravity
+    double begun_with_ = 0;             // J, of motion and springs, as the substep began
+    double restitution_threshold_ = 0;  // m/s
+    Vec3 up_ = Vec3::Zero();            // see driven_contacts.hpp
+    bool spins_ = true;                 // contacts see how bodies spin
+    double elapsed_ = 0;                // s, since the step began
     DirectSolver solver_;
     SolverParameters parameters_;
     DirectEffort effort_;

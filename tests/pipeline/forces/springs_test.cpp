@@ -51,6 +51,40 @@ TEST(Springs, OnWhatTouchesSomethingSwingNoWiderThanTheyBegan)
             }
 }
 
+// Held where they hit, by one another: what that draws their spring by is no brake in the air.
+TEST(Springs, LetThoseFlyOnWhomTheyJoin)
+{
+    for (const Solver solver : {Solver::soft_step, Solver::pgs, Solver::direct}) {
+        Scene scene = empty_scene(Integrator::auto_);
+        scene.settings.solver = solver;
+        scene.settings.dt = 1.0 / 240;
+        scene.settings.substeps = 4;
+        scene.materials.push_back({"smooth", 1000, 0, 0, 0});
+        scene.shapes.push_back({"link", BoxShape{Vec3(0.02, 0.02, 0.045)}});
+        const Vec3 speed(20, 0, 0);
+        for (const double side : {-1.0, 1.0}) {
+            BodyDescription link;
+            link.shape = link.material = 0;
+            link.mass = 0.1;
+            link.position = Vec3(0, 0, 0.0455 * side);
+            link.velocity = speed;
+            link.angular_velocity = Vec3(20, 10 * side, -5);
+            scene.bodies.push_back(link);
+        }
+        Spring spring = spring_between(0, 1, 2e4, 0);
+        spring.at_a = Vec3(0, 0, 0.0455);
+        spring.at_b = -spring.at_a;
+        scene.springs.push_back(spring);
+        World world(scene);
+        const double before = energy(world);
+        world.step(240);
+        const Vec3 mean =
+            (world.velocity(world.bodies()[0]) + world.velocity(world.bodies()[1])) / 2;
+        EXPECT_LT((mean - speed).norm(), 1e-3) << static_cast<int>(solver);
+        EXPECT_LT(energy(world), before * (1 + 1e-5)) << static_cast<int>(solver);
+    }
+}
+
 TEST(Springs, KeepTheSwingOfWhatTouchesSomethingByEveryIntegrator)
 {
     for (const Integrator integrator :

@@ -1,0 +1,116 @@
+// Energy that the stiff springs of an island and its contacts make of one another: taken from its
+// motion, as energy_limiter.hpp has it, of the whole island at once.
+#include "kernels/math/rotation.hpp"
+#include "pipeline/forces/energy_limiter.hpp"
+#include "pipeline/solvers/island_solver.hpp"
+
+#include <limits>
+
+namespace throng {
+
+namespace {
+
+// Share of what bodies have among them that pushing them apart may draw their springs by.
+constexpr double kAfforded = 0.01;
+
+}  // namespace
+
+double IslandSolver::kinetic_energy() const
+{
+    double twice = 0;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (!bodies_[i].dynamic) continue;
+        const DirectBody& body = after_[i];
+        const Mat3 inertia =
+            in_world_axes(inertia_[i], bodies_[i].turned * bodies_[i].orientation).matrix();
+        twice += body.spin.dot(inertia * body.spin);
+        if (body.inverse_mass > 0) twice += body.velocity.squaredNorm() / body.inverse_mass;
+    }
+    return twice / 2;
+}
+
+double IslandSolver::energy_of_springs()
+{
+    update_forced_bodies();
+    return state_forces_->energy_of_springs();
+}
+
+// J, once bodies have gone on for a time at these velocities.
+double IslandSolver::energy_of_springs_after(const std::vector<DirectBody>& going, double time)
+{
+    update_forced_bodies();
+    for (ForcedBody& forced : state_forces_->forced_bodies()) {
+        forced.pose.position += going[forced.at].velocity * time;
+        forced.pose.orientation =
+            exponential(going[forced.at].spin * time) * forced.pose.orientation;
+    }
+    return state_forces_->energy_of_springs();
+}
+
+// What pushes bodies out of overlap draws stiff springs, too, by more than they may have to give
+// for it: who flies so fast that contacts come late is deep in whom he is joined to. Those stay.
+void IslandSolver::leave_push_to_springs(double time)
+{
+    if (!state_forces_ || !state_forces_->stiff()) return;
+    const double work =
+        energy_of_springs_after(going_, time) - energy_of_springs_after(after_, time);
+    if (work > kAfforded * energy_among_them(kinetic_energy(), common_velocity())) going_ = after_;
+}
+
+// What nothing holds keeps its momentum.
+Vec3 IslandSolver::common_velocity() const
+{
+    Vec3 momentum = Vec3::Zero();
+    double mass = 0;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (!bodies_[i].dynamic) continue;
+        if (!(after_[i].inverse_mass > 0)) return Vec3::Zero();
+        mass += 1 / after_[i].inverse_mass;
+        momentum += after_[i].velocity / after_[i].inverse_mass;
+    }
+    for (const IslandContact& contact : contacts_)
+        if (contact.a < 0 || contact.b < 0) return Vec3::Zero();
+    for (std::size_t i = 0; i < state_forces_->joined().size(); ++i)
+        if (state_forces_->springs_of(i).are_tied()) return Vec3::Zero();
+    return momentum / mass;
+}
+
+// J, of their motion beside a velocity that they have in common; 0 where they have none.
+double IslandSolver::energy_among_them(double kinetic, const Vec3& common) const
+{
+    if (common.isZero(0)) return kinetic;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        if (bodies_[i].dynamic) kinetic -= common.squaredNorm() / (2 * after_[i].inverse_mass);
+    return kinetic;
+}
+
+void IslandSolver::open_energy_limiter(const StepContext&, double)
+{
+    if (state_forces_ && state_forces_->stiff())
+        begun_with_ = kinetic_energy() + energy_of_springs();
+}
+
+void IslandSolver::close_energy_limiter(const StepContext& context, double time)
+{
+    if (!state_forces_ || !state_forces_->stiff() || is_fed_) return;
+    for (std::size_t i = 0; i < state_forces_->joined().size(); ++i)
+        if (state_forces_->springs_of(i).are_drawn()) return;
+    const double kinetic = kinetic_energy();
+    double gained = kinetic + energy_of_springs() - begun_with_;
+    // What gravity gave: half of the velocity before, half after.
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        if (after_[i].inverse_mass > 0)
+            gained -= time * context.gravity.dot(before_[i].velocity + after_[i].velocity)
+                / (2 * after_[i].inverse_mass);
+    const Vec3 common = common_velocity();
+    const double share = share_kept(gained, energy_among_them(kinetic, common),
+                                    kinetic * std::numeric_limits<double>::epsilon());
+    if (!(share < 1)) return;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (!bodies_[i].dynamic) continue;
+        after_[i].velocity = common + share * (after_[i].velocity - common);
+        after_[i].spin *= share;
+    }
+}
+
+}  // namespace throng
