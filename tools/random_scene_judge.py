@@ -144,8 +144,8 @@ def not_finite(made, run):
 def through_floor(made, run):
     if made.floor is None:
         return None
-    # A mesh ends: a spring may carry who hangs on it round the rim.
-    springs = made.scene.get("springs", []) if "ground.obj" in made.files else []
+    # A spring may carry who hangs on it round the rim of what ends.
+    springs = made.scene.get("springs", []) if made.has_rim else []
     sprung = {spring[end] for spring in springs for end in ("a", "b")} - {None}
     for i, (piece, (position, _)) in enumerate(zip(made.pieces, run.bodies)):
         body = made.scene["bodies"][i]

@@ -35,6 +35,7 @@ class Made:
     """A scene, with what is known of it.
 
     floor       height of the floor at a place, in m, or None where there is none
+    has_rim     the floor ends where bodies may get to
     driven      something puts energy in that no potential tells of
     kept        nothing may take energy out either
     rests_by    s, when all of it lies still; infinity where it need not
@@ -46,6 +47,7 @@ class Made:
     pieces: list      # [bodies], None for what is no dynamic body
     mass_of: list = dataclasses.field(default_factory=list)  # kg, of the dynamic ones, about
     floor: object = None
+    has_rim: bool = False
     driven: bool = False
     kept: bool = False
     rests_by: float = math.inf
@@ -321,6 +323,7 @@ class Maker:
                 at = [(2 * i - count + 1) * half, (2 * k - count + 1) * half, -reach]
                 self.add_fixed("floor", {"box": {"half_extents": [half, half, reach]}}, at)
         edge = count * half
+        self.made.has_rim = True
         self.made.floor = lambda x, y: 0.0 if max(abs(x), abs(y)) < edge else -math.inf
 
     def add_mesh(self, reach):
@@ -346,6 +349,7 @@ class Maker:
             i, k = int(x / side + cells / 2), int(y / side + cells / 2)
             return min(heights[i][k], heights[i + 1][k], heights[i][k + 1], heights[i + 1][k + 1])
         self.made.floor = floor
+        self.made.has_rim = True
         self.top = height
         self.hilly = height > 0
 

@@ -119,6 +119,10 @@ class Judge(unittest.TestCase):
         self.assertIn("finite", told(bodies=lost))
         through = [([0, 0, -1], [0, 0, 0]), ([0, 0, -0.1], [0, 0, 0])]
         self.assertEqual(told(bodies=through), ["floor"])
+        sprung = {"throng": 1, "settings": {}, "bodies": [{}, {"name": "b1"}],
+                  "springs": [{"a": "b1", "b": None}]}
+        self.assertEqual(told(box_on_floor(scene=sprung), bodies=through), ["floor"])
+        self.assertEqual(told(box_on_floor(scene=sprung, has_rim=True), bodies=through), [])
 
     def test_sees_energy_that_nothing_gave(self):
         self.assertEqual(told(energy_gained_j=2.0), ["energy"])
