@@ -22,7 +22,7 @@ namespace {
 constexpr double kTime = 5, kBriefTime = 1;             // s
 constexpr double kThick = 0.02, kLong = 0.045;          // m, half
 constexpr double kGap = 1e-3, kMass = 0.1, kSpin = 30;  // m, kg, rad/s at most
-constexpr double kMade = 0.02;                          // of what they have among them
+constexpr double kMade = 0.01;                          // of what they have among them
 constexpr double kSlowed = 1e-3, kRounded = 1e-4;       // m/s; of their speed
 
 struct How {
