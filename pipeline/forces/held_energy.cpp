@@ -116,10 +116,11 @@ bool HeldEnergy::take_back_drawn(std::uint32_t body, double drawn)
     const std::vector<std::uint32_t> joined = joined_to(body, about);
     double mass = 0;
     for (const std::uint32_t other : joined) mass += masses_.mass[other];
-    const bool free = !joined.empty() && masses_.inverse_mass[body] > 0;
+    const bool turns_only = !(masses_.inverse_mass[body] > 0),
+               free = !joined.empty() && !turns_only;
     const double share = free ? mass / (mass + masses_.mass[body]) : 1;
     Vec3& velocity = velocities_.linear[body];
-    const Vec3 beside = velocity - about;
+    const Vec3 beside = turns_only ? velocity : Vec3(velocity - about);
     const double all = kinetic_energy_of(body, masses_, poses_, velocities_),
                  of_middle = masses_.mass[body] * velocity.squaredNorm() / 2,
                  had = all - of_middle + share * masses_.mass[body] * beside.squaredNorm() / 2;

@@ -10,7 +10,8 @@ namespace throng {
 
 namespace {
 
-// Share of what bodies have among them that pushing them apart may draw their springs by.
+// Share of what bodies have among them that pushing them apart may draw their springs by, besides
+// what gravity gives in a substep to all of them at rest.
 constexpr double kAfforded = 0.01;
 
 }  // namespace
@@ -49,12 +50,16 @@ double IslandSolver::energy_of_springs_after(const std::vector<DirectBody>& goin
 
 // What pushes bodies out of overlap draws stiff springs, too, by more than they may have to give
 // for it: who flies so fast that contacts come late is deep in whom he is joined to. Those stay.
-void IslandSolver::leave_push_to_springs(double time)
+void IslandSolver::leave_push_to_springs(const StepContext& context, double time)
 {
     if (!state_forces_ || !state_forces_->stiff()) return;
     const double work =
         energy_of_springs_after(going_, time) - energy_of_springs_after(after_, time);
-    if (work > kAfforded * energy_among_them(kinetic_energy(), common_velocity())) going_ = after_;
+    double afforded = kAfforded * energy_among_them(kinetic_energy(), common_velocity());
+    const Vec3 fall = time * context.gravity;
+    for (const DirectBody& body : after_)
+        if (body.inverse_mass > 0) afforded += fall.squaredNorm() / (2 * body.inverse_mass);
+    if (work > afforded) going_ = after_;
 }
 
 // What nothing holds keeps its momentum.

@@ -284,7 +284,7 @@ double IslandSolver::approach(std::size_t at, std::span<const DirectBody> bodies
 }
 
 // Who overlaps is moved apart in this substep, on top of what else it does.
-void IslandSolver::push_out_of_overlap(const StepContext&, double time)
+void IslandSolver::push_out_of_overlap(const StepContext& context, double time)
 {
     const double most = parameters_.push_limit;
     going_ = after_;
@@ -297,7 +297,7 @@ void IslandSolver::push_out_of_overlap(const StepContext&, double time)
     }
     if (!any || !(most > 0)) return;
     push_as_far_as_goes();
-    leave_push_to_springs(time);
+    leave_push_to_springs(context, time);
 }
 
 // Who is wedged between what does not move cannot part from all of it: each point is then asked

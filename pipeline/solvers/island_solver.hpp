@@ -121,7 +121,7 @@ private:
     double energy_of_springs();
     double energy_of_springs_after(const std::vector<DirectBody>& going, double time);
     double energy_among_them(double kinetic, const Vec3& common) const;
-    void leave_push_to_springs(double time);
+    void leave_push_to_springs(const StepContext& context, double time);
     Vec3 common_velocity() const;
     void open_energy_limiter(const StepContext& context, double time);
     void close_energy_limiter(const StepContext& context, double time);
