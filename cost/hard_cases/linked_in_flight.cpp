@@ -88,8 +88,7 @@ void throw_at(CaseBench& bench, const How& how, double speed)
             slowed = std::max(slowed, (last - how.place.orientation * velocity).norm());
         }
     const std::string at = "at " + std::to_string(static_cast<int>(speed)) + " m/s: ";
-    bench.report_default(how.setting, at + "energy made, over what they have among them", made,
-                         kMade, "1", "dt 1/240");
+    bench.report(how.setting, at + "energy made, over what they have among them", made, kMade, "1");
     bench.report(how.setting, at + "change of their common velocity", slowed,
                  kSlowed + kRounded * speed, "m/s");
 }

@@ -81,29 +81,25 @@ bool HeldEnergy::take_back_energy(std::uint32_t body, double gained)
     return true;
 }
 
-// Whom the springs of a body join it to, and the velocity of their center of mass, m/s. Nobody
-// where one of them does not yield, whose velocity it is then.
-std::vector<std::uint32_t> HeldEnergy::joined_to(std::uint32_t body, Vec3& velocity) const
+// Of a body that is on springs.
+HeldEnergy::Joined HeldEnergy::joined_to(std::uint32_t body) const
 {
-    std::vector<std::uint32_t> joined;
+    Joined joined;
     Vec3 momentum = Vec3::Zero();
-    double mass = 0;
     const std::uint32_t end = forces_.first_spring[body + 1];
     for (std::uint32_t k = forces_.first_spring[body]; k < end; ++k) {
         const SpringForce& spring = forces_.springs[forces_.spring_of[k]];
         const std::uint32_t other = spring.a == body ? spring.b : spring.a;
-        const bool yields =
-            other != kNoBody && states_.dynamic(other) && masses_.inverse_mass[other] > 0;
-        if (!yields) {
-            velocity = other == kNoBody ? Vec3(Vec3::Zero()) : velocities_.linear[other];
-            return {};
-        }
-        if (std::find(joined.begin(), joined.end(), other) != joined.end()) continue;
-        joined.push_back(other);
-        mass += masses_.mass[other];
+        if (other == kNoBody) return {};
+        if (!states_.dynamic(other) || !(masses_.inverse_mass[other] > 0))
+            return {{}, 0, velocities_.linear[other]};
+        if (std::find(joined.bodies.begin(), joined.bodies.end(), other) != joined.bodies.end())
+            continue;
+        joined.bodies.push_back(other);
+        joined.mass += masses_.mass[other];
         momentum += masses_.mass[other] * velocities_.linear[other];
     }
-    velocity = momentum / mass;
+    joined.velocity = momentum / joined.mass;
     return joined;
 }
 
@@ -112,15 +108,12 @@ std::vector<std::uint32_t> HeldEnergy::joined_to(std::uint32_t body, Vec3& veloc
 bool HeldEnergy::take_back_drawn(std::uint32_t body, double drawn)
 {
     if (!(drawn > 0)) return true;
-    Vec3 about;
-    const std::vector<std::uint32_t> joined = joined_to(body, about);
-    double mass = 0;
-    for (const std::uint32_t other : joined) mass += masses_.mass[other];
-    const bool turns_only = !(masses_.inverse_mass[body] > 0),
-               free = !joined.empty() && !turns_only;
-    const double share = free ? mass / (mass + masses_.mass[body]) : 1;
+    const Joined joined = joined_to(body);
+    const bool only_turns = !(masses_.inverse_mass[body] > 0);
+    const bool all_yield = !joined.bodies.empty() && !only_turns;
+    const double share = all_yield ? joined.mass / (joined.mass + masses_.mass[body]) : 1;
     Vec3& velocity = velocities_.linear[body];
-    const Vec3 beside = turns_only ? velocity : Vec3(velocity - about);
+    const Vec3 beside = only_turns ? velocity : Vec3(velocity - joined.velocity);
     const double all = kinetic_energy_of(body, masses_, poses_, velocities_),
                  of_middle = masses_.mass[body] * velocity.squaredNorm() / 2,
                  had = all - of_middle + share * masses_.mass[body] * beside.squaredNorm() / 2;
@@ -128,8 +121,8 @@ bool HeldEnergy::take_back_drawn(std::uint32_t body, double drawn)
     const double kept = std::sqrt(1 - drawn / had);
     velocity -= share * (1 - kept) * beside;
     velocities_.angular[body] *= kept;
-    if (!free) return true;
-    for (const std::uint32_t other : joined)
+    if (!all_yield) return true;
+    for (const std::uint32_t other : joined.bodies)
         velocities_.linear[other] += (1 - share) * (1 - kept) * beside;
     return true;
 }

@@ -31,6 +31,13 @@ public:
     bool hold(std::uint32_t body, const Pose& end, const Vec3& fell_to);
 
 private:
+    // Whom springs join a body to, their mass, kg, and the velocity of their center of mass, m/s.
+    // Nobody where one of them does not yield, whose velocity it is then.
+    struct Joined {
+        std::vector<std::uint32_t> bodies;
+        double mass = 0;
+        Vec3 velocity = Vec3::Zero();
+    };
     Vec3 wind_on(std::uint32_t body) const;
     Vec3 acceleration_of(std::uint32_t body) const;
     void take_back_fall(std::uint32_t body, const Vec3& held);
@@ -38,7 +45,7 @@ private:
     void take_back_swing(std::uint32_t body, double gained);
     double attraction_energy_of(std::uint32_t body) const;
     bool take_back_energy(std::uint32_t body, double gained);
-    std::vector<std::uint32_t> joined_to(std::uint32_t body, Vec3& velocity) const;
+    Joined joined_to(std::uint32_t body) const;
     bool take_back_drawn(std::uint32_t body, double drawn);
     void turn_back(std::uint32_t body, const Quat& held);
 

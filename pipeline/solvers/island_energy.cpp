@@ -4,6 +4,7 @@
 #include "pipeline/forces/energy_limiter.hpp"
 #include "pipeline/solvers/island_solver.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace throng {
@@ -16,18 +17,39 @@ constexpr double kAfforded = 0.01;
 
 }  // namespace
 
-double IslandSolver::kinetic_energy() const
+// What nothing holds keeps its momentum.
+bool IslandSolver::floats() const
 {
-    double twice = 0;
+    const auto stands = [](const IslandContact& at) { return at.a < 0 || at.b < 0; };
+    if (std::any_of(contacts_.begin(), contacts_.end(), stands)) return false;
+    for (std::size_t i = 0; i < state_forces_->joined().size(); ++i)
+        if (state_forces_->springs_of(i).are_tied()) return false;
+    return true;
+}
+
+IslandSolver::IslandMotion IslandSolver::motion() const
+{
+    IslandMotion motion;
+    Vec3 momentum = Vec3::Zero();
+    double mass = 0;
+    bool common = floats();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         if (!bodies_[i].dynamic) continue;
         const DirectBody& body = after_[i];
         const Mat3 inertia =
             in_world_axes(inertia_[i], bodies_[i].turned * bodies_[i].orientation).matrix();
-        twice += body.spin.dot(inertia * body.spin);
-        if (body.inverse_mass > 0) twice += body.velocity.squaredNorm() / body.inverse_mass;
+        motion.kinetic += body.spin.dot(inertia * body.spin) / 2;
+        if (body.inverse_mass > 0) {
+            motion.kinetic += body.velocity.squaredNorm() / (2 * body.inverse_mass);
+            mass += 1 / body.inverse_mass;
+            momentum += body.velocity / body.inverse_mass;
+        } else {
+            common = false;
+        }
     }
-    return twice / 2;
+    if (common) motion.common = momentum / mass;
+    motion.among_them = motion.kinetic - mass * motion.common.squaredNorm() / 2;
+    return motion;
 }
 
 double IslandSolver::energy_of_springs()
@@ -55,44 +77,17 @@ void IslandSolver::leave_push_to_springs(const StepContext& context, double time
     if (!state_forces_ || !state_forces_->stiff()) return;
     const double work =
         energy_of_springs_after(going_, time) - energy_of_springs_after(after_, time);
-    double afforded = kAfforded * energy_among_them(kinetic_energy(), common_velocity());
+    double afforded = kAfforded * motion().among_them;
     const Vec3 fall = time * context.gravity;
     for (const DirectBody& body : after_)
         if (body.inverse_mass > 0) afforded += fall.squaredNorm() / (2 * body.inverse_mass);
     if (work > afforded) going_ = after_;
 }
 
-// What nothing holds keeps its momentum.
-Vec3 IslandSolver::common_velocity() const
-{
-    Vec3 momentum = Vec3::Zero();
-    double mass = 0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        if (!bodies_[i].dynamic) continue;
-        if (!(after_[i].inverse_mass > 0)) return Vec3::Zero();
-        mass += 1 / after_[i].inverse_mass;
-        momentum += after_[i].velocity / after_[i].inverse_mass;
-    }
-    for (const IslandContact& contact : contacts_)
-        if (contact.a < 0 || contact.b < 0) return Vec3::Zero();
-    for (std::size_t i = 0; i < state_forces_->joined().size(); ++i)
-        if (state_forces_->springs_of(i).are_tied()) return Vec3::Zero();
-    return momentum / mass;
-}
-
-// J, of their motion beside a velocity that they have in common; 0 where they have none.
-double IslandSolver::energy_among_them(double kinetic, const Vec3& common) const
-{
-    if (common.isZero(0)) return kinetic;
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-        if (bodies_[i].dynamic) kinetic -= common.squaredNorm() / (2 * after_[i].inverse_mass);
-    return kinetic;
-}
-
 void IslandSolver::open_energy_limiter(const StepContext&, double)
 {
     if (state_forces_ && state_forces_->stiff())
-        begun_with_ = kinetic_energy() + energy_of_springs();
+        begun_with_ = motion().kinetic + energy_of_springs();
 }
 
 void IslandSolver::close_energy_limiter(const StepContext& context, double time)
@@ -100,20 +95,19 @@ void IslandSolver::close_energy_limiter(const StepContext& context, double time)
     if (!state_forces_ || !state_forces_->stiff() || is_fed_) return;
     for (std::size_t i = 0; i < state_forces_->joined().size(); ++i)
         if (state_forces_->springs_of(i).are_drawn()) return;
-    const double kinetic = kinetic_energy();
-    double gained = kinetic + energy_of_springs() - begun_with_;
+    const IslandMotion now = motion();
+    double gained = now.kinetic + energy_of_springs() - begun_with_;
     // What gravity gave: half of the velocity before, half after.
     for (std::size_t i = 0; i < bodies_.size(); ++i)
         if (after_[i].inverse_mass > 0)
             gained -= time * context.gravity.dot(before_[i].velocity + after_[i].velocity)
                 / (2 * after_[i].inverse_mass);
-    const Vec3 common = common_velocity();
-    const double share = share_kept(gained, energy_among_them(kinetic, common),
-                                    kinetic * std::numeric_limits<double>::epsilon());
+    const double share =
+        share_kept(gained, now.among_them, now.kinetic * std::numeric_limits<double>::epsilon());
     if (!(share < 1)) return;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         if (!bodies_[i].dynamic) continue;
-        after_[i].velocity = common + share * (after_[i].velocity - common);
+        after_[i].velocity = now.common + share * (after_[i].velocity - now.common);
         after_[i].spin *= share;
     }
 }

@@ -117,12 +117,16 @@ private:
     void hold_contacts(const StepContext& context, double time);
     void answer_late_forces(const StepContext& context, double time);
     // Energy of stiff springs: see island_energy.cpp.
-    double kinetic_energy() const;
+    struct IslandMotion {
+        double kinetic = 0;          // J
+        Vec3 common = Vec3::Zero();  // m/s, of their center of mass; 0 where something holds them
+        double among_them = 0;       // J, beside that
+    };
+    bool floats() const;
+    IslandMotion motion() const;
     double energy_of_springs();
     double energy_of_springs_after(const std::vector<DirectBody>& going, double time);
-    double energy_among_them(double kinetic, const Vec3& common) const;
     void leave_push_to_springs(const StepContext& context, double time);
-    Vec3 common_velocity() const;
     void open_energy_limiter(const StepContext& context, double time);
     void close_energy_limiter(const StepContext& context, double time);
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
