@@ -76,15 +76,29 @@ using Member = std::variant<double Object::*,
                             Group<Object>,
                             ByHand>;
 
-template <class Object>
-struct Field {
+/// What a field says, whatever object it is of.
+struct FieldWords {
     std::string_view key;
-    std::string_view unit;     // empty where it has none, or its parts have their own
-    std::string_view meaning;  // of the schema and of docs/scene.md
+    std::string_view unit;      // empty where it has none, or its parts have their own
+    std::string_view meaning;   // of the schema and of docs/scene.md
+    Range range;                // of its numbers
+    std::string_view required;  // what is asked for where it is missing; empty: may be left out
+    std::string_view left_out;  // what then holds, in words, where that is no plain value
+};
+
+template <class Object>
+struct Field : FieldWords {
+    constexpr Field(std::string_view key,
+                    std::string_view unit,
+                    std::string_view meaning,
+                    Member<Object> of,
+                    Range range = {},
+                    std::string_view required = {},
+                    std::string_view left_out = {})
+        : FieldWords{key, unit, meaning, range, required, left_out}, member(of)
+    { }
+
     Member<Object> member;
-    Range range{};                // of its numbers
-    std::string_view required{};  // what is asked for where it is missing; empty: may be left out
-    std::string_view left_out{};  // what then holds, in words, where that is no plain value
 };
 
 /// A table of them, beside an object that it is of.

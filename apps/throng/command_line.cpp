@@ -1,5 +1,6 @@
 // Command line: finds the command, and turns whatever stops it into a sentence and an exit code.
 #include "apps/throng/commands.hpp"
+#include "apps/throng/launcher.hpp"
 #include "scene/files/scene_error.hpp"
 #include "scene/names.hpp"
 #include "throng/version.hpp"
@@ -170,6 +171,7 @@ int run_program(Commands commands, int count, char** words)
     std::signal(SIGPIPE, SIG_IGN);
     // A file that may grow no further is seen as a full disk is.
     std::signal(SIGXFSZ, SIG_IGN);
+    build_by_launcher();
     int code = kDone;
     try {
         const std::vector<std::string_view> arguments(words + (count > 0 ? 1 : 0), words + count);

@@ -4,7 +4,9 @@
 
 #include <cstdlib>
 #include <dlfcn.h>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 namespace throng {
 namespace {
@@ -49,9 +51,13 @@ OpenedFieldModule refused(const std::string& why)
                 + "; install it beside the program or its libraries, or name it in THRONG_COOKING"};
 }
 
-OpenedFieldModule open_module()
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a program sets it as it
+// begins
+BuildFieldModule build_file;
+
+// The first that is found, or none: `why` says of the last place what is wrong there.
+std::optional<OpenedFieldModule> find_module(std::string& why)
 {
-    std::string why;
     for (const std::string& place : places()) {
         std::error_code ignored;
         if (place.find('/') != std::string::npos && !std::filesystem::exists(place, ignored)) {
@@ -71,12 +77,22 @@ OpenedFieldModule open_module()
         if (module == nullptr || module->size != sizeof(FieldModule)
             || std::string_view(module->version) != version())
             return refused(place + " is of another version");
-        return {module, {}};
+        return OpenedFieldModule{module, {}};
     }
-    return refused(why);
+    return std::nullopt;
+}
+
+OpenedFieldModule open_module()
+{
+    std::string why;
+    std::optional<OpenedFieldModule> found = find_module(why);
+    if (!found && build_file && build_file()) found = find_module(why);
+    return found ? *found : refused(why);
 }
 
 }  // namespace
+
+void build_field_module_by(BuildFieldModule build) { build_file = std::move(build); }
 
 const OpenedFieldModule& field_module()
 {

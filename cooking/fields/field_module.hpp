@@ -6,6 +6,8 @@
 
 #include "cooking/fields/voxel_field.hpp"
 
+#include <functional>
+
 namespace throng {
 
 /// The module's functions. They are called on the world's threads and may throw std::bad_alloc.
@@ -31,6 +33,13 @@ struct OpenedFieldModule {
     const FieldModule* module = nullptr;
     std::string trouble;
 };
+
+/// Builds the module's file; answers whether it did.
+using BuildFieldModule = std::function<bool()>;
+
+/// Who is asked, once, for a file that is found nowhere. To be said before field_module() is
+/// called.
+void build_field_module_by(BuildFieldModule build);
 
 /// Opens it at the first call; what came of that stays. THRONG_COOKING names its file; without that
 /// it is looked for beside the program or library that holds this code, in `lib` beside that one's

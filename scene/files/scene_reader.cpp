@@ -4,7 +4,7 @@
 // scene_check.hpp to say, and its answer is then given the place it has in the text.
 #include "scene/files/scene_reader.hpp"
 
-#include "scene/fields.hpp"
+#include "scene/bound_field.hpp"
 #include "scene/files/json_reader.hpp"
 #include "scene/files/mesh_file.hpp"
 #include "scene/names.hpp"
@@ -109,77 +109,71 @@ private:
 
     // Members of an object by their fields.
 
+    void read_fields(Node node, const WritableFields& fields) const
+    {
+        for (const auto& [words, place] : fields) {
+            const Node at = words->required.empty() ? find(node, words->key)
+                                                    : required(node, words->key, words->required);
+            if (!at) continue;
+            std::visit([&, words = words](const auto& kept) { read_member(at, *words, kept); },
+                       place);
+        }
+    }
     template <class Object>
     void read_fields(Node node, Fields<Object> fields, Object& object) const
     {
-        for (const Field<Object>& field : fields) {
-            const Node at = field.required.empty() ? find(node, field.key)
-                                                   : required(node, field.key, field.required);
-            if (!at) continue;
-            std::visit([&](const auto& member) { read_member(at, field, member, object); },
-                       field.member);
-        }
+        read_fields(node, writable(object, fields));
     }
     /// The same where no other key may be there.
+    void read_object(Node node, const WritableFields& fields) const
+    {
+        std::vector<std::string_view> keys;
+        for (const auto& field : fields) keys.push_back(field.words->key);
+        need_keys(node, keys);
+        read_fields(node, fields);
+    }
     template <class Object>
     void read_object(Node node, Fields<Object> fields, Object& object) const
     {
-        std::vector<std::string_view> keys;
-        for (const Field<Object>& field : fields) keys.push_back(field.key);
-        need_keys(node, keys);
-        read_fields(node, fields, object);
+        read_object(node, writable(object, fields));
     }
 
-    template <class Object, class Value>
-    void read_member(Node at, const Field<Object>&, Value Object::*member, Object& object) const
+    template <class Value>
+    void read_member(Node at, const FieldWords&, Value* kept) const
     {
-        read_value(at, object.*member);
+        read_value(at, *kept);
     }
-    template <class Object>
-    void read_member(Node at,
-                     const Field<Object>& field,
-                     const NameOf<Object>& name,
-                     Object& object) const
+    void read_member(Node at, const FieldWords& words, const WritableName& name) const
     {
         if (name.or_null && kind(at) == JsonKind::null) return;
-        if (name.or_null && kind(at) != JsonKind::string) refuse_value(at, field.required);
-        object.*name.place = find_named(at, name.kind);
+        if (name.or_null && kind(at) != JsonKind::string) refuse_value(at, words.required);
+        *name.place = find_named(at, name.kind);
     }
-    template <class Object>
-    void read_member(Node at, const Field<Object>&, const Bits<Object>& bits, Object& object) const
+    void read_member(Node at, const FieldWords&, const WritableBits& bits) const
     {
-        object.*bits.bits = static_cast<std::uint32_t>(whole(at, 4294967295.0));
+        *bits.bits = static_cast<std::uint32_t>(whole(at, 4294967295.0));
     }
-    template <class Object>
-    void read_member(Node at,
-                     const Field<Object>& field,
-                     const OfDial<Object>& dial,
-                     Object& object) const
+    void read_member(Node at, const FieldWords& words, const WritableDial& dial) const
     {
         Settings own;
-        const std::string trouble = find_dial(field.key)->set(own, text_or_number(at));
+        const std::string trouble = find_dial(words.key)->set(own, text_or_number(at));
         if (!trouble.empty()) refuse(at, trouble);
-        const std::string value = dial_value(own, field.key);
+        const std::string value = dial_value(own, words.key);
         const double number = parse_number(value);  // of auto none: it stays 0
-        std::visit(
-            [&](auto member) {
-                using Value = std::remove_reference_t<decltype(object.*member)>;
-                if constexpr (std::is_same_v<Value, std::string>)
-                    object.*member = value;
-                else if (!std::isnan(number))
-                    object.*member = static_cast<Value>(number);
-            },
-            dial.value);
+        if (auto* const* const text = std::get_if<std::string*>(&dial)) {
+            **text = value;
+        } else if (!std::isnan(number)) {
+            if (auto* const* const whole = std::get_if<int*>(&dial))
+                **whole = static_cast<int>(number);
+            else
+                *std::get<double*>(dial) = number;
+        }
     }
-    template <class Object>
-    void
-    read_member(Node at, const Field<Object>&, const Group<Object>& group, Object& object) const
+    void read_member(Node at, const FieldWords&, const WritableFields& group) const
     {
-        read_object(at, group.fields, object);
+        read_object(at, group);
     }
-    template <class Object>
-    void read_member(Node, const Field<Object>&, ByHand, Object&) const
-    { }
+    void read_member(Node, const FieldWords&, ByHand) const { }
 
     void read_value(Node at, double& value) const { value = number(at); }
     void read_value(Node at, Vec3& value) const { value = vector(at); }

@@ -1,6 +1,6 @@
 #include "scene/files/scene_schema.hpp"
 
-#include "scene/fields.hpp"
+#include "scene/bound_field.hpp"
 #include "scene/files/json.hpp"
 #include "scene/files/json_writer.hpp"
 #include "scene/names.hpp"
@@ -51,101 +51,92 @@ std::string number_type(const Range& range)
     return text;
 }
 
-/// The type of what a member of a scene holds.
-template <class Object>
-struct TypeOf {
-    const Field<Object>& field;
+std::string member_of(const BoundField& field);
 
-    std::string operator()(double Object::*) const { return number_type(field.range); }
-    std::string operator()(std::optional<double> Object::*) const
+/// The type of what a member of a scene holds.
+struct TypeOf {
+    const FieldWords& words;
+
+    std::string operator()(const double*) const { return number_type(words.range); }
+    std::string operator()(const std::optional<double>*) const { return number_type(words.range); }
+    std::string operator()(const Vec3*) const
     {
-        return number_type(field.range);
+        return words.range.least > 0 ? list_of(number_type(words.range), 3) : reference("vector");
     }
-    std::string operator()(Vec3 Object::*) const
-    {
-        return field.range.least > 0 ? list_of(number_type(field.range), 3) : reference("vector");
-    }
-    std::string operator()(std::optional<Vec3> Object::*) const { return reference("vector"); }
-    std::string operator()(std::vector<Vec3> Object::*) const
+    std::string operator()(const std::optional<Vec3>*) const { return reference("vector"); }
+    std::string operator()(const std::vector<Vec3>*) const
     {
         return type("array") + ", \"items\": {" + reference("vector") + "}, \"minItems\": 4";
     }
-    std::string operator()(std::optional<Sym3> Object::*) const
+    std::string operator()(const std::optional<Sym3>*) const { return list_of(type("number"), 6); }
+    std::string operator()(const Quat*) const { return reference("quaternion"); }
+    std::string operator()(const bool*) const { return type("boolean"); }
+    std::string operator()(const std::string*) const
     {
-        return list_of(type("number"), 6);
+        return type("string") + (words.required.empty() ? "" : ", \"minLength\": 1");
     }
-    std::string operator()(Quat Object::*) const { return reference("quaternion"); }
-    std::string operator()(bool Object::*) const { return type("boolean"); }
-    std::string operator()(std::string Object::*) const
-    {
-        return type("string") + (field.required.empty() ? "" : ", \"minLength\": 1");
-    }
-    std::string operator()(Motion Object::*) const
+    std::string operator()(const Motion*) const
     {
         std::string names;
         for (const std::string_view motion : kMotions) add(names, json_string(motion));
         return "\"enum\": [" + names + ']';
     }
-    std::string operator()(std::array<std::optional<double>, 3> Object::*) const
+    std::string operator()(const std::array<std::optional<double>, 3>*) const
     {
         return list_of(R"("type": ["number", "null"])", 3);
     }
-    std::string operator()(const NameOf<Object>& name) const
+    std::string operator()(const BoundName& name) const
     {
         return name.or_null ? R"("type": ["string", "null"])" : type("string");
     }
-    std::string operator()(const Bits<Object>&) const { return reference("bits"); }
-    std::string operator()(const OfDial<Object>&) const
+    std::string operator()(const BoundBits&) const { return reference("bits"); }
+    std::string operator()(const BoundDial&) const
     {
-        return reference("settings/properties/" + std::string(field.key));
+        return reference("settings/properties/" + std::string(words.key));
     }
-    std::string operator()(const Group<Object>& group) const
+    std::string operator()(const BoundFields& group) const
     {
         std::string properties;
-        for (const Field<Object>& one : group.fields) add(properties, member_of(one));
+        for (const BoundField& one : group) add(properties, member_of(one));
         return type("object") + ", \"additionalProperties\": false, \"properties\": {" + properties
             + '}';
     }
     std::string operator()(ByHand by_hand) const { return std::string(by_hand.schema); }
-
-    /// The key and all that is to be said of it.
-    static std::string member_of(const Field<Object>& field)
-    {
-        std::string text = json_string(field.key) + ": {" + std::visit(TypeOf{field}, field.member)
-            + ", \"description\": " + json_string(field.meaning);
-        if (!field.unit.empty()) text += ", \"unit\": " + json_string(field.unit);
-        if (!field.left_out.empty()) text += ", \"leftOut\": " + json_string(field.left_out);
-        const std::string standard = std::visit(DefaultOf{}, field.member);
-        if (field.required.empty() && field.left_out.empty() && !standard.empty())
-            text += ", \"default\": " + standard;
-        return text + '}';
-    }
-
-    /// What a member is where the file does not say, as JSON; empty where that is no value.
-    struct DefaultOf {
-        template <class Value>
-        std::string operator()(Value Object::*member) const
-        {
-            static const Object standard{};
-            return json_text(standard.*member);
-        }
-        template <class Value>
-        std::string operator()(std::optional<Value> Object::*) const
-        {
-            return {};
-        }
-        std::string operator()(const Bits<Object>& bits) const
-        {
-            static const Object standard{};
-            return std::to_string(standard.*bits.bits);
-        }
-        template <class Other>
-        std::string operator()(const Other&) const
-        {
-            return {};
-        }
-    };
 };
+
+/// What a member is where the file does not say, as JSON; empty where that is no value.
+struct DefaultOf {
+    template <class Value>
+    std::string operator()(const Value* standard) const
+    {
+        return json_text(*standard);
+    }
+    template <class Value>
+    std::string operator()(const std::optional<Value>*) const
+    {
+        return {};
+    }
+    std::string operator()(const BoundBits& bits) const { return std::to_string(*bits.bits); }
+    template <class Other>
+    std::string operator()(const Other&) const
+    {
+        return {};
+    }
+};
+
+/// The key and all that is to be said of it; the field is bound to what nothing was said of.
+std::string member_of(const BoundField& field)
+{
+    const FieldWords& words = *field.words;
+    std::string text = json_string(words.key) + ": {" + std::visit(TypeOf{words}, field.place)
+        + ", \"description\": " + json_string(words.meaning);
+    if (!words.unit.empty()) text += ", \"unit\": " + json_string(words.unit);
+    if (!words.left_out.empty()) text += ", \"leftOut\": " + json_string(words.left_out);
+    const std::string standard = std::visit(DefaultOf{}, field.place);
+    if (words.required.empty() && words.left_out.empty() && !standard.empty())
+        text += ", \"default\": " + standard;
+    return text + '}';
+}
 
 /// Members of an object type, put together a line at a time.
 class ObjectType {
@@ -159,19 +150,20 @@ public:
         add(text_, indent_ + "  " + member, ",\n");
         return *this;
     }
+    ObjectType& has(const BoundFields& fields)
+    {
+        for (const BoundField& field : fields) {
+            property(member_of(field));
+            const FieldWords& words = *field.words;
+            if (!words.required.empty()) add(required_, json_string(words.key));
+        }
+        return *this;
+    }
     template <class Object, std::size_t count>
     ObjectType& has(const Field<Object> (&fields)[count])
     {
-        return has(std::span<const Field<Object>>(fields));
-    }
-    template <class Object>
-    ObjectType& has(std::span<const Field<Object>> fields)
-    {
-        for (const Field<Object>& field : fields) {
-            property(TypeOf<Object>::member_of(field));
-            if (!field.required.empty()) add(required_, json_string(field.key));
-        }
-        return *this;
+        const Object standard{};
+        return has(bound(standard, Fields<Object>(fields)));
     }
     ObjectType& property(const std::string& member)
     {
@@ -212,7 +204,7 @@ std::string shape_types(const std::variant<Shapes...>&, const std::string& inden
         else
             text = ObjectType(kind.meaning, indent + "    ")
                        .say(type("object"))
-                       .has(fields_of(stated))
+                       .has(bound(stated, fields_of(stated)))
                        .text();
         shape.property(json_string(kind.name) + ": " + text);
     };

@@ -2,7 +2,7 @@
 //
 // What is at its default is left out. "At its default" is asked of the bits, so that even a zero
 // keeps its sign on the way through a file.
-#include "scene/fields.hpp"
+#include "scene/bound_field.hpp"
 #include "scene/files/json.hpp"
 #include "scene/files/json_writer.hpp"
 #include "scene/files/mesh_file.hpp"
@@ -81,9 +81,8 @@ public:
     void write()
     {
         std::string text = "{\n  \"throng\": 1";
-        for_stated(scene_, kSceneFields, [&](std::string_view key, const std::string& value) {
+        for (const auto& [key, value] : stated(scene_, Fields<Scene>(kSceneFields)))
             text += ",\n  " + json_string(key) + ": " + value;
-        });
         const std::string settings = settings_text();
         if (settings != "{}") text += ",\n  \"settings\": " + settings;
         text += json_lines("materials", material_lines(), "{}");
@@ -125,80 +124,79 @@ private:
 
     // Members of an object by their fields. A text is empty where there is nothing to state.
 
-    template <class Object, class Add>
-    void for_stated(const Object& object, Fields<Object> fields, const Add& add) const
+    using Member = std::pair<std::string_view, std::string>;
+
+    /// What is stated of `fields`: all but what is as it is in `standard`, the same fields of an
+    /// object of which nothing was said.
+    std::vector<Member> stated(const BoundFields& fields, const BoundFields& standard) const
+    {
+        std::vector<Member> stated;
+        for (std::size_t i = 0; i < fields.size(); ++i)
+            if (std::string text = text_of(fields[i], standard[i]); !text.empty())
+                stated.emplace_back(fields[i].words->key, std::move(text));
+        return stated;
+    }
+    template <class Object>
+    std::vector<Member> stated(const Object& object, Fields<Object> fields) const
     {
         const Object standard;
-        for (const Field<Object>& field : fields)
-            std::visit(
-                [&](const auto& member) {
-                    const std::string text = member_text(object, member);
-                    if (text.empty()) return;
-                    if (!field.required.empty() || text != member_text(standard, member))
-                        add(field.key, text);
-                },
-                field.member);
+        return stated(bound(object, fields), bound(standard, fields));
     }
     template <class Object>
     void add_stated(const Object& object, Fields<Object> fields, JsonMembers& members) const
     {
-        for_stated(object, fields, [&](std::string_view key, const std::string& value) {
-            members.add(key, value);
-        });
+        for (const auto& [key, text] : stated(object, fields)) members.add(key, text);
+    }
+    std::string text_of(const BoundField& field, const BoundField& standard) const
+    {
+        if (const auto* const group = std::get_if<BoundFields>(&field.place)) {
+            JsonMembers members;
+            for (const auto& [key, text] : stated(*group, std::get<BoundFields>(standard.place)))
+                members.add(key, text);
+            return members.empty() ? "" : members.text();
+        }
+        const auto text_at = [&](const BoundField& one) {
+            return std::visit([&](const auto& kept) { return member_text(kept); }, one.place);
+        };
+        std::string text = text_at(field);
+        return field.words->required.empty() && text == text_at(standard) ? "" : text;
     }
 
-    template <class Object, class Value>
-    std::string member_text(const Object& object, Value Object::*member) const
+    template <class Value>
+    std::string member_text(const Value* kept) const
     {
-        return json_text(object.*member);
+        return json_text(*kept);
     }
-    template <class Object, class Value>
-    std::string member_text(const Object& object, std::optional<Value> Object::*member) const
+    template <class Value>
+    std::string member_text(const std::optional<Value>* kept) const
     {
-        return object.*member ? json_text(*(object.*member)) : std::string();
+        return *kept ? json_text(**kept) : std::string();
     }
-    template <class Object>
-    std::string member_text(const Object& object, const NameOf<Object>& name) const
+    std::string member_text(const BoundName& name) const
     {
-        const std::uint32_t place = object.*name.place;
-        if (place == kNone) return name.or_null ? "null" : "";
+        if (*name.place == kNone) return name.or_null ? "null" : "";
         switch (name.kind) {
         case Named::shape:
-            return json_string(shape_names_[place]);
+            return json_string(shape_names_[*name.place]);
         case Named::material:
-            return json_string(material_names_[place]);
+            return json_string(material_names_[*name.place]);
         case Named::body:
-            return json_string(body_names_[place]);
+            return json_string(body_names_[*name.place]);
         }
         return {};
     }
-    template <class Object>
-    std::string member_text(const Object& object, const Bits<Object>& bits) const
+    std::string member_text(const BoundBits& bits) const { return std::to_string(*bits.bits); }
+    std::string member_text(const BoundDial& dial) const
     {
-        return std::to_string(object.*bits.bits);
-    }
-    template <class Object>
-    std::string member_text(const Object& object, const OfDial<Object>& dial) const
-    {
-        return std::visit([&](auto member) { return own_text(object.*member); }, dial.value);
+        return std::visit([&](const auto* kept) { return own_text(*kept); }, dial);
     }
     static std::string own_text(double number) { return number == 0 ? "" : json_text(number); }
     static std::string own_text(const std::string& text)
     {
         return text.empty() ? "" : json_string(text);
     }
-    template <class Object>
-    std::string member_text(const Object& object, const Group<Object>& group) const
-    {
-        JsonMembers members;
-        add_stated(object, group.fields, members);
-        return members.empty() ? "" : members.text();
-    }
-    template <class Object>
-    std::string member_text(const Object&, ByHand) const
-    {
-        return {};
-    }
+    std::string member_text(const BoundFields&) const { return {}; }  // text_of() knows them
+    std::string member_text(ByHand) const { return {}; }
 
     std::string settings_text() const
     {

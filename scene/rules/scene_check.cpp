@@ -75,6 +75,70 @@ void check_attractors(const Scene& scene)
     }
 }
 
+/// What a field says of its member, whatever that is kept as.
+struct MemberRule {
+    const SceneChecker& here;
+    const FieldWords& words;
+
+    template <class Value>
+    void operator()(const Value* kept) const
+    {
+        if (!words.range.wanted.empty()) need(here, *kept);
+    }
+    void operator()(const Quat* kept) const { here.need_unit(*kept); }
+    void operator()(const BoundFields& group) const { here.need_fields(group); }
+    void operator()(const BoundDial& dial) const
+    {
+        std::visit([&](const auto* kept) { need_dial(*kept); }, dial);
+    }
+    // Whoever refers to a name says whether it is there.
+    template <class Other>
+    void operator()(const Other&) const
+    { }
+
+private:
+    void need(const SceneChecker& at, double number) const { at.need_range(number, words.range); }
+    void need(const SceneChecker& at, const Vec3& vector) const
+    {
+        at.need_range(vector, words.range);
+    }
+    template <class Value>
+    void need(const SceneChecker& at, const std::optional<Value>& value) const
+    {
+        if (value) need(at, *value);
+    }
+    void need(const SceneChecker& at, const std::vector<Vec3>& list) const { need_each(at, list); }
+    void need(const SceneChecker& at, const std::array<std::optional<double>, 3>& list) const
+    {
+        need_each(at, list);
+    }
+    template <class List>
+    void need_each(const SceneChecker& at, const List& list) const
+    {
+        for (std::size_t i = 0; i < list.size(); ++i) need(at.at(i), list[i]);
+    }
+    template <class Unranged>
+    void need(const SceneChecker&, const Unranged&) const
+    { }
+
+    // 0 or empty: not stated.
+    void need_dial(const std::string& value) const
+    {
+        Settings unread;
+        if (value.empty()) return;
+        const std::string trouble = find_dial(words.key)->set(unread, value);
+        here.need(trouble.empty(), trouble);
+    }
+    void need_dial(double value) const
+    {
+        if (value != 0) need_dial(number_text(value));
+    }
+    void need_dial(int value) const
+    {
+        if (value != 0) need_dial(std::to_string(value));
+    }
+};
+
 }  // namespace
 
 ScenePath SceneChecker::path() const
@@ -120,22 +184,12 @@ void SceneChecker::need_unit(const Quat& orientation) const
            + number_text(orientation.norm()));
 }
 
-void SceneChecker::need_dial(std::string_view dial, const std::string& value) const
+void SceneChecker::need_fields(const BoundFields& fields) const
 {
-    Settings unread;
-    if (value.empty()) return;
-    const std::string trouble = find_dial(dial)->set(unread, value);
-    need(trouble.empty(), trouble);
-}
-
-void SceneChecker::need_dial(std::string_view dial, double value) const
-{
-    if (value != 0) need_dial(dial, number_text(value));
-}
-
-void SceneChecker::need_dial(std::string_view dial, int value) const
-{
-    if (value != 0) need_dial(dial, std::to_string(value));
+    for (const auto& [words, place] : fields) {
+        const SceneChecker here = at(words->key);
+        std::visit(MemberRule{here, *words}, place);
+    }
 }
 
 std::optional<SceneTrouble> find_trouble(const Scene& scene)

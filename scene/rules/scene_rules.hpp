@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernels/geometry/mass.hpp"
-#include "scene/fields.hpp"
+#include "scene/bound_field.hpp"
 #include "scene/rules/scene_check.hpp"
 
 #include <span>
@@ -41,69 +41,11 @@ public:
     template <class Object>
     void need_fields(const Object& object, Fields<Object> fields) const
     {
-        for (const Field<Object>& field : fields) {
-            const SceneChecker here = at(field.key);
-            std::visit([&](const auto& member) { here.need_member(object, field, member); },
-                       field.member);
-        }
+        need_fields(bound(object, fields));
     }
+    void need_fields(const BoundFields& fields) const;
 
 private:
-    template <class Object, class Value>
-    void need_member(const Object& object, const Field<Object>& field, Value Object::*member) const
-    {
-        if (field.range.wanted.empty() && !std::is_same_v<Value, Quat>) return;
-        need_value(object.*member, field.range);
-    }
-    template <class Object>
-    void need_member(const Object& object, const Field<Object>&, const Group<Object>& group) const
-    {
-        need_fields(object, group.fields);
-    }
-    template <class Object>
-    void
-    need_member(const Object& object, const Field<Object>& field, const OfDial<Object>& dial) const
-    {
-        std::visit([&](auto member) { need_dial(field.key, object.*member); }, dial.value);
-    }
-    // Whoever refers to a name says whether it is there.
-    template <class Object, class Other>
-    void need_member(const Object&, const Field<Object>&, const Other&) const
-    { }
-
-    void need_value(double number, const Range& range) const { need_range(number, range); }
-    void need_value(const Vec3& vector, const Range& range) const { need_range(vector, range); }
-    void need_value(const Quat& quaternion, const Range&) const { need_unit(quaternion); }
-    template <class Value>
-    void need_value(const std::optional<Value>& value, const Range& range) const
-    {
-        if (value) need_value(*value, range);
-    }
-    void need_value(const std::vector<Vec3>& list, const Range& range) const
-    {
-        need_each(list, range);
-    }
-    void need_value(const std::array<std::optional<double>, 3>& list, const Range& range) const
-    {
-        need_each(list, range);
-    }
-    template <class List>
-    void need_each(const List& list, const Range& range) const
-    {
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            const SceneChecker here = at(i);
-            here.need_value(list[i], range);
-        }
-    }
-    template <class Unranged>
-    void need_value(const Unranged&, const Range&) const
-    { }
-
-    // 0 or empty: not stated.
-    void need_dial(std::string_view dial, double value) const;
-    void need_dial(std::string_view dial, int value) const;
-    void need_dial(std::string_view dial, const std::string& value) const;
-
     SceneChecker(const SceneChecker* whole, std::string_view key, std::size_t index)
         : whole_(whole), key_(key), index_(index)
     { }

@@ -42,6 +42,11 @@ class Launcher(unittest.TestCase):
         self.assertEqual(built("cost", "H3", "--help", command="/bin/true"), "")
         self.assertEqual(built("cases", "--help", command="/bin/true"), "cases")
 
+    def test_other_words_after_build_are_refused(self):
+        done = subprocess.run([LAUNCHER, "build", "al"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("wanted all", done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
