@@ -3,8 +3,8 @@
 # Sourced, with $root set. All it has to say goes to stderr: stdout belongs to the command.
 
 build_packages=(g++ cmake ninja-build ccache libtbb-dev libeigen3-dev libembree-dev libhdf5-dev
-    libopenvdb-dev libboost-dev libxxhash-dev)
-test_packages=(libgtest-dev python3)
+    libopenvdb-dev libboost-dev libxxhash-dev python3)
+test_packages=(libgtest-dev)
 peer_packages=(libbullet-dev libode-dev)  # used where they are, never installed
 check_packages=(clang-14 clang-format-14 clang-tidy-14 libbenchmark-dev)
 docs_packages=(doxygen python3)  # tools/docs.sh alone

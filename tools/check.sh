@@ -4,7 +4,8 @@
 #   tools/check.sh tidy    clang-tidy alone, on what the last 20 commits and since have changed: some
 #                          20 s of a processor for each file
 #   tools/check.sh all     clang-tidy on everything, the other presets too, and the pages of the public
-#                          headers; looks at the page of throng cost in a browser; fuzzes a little;
+#                          headers; a first use on a bare Debian (as root); looks at the page of
+#                          throng cost in a browser; fuzzes a little;
 #                          then every case whole, whose time it tells, and the fixed random scenes
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
@@ -48,6 +49,7 @@ if [[ ${1:-} == all ]]; then
         test_sanitized "$races"
     done
     tools/docs.sh
+    tools/first_use.sh
     build_preset release
     say "the page of throng cost, in a browser"
     need_packages chromium-headless-shell nodejs npm
