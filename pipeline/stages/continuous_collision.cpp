@@ -1,19 +1,17 @@
 // Continuous collision: who goes so far in a step that it could pass through something is held
 // where it first meets it, turned as it was then. The contacts of the next step find it there.
 //
-// The ways are those from the poses before the step to the poses after it. Of two fast bodies that
-// meet both are held. One that meets what is not fast goes on with that: it stays where it is
-// against a wall, and on a pivot; else it rides on a plate that moves by itself. Impacts are taken
-// in the order of their times, so that one held out of the way of another is not met there any
-// more.
+// Of two fast bodies that meet both are held. One that meets what is not fast goes on with that: it
+// stays where it is against a wall, and on a pivot; else it rides on a plate that moves by itself.
+// Impacts are taken in the order of their times, so that one held out of the way of another is not
+// met there any more.
 //
 // Sources: Catto, Continuous Collision (GDC 2013), for holding bodies at their time of impact after
 //          the solver has run; Mirtich, Timewarp Rigid Body Simulation (2000), for the order.
-#include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "narrowphase/ccd/time_of_impact.hpp"
+#include "pipeline/contacts/swept_pairs.hpp"
 #include "pipeline/forces/held_energy.hpp"
-#include "pipeline/step/fast_bodies.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
@@ -26,12 +24,7 @@
 namespace throng {
 namespace {
 
-constexpr std::size_t kPairs = 8;        // a block: some 20 microseconds of work
-constexpr std::size_t kMovers = 4096;    // a block
-constexpr std::size_t kKeys = 1 << 13;   // a block
-constexpr std::size_t kWays = 512;       // a block
-constexpr std::size_t kBoxes = 1 << 14;  // a block
-constexpr double kNever = 2;             // later than the step
+constexpr std::size_t kPairs = 8;  // a block: some 20 microseconds of work
 
 // Of a shape that touches another from the start contact takes care. What it does not hold back
 // must not get through all the same: that is for the same shape, smaller by so much, or for balls
@@ -46,26 +39,6 @@ constexpr double kSkin = 0.1;
 // The first of these scales: of two that are triangles, of which none but what is within one is
 // asked; of what touches; and of what contacts look ahead of: they will have held it.
 constexpr std::size_t kWhole = 0, kTouching = 1, kHeldAhead = 2;
-
-struct Candidate {
-    PairKey key = 0;
-    double time = kNever;        // of their next impact
-    Vec3 normal = Vec3::Zero();  // from a to b then
-    bool pressed = false;        // they touched before, and contact has not held them
-    bool followed = false;       // contacts were looked for ahead of them
-};
-
-// The way of a body from some time on: that of another it has come to ride on, or its own.
-struct Way {
-    std::uint32_t body = kNoBody;
-    RigidTrajectory trajectory;
-    Pose attached;                  // the body in the frame that is swept
-    std::uint32_t rides = kNoBody;  // on this body
-    double since = 0;               // 0 to 1, when it was held
-    bool fast = false, held = false;
-    bool ahead = false;   // of contacts: those that it may come to were not looked for
-    bool slides = false;  // it touches what does not yield to it
-};
 
 class ContinuousCollision {
 public:
@@ -85,24 +58,29 @@ public:
                         Poses& poses,
                         Velocities& velocities,
                         FastBodies& fast)
-        : context_(context), parameters_(parameters), shapes_(shapes), colliders_(colliders),
-          surfaces_(surfaces), filter_(filter), masses_(masses), bounds_(bounds), pairs_(pairs),
-          states_(states), followed_(followed), on_meshes_(on_meshes), poses_(poses),
-          velocities_(velocities), fast_(fast),
-          held_energy_(context, forces, masses, states, poses, velocities)
+        : parameters_(parameters), shapes_(shapes), colliders_(colliders), surfaces_(surfaces),
+          masses_(masses), states_(states), velocities_(velocities), fast_(fast),
+          held_energy_(context, forces, masses, states, poses, velocities),
+          swept_(context,
+                 parameters,
+                 shapes,
+                 colliders,
+                 filter,
+                 bounds,
+                 pairs,
+                 states,
+                 followed,
+                 on_meshes,
+                 poses,
+                 velocities,
+                 fast.scratch.flags)
     { }
 
     void run(const std::vector<std::uint32_t>& woke)
     {
         fast_.held.clear();
-        find_fast(woke);
-        if (found_.empty()) return;
-        fast_.scratch.flags.resize(states_.kind.size(), 0);
-        for (const std::uint32_t body : found_) fast_.scratch.flags[body] = 1;
-        find_candidates();
-        for (const std::uint32_t body : found_) fast_.scratch.flags[body] = 0;
+        swept_.find(woke);
         if (candidates_.empty()) return;
-        find_ways();
         for_each_block(candidates_.size(), kPairs, [&](auto begin, auto end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) ask(candidates_[i], 0);
         });
@@ -114,179 +92,10 @@ public:
     }
 
 private:
-    // Before the step, from where a collider of it was.
-    Pose began(std::uint32_t body) const
-    {
-        const std::uint32_t at = colliders_.begin[body];
-        const Pose& local = colliders_.local[at];
-        const Pose& placed = bounds_.placed[at];
-        if (local.position.isZero(0) && local.orientation.vec().isZero(0)) return placed;
-        return placed * local.inverse();
-    }
-
-    // Round all of a collider's way.
-    Box3 box_of_way(std::uint32_t at) const
-    {
-        const Box3 before = shape_bounds(shapes_, colliders_.shape[at], bounds_.placed[at]);
-        const std::uint32_t body = colliders_.body[at];
-        if (states_.kind[body] == BodyKind::static_) return before;
-        const Pose ends = poses_.at(body) * colliders_.local[at];
-        Box3 box = joined(before, shape_bounds(shapes_, colliders_.shape[at], ends));
-        // Between the two it may reach further, by as much as its turning takes any point of it.
-        const double angle = velocities_.angular[body].norm() * context_.dt;
-        const double turning = angle > 0 ? std::min(angle, 2.0) * colliders_.outer_radius[at] : 0;
-        const double slack = turning + parameters_.tolerance * colliders_.inner_extent[at];
-        box.lower.array() -= slack;
-        box.upper.array() += slack;
-        return box;
-    }
-
-    // Whether a body has come far enough to have passed through something. What moves by itself is
-    // measured against those that it may run over: see worth_asking().
-    bool went_far(std::uint32_t body) const
-    {
-        if (colliders_.count[body] == 0 || states_.kind[body] == BodyKind::removed) return false;
-        if (is_surely_slow(colliders_, bounds_, velocities_, body, context_.dt)) return false;
-        const Pose before = began(body);
-        const double length = (poses_.position[body] - before.position).norm();
-        const double angle = velocities_.angular[body].norm() * context_.dt;
-        // What it turned by, where it has been stopped since.
-        const Vec3 half_turn = (before.orientation.conjugate() * poses_.orientation[body]).vec();
-        const double square = std::max(angle * angle, 4 * half_turn.squaredNorm());
-        if (!(length > 0 || square > 0) || !std::isfinite(length)) return false;
-        return may_have_passed(colliders_, body, length, angle, square);
-    }
-
-    // Ascending: those that were known to be fast before, and those that a blow made so.
-    void find_fast(const std::vector<std::uint32_t>& woke)
-    {
-        found_ = bounds_.fast;
-        for (const auto* active_bodies :
-             {&states_.active_bodies.dynamic, &states_.active_bodies.kinematic, &woke}) {
-            BlockLists<std::uint32_t> lists;
-            lists.start(block_count(active_bodies->size(), kMovers));
-            for_each_block(active_bodies->size(), kMovers, [&](auto begin, auto end, auto block) {
-                for (std::size_t i = begin; i < end; ++i)
-                    if (went_far((*active_bodies)[i])) lists[block].push_back((*active_bodies)[i]);
-            });
-            lists.append_to(found_);
-        }
-        std::sort(found_.begin(), found_.end());
-        found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-    }
-
-    bool is_fast(std::uint32_t body) const { return fast_.scratch.flags[body] != 0; }
-
-    // Two of which one at least is dynamic and one fast. A thing that moves by itself has to go
-    // further than the half extent of what it runs over.
-    bool worth_asking(PairKey key) const
-    {
-        std::uint32_t a = colliders_.body[first_of(key)], b = colliders_.body[second_of(key)];
-        if (a == kNoBody || b == kNoBody || a == b) return false;
-        if (!is_fast(a) && !is_fast(b)) return false;
-        if (!states_.dynamic(a) && !states_.dynamic(b)) return false;
-        for (const auto& [fast, slow, at] :
-             {std::tuple(a, b, second_of(key)), std::tuple(b, a, first_of(key))})
-            if (is_fast(fast) && states_.kind[fast] == BodyKind::kinematic && !is_fast(slow)) {
-                const double way = (poses_.position[fast] - began(fast).position).norm()
-                    + velocities_.angular[fast].norm() * context_.dt * states_.radius[fast];
-                return way > colliders_.inner_extent[at];
-            }
-        return true;
-    }
-
-    bool on_mesh(PairKey key) const
-    {
-        return colliders_.shape[first_of(key)].kind == ShapeKind::mesh
-            || colliders_.shape[second_of(key)].kind == ShapeKind::mesh;
-    }
-
     bool has_triangles(std::uint32_t at) const
     {
         const ShapeKind kind = colliders_.shape[at].kind;
         return kind == ShapeKind::mesh || kind == ShapeKind::solid;
-    }
-
-    bool ways_cross(PairKey key) const
-    {
-        const std::uint32_t a = first_of(key), b = second_of(key);
-        if (colliders_.shape[a].kind == ShapeKind::plane
-            || colliders_.shape[b].kind == ShapeKind::plane)
-            return true;
-        return box_of_way(a).overlaps(box_of_way(b));
-    }
-
-    void find_candidates()
-    {
-        candidates_.clear();
-        BlockLists<Candidate> lists;
-        lists.start(block_count(pairs_.keys.size(), kKeys));
-        for_each_block(pairs_.keys.size(), kKeys, [&](auto begin, auto end, auto block) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const PairKey key = pairs_.keys[i];
-                if (!worth_asking(key) || !ways_cross(key)) continue;
-                Candidate& found = lists[block].emplace_back();
-                found.key = key;
-                const auto list = on_mesh(key) ? on_meshes_ : followed_;
-                found.followed = std::binary_search(list.begin(), list.end(), i);
-            }
-        });
-        lists.append_to(candidates_);
-        for (const std::uint32_t body : found_)
-            for (std::uint32_t k = 0; k < colliders_.count[body]; ++k)
-                look_beyond_box(colliders_.begin[body] + k);
-        const auto less = [](const Candidate& a, const Candidate& b) { return a.key < b.key; };
-        const auto same = [](const Candidate& a, const Candidate& b) { return a.key == b.key; };
-        std::stable_sort(candidates_.begin(), candidates_.end(), less);
-        candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), same),
-                          candidates_.end());
-    }
-
-    // What a blow has driven out of its box may meet what the broad phase did not think of.
-    void look_beyond_box(std::uint32_t at)
-    {
-        if (colliders_.shape[at].kind == ShapeKind::plane) return;
-        const Box3 way = box_of_way(at);
-        if (bounds_.boxes[at].contains(way)) return;
-        BlockLists<Candidate> lists;
-        lists.start(block_count(colliders_.size(), kBoxes));
-        for_each_block(colliders_.size(), kBoxes, [&](auto begin, auto end, auto block) {
-            for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-                if (colliders_.body[i] == kNoBody || !bounds_.boxes[i].overlaps(way)) continue;
-                const PairKey key = pair_key(at, i);
-                if (i != at && filter_.allows(at, i) && worth_asking(key) && ways_cross(key))
-                    lists[block].push_back({key});
-            }
-        });
-        lists.append_to(candidates_);
-    }
-
-    void find_ways()
-    {
-        std::vector<std::uint32_t> bodies;
-        for (const Candidate& candidate : candidates_)
-            for (const std::uint32_t at : {first_of(candidate.key), second_of(candidate.key)})
-                bodies.push_back(colliders_.body[at]);
-        std::sort(bodies.begin(), bodies.end());
-        bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-        ways_.resize(bodies.size());
-        for_each_block(bodies.size(), kWays, [&](auto begin, auto end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) ways_[i] = way_from_start(bodies[i]);
-        });
-    }
-
-    Way way_from_start(std::uint32_t body) const
-    {
-        Way way;
-        way.body = body;
-        way.fast = std::binary_search(found_.begin(), found_.end(), body) && states_.dynamic(body);
-        way.ahead = std::binary_search(bounds_.fast.begin(), bounds_.fast.end(), body);
-        if (states_.kind[body] == BodyKind::static_)
-            way.trajectory.begin = poses_.at(body);
-        else
-            way.trajectory = trajectory_between(began(body), poses_.at(body),
-                                                velocities_.angular[body] * context_.dt);
-        return way;
     }
 
     std::uint32_t way_at(std::uint32_t body) const
@@ -338,7 +147,7 @@ private:
     }
 
     // When two meet next. Of those that touch already contact takes care.
-    void ask(Candidate& candidate, double since)
+    void ask(SweptPair& candidate, double since)
     {
         candidate.time = kNever;
         const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
@@ -385,12 +194,12 @@ private:
         const double slack = ball.ball + arc + parameters_.tolerance * colliders_.inner_extent[at];
         const Box3 box{begins.cwiseMin(ends).array() - slack,
                        begins.cwiseMax(ends).array() + slack};
-        return box.overlaps(box_of_way(other));
+        return box.overlaps(swept_.box_of_way(other));
     }
 
     // When a shape within one of the two meets the other: the greatest that does not touch it yet.
     Impact impact_of_core(
-        Candidate& candidate, bool of_a, std::size_t core, double since, std::size_t first)
+        SweptPair& candidate, bool of_a, std::size_t core, double since, std::size_t first)
     {
         const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
         const ImpactRule rule = rule_of(candidate.key);
@@ -408,7 +217,7 @@ private:
     // Who touches from the start what is not dynamic.
     void note_sliding()
     {
-        for (const Candidate& candidate : candidates_) {
+        for (const SweptPair& candidate : candidates_) {
             if (!candidate.pressed) continue;
             Way& a = way_of(colliders_.body[first_of(candidate.key)]);
             Way& b = way_of(colliders_.body[second_of(candidate.key)]);
@@ -419,7 +228,7 @@ private:
 
     // What slides is a little deep in what bears it, and all but its skin clears a rim that lies
     // flush with that: not held there, but left to contact, which knows both.
-    void leave_to_contact(Candidate& candidate, double since)
+    void leave_to_contact(SweptPair& candidate, double since)
     {
         if (candidate.time == kNever || candidate.pressed) return;
         const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
@@ -470,7 +279,7 @@ private:
     }
 
     // What becomes of two that meet. Whoever is changed by it is told.
-    void process(const Candidate& candidate, std::vector<std::uint32_t>& changed)
+    void process(const SweptPair& candidate, std::vector<std::uint32_t>& changed)
     {
         Way& a = way_of(colliders_.body[first_of(candidate.key)]);
         Way& b = way_of(colliders_.body[second_of(candidate.key)]);
@@ -598,25 +407,18 @@ private:
             if (way.held) hold_at(way, pose_on(way, 1));
     }
 
-    const StepContext& context_;
     const ImpactParameters& parameters_;
     const Shapes& shapes_;
     const Colliders& colliders_;
     const Surfaces& surfaces_;
-    const PairFilter& filter_;
     const Masses& masses_;
-    const Bounds& bounds_;
-    const Pairs& pairs_;
     const BodyStates& states_;
-    // Pairs whose contacts saw ahead, ascending.
-    std::span<const std::uint32_t> followed_, on_meshes_;
-    Poses& poses_;
     Velocities& velocities_;
     FastBodies& fast_;
     HeldEnergy held_energy_;
-    std::vector<std::uint32_t> found_;  // fast bodies, ascending
-    std::vector<Candidate> candidates_;
-    std::vector<Way> ways_;              // by body
+    SweptPairs swept_;
+    std::vector<SweptPair>& candidates_ = swept_.pairs;
+    std::vector<Way>& ways_ = swept_.ways;
     std::vector<std::uint32_t> riders_;  // ways that ride, or did
     struct {
         std::vector<std::uint32_t> begin;  // [ways + 1]
