@@ -51,9 +51,8 @@ OpenedFieldModule refused(const std::string& why)
                 + "; install it beside the program or its libraries, or name it in THRONG_COOKING"};
 }
 
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a program sets it as it
-// begins
-BuildFieldModule build_file;
+// A program sets it as it begins.
+BuildFieldModule build_file;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 // The first that is found, or none: `why` says of the last place what is wrong there.
 std::optional<OpenedFieldModule> find_module(std::string& why)

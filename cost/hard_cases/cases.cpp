@@ -184,6 +184,8 @@ constexpr HardCase kCases[] = {
      case_heavy_on_crowd, Fault::haste},
     {"H125", "boxes that springs join, thrown tumbling, keep their velocity and make no energy",
      case_linked_in_flight, Fault::haste},
+    {"H126", "errors fall with the step and the tolerance by the order that theory has",
+     case_orders, Fault::friction},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

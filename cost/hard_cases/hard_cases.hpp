@@ -133,6 +133,7 @@ void case_piles_of_coins(CaseBench& bench);     // H122, piles_of_coins.cpp
 void case_small_structures(CaseBench& bench);   // H123, small_structures.cpp
 void case_heavy_on_crowd(CaseBench& bench);     // H124, heavy_on_crowd.cpp
 void case_linked_in_flight(CaseBench& bench);   // H125, linked_in_flight.cpp
+void case_orders(CaseBench& bench);             // H126, orders.cpp
 
 /// Runs a scene: energy that nobody gave, as a share of the greatest in motion; without end where a
 /// body was quarantined.

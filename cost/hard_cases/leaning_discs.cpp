@@ -84,6 +84,21 @@ Leans lean(CaseBench& bench, double radius, double aspect, const How& how, int d
     return leans;
 }
 
+// Of discs of every thickness, so many draws of each.
+Leans worst_of(CaseBench& bench, double radius, const How& how)
+{
+    Leans worst;
+    for (const double aspect : {0.05, 0.1, 0.3, 1.0}) {
+        if (bench.brief() && aspect != 0.1) continue;
+        for (int draw = 1; draw <= (bench.brief() ? 2 : how.draws); ++draw) {
+            const Leans leans = lean(bench, radius, aspect, how, draw);
+            worst.made = std::max(worst.made, leans.made);
+            worst.deep = std::max(worst.deep, leans.deep);
+        }
+    }
+    return worst;
+}
+
 }  // namespace
 
 void case_leaning_discs(CaseBench& bench)
@@ -104,15 +119,7 @@ void case_leaning_discs(CaseBench& bench)
     };
     for (const How& how : std::span(hows).first(bench.brief() ? 1 : std::size(hows)))
         for (const double radius : {kSmall, kGreat}) {
-            Leans worst;
-            for (const double aspect : {0.05, 0.1, 0.3, 1.0}) {
-                if (bench.brief() && aspect != 0.1) continue;
-                for (int draw = 1; draw <= (bench.brief() ? 2 : how.draws); ++draw) {
-                    const Leans leans = lean(bench, radius, aspect, how, draw);
-                    worst.made = std::max(worst.made, leans.made);
-                    worst.deep = std::max(worst.deep, leans.deep);
-                }
-            }
+            const Leans worst = worst_of(bench, radius, how);
             // What slaps down may miss the law in a step.
             bench.forgive_residual();
             const bool coins = radius == kSmall;

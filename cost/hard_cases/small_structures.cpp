@@ -52,8 +52,8 @@ Structure brick_wall(int courses, int bricks, bool always)
         "wall of " + std::to_string(courses) + " courses", kBrickMass, kBrick, {}, always};
     for (int k = 0; k < courses; ++k)
         for (int i = 0; i < bricks; ++i)
-            wall.poses.emplace_back(Vec3(0.202 * i + 0.07 * (k % 2), 0, 0.03 + 0.06 * k),
-                                    Quat::Identity());
+            wall.poses.push_back(
+                {Vec3(0.202 * i + 0.07 * (k % 2), 0, 0.03 + 0.06 * k), Quat::Identity()});
     return wall;
 }
 
@@ -64,8 +64,8 @@ Structure round_tower()
     for (int k = 0; k < 40; ++k)
         for (int i = 0; i < kRound; ++i) {
             const double angle = 2 * std::numbers::pi * (i + 0.5 * (k % 2)) / kRound;
-            tower.poses.emplace_back(Vec3(std::cos(angle), std::sin(angle), 0.03 + 0.06 * k),
-                                     about_z(angle + std::numbers::pi / 2));
+            tower.poses.push_back({Vec3(std::cos(angle), std::sin(angle), 0.03 + 0.06 * k),
+                                   about_z(angle + std::numbers::pi / 2)});
         }
     return tower;
 }
@@ -78,9 +78,9 @@ Structure tower_of_blocks()
         for (int i = -1; i <= 1; ++i) {
             const double aside = 0.025 * i, up = 0.0075 + 0.015 * k;
             if (k % 2 == 0)
-                tower.poses.emplace_back(Vec3(0, aside, up), Quat::Identity());
+                tower.poses.push_back({Vec3(0, aside, up), Quat::Identity()});
             else
-                tower.poses.emplace_back(Vec3(aside, 0, up), about_z(std::numbers::pi / 2));
+                tower.poses.push_back({Vec3(aside, 0, up), about_z(std::numbers::pi / 2)});
         }
     return tower;
 }
@@ -90,8 +90,8 @@ Structure pyramid()
     Structure pyramid{"pyramid of 465 cubes", 0.064, Vec3::Constant(0.02), {}, true};
     for (int k = 0; k < 30; ++k)
         for (int i = 0; i < 30 - k; ++i)
-            pyramid.poses.emplace_back(Vec3(0.041 * (i - (29 - k) / 2.0), 0, 0.02 + 0.04 * k),
-                                       Quat::Identity());
+            pyramid.poses.push_back(
+                {Vec3(0.041 * (i - (29 - k) / 2.0), 0, 0.02 + 0.04 * k), Quat::Identity()});
     return pyramid;
 }
 
@@ -102,8 +102,8 @@ Structure stacks(const char* name, double half, double mass, int across, int dee
     for (int k = 0; k < high; ++k)
         for (int i = 0; i < across; ++i)
             for (int j = 0; j < deep; ++j)
-                stacks.poses.emplace_back(
-                    Vec3(2.02 * half * i, 2.02 * half * j, half * (2 * k + 1)), Quat::Identity());
+                stacks.poses.push_back(
+                    {Vec3(2.02 * half * i, 2.02 * half * j, half * (2 * k + 1)), Quat::Identity()});
     return stacks;
 }
 

@@ -65,7 +65,7 @@ find_edge(const Vec3T<Real>& half, const Vec3T<Real>& direction, Vec3T<Real>& fr
 {
     int axis = 0;
     direction.cwiseAbs().minCoeff(&axis);
-    std::uint32_t name = static_cast<std::uint32_t>(axis);
+    auto name = static_cast<std::uint32_t>(axis);
     for (int k = 0; k < 3; ++k) {
         from[k] = k == axis || direction[k] < 0 ? -half[k] : half[k];
         if (k != axis) name = 2 * name + (direction[k] < 0 ? 1 : 0);

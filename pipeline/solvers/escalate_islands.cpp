@@ -61,6 +61,19 @@ Effort at_most(Effort effort, std::uint8_t times)
     return effort;
 }
 
+// The most of a wish that a budget has room for, and that steps may be cut for.
+template <class Cost>
+Effort that_fits(Effort effort, std::size_t left, const StepContext& context, const Cost& cost)
+{
+    while (effort.times > 1
+           && (cost(effort) > left
+               || (!effort.direct && context.substep() / effort.times < kFinestSubstep))) {
+        effort.times = fewer(effort.times);
+        effort.direct = false;
+    }
+    return effort;
+}
+
 }  // namespace
 
 Effort effort_for(double strain, bool exact)
@@ -117,13 +130,9 @@ void escalate_islands(const StepContext& context,
     while (most > 2 && !all_fit(most)) most = fewer(most);
     std::size_t left = kBudget;
     for (const auto& wish : wishes) {
-        Effort effort = at_most(wish.effort, most);
-        while (effort.times > 1
-               && (cost(wish.island, effort) > left
-                   || (!effort.direct && context.substep() / effort.times < kFinestSubstep))) {
-            effort.times = fewer(effort.times);
-            effort.direct = false;
-        }
+        const Effort effort =
+            that_fits(at_most(wish.effort, most), left, context,
+                      [&](const Effort& some) { return cost(wish.island, some); });
         left -= cost(wish.island, effort);
         overloaded.work += cost(wish.island, effort);
         overloaded.efforts[wish.island] = effort;

@@ -162,21 +162,29 @@ private:
         if (!ahead || triangles || candidate.pressed) {
             const std::size_t first = !ahead ? kHeldAhead : triangles ? kWhole : kTouching;
             const bool of_a = way_a.fast || (!way_b.fast && states_.dynamic(way_a.body));
-            const std::uint32_t at = of_a ? a : b;
-            if (!(colliders_.inner_extent[at] > 0)) return;
-            impact = {};
-            const std::size_t cores = core_count(at);
-            for (std::size_t core = 0; core < cores; ++core) {
-                if (cores > 1 && !core_comes_near(at, core, of_a ? b : a)) continue;
-                const Impact met = impact_of_core(candidate, of_a, core, since, first);
-                if (met.state == ToiState::hit
-                    && (impact.state != ToiState::hit || met.time < impact.time))
-                    impact = met;
-            }
+            impact = impact_of_cores(candidate, of_a, since, first);
         }
         if (impact.state != ToiState::hit) return;
         candidate.time = impact.time;
         candidate.normal = impact.normal;
+    }
+
+    // The first of what is within one of the two with the other.
+    Impact impact_of_cores(SweptPair& candidate, bool of_a, double since, std::size_t first)
+    {
+        const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
+        const std::uint32_t at = of_a ? a : b;
+        Impact impact;
+        if (!(colliders_.inner_extent[at] > 0)) return impact;
+        const std::size_t cores = core_count(at);
+        for (std::size_t core = 0; core < cores; ++core) {
+            if (cores > 1 && !core_comes_near(at, core, of_a ? b : a)) continue;
+            const Impact met = impact_of_core(candidate, of_a, core, since, first);
+            if (met.state == ToiState::hit
+                && (impact.state != ToiState::hit || met.time < impact.time))
+                impact = met;
+        }
+        return impact;
     }
 
     // Whether the ways of a ball within a solid and of another shape cross.

@@ -108,18 +108,13 @@ bool anybody_swings(const Layout& layout, const Shapes& shapes, const Colliders&
                        [&](std::uint32_t body) { return (colliders.may_swing[body] & how) != 0; });
 }
 
-// Of those that turn, or touch somebody who does; none where nobody does.
-void find_rims(double dt,
-               const Layout& layout,
-               const Poses& poses,
-               const Velocities& velocities,
-               const Shapes& shapes,
-               const Colliders& colliders,
-               std::vector<RoundRim>& rims)
+// Of all that have one, where they are; none where nobody has.
+void place_rims(const Layout& layout,
+                const Poses& poses,
+                const Shapes& shapes,
+                const Colliders& colliders,
+                std::vector<RoundRim>& rims)
 {
-    constexpr double kSeen = 1e-4;  // rad, in a step
-    // Who is held at more places rolls nowhere: in a heap it would cost a fifth of the step.
-    constexpr std::uint32_t kMostContacts = 2;
     rims.clear();
     if (shapes.cylinders.empty()) return;
     for (std::size_t i = 1; i <= layout.dynamic; ++i) {
@@ -132,6 +127,21 @@ void find_rims(double dt,
         for (int k = 0; k < 3; ++k) rims[i].axis[k] = axis[k];
         rims[i].radius = shapes.cylinders[colliders.shape[collider].index].radius;
     }
+}
+
+// Of those that turn, or touch somebody who does; none where nobody does.
+void find_rims(double dt,
+               const Layout& layout,
+               const Poses& poses,
+               const Velocities& velocities,
+               const Shapes& shapes,
+               const Colliders& colliders,
+               std::vector<RoundRim>& rims)
+{
+    constexpr double kSeen = 1e-4;  // rad, in a step
+    // Who is held at more places rolls nowhere: in a heap it would cost a fifth of the step.
+    constexpr std::uint32_t kMostContacts = 2;
+    place_rims(layout, poses, shapes, colliders, rims);
     if (rims.empty()) return;
     const auto turns = [&](std::size_t i) {
         return i > 0 && i <= layout.dynamic
@@ -210,6 +220,29 @@ std::uint32_t place_points(const Layout& layout, ContactConstraints<Real>& const
     return points;
 }
 
+// Whose axes turn, who swings or is driven, has the lists that tell of it.
+template <class Real>
+void make_room(const StepContext& context,
+               const SolverParameters& parameters,
+               const Layout& layout,
+               bool swings,
+               ContactConstraints<Real>& constraints)
+{
+    const std::size_t blocks = layout.points.size();
+    const auto when = [](bool asked, std::size_t count) { return asked ? count : 0; };
+    const std::uint32_t points = place_points(layout, constraints);
+    constraints.blocks.resize(blocks);
+    constraints.points.resize(points);
+    constraints.restitutions.resize(when(context.has(Effect::restitution), blocks));
+    constraints.surface_velocities.resize(
+        when(constraints.surfaces_turn || constraints.axes_turn || !constraints.prescribed.empty(),
+             blocks));
+    constraints.turning_arms.resize(when(swings, blocks));
+    constraints.point_frictions.resize(
+        when(parameters.friction_at_points_or_pyramid(context.effects), points));
+    constraints.rolling_frictions.resize(when(context.has(Effect::rolling_friction), blocks));
+}
+
 }  // namespace
 
 template <class Real>
@@ -260,27 +293,15 @@ void prepare_constraints(const StepContext& context,
          solver_index < constraints.bodies.size(); ++solver_index)
         fill(layout.body_of_solver_index[solver_index], solver_index);
 
-    const std::size_t blocks = layout.points.size();
-    constraints.blocks.resize(blocks);
-    const std::uint32_t points = place_points(layout, constraints);
-    constraints.points.resize(points);
-    constraints.restitutions.resize(context.has(Effect::restitution) ? blocks : 0);
     constraints.surfaces_turn = anybody_carries(constraints.bodies, context.dt);
     constraints.axes_turn = axes_turn && context.has(Effect::friction);
     if (context.has(Effect::drive))
         prepare_prescribed_velocities(prescribed, layout, constraints);
     else
         constraints.prescribed.clear();
-    constraints.surface_velocities.resize(constraints.surfaces_turn || constraints.axes_turn
-                                                  || !constraints.prescribed.empty()
-                                              ? blocks
-                                              : 0);
     find_rims(context.dt, layout, poses, velocities, shapes, colliders, constraints.rims);
-    const bool turn = !constraints.rims.empty() || anybody_swings(layout, shapes, colliders);
-    constraints.turning_arms.resize(turn ? blocks : 0);
-    constraints.point_frictions.resize(
-        parameters.friction_at_points_or_pyramid(context.effects) ? points : 0);
-    constraints.rolling_frictions.resize(context.has(Effect::rolling_friction) ? blocks : 0);
+    const bool swings = !constraints.rims.empty() || anybody_swings(layout, shapes, colliders);
+    make_room(context, parameters, layout, swings, constraints);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
