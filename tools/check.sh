@@ -5,7 +5,7 @@
 #                          20 s of a processor for each file
 #   tools/check.sh all     clang-tidy on everything, the other presets too, and the pages of the public
 #                          headers; a first use on a bare Debian (as root); looks at the page of
-#                          throng cost in a browser; fuzzes a little;
+#                          throng cost in a browser, of few and of many settings; fuzzes a little;
 #                          then every case whole, whose time it tells, and the fixed random scenes
 set -euo pipefail
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
@@ -52,11 +52,22 @@ if [[ ${1:-} == all ]]; then
     tools/first_use.sh
     build_preset release
     say "the page of throng cost, in a browser"
-    need_packages chromium-headless-shell nodejs npm
+    need_packages chromium-headless-shell
+    command -v npm >/dev/null || need_packages nodejs npm
     ./throng cost stacks:10 --minutes 0.5 --out build/page --quiet
     npm pack --silent --pack-destination build/page axe-core >/dev/null
     tar -xzf build/page/axe-core-*.tgz -C build/page package/axe.min.js
     tools/check_page.py build/page/cost.html build/page/package/axe.min.js
+    say "the same with five hundred settings"
+    for dt in 1/{30,60,90,120,240,300,480,600,960,1920}; do
+        for substeps in {1..10}; do
+            for integrator in semi_implicit euler midpoint splitting rk4; do
+                echo "dt=$dt substeps=$substeps integrator=$integrator"
+            done
+        done
+    done >build/page/settings.txt
+    ./throng cost spring:1 --settings build/page/settings.txt --out build/page/many --quiet
+    tools/check_page.py build/page/many/cost.html build/page/package/axe.min.js
     build_preset perf
     build_preset fuzz
     for fuzzer in build/fuzz/tests/fuzz/*_fuzz; do

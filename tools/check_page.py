@@ -1,20 +1,30 @@
 #!/usr/bin/env python3
 """Opens a page of `throng cost` in headless Chromium, narrow, middling and wide, light and dark, and
 tells what is wrong with it: errors of its script, anything it loads, anything wider than the window,
-a table that does not sort, dots that no key reaches, and what axe finds that hinders readers.
+a table that does not sort, dots that no key reaches, and what axe finds that hinders readers. Of each a
+picture is taken and looked at: the paper and the marks have their colors, it is neither empty nor
+full, and nothing is cut at its edge.
 
-usage: check_page.py PAGE AXE.JS
+usage: check_page.py PAGE AXE.JS [FOLDER FOR PICTURES]
 """
 import json
 import pathlib
 import re
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 WIDTHS = (400, 800, 1280)
 MOST_BYTES = 1_000_000
 MOST_MS = 1000
+HEIGHT = 900
+# Of :root in page.html, light and dark.
+PAPER = {False: (0xff, 0xff, 0xff), True: (0x16, 0x18, 0x1b)}
+MARK = {False: (0x00, 0x61, 0x4a), True: (0x2f, 0xc1, 0x97)}
+LEAST_MARKS = 200  # pixels: the line beside the advice alone has as many
+INKED = (0.01, 0.6)  # of all pixels, what is not paper
 
 FIRST = """<script>
 window.troubles = [];
@@ -51,17 +61,71 @@ window.addEventListener("load", async () => {
 </script>"""
 
 
+def browse(path, width, dark, *words):
+    return subprocess.run(
+        ["chromium-headless-shell", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+         "--virtual-time-budget=20000", f"--window-size={width},{HEIGHT}",
+         f"--blink-settings=preferredColorScheme={0 if dark else 1}", *words, path.as_uri()],
+        capture_output=True, text=True, timeout=120, check=False).stdout
+
+
+def rows_of(png):
+    """The rows of a picture of 8 bits a color, without interlace, each a list of (r, g, b)."""
+    at, size, packed = 8, 3, b""
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at:at + 8])
+        data = png[at + 8:at + 8 + length]
+        if kind == b"IHDR":
+            width, _, depth, color, _, _, interlace = struct.unpack(">IIBBBBB", data)
+            assert depth == 8 and color in (2, 6) and not interlace
+            size = 3 if color == 2 else 4
+        if kind == b"IDAT":
+            packed += data
+        at += length + 12
+    raw, before, rows = zlib.decompress(packed), bytes(width * size), []
+    for start in range(0, len(raw), width * size + 1):
+        line = bytearray(raw[start + 1:start + 1 + width * size])
+        for i, byte in enumerate(line):
+            left = line[i - size] if i >= size else 0
+            up, corner = before[i], before[i - size] if i >= size else 0
+            nearest = min((left, up, corner), key=lambda one: abs(left + up - corner - one))
+            line[i] = (byte + (0, left, up, (left + up) // 2, nearest)[raw[start]]) % 256
+        rows.append([tuple(line[i:i + 3]) for i in range(0, len(line), size)])
+        before = line
+    return rows
+
+
+def seen(rows, dark):
+    """What is wrong with a picture of the page's beginning."""
+    found = []
+    if any(rows[y][x] != PAPER[dark] for y in (0, -1) for x in (0, -1)):
+        found.append("its corners are not of the paper's color")
+    if any(row[-1] != PAPER[dark] for row in rows):
+        found.append("something is cut at its right edge")
+    marks = sum(pixel == MARK[dark] for row in rows for pixel in row)
+    if marks < LEAST_MARKS:
+        found.append(f"{marks} pixels of the marks' color, wanted {LEAST_MARKS} at least")
+    inked = sum(pixel != PAPER[dark] for row in rows for pixel in row) / (len(rows) * len(rows[0]))
+    if not INKED[0] <= inked <= INKED[1]:
+        found.append(f"{inked:.0%} of it is not paper")
+    return found
+
+
+def pictured(path, width, dark, folder):
+    """Takes the picture, and says what is wrong with it."""
+    picture = pathlib.Path(folder) / f"{width}-{'dark' if dark else 'light'}.png"
+    picture.unlink(missing_ok=True)
+    browse(path, width, dark, f"--screenshot={picture}")
+    return seen(rows_of(picture.read_bytes()), dark) if picture.exists() else ["no picture of it"]
+
+
 def probed(page, axe, width, dark):
     """What the page says of itself, as a dictionary; empty where it never came to it."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "page.html"
         text = page.replace("<head>", "<head>" + FIRST, 1)
         path.write_text(text.replace("</body>", f"<script>{axe}</script>{PROBE}</body>"))
-        dom = subprocess.run(
-            ["chromium-headless-shell", "--no-sandbox", "--disable-gpu", "--dump-dom",
-             "--virtual-time-budget=20000", f"--window-size={width},900",
-             f"--blink-settings=preferredColorScheme={0 if dark else 1}",
-             path.as_uri()], capture_output=True, text=True, timeout=120, check=False).stdout
+        dom = browse(path, width, dark, "--dump-dom")
     found = re.search(r'<pre id="probe">(.*?)</pre>', dom, re.S)
     if not found:
         return {}
@@ -89,16 +153,18 @@ def findings(said):
 
 
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) not in (3, 4):
         sys.exit(__doc__)
-    page = pathlib.Path(sys.argv[1]).read_text()
+    path = pathlib.Path(sys.argv[1]).resolve()
+    folder = pathlib.Path(sys.argv[3] if len(sys.argv) > 3 else path.parent).resolve()
+    page = path.read_text()
     axe = pathlib.Path(sys.argv[2]).read_text()
     failed = len(page.encode()) > MOST_BYTES
     if failed:
         print(f"{len(page.encode())} bytes, wanted at most {MOST_BYTES}")
     for width in WIDTHS:
         for dark in (False, True):
-            found = findings(probed(page, axe, width, dark))
+            found = findings(probed(page, axe, width, dark)) + pictured(path, width, dark, folder)
             failed = failed or bool(found)
             print(f"{width} pixels, {'dark' if dark else 'light'}: {'; '.join(found) or 'well'}")
     return 1 if failed else 0
