@@ -26,6 +26,7 @@ WINDOWS = ("--threads", 1, "--windows", 12)
 # Of what is as exact as wanted, so many of the cheapest are timed in turn with what is recommended.
 NEAR = 5
 TIMED = 2  # so many times, each by seven rounds
+MOST_OF_FRONT = 7  # settings that are printed of each
 
 STEPS = [("dt", ("1/30", "", "1/120", "1/240")), ("substeps", ("1", "2", "", "8", "16"))]
 PRECISION = ("precision", ("", "double"))
@@ -161,6 +162,39 @@ def default_table(scenes):
                  rows)
 
 
+def front_of(scene):
+    """Of all that was measured: each more exact than all that are faster."""
+    front = []
+    for point in sorted(scene.points.values(), key=lambda each: (each.time, each.at_most)):
+        if not front or point.at_most < front[-1].at_most:
+            front.append(point)
+    return front
+
+
+def thinned(front):
+    """The ends, and of what lies between them one for each equal step of the logarithm of time."""
+    if len(front) <= MOST_OF_FRONT:
+        return front
+    least, span = front[0].time, math.log(front[-1].time / front[0].time)
+    wanted = [least * math.exp(span * k / (MOST_OF_FRONT - 1)) for k in range(MOST_OF_FRONT)]
+    kept = [min(front, key=lambda each: abs(math.log(each.time / time))) for time in wanted]
+    return [each for each in front if each in kept]
+
+
+def fronts_table(scenes):
+    """A row a scene, fastest first, and among them the scene as it is, on the front or not."""
+    rows = []
+    for scene in scenes:
+        own = scene.points[frozenset()]
+        front = front_of(scene)
+        told = sorted({id(each): each for each in [*thinned(front), own]}.values(),
+                      key=lambda each: each.time)
+        texts = [f"{figure(each.time)}: {figure(each.at_most)}" for each in told]
+        texts = [f"**{text}**" if each is own else text for text, each in zip(texts, told)]
+        rows.append([f"`{scene.name}`", "; ".join(texts), "yes" if own in front else "no"])
+    return table(["scene", "ms: at most, m", "default on the front"], rows)
+
+
 def write_sweep(scenes, path):
     """A row a setting; of each scene error at most and time, empty where it was not tried."""
     keys = {}
@@ -186,7 +220,8 @@ def main():
     asked = options_of(__doc__, "regret", SCENES).parse_args()
     runs = Runs(asked.throng, asked.folder)
     scenes = [Scene(runs, name) for name in asked.scenes.split(",")]
-    tables = {"performance.md": regret_table(scenes), "accuracy.md": default_table(scenes)}
+    tables = {"performance.md": regret_table(scenes),
+              "accuracy.md": default_table(scenes) + "\n" + fronts_table(scenes)}
     for page, text in tables.items():
         print("\n" + text, end="")
         if asked.docs:
