@@ -28,7 +28,7 @@ constexpr MeasureInfo kInfo[kMeasures] = {
 };
 
 constexpr int kDraws = 1000;
-constexpr double kShare = 0.95;
+constexpr double kShare = 0.99;
 
 double angle_between(const Quat& a, const Quat& b)
 {
@@ -106,7 +106,7 @@ double rms_at_most(std::span<const Errors> trials, std::size_t place)
     const auto bound = drawn.begin() + static_cast<std::ptrdiff_t>(kShare * kDraws);
     std::nth_element(drawn.begin(), bound, drawn.end());
     const double mean = sum / kDraws;
-    return *bound + 0.5 * std::sqrt(std::max(0.0, squares / kDraws - mean * mean));
+    return *bound + std::sqrt(std::max(0.0, squares / kDraws - mean * mean));
 }
 
 }  // namespace throng

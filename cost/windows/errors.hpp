@@ -70,11 +70,12 @@ void compare(const BodyStates& states, const BodyStates& reference, Errors& erro
 /// The root of the average over trials of what has that place.
 double rms(std::span<const Errors> trials, std::size_t place);
 
-/// What rms() stays below in 19 of 20 other choices of as many trials like these: by drawing from
-/// them again and again (bootstrap), always in the same way. Of one trial it is rms() itself.
+/// What rms() stays below in 19 of 20 other choices of as many trials like these: the 99th
+/// percentile of drawing from them again and again (bootstrap), always in the same way, and a
+/// standard error more, as drawing from few tells their spread too small. Of one trial it is rms()
+/// itself.
 ///
-/// Source: Efron and Tibshirani, An introduction to the bootstrap (1993), chapter 13; with half a
-///         standard error more, as drawing from few tells their spread too small.
+/// Source: Efron and Tibshirani, An introduction to the bootstrap (1993), chapter 13.
 double rms_at_most(std::span<const Errors> trials, std::size_t place);
 
 }  // namespace throng
