@@ -107,7 +107,7 @@ class Promises(unittest.TestCase):
     def test_of_a_scene_without_seeds_are_held_on_other_windows(self):
         asked = []
         self.found(MadeRuns(off=lambda options: asked.append(options[:2]) or 1), "stacks:50")
-        self.assertIn(("--seconds", 3.0), asked)
+        self.assertIn(("--windows", 44), asked)
         self.assertNotIn("--seed", [options[0] for options in asked])
 
 
