@@ -66,24 +66,24 @@ def promises_of(runs, scene, asked):
     # The reference need be no nearer than for the least of them.
     least = f"{min(each.limit for each in found):.3g}"
     for k, other in enumerate(others):
-        words = (*other, *common, "--error", least)
-        report = measured(runs, f"{folder}/fresh-{k}", scene, words, settings, asked.minutes)
+        report = measured(runs, f"{folder}/fresh-{k}", scene, (*other, *common), least, settings,
+                          asked.minutes)
         for each in found:
             point = report.of(each.setting)
             each.errors.append(point.error if point.whole else None)
     return found
 
 
-def measured(runs, name, scene, words, settings, minutes):
+def measured(runs, name, scene, words, least, settings, minutes):
     """Each of the settings measured whole, against a reference that is nearer than the least of what
     was promised, in more time where this is too short."""
     # With nothing changed the scene as it is is all there is to measure.
     how = {"settings": settings} if settings else {}
     more = () if settings else ("--dials", "none")
     while True:
-        report = runs.cost(f"{name}-{minutes:g}", scene, *words, *more, "--minutes", minutes,
-                           **how)
-        near = report.off <= float(words[-1]) or minutes >= MOST_MINUTES
+        report = runs.cost(f"{name}-{minutes:g}", scene, *words, "--error", least, *more,
+                           "--minutes", minutes, **how)
+        near = report.off <= float(least) or minutes >= MOST_MINUTES
         if near and all(report.of(setting).done for setting in ["", *settings]):
             return report
         minutes *= 2

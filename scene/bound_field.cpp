@@ -3,10 +3,10 @@
 namespace throng {
 namespace {
 
-/// What is kept of each kind of member. `Held` is an object, constant or not.
-template <template <class> class As, class Object, class Held>
+/// What is kept of each kind of member.
+template <template <class> class As, class Object>
 struct Binder {
-    Held& object;
+    As<Object>& object;
 
     template <class Value>
     PlaceOf<As> operator()(Value Object::*member) const
@@ -44,12 +44,12 @@ struct Binder {
 template <class Object>
 BoundFields bound(const Object& object, Fields<Object> fields)
 {
-    return Binder<ToRead, Object, const Object>{object}.all(fields);
+    return Binder<ToRead, Object>{object}.all(fields);
 }
 template <class Object>
 WritableFields writable(Object& object, Fields<Object> fields)
 {
-    return Binder<ToWrite, Object, Object>{object}.all(fields);
+    return Binder<ToWrite, Object>{object}.all(fields);
 }
 
 // Of every object that fields.hpp has a table of.

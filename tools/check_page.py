@@ -20,9 +20,6 @@ WIDTHS = (400, 800, 1280)
 MOST_BYTES = 1_000_000
 MOST_MS = 1000
 HEIGHT = 900
-# Of :root in page.html, light and dark.
-PAPER = {False: (0xff, 0xff, 0xff), True: (0x16, 0x18, 0x1b)}
-MARK = {False: (0x00, 0x61, 0x4a), True: (0x2f, 0xc1, 0x97)}
 LEAST_MARKS = 200  # pixels: the line beside the advice alone has as many
 INKED = (0.01, 0.6)  # of all pixels, what is not paper
 
@@ -95,28 +92,35 @@ def rows_of(png):
     return rows
 
 
-def seen(rows, dark):
+def color(page, name, dark):
+    """One of those that the page's style names, light first, as (r, g, b)."""
+    return tuple(bytes.fromhex(re.findall(rf"--{name}: #([0-9a-f]{{6}});", page)[int(dark)]))
+
+
+def seen(rows, paper, mark):
     """What is wrong with a picture of the page's beginning."""
     found = []
-    if any(rows[y][x] != PAPER[dark] for y in (0, -1) for x in (0, -1)):
+    if any(rows[y][x] != paper for y in (0, -1) for x in (0, -1)):
         found.append("its corners are not of the paper's color")
-    if any(row[-1] != PAPER[dark] for row in rows):
+    if any(row[-1] != paper for row in rows):
         found.append("something is cut at its right edge")
-    marks = sum(pixel == MARK[dark] for row in rows for pixel in row)
+    marks = sum(pixel == mark for row in rows for pixel in row)
     if marks < LEAST_MARKS:
         found.append(f"{marks} pixels of the marks' color, wanted {LEAST_MARKS} at least")
-    inked = sum(pixel != PAPER[dark] for row in rows for pixel in row) / (len(rows) * len(rows[0]))
+    inked = sum(pixel != paper for row in rows for pixel in row) / (len(rows) * len(rows[0]))
     if not INKED[0] <= inked <= INKED[1]:
         found.append(f"{inked:.0%} of it is not paper")
     return found
 
 
-def pictured(path, width, dark, folder):
+def pictured(path, page, width, dark, folder):
     """Takes the picture, and says what is wrong with it."""
     picture = pathlib.Path(folder) / f"{width}-{'dark' if dark else 'light'}.png"
     picture.unlink(missing_ok=True)
     browse(path, width, dark, f"--screenshot={picture}")
-    return seen(rows_of(picture.read_bytes()), dark) if picture.exists() else ["no picture of it"]
+    if not picture.exists():
+        return ["no picture of it"]
+    return seen(rows_of(picture.read_bytes()), color(page, "paper", dark), color(page, "mark", dark))
 
 
 def probed(page, axe, width, dark):
@@ -164,7 +168,8 @@ def main():
         print(f"{len(page.encode())} bytes, wanted at most {MOST_BYTES}")
     for width in WIDTHS:
         for dark in (False, True):
-            found = findings(probed(page, axe, width, dark)) + pictured(path, width, dark, folder)
+            found = findings(probed(page, axe, width, dark))
+            found += pictured(path, page, width, dark, folder)
             failed = failed or bool(found)
             print(f"{width} pixels, {'dark' if dark else 'light'}: {'; '.join(found) or 'well'}")
     return 1 if failed else 0

@@ -21,6 +21,7 @@ leave() {
 }
 trap leave EXIT
 say "a bare Debian"
+mkdir -p "$root/build"
 debootstrap --variant=minbase bookworm "$bare" >"$root/build/first_use.log"
 mount -t proc proc "$bare/proc"
 mount --bind /dev "$bare/dev"

@@ -49,6 +49,17 @@ void report_order(CaseBench& bench,
                  std::abs(order - expected), kOff, "1");
 }
 
+// The same with one thing more set.
+How with(const How& how, const std::function<void(Settings&)>& more)
+{
+    How both = how;
+    both.set = [set = how.set, more](Settings& settings) {
+        set(settings);
+        more(settings);
+    };
+    return both;
+}
+
 // The greatest overlap of ten boxes on one another that are at rest.
 double overlap_of_stack(CaseBench& bench, const How& how)
 {
@@ -73,18 +84,35 @@ void order_of_overlap(CaseBench& bench, const How& how, double expected)
     const double substeps[] = {2, 4, 8, 16, 32};
     std::vector<double> steps, overlaps;
     for (const double each : std::span(substeps).first(bench.brief() ? 3 : std::size(substeps))) {
-        How with = how;
-        with.set = [&](Settings& settings) {
-            how.set(settings);
-            settings.substeps = static_cast<int>(each);
-        };
+        const auto set = [&](Settings& settings) { settings.substeps = static_cast<int>(each); };
         steps.push_back(1 / each);
-        overlaps.push_back(overlap_of_stack(bench, with));
+        overlaps.push_back(overlap_of_stack(bench, with(how, set)));
     }
     report_order(bench, how, "the overlap in the substep", expected, steps, overlaps);
 }
 
-// How far eight boxes slide until they stop, off what Coulomb's law has, rms.
+// Runs for a time, s, and tells how far bodies are off where they should be then, rms: what `off`
+// has of each, by its place in the list and where it is in the axes of the whole.
+double rms_at_end(CaseBench& bench,
+                  const How& how,
+                  const Scene& scene,
+                  std::span<const std::uint32_t> bodies,
+                  double time,
+                  const std::function<double(std::size_t, const Vec3&)>& off)
+{
+    double squares = 0;
+    bench.run(scene, time, [&](World& world, double) {
+        squares = 0;
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            const Vec3 at = how.place.inverse() * world.pose(world.bodies()[bodies[i]]).position;
+            squares += std::pow(off(i, at), 2) / static_cast<double>(bodies.size());
+        }
+        return true;
+    });
+    return std::sqrt(squares);
+}
+
+// How far eight boxes slide until they stop, off what Coulomb's law has.
 double error_of_stop(CaseBench& bench, const How& how)
 {
     SceneParts parts(bench.scene());
@@ -99,21 +127,12 @@ double error_of_stop(CaseBench& bench, const How& how)
         boxes.push_back(parts.box(wood, 1, Vec3(0.5, 0.5, 0.1), how.place * at));
         parts.body(boxes.back()).velocity = how.place.orientation * Vec3(speed, 0, 0);
     }
-    double squares = 0;
-    bench.run(parts.scene(), 2, [&](World& world, double) {
-        squares = 0;
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const Vec3 at = how.place.inverse() * world.pose(world.bodies()[boxes[i]]).position;
-            const double way = speeds[i] * speeds[i] / (2 * friction * kGravity);
-            squares += (at.x() - way) * (at.x() - way) / static_cast<double>(boxes.size());
-        }
-        return true;
+    return rms_at_end(bench, how, parts.scene(), boxes, 2, [&](std::size_t i, const Vec3& at) {
+        return at.x() - speeds[i] * speeds[i] / (2 * friction * kGravity);
     });
-    return std::sqrt(squares);
 }
 
-// Eight balls that fall and bounce without loss for 3 s: how far they are from where they should
-// be, rms.
+// Eight balls that fall and bounce without loss for 3 s.
 double error_of_bounces(CaseBench& bench, const How& how)
 {
     SceneParts parts(bench.scene());
@@ -127,19 +146,11 @@ double error_of_bounces(CaseBench& bench, const How& how)
         balls.push_back(parts.ball(
             ivory, 1, radius,
             how.place * Vec3(3.0 * static_cast<double>(balls.size()), 0, height + radius)));
-    double squares = 0;
-    bench.run(parts.scene(), time, [&](World& world, double) {
-        squares = 0;
-        for (std::size_t i = 0; i < balls.size(); ++i) {
-            const double fall = std::sqrt(2 * heights[i] / kGravity);
-            const double since = std::fmod(time - fall, 2 * fall);
-            const double height = kGravity * since * (fall - since / 2);
-            const Vec3 at = how.place.inverse() * world.pose(world.bodies()[balls[i]]).position;
-            squares += std::pow(at.z() - radius - height, 2) / static_cast<double>(balls.size());
-        }
-        return true;
+    return rms_at_end(bench, how, parts.scene(), balls, time, [&](std::size_t i, const Vec3& at) {
+        const double fall = std::sqrt(2 * heights[i] / kGravity);
+        const double since = std::fmod(time - fall, 2 * fall);
+        return at.z() - radius - kGravity * since * (fall - since / 2);
     });
-    return std::sqrt(squares);
 }
 
 std::vector<double>
@@ -147,12 +158,8 @@ errors_by_step(CaseBench& bench, const How& how, double (*error)(CaseBench&, con
 {
     std::vector<double> errors;
     for (const double dt : kSteps) {
-        How with = how;
-        with.set = [&](Settings& settings) {
-            how.set(settings);
-            settings.dt = dt;
-        };
-        errors.push_back(error(bench, with));
+        const auto set = [&](Settings& settings) { settings.dt = dt; };
+        errors.push_back(error(bench, with(how, set)));
     }
     return errors;
 }

@@ -177,9 +177,9 @@ void SweptPairs::find_ways()
     });
 }
 
-Way SweptPairs::way_from_start(std::uint32_t body) const
+SweptWay SweptPairs::way_from_start(std::uint32_t body) const
 {
-    Way way;
+    SweptWay way;
     way.body = body;
     way.fast = std::binary_search(found_.begin(), found_.end(), body) && states_.dynamic(body);
     way.ahead = std::binary_search(bounds_.fast.begin(), bounds_.fast.end(), body);

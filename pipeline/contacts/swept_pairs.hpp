@@ -25,7 +25,7 @@ struct SweptPair {
 };
 
 /// The way of a body from some time on: that of another it has come to ride on, or its own.
-struct Way {
+struct SweptWay {
     std::uint32_t body = kNoBody;
     RigidTrajectory trajectory;
     Pose attached;                  // the body in the frame that is swept
@@ -63,7 +63,7 @@ public:
     void find(const std::vector<std::uint32_t>& woke);
 
     std::vector<SweptPair> pairs;  // by key
-    std::vector<Way> ways;         // of all bodies in them, by body
+    std::vector<SweptWay> ways;    // of all bodies in them, by body
 
     /// Round all of a collider's way.
     Box3 box_of_way(std::uint32_t at) const;
@@ -79,7 +79,7 @@ private:
     void find_pairs();
     void look_beyond_box(std::uint32_t at);
     void find_ways();
-    Way way_from_start(std::uint32_t body) const;
+    SweptWay way_from_start(std::uint32_t body) const;
 
     const StepContext& context_;
     const ImpactParameters& parameters_;

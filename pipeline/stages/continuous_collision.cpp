@@ -100,15 +100,17 @@ private:
 
     std::uint32_t way_at(std::uint32_t body) const
     {
-        const auto less = [](const Way& way, std::uint32_t wanted) { return way.body < wanted; };
+        const auto less = [](const SweptWay& way, std::uint32_t wanted) {
+            return way.body < wanted;
+        };
         const auto found = std::lower_bound(ways_.begin(), ways_.end(), body, less);
         return static_cast<std::uint32_t>(found - ways_.begin());
     }
-    Way& way_of(std::uint32_t body) { return ways_[way_at(body)]; }
+    SweptWay& way_of(std::uint32_t body) { return ways_[way_at(body)]; }
 
     MovingShape moving(std::uint32_t at)
     {
-        const Way& way = way_of(colliders_.body[at]);
+        const SweptWay& way = way_of(colliders_.body[at]);
         return {colliders_.shape[at], way.trajectory, way.attached * colliders_.local[at]};
     }
 
@@ -152,7 +154,7 @@ private:
         candidate.time = kNever;
         const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
         const ImpactRule rule = rule_of(candidate.key);
-        const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
+        const SweptWay &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
         const bool ahead = (way_a.ahead || way_b.ahead) && !candidate.followed;
         const bool triangles = has_triangles(a) && has_triangles(b);
         Impact impact;
@@ -190,7 +192,7 @@ private:
     // Whether the ways of a ball within a solid and of another shape cross.
     bool core_comes_near(std::uint32_t at, std::size_t core, std::uint32_t other)
     {
-        const Way& way = way_of(colliders_.body[at]);
+        const SweptWay& way = way_of(colliders_.body[at]);
         if (way.held || way_of(colliders_.body[other]).held) return true;
         if (colliders_.shape[other].kind == ShapeKind::plane) return true;
         const MovingShape ball = smaller(at, 1, core);
@@ -227,8 +229,8 @@ private:
     {
         for (const SweptPair& candidate : candidates_) {
             if (!candidate.pressed) continue;
-            Way& a = way_of(colliders_.body[first_of(candidate.key)]);
-            Way& b = way_of(colliders_.body[second_of(candidate.key)]);
+            SweptWay& a = way_of(colliders_.body[first_of(candidate.key)]);
+            SweptWay& b = way_of(colliders_.body[second_of(candidate.key)]);
             a.slides = a.slides || !states_.dynamic(b.body);
             b.slides = b.slides || !states_.dynamic(a.body);
         }
@@ -240,7 +242,7 @@ private:
     {
         if (candidate.time == kNever || candidate.pressed) return;
         const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
-        const Way &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
+        const SweptWay &way_a = way_of(colliders_.body[a]), &way_b = way_of(colliders_.body[b]);
         const bool of_a = way_a.slides && !states_.dynamic(way_b.body);
         const bool of_b = way_b.slides && !states_.dynamic(way_a.body);
         if (!of_a && !of_b) return;
@@ -259,13 +261,13 @@ private:
         if (impact.state == ToiState::separated) candidate.time = kNever;
     }
 
-    static Pose pose_on(const Way& way, double time)
+    static Pose pose_on(const SweptWay& way, double time)
     {
         return way.trajectory.at(time) * way.attached;
     }
 
     // From now on a body goes where another does, as it is against it now.
-    void ride(Way& way, std::uint32_t on, double time)
+    void ride(SweptWay& way, std::uint32_t on, double time)
     {
         const Pose now = pose_on(way, time);
         const RigidTrajectory& trajectory = way_of(on).trajectory;
@@ -277,7 +279,7 @@ private:
         riders_.push_back(way_at(way.body));
     }
 
-    void hold(Way& way, double time)
+    void hold(SweptWay& way, double time)
     {
         way.trajectory = {pose_on(way, time), Vec3::Zero(), Vec3::Zero()};
         way.attached = Pose{};
@@ -289,8 +291,8 @@ private:
     // What becomes of two that meet. Whoever is changed by it is told.
     void process(const SweptPair& candidate, std::vector<std::uint32_t>& changed)
     {
-        Way& a = way_of(colliders_.body[first_of(candidate.key)]);
-        Way& b = way_of(colliders_.body[second_of(candidate.key)]);
+        SweptWay& a = way_of(colliders_.body[first_of(candidate.key)]);
+        SweptWay& b = way_of(colliders_.body[second_of(candidate.key)]);
         const double time = candidate.time;
         const bool free_a = may_change(a), free_b = may_change(b);
         if (free_a && free_b && a.fast == b.fast) {
@@ -302,7 +304,7 @@ private:
         // The fast one yields, else the one that may.
         const bool yields_a = free_a && (a.fast || !free_b);
         if (!free_a && !free_b) return;
-        Way &yields = yields_a ? a : b, &other = yields_a ? b : a;
+        SweptWay &yields = yields_a ? a : b, &other = yields_a ? b : a;
         if (candidate.pressed && !states_.dynamic(other.body) && !only_turns(yields.body))
             stop_pressing(yields.body, other.body,
                           yields_a ? candidate.normal : Vec3(-candidate.normal),
@@ -336,7 +338,7 @@ private:
 
     // Where what goes by itself carries who rides on it, it lifts and lowers him: his fall is from
     // where he would have been there.
-    void hold_at(const Way& way, const Pose& end)
+    void hold_at(const SweptWay& way, const Pose& end)
     {
         const bool driven = way.rides != kNoBody && !states_.dynamic(way.rides);
         const Vec3 fell_to = driven ? pose_on(way, way.since).position : end.position;
@@ -344,7 +346,7 @@ private:
     }
 
     // Each is stopped on its own way once, and once more on that of what carries it.
-    bool may_change(const Way& way) const
+    bool may_change(const SweptWay& way) const
     {
         return states_.dynamic(way.body) && !(way.held && way.trajectory.still());
     }
@@ -354,7 +356,7 @@ private:
     {
         for (std::size_t i = 0; i < changed.size(); ++i)
             for (const std::uint32_t rider : riders_) {
-                Way& way = ways_[rider];
+                SweptWay& way = ways_[rider];
                 if (way.rides != changed[i]) continue;
                 hold(way, time);
                 changed.push_back(way.body);
@@ -411,7 +413,7 @@ private:
                 }
             }
         }
-        for (const Way& way : ways_)
+        for (const SweptWay& way : ways_)
             if (way.held) hold_at(way, pose_on(way, 1));
     }
 
@@ -426,7 +428,7 @@ private:
     HeldEnergy held_energy_;
     SweptPairs swept_;
     std::vector<SweptPair>& candidates_ = swept_.pairs;
-    std::vector<Way>& ways_ = swept_.ways;
+    std::vector<SweptWay>& ways_ = swept_.ways;
     std::vector<std::uint32_t> riders_;  // ways that ride, or did
     struct {
         std::vector<std::uint32_t> begin;  // [ways + 1]
