@@ -54,6 +54,7 @@ struct BoundsScratch {
 ///   placed              [colliders] where each shape is, as of the start of the last step it was
 ///                       awake in
 ///   asked               colliders whose boxes changed in this step, ascending
+///   placed_anew         colliders that may be elsewhere than in the last step, none twice
 ///   touched             colliders that were added, removed or moved from outside since the last
 ///                       step
 ///   half, round, form   [colliders] the shape as active_bounds.hpp wants it, rounded up
@@ -62,6 +63,9 @@ struct BoundsScratch {
 ///                       contacts are looked for no further from them than from bodies at rest
 ///   kept                [colliders] m, of those of fast bodies, else 0: how far contacts that they
 ///                       have already are looked for; empty where nobody is ever stopped
+///   flush               [colliders] whether it may lie flush with another, by these bits: all but
+///                       single ones of dynamic bodies; a plane has no rim
+///   flush_end           behind the last of those, or further
 ///   fast_candidate      the first body that may go about half its smallest half extent in this
 ///                       step, or more
 struct Bounds {
@@ -71,12 +75,16 @@ struct Bounds {
     std::vector<std::uint8_t> moving;
     std::vector<Pose> placed;
     std::vector<std::uint32_t> asked;
+    std::vector<std::uint32_t> placed_anew;
     std::vector<std::uint32_t> touched;
     std::vector<float> half[3], round;
     std::vector<std::uint8_t> form;
     double stretch = 1;
     std::vector<std::uint32_t> fast;
     std::vector<double> kept;
+    static constexpr std::uint8_t kPlane = 1, kRimmed = 2;
+    std::vector<std::uint8_t> flush;
+    std::uint32_t flush_end = 0;
     static constexpr std::uint32_t kNone = 0xffffffffu;
     std::uint32_t fast_candidate = kNone;
     bool still_changed = true;

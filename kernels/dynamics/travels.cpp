@@ -13,7 +13,8 @@ constexpr std::size_t kGrain = 512;  // colliders a block: some ten microseconds
 
 }  // namespace
 
-void follow_colliders(std::span<const Pose> placed,
+void follow_colliders(std::span<const std::uint32_t> some,
+                      std::span<const Pose> placed,
                       std::span<const double> outer_radius,
                       std::span<const double> speculative_margin,
                       Travels& travels)
@@ -26,8 +27,9 @@ void follow_colliders(std::span<const Pose> placed,
     travels.approach.resize(count, 0.0);
     std::copy(placed.begin() + static_cast<std::ptrdiff_t>(known), placed.end(),
               travels.placed.begin() + static_cast<std::ptrdiff_t>(known));
-    for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
+    for_each_block(some.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t i = some[k];
             const Pose &now = placed[i], &last = travels.placed[i];
             const Vec3 shift = now.position - last.position;
             const Quat turn = now.orientation * last.orientation.conjugate();

@@ -24,6 +24,16 @@ void DisjointSets::reset(std::size_t count)
     added_.assign(count, 0);
 }
 
+void DisjointSets::reset(std::size_t count, std::span<const std::uint32_t> numbers)
+{
+    parent_.resize(count);
+    added_.resize(count, 0);
+    for (const std::uint32_t x : numbers) {
+        parent_[x] = x;
+        added_[x] = 0;
+    }
+}
+
 void DisjointSets::add(std::uint32_t x)
 {
     std::atomic_ref<std::uint8_t>(added_[x]).store(1, kRelaxed);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace throng {
@@ -15,6 +16,9 @@ class DisjointSets {
 public:
     /// Every number below `count` alone, and none of them added.
     void reset(std::size_t count);
+    /// The same of these numbers below `count`; all others stay as they were, and who is new is not
+    /// added.
+    void reset(std::size_t count, std::span<const std::uint32_t> numbers);
     void add(std::uint32_t x);
     bool holds(std::uint32_t x) const { return added_[x] != 0; }
     void join(std::uint32_t a, std::uint32_t b);

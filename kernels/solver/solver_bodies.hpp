@@ -3,6 +3,7 @@
 
 #include "kernels/data/contact_constraints.hpp"
 #include "kernels/math/numbers.hpp"
+#include "kernels/parallel/blocks.hpp"
 #include "kernels/solver/carried_points.hpp"
 #include "throng/math.hpp"
 
@@ -37,6 +38,40 @@ template <class Real>
 void turn_fast(std::span<SolverBody<Real>> bodies,
                const GyroscopicInertia<Real>* inertias,
                Real time);
+
+/// Those that can be moved, in blocks: in order of bodies, as many arrays by body are read and
+/// written, but where most bodies have no solver body, which then take no time.
+class SolverBodyBlocks {
+public:
+    SolverBodyBlocks(const Layout& layout, std::size_t grain)
+        : layout_(layout), grain_(grain),
+          few_(std::size_t{layout.dynamic} * kFew < layout.solver_index.size())
+    { }
+
+    std::size_t blocks() const { return block_count(size(), grain_); }
+
+    /// Calls each(body, solver index, block).
+    template <class Each>
+    void for_each(const Each& each) const
+    {
+        for_each_block(size(), grain_, [&](std::size_t begin, std::size_t end, std::size_t block) {
+            for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+                if (few_)
+                    each(layout_.body_of_solver_index[i + 1], i + 1, block);
+                else if (layout_.solver_index[i] != Layout::kNoSolverIndex)
+                    each(i, layout_.solver_index[i], block);
+            }
+        });
+    }
+
+private:
+    static constexpr std::size_t kFew = 8;  // one body in so many
+    std::size_t size() const { return few_ ? layout_.dynamic : layout_.solver_index.size(); }
+
+    const Layout& layout_;
+    std::size_t grain_;
+    bool few_;
+};
 
 /// True for a body that begin_substep() stopped because its velocity could not be held.
 template <class Real>

@@ -315,8 +315,8 @@ void collide_convex(const StepContext& context,
     contacts.recycles = recycles;
     if (contacts.recycles) {
         resize_closely(contacts.apart_until, pairs.keys.size());
-        follow_colliders(bounds.placed, colliders.outer_radius, bounds.speculative_margin,
-                         contacts.travels);
+        follow_colliders(bounds.placed_anew, bounds.placed, colliders.outer_radius,
+                         bounds.speculative_margin, contacts.travels);
     }
     for_each_block(pairs.keys.size(), kGrain,
                    [&](std::size_t begin, std::size_t end, std::size_t block) {

@@ -270,7 +270,7 @@ void prepare_constraints(const StepContext& context,
     constraints.bodies.resize(layout.body_of_solver_index.size());
     constraints.inertias.resize(gyroscopic ? constraints.bodies.size() : 0);
     constraints.accelerations.resize(forced ? constraints.bodies.size() : 0);
-    const auto fill = [&](std::uint32_t body, std::size_t solver_index) {
+    const auto fill = [&](std::uint32_t body, std::size_t solver_index, std::size_t = 0) {
         fill_body(body, poses, velocities, masses, states, constraints.bodies[solver_index]);
         if (gyroscopic) {
             auto& inertia = constraints.inertias[solver_index];
@@ -282,13 +282,7 @@ void prepare_constraints(const StepContext& context,
             fill_acceleration(body, accelerations, states, constraints.accelerations[solver_index]);
     };
     fill(kNoBody, 0);
-    // In order of bodies, of which many arrays are read; that of solver bodies may be any other.
-    const std::size_t bodies = layout.solver_index.size();
-    for_each_block(bodies, kBodies, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body)
-            if (layout.solver_index[body] != Layout::kNoSolverIndex)
-                fill(body, layout.solver_index[body]);
-    });
+    SolverBodyBlocks(layout, kBodies).for_each(fill);
     for (std::size_t solver_index = layout.dynamic + std::size_t{1};
          solver_index < constraints.bodies.size(); ++solver_index)
         fill(layout.body_of_solver_index[solver_index], solver_index);

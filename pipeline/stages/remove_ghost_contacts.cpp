@@ -64,26 +64,26 @@ public:
                 const Bounds& bounds,
                 const Poses& poses,
                 const Velocities& velocities,
-                const BodyStates& states)
+                const BodyStates& states,
+                GhostMarks& marks)
         : pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds), poses_(poses),
-          velocities_(velocities), states_(states), roles_(colliders.size())
+          velocities_(velocities), states_(states), touches_(marks.touches)
     {
-        for (std::size_t i = 0; i < roles_.size(); ++i) {
-            const std::uint32_t body = colliders.body[i];
-            if (body == kNoBody) continue;
-            if (states.movable(body)) roles_[i] = kPushed;
-            if (states.dynamic(body) && colliders.count[body] < 2) continue;
-            roles_[i] |= colliders.shape[i].kind == ShapeKind::plane ? kPlane : kRimmed;
-            end_ = static_cast<std::uint32_t>(i) + 1;
-        }
+        touches_.resize(colliders.size(), 0);
     }
+    // The marks are taken back.
+    ~GhostSearch()
+    {
+        for (const std::uint32_t collider : marked_) touches_[collider] = 0;
+    }
+    GhostSearch(const GhostSearch&) = delete;
+    GhostSearch& operator=(const GhostSearch&) = delete;
 
     // Most lie on one floor, and on nothing else that stands still: who meets no ghost is told by
     // marks, before anything is listed.
     void
     gather(ConvexContacts<Real>& convex, ManyContacts<Real>& meshes, ManyContacts<Real>& solids)
     {
-        touches_.assign(colliders_.size(), 0);
         const std::size_t count = pairs_to_look_at();
         if (!mark_touches(count, convex, meshes, solids)) return;
 
@@ -130,11 +130,8 @@ public:
     }
 
 private:
-    // What a collider is: can be pushed; may lie flush with another, with a rim or, a plane,
-    // without.
-    static constexpr std::uint8_t kPushed = 1, kPlane = 2, kRimmed = 4;
     // What touches one: something that may lie flush with another, more than one, one with a rim.
-    static constexpr std::uint8_t kOne = 1, kMore = 2, kMoreAndRim = kMore | kRimmed;
+    static constexpr std::uint8_t kOne = 1, kMore = 4, kMoreAndRim = kMore | Bounds::kRimmed;
 
     // Whether anybody may meet a ghost.
     bool mark_touches(std::size_t count,
@@ -146,8 +143,9 @@ private:
         const auto mark = [&](PairKey key) {
             for_each_side(key, [&](std::uint32_t moving, std::uint32_t other, bool) {
                 std::uint8_t& touches = touches_[moving];
+                if (touches == 0) marked_.push_back(moving);
                 const std::uint8_t number = (touches & kOne) != 0 ? kMore : kOne;
-                const std::uint8_t rim = roles_[other] & kRimmed;
+                const std::uint8_t rim = bounds_.flush[other] & Bounds::kRimmed;
                 touches = static_cast<std::uint8_t>(touches | number | rim);
                 some = some || meets_ghosts(moving);
             });
@@ -167,14 +165,15 @@ private:
     {
         const auto& keys = pairs_.keys;
         return static_cast<std::size_t>(
-            std::lower_bound(keys.begin(), keys.end(), end_,
+            std::lower_bound(keys.begin(), keys.end(), bounds_.flush_end,
                              [](PairKey key, std::uint32_t end) { return first_of(key) < end; })
             - keys.begin());
     }
 
-    bool may_have_neighbors(std::uint32_t collider) const
+    bool may_have_neighbors(std::uint32_t collider) const { return bounds_.flush[collider] != 0; }
+    bool is_pushed(std::uint32_t collider) const
     {
-        return (roles_[collider] & (kPlane | kRimmed)) != 0;
+        return states_.movable(colliders_.body[collider]);
     }
     bool concerns(PairKey key) const
     {
@@ -191,8 +190,8 @@ private:
     void for_each_side(PairKey key, const auto& action) const
     {
         const std::uint32_t a = first_of(key), b = second_of(key);
-        if ((roles_[a] & kPushed) != 0 && may_have_neighbors(b)) action(a, b, true);
-        if ((roles_[b] & kPushed) != 0 && may_have_neighbors(a)) action(b, a, false);
+        if (may_have_neighbors(b) && is_pushed(a)) action(a, b, true);
+        if (may_have_neighbors(a) && is_pushed(b)) action(b, a, false);
     }
 
     void note(PairKey key, std::uint32_t part, Contact<Real>& contact, auto& list) const
@@ -343,7 +342,7 @@ private:
     {
         const Contact<Real>& contact = *ghost.contact;
         const bool round = (ghost.mover_first ? contact.round_a : contact.round_b) > 0;
-        const bool stands = (roles_[ghost.other] & kPushed) == 0;
+        const bool stands = !is_pushed(ghost.other);
         return stands && !round && ghost.hidden_by->normal.dot(ghost.normal) > kLeans;
     }
 
@@ -371,8 +370,8 @@ private:
     const Poses& poses_;
     const Velocities& velocities_;
     const BodyStates& states_;
-    std::vector<std::uint8_t> roles_, touches_;  // [colliders]
-    std::uint32_t end_ = 0;                      // behind the last that may have neighbors
+    std::vector<std::uint8_t>& touches_;  // [colliders]
+    std::vector<std::uint32_t> marked_;   // of those, that are not 0
     std::vector<Seen<Real>> seen_;
 };
 
@@ -388,18 +387,19 @@ void remove_ghost_contacts(const Pairs& pairs,
                            const BodyStates& states,
                            ConvexContacts<Real>& convex,
                            MeshContacts<Real>& meshes,
-                           SolidContacts<Real>& solids)
+                           SolidContacts<Real>& solids,
+                           GhostMarks& marks)
 {
-    GhostSearch<Real> search(pairs, shapes, colliders, bounds, poses, velocities, states);
+    GhostSearch<Real> search(pairs, shapes, colliders, bounds, poses, velocities, states, marks);
     search.gather(convex, meshes, solids);
     search.remove();
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void remove_ghost_contacts<Real>(const Pairs&, const Shapes&, const Colliders&,       \
-                                              const Bounds&, const Poses&, const Velocities&,      \
-                                              const BodyStates&, ConvexContacts<Real>&,            \
-                                              MeshContacts<Real>&, SolidContacts<Real>&);
+    template void remove_ghost_contacts<Real>(                                                     \
+        const Pairs&, const Shapes&, const Colliders&, const Bounds&, const Poses&,                \
+        const Velocities&, const BodyStates&, ConvexContacts<Real>&, MeshContacts<Real>&,          \
+        SolidContacts<Real>&, GhostMarks&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

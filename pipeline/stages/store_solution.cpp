@@ -3,6 +3,7 @@
 #include "kernels/solver/solver_bodies.hpp"
 #include "pipeline/step/stages.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace throng {
@@ -45,25 +46,21 @@ void store_solution(const Layout& layout,
                     StepDiagnostics& diagnostics)
 {
     diagnostics.quarantined.clear();
-    // In order of bodies, of which many arrays are written.
-    const std::size_t bodies = layout.solver_index.size();
-    diagnostics.scratch.of_block.start(block_count(bodies, kBodies));
-    for_each_block(bodies, kBodies, [&](std::size_t begin, std::size_t end, std::size_t block) {
-        for (auto body = static_cast<std::uint32_t>(begin); body < end; ++body) {
-            const std::uint32_t solver_index = layout.solver_index[body];
-            if (solver_index == Layout::kNoSolverIndex) continue;
-            using Settled = typename ContactConstraints<Real>::Settled;
-            const Settled settled =
-                constraints.settled.empty() ? Settled::no : constraints.settled[solver_index];
-            if (settled == Settled::yes) continue;
-            const GyroscopicInertia<Real>* const inertia =
-                constraints.inertias.empty() ? nullptr : &constraints.inertias[solver_index];
-            if (settled == Settled::lost
-                || !take_back(constraints.bodies[solver_index], inertia, body, poses, velocities))
-                diagnostics.scratch.of_block[block].push_back(body);
-        }
+    const SolverBodyBlocks bodies(layout, kBodies);
+    diagnostics.scratch.of_block.start(bodies.blocks());
+    bodies.for_each([&](std::uint32_t body, std::uint32_t solver_index, std::size_t block) {
+        using Settled = typename ContactConstraints<Real>::Settled;
+        const Settled settled =
+            constraints.settled.empty() ? Settled::no : constraints.settled[solver_index];
+        if (settled == Settled::yes) return;
+        const GyroscopicInertia<Real>* const inertia =
+            constraints.inertias.empty() ? nullptr : &constraints.inertias[solver_index];
+        if (settled == Settled::lost
+            || !take_back(constraints.bodies[solver_index], inertia, body, poses, velocities))
+            diagnostics.scratch.of_block[block].push_back(body);
     });
     diagnostics.scratch.of_block.append_to(diagnostics.quarantined);
+    std::sort(diagnostics.quarantined.begin(), diagnostics.quarantined.end());
 }
 
 template void store_solution<float>(

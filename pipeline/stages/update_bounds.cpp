@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -142,6 +143,7 @@ public:
         of_movers(states_.active_bodies.kinematic, 0);
         of_movers(states_.active_bodies.dynamic, falls_);
         of_others(touched);
+        note_placed_anew(touched);
         std::vector<std::uint32_t>& fast = bounds_.fast;
         if (!std::is_sorted(fast.begin(), fast.end())) std::sort(fast.begin(), fast.end());
         fast.erase(std::unique(fast.begin(), fast.end()), fast.end());
@@ -162,6 +164,7 @@ private:
         for (std::vector<float>& half : bounds_.half) half.resize(count, 0.0f);
         bounds_.round.resize(count, 0.0f);
         bounds_.form.resize(count, 0);
+        bounds_.flush.resize(count, 0);
         bounds_.scratch.flags.resize(count, 0);
     }
 
@@ -295,6 +298,32 @@ private:
         });
     }
 
+    void note_flush(std::uint32_t collider, std::uint32_t body)
+    {
+        bounds_.flush[collider] = 0;
+        if (states_.dynamic(body) && colliders_.count[body] < 2) return;
+        const bool plane = colliders_.shape[collider].kind == ShapeKind::plane;
+        bounds_.flush[collider] = plane ? Bounds::kPlane : Bounds::kRimmed;
+        // Of those that are touched many are looked at at the same time.
+        std::atomic_ref<std::uint32_t> end(bounds_.flush_end);
+        std::uint32_t before = end.load();
+        while (before <= collider && !end.compare_exchange_weak(before, collider + 1)) { }
+    }
+
+    void note_placed_anew(const std::vector<std::uint32_t>& touched)
+    {
+        std::vector<std::uint32_t>& anew = bounds_.placed_anew;
+        anew.clear();
+        // Hulls alone are asked for: they recycle what was found of them.
+        if (shapes_.hulls.empty()) return;
+        for (const auto* bodies :
+             {&states_.active_bodies.kinematic, &states_.active_bodies.dynamic})
+            for_each_collider(*bodies, 0, bodies->size(), [&](std::uint32_t at, std::uint32_t) {
+                if (bounds_.scratch.flags[at] == 0) anew.push_back(at);
+            });
+        anew.insert(anew.end(), touched.begin(), touched.end());
+    }
+
     MarginRule margin_of() const
     {
         MarginRule rule;
@@ -354,12 +383,16 @@ private:
         const bool touched = bounds_.scratch.flags[collider] != 0;
         const std::uint32_t body = colliders_.body[collider];
         if (body == kNoBody) {
+            bounds_.flush[collider] = 0;
             bounds_.boxes[collider] = {};
             bounds_.near[collider] = nowhere();
             asked.push_back(collider);
             return;
         }
-        if (touched) note_form(shapes_, colliders_, collider, bounds_);
+        if (touched) {
+            note_form(shapes_, colliders_, collider, bounds_);
+            note_flush(collider, body);
+        }
         const Pose placed = poses_.at(body) * colliders_.local[collider];
         bounds_.placed[collider] = placed;
         const bool moving = states_.kind[body] != BodyKind::static_;

@@ -1,41 +1,28 @@
 // Wake islands: whoever somebody awake touches wakes, with all that fell asleep with it.
-#include "pipeline/step/stages.hpp"
+#include "pipeline/contacts/wake_pairs.hpp"
 
 #include <algorithm>
 
 namespace throng {
 
-namespace {
-
-void wake_island(std::uint32_t sleeping_island,
-                 SleepingIslands& sleeping_islands,
-                 BodyStates& states,
-                 SleepEvents& sleep_events)
-{
-    for (const std::uint32_t body : sleeping_islands.bodies[sleeping_island]) {
-        states.awake[body] = 1;
-        states.sleep_time[body] = 0;
-        states.sleeping_island[body] = kNoBody;
-        sleep_events.woke.push_back(body);
-    }
-    sleeping_islands.bodies[sleeping_island].clear();
-    sleeping_islands.free.push_back(sleeping_island);
-}
-
-}  // namespace
-
 template <class Real>
-void wake_islands(const Pairs& pairs,
-                  const Colliders& colliders,
+void wake_islands(const Colliders& colliders,
                   const Velocities& velocities,
-                  const ConvexContacts<Real>& contacts,
-                  const SolidContacts<Real>& solids,
+                  const PairData<Real>& data,
                   SleepingIslands& sleeping_islands,
                   BodyStates& states,
                   SleepEvents& sleep_events)
 {
     sleep_events.woke.clear();
     if (sleeping_islands.bodies.size() == sleeping_islands.free.size()) return;
+    const auto& pairs = data.template get<Pairs>();
+    const auto& contacts = data.template get<ConvexContacts<Real>>();
+    const auto& solids = data.template get<SolidContacts<Real>>();
+    const auto wake = [&](std::uint32_t body) {
+        if (const std::uint32_t island = states.sleeping_island[body]; island != kNoBody)
+            wake_island(island, sleeping_islands, states, data.template get<SleepingPairs>(),
+                        sleep_events.woke);
+    };
     // What moves by itself and stands still disturbs nobody.
     const auto disturbs = [&](std::uint32_t body) {
         return states.moves(body)
@@ -43,8 +30,7 @@ void wake_islands(const Pairs& pairs,
                 || !velocities.angular[body].isZero(0));
     };
     const auto disturb = [&](std::uint32_t a, std::uint32_t b) {
-        if (states.sleeping_island[b] != kNoBody && disturbs(a))
-            wake_island(states.sleeping_island[b], sleeping_islands, states, sleep_events);
+        if (states.sleeping_island[b] != kNoBody && disturbs(a)) wake(b);
     };
     const auto touch_each_other = [&](PairKey key) {
         const std::uint32_t a = colliders.body[first_of(key)];
@@ -55,10 +41,6 @@ void wake_islands(const Pairs& pairs,
     // Somebody who sleeps comes near what stands still only when one of them was put there.
     const auto put_there = [&](std::size_t i) {
         return pairs.changed && pairs.from[i] == Pairs::kNewPair;
-    };
-    const auto wake = [&](std::uint32_t body) {
-        if (states.sleeping_island[body] != kNoBody)
-            wake_island(states.sleeping_island[body], sleeping_islands, states, sleep_events);
     };
     for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
         if (contacts.of_pair[i].contact != PairState::kApart) touch_each_other(pairs.keys[i]);
@@ -73,11 +55,11 @@ void wake_islands(const Pairs& pairs,
     // Contacts with meshes are not known yet: a mesh that moves wakes whoever is near.
     for (const std::uint32_t i : pairs.on_mesh) touch_each_other(pairs.keys[i]);
     std::sort(sleep_events.woke.begin(), sleep_events.woke.end());
+    wake_pairs<Real>(data);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
-    template void wake_islands<Real>(const Pairs&, const Colliders&, const Velocities&,            \
-                                     const ConvexContacts<Real>&, const SolidContacts<Real>&,      \
+    template void wake_islands<Real>(const Colliders&, const Velocities&, const PairData<Real>&,   \
                                      SleepingIslands&, BodyStates&, SleepEvents&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

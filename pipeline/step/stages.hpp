@@ -8,6 +8,20 @@
 
 namespace throng {
 
+/// Everything that is kept of pairs from step to step.
+template <class Real>
+using PairData = StageData<Pairs,
+                           ConvexContacts<Real>,
+                           MeshContacts<Real>,
+                           SolidContacts<Real>,
+                           MethodPairs,
+                           SleepingPairs,
+                           SleepingContacts<Real>>;
+
+/// Pairs of which neither can move until somebody wakes leave the lists that the others are in.
+template <class Real>
+void sleep_pairs(const Colliders&, const BodyStates&, const SleepEvents&, const PairData<Real>&);
+
 /// Sets the velocities that the user drives.
 void prescribe_velocities(const PrescribedVelocities&, const BodyStates&, Velocities&);
 
@@ -59,13 +73,11 @@ void collide_meshes(const StepContext&,
                     const BodyStates&,
                     MeshContacts<Real>&);
 
-/// Wakes whoever is touched by somebody awake, with all that fell asleep with it.
+/// Wakes whoever is touched by somebody awake, with all that fell asleep with it and its pairs.
 template <class Real>
-void wake_islands(const Pairs&,
-                  const Colliders&,
+void wake_islands(const Colliders&,
                   const Velocities&,
-                  const ConvexContacts<Real>&,
-                  const SolidContacts<Real>&,
+                  const PairData<Real>&,
                   SleepingIslands&,
                   BodyStates&,
                   SleepEvents&);
@@ -81,7 +93,8 @@ void remove_ghost_contacts(const Pairs&,
                            const BodyStates&,
                            ConvexContacts<Real>&,
                            MeshContacts<Real>&,
-                           SolidContacts<Real>&);
+                           SolidContacts<Real>&,
+                           GhostMarks&);
 
 /// Points that are borne by a pivot next to them end here.
 template <class Real>
@@ -117,8 +130,13 @@ void join_contacts(const StepContext&,
                    JoinedContacts<Real>&);
 
 /// Contacts into islands, with those that springs join to who is in one.
-void split_islands(
-    const ActiveContacts&, const BodyStates&, const Forces&, IslandFinder&, Islands&);
+void split_islands(const StepContext&,
+                   const ActiveContacts&,
+                   const BodyStates&,
+                   const SleepEvents&,
+                   const Forces&,
+                   IslandFinder&,
+                   Islands&);
 
 /// Stubborn islands by how stubborn they are: who gets more substeps, who the direct solver.
 void escalate_islands(const StepContext&, const Islands&, OverloadedIslands&);

@@ -14,6 +14,7 @@
 #include "kernels/solver/islands.hpp"
 #include "narrowphase/alternatives/method_contacts.hpp"
 #include "pipeline/step/parameters.hpp"
+#include "pipeline/step/sleeping_pairs.hpp"
 #include "pipeline/step/step_context.hpp"
 
 #include <tuple>
@@ -142,6 +143,13 @@ struct FastBodies {
     } scratch;
 };
 
+/// What touches a collider, as remove_ghost_contacts looks for those that may meet a ghost.
+///
+///   touches  [colliders] all 0 between stages
+struct GhostMarks {
+    std::vector<std::uint8_t> touches;
+};
+
 /// What contacts of bodies that are carried from touch to touch came to in this step.
 ///
 ///   force     [bodies] N on each, friction included, the mean over the step
@@ -183,6 +191,9 @@ using StepData = std::tuple<StepContext,
                             MethodPairs,
                             MeshContacts<Real>,
                             SolidContacts<Real>,
+                            SleepingPairs,
+                            SleepingContacts<Real>,
+                            GhostMarks,
                             ExternalAcceleration,
                             Flights,
                             ActiveContacts,

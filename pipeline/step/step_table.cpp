@@ -26,6 +26,7 @@ bool by_kinematic(const Settings& settings) { return settings.response == Respon
 // clang-format off
 template <class Real>
 constexpr Stage<Real> kStep[] = {
+    stage<Real, sleep_pairs<Real>>           ({sleeping}),
     stage<Real, prescribe_velocities>        ({drive}),
     stage<Real, update_bounds>               ({contact}),
     stage<Real, find_pairs>                  ({contact}),

@@ -250,17 +250,21 @@ std::vector<BodyPair> contact_pairs(const World& world)
     if (is_cut_at_touches(state)) return found;
     const auto& colliders = state.get<Colliders>();
     const auto& pairs = state.get<Pairs>();
-    const auto add = [&](std::size_t pair) {
-        found.push_back(in_order(colliders.body[first_of(pairs.keys[pair])],
-                                 colliders.body[second_of(pairs.keys[pair])]));
+    const auto add = [&](PairKey key) {
+        found.push_back(in_order(colliders.body[first_of(key)], colliders.body[second_of(key)]));
     };
     // Contacts that were dropped as ghosts were found all the same.
     const auto look = [&]<class Real>(const StepData<Real>& data) {
         const auto& of_pair = std::get<ConvexContacts<Real>>(data).of_pair;
         for (std::size_t i = 0; i < of_pair.size(); ++i)
-            if (of_pair[i].contact != PairState::kApart) add(i);
-        for (const auto& entry : std::get<MeshContacts<Real>>(data).entries) add(entry.pair);
-        for (const auto& entry : std::get<SolidContacts<Real>>(data).entries) add(entry.pair);
+            if (of_pair[i].contact != PairState::kApart) add(pairs.keys[i]);
+        for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
+            add(pairs.keys[entry.pair]);
+        for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
+            add(pairs.keys[entry.pair]);
+        for_each_sleeping_contact(std::get<SleepingPairs>(data),
+                                  std::get<SleepingContacts<Real>>(data),
+                                  [&](PairKey key, const Contact<Real>&) { add(key); });
     };
     std::visit(
         [&](const auto& chosen) {

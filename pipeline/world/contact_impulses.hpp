@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/solver/contact_packing.hpp"
+#include "pipeline/contacts/wake_pairs.hpp"
 #include "pipeline/world/world_state.hpp"
 
 namespace throng {
@@ -15,7 +16,8 @@ void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const
 {
     const auto& colliders = std::get<Colliders>(data);
     const auto& pairs = std::get<Pairs>(data);
-    const auto add = [&](std::size_t pair, const Contact<Real>& contact) {
+    const auto add = [&](PairKey key, const Contact<Real>& contact) {
+        if (contact.count == 0) return;
         const auto on_b = [&] {
             Vec3 impulse = contact.friction.template cast<double>();
             for (int k = 0; k < contact.count; ++k)
@@ -23,16 +25,17 @@ void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const
                     * double{contact.points[static_cast<std::size_t>(k)].impulse};
             return impulse;
         };
-        each(colliders.body[first_of(pairs.keys[pair])],
-             colliders.body[second_of(pairs.keys[pair])], on_b);
+        each(colliders.body[first_of(key)], colliders.body[second_of(key)], on_b);
     };
     const auto& convex = std::get<ConvexContacts<Real>>(data);
     for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
-        if (const Contact<Real>* contact = convex.at(i)) add(i, *contact);
+        if (const Contact<Real>* contact = convex.at(i)) add(pairs.keys[i], *contact);
     for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
-        if (entry.contact.count > 0) add(entry.pair, entry.contact);
+        add(pairs.keys[entry.pair], entry.contact);
     for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
-        if (entry.contact.count > 0) add(entry.pair, entry.contact);
+        add(pairs.keys[entry.pair], entry.contact);
+    for_each_sleeping_contact(std::get<SleepingPairs>(data), std::get<SleepingContacts<Real>>(data),
+                              add);
 
     const auto& constraints = std::get<ContactConstraints<Real>>(data);
     if (!may_bounce || constraints.restitutions.empty()) return;

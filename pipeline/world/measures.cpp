@@ -189,7 +189,13 @@ private:
 
 }  // namespace
 
-std::string World::state_hash() const { return StateHash(*state_).text(); }
+std::string World::state_hash() const
+{
+    // All pairs in one order, whoever sleeps.
+    state_->settle();
+    state_->call_all_pairs();
+    return StateHash(*state_).text();
+}
 
 std::size_t World::memory_bytes() const
 {
@@ -219,6 +225,12 @@ std::size_t World::memory_bytes() const
             const auto& constraints = std::get<ContactConstraints<Real>>(chosen.data);
             const auto& methods = std::get<MethodPairs>(chosen.data);
             const auto& joined = std::get<JoinedContacts<Real>>(chosen.data);
+            const auto& sleeping = std::get<SleepingPairs>(chosen.data);
+            const auto& asleep = std::get<SleepingContacts<Real>>(chosen.data);
+            for (const auto& held : sleeping.of_island) sum += bytes(held.refs);
+            for (const auto& [body, held] : sleeping.of_still) sum += bytes(held.refs);
+            sum += bytes(sleeping.kept, sleeping.free, sleeping.of_island, asleep.of_kept,
+                         asleep.contacts, asleep.found, asleep.free_contacts, asleep.memories);
             sum += bytes(pairs.keys, pairs.from, pairs.scratch.found, pairs.asked, convex.of_pair,
                          convex.contacts, convex.free, convex.astray, convex.scratch.gathered,
                          convex.scratch.order, convex.found, convex.scratch.found_gathered,

@@ -97,9 +97,11 @@ void WorldState::choose_broad_phase()
         return choose_finder(boxes, moving);
     }();
     AnyPairFinder& finder = get<Finder>().finder;
-    if (finder.index() == make_finder(kind).index() && !get<Pairs>().keys.empty()) return;
+    const bool any = !get<Pairs>().keys.empty() || get<SleepingPairs>().size() > 0;
+    if (finder.index() == make_finder(kind).index() && any) return;
     finder = make_finder(kind);
-    // A new finder has to be asked about everybody.
+    // A new finder has to be asked about everybody, and finds pairs of whoever sleeps, too.
+    call_all_pairs();
     auto& bounds = get<Bounds>();
     bounds.touched.clear();
     for (std::uint32_t i = 0; i < colliders.size(); ++i) bounds.touched.push_back(i);
@@ -108,8 +110,8 @@ void WorldState::choose_broad_phase()
 bool WorldState::nothing_to_do() const
 {
     const auto& context = get<StepContext>();
-    return idle && !effects_stale && !active_bodies_stale && get<Bounds>().touched.empty()
-        && context.last_substep == context.substep();
+    return idle && !effects_stale && !active_bodies_stale && woken.empty() && edited.empty()
+        && get<Bounds>().touched.empty() && context.last_substep == context.substep();
 }
 
 void WorldState::follow_stubborn()
@@ -147,7 +149,8 @@ void WorldState::follow_step()
         || !sleep_events.fell_asleep.empty())
         update_active_bodies(sleep_events.woke, get<BodyStates>());
     const ActiveBodies& active_bodies = get<BodyStates>().active_bodies;
-    get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size(), active_bodies.dynamic.size());
+    get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size() + get<SleepingPairs>().size(),
+                                        active_bodies.dynamic.size());
     // A body that has become fast calls for what looks after it from the next step on.
     if (const std::uint32_t fast_candidate = get<Bounds>().fast_candidate;
         fast_candidate != kNoBody && !effects.on.has(Effect::fast_motion)) {
@@ -163,7 +166,7 @@ void WorldState::follow_step()
 
 void WorldState::report_state()
 {
-    report.pairs = get<Pairs>().keys.size();
+    report.pairs = get<Pairs>().keys.size() + get<SleepingPairs>().size();
     const auto& active = get<ActiveContacts>().entries;
     report.manifolds = active.size();
     report.contacts = 0;
@@ -188,9 +191,16 @@ void WorldState::report_state()
 
 void WorldState::refresh()
 {
+    settle();
     if (effects_stale) refresh_effects();
-    if (active_bodies_stale) list_active_bodies(get<BodyStates>());
+    if (active_bodies_stale) {
+        list_active_bodies(get<BodyStates>());
+    } else if (!woken.empty()) {
+        std::sort(woken.begin(), woken.end());
+        update_active_bodies(woken, get<BodyStates>());
+    }
     active_bodies_stale = false;
+    woken.clear();
 }
 
 void WorldState::warn_of_cuts(int cuts)
@@ -359,6 +369,7 @@ void World::set_settings(const Settings& settings)
             "set_settings: precision cannot change in a world; make another");
     check_settings(settings, "set_settings");
     state_->get<Flights>() = {};  // numbers of another rotation, or of another law
+    state_->call_all_pairs();     // which may remember what another method found
     state_->set(settings);
     state_->effects_stale = true;
     state_->warn_of_substeps();
@@ -404,7 +415,9 @@ Motion World::motion(BodyId body) const { return state_->motion[state_->place_of
 
 bool World::awake(BodyId body) const
 {
-    return state_->get<BodyStates>().awake[state_->place_of(body, "awake")] != 0;
+    const std::uint32_t at = state_->place_of(body, "awake");
+    state_->settle();
+    return state_->get<BodyStates>().awake[at] != 0;
 }
 
 bool World::quarantined(BodyId body) const
@@ -459,6 +472,7 @@ Vec3 World::contact_force(BodyId body) const
         const std::vector<Vec3>& force = state_->get<EventDrivenContacts>().force;
         return at < force.size() ? force[at] : Vec3(Vec3::Zero());
     }
+    state_->settle();
     Vec3 impulse = Vec3::Zero();
     for_each_contact_impulse(*state_, [&](std::uint32_t a, std::uint32_t b, const auto& on_b) {
         if (b == at)

@@ -3,7 +3,7 @@
 // The step keeps much from one step to the next; what a change from outside makes stale is put
 // right here, so that no stage has to wonder.
 #include "kernels/math/rotation.hpp"
-#include "pipeline/step/stages.hpp"
+#include "pipeline/contacts/wake_pairs.hpp"
 #include "pipeline/world/force_builder.hpp"
 #include "pipeline/world/world_state.hpp"
 
@@ -17,17 +17,8 @@ void WorldState::wake(std::uint32_t body)
 {
     auto& states = get<BodyStates>();
     states.sleep_time[body] = 0;
-    const std::uint32_t sleeping_island = states.sleeping_island[body];
-    if (sleeping_island == kNoBody) return;
-    active_bodies_stale = true;
-    auto& sleeping_islands = get<SleepingIslands>();
-    for (const std::uint32_t sleeping : sleeping_islands.bodies[sleeping_island]) {
-        states.awake[sleeping] = 1;
-        states.sleep_time[sleeping] = 0;
-        states.sleeping_island[sleeping] = kNoBody;
-    }
-    sleeping_islands.bodies[sleeping_island].clear();
-    sleeping_islands.free.push_back(sleeping_island);
+    if (const std::uint32_t island = states.sleeping_island[body]; island != kNoBody)
+        wake_island(island, get<SleepingIslands>(), states, get<SleepingPairs>(), woken);
 }
 
 void WorldState::mark_changed(std::uint32_t body)
@@ -42,26 +33,68 @@ void WorldState::mark_changed(std::uint32_t body)
     if (body < lags.size()) lags[body] = 0;
 }
 
-void WorldState::wake_neighbors(const std::vector<std::uint8_t>& of)
+// Pairs are in order of their keys, so that to find those of one body takes a look at all of them:
+// once a step, for whatever was done since the last one.
+void WorldState::disturb(std::uint32_t body, bool goes)
 {
     const auto& colliders = get<Colliders>();
-    for (const PairKey key : get<Pairs>().keys) {
-        const std::uint32_t a = colliders.body[first_of(key)], b = colliders.body[second_of(key)];
-        if (of[a] != 0) wake(b);
-        if (of[b] != 0) wake(a);
+    edits.resize(colliders.size(), 0);
+    for (std::uint32_t i = 0; i < colliders.count[body]; ++i) {
+        const std::uint32_t collider = colliders.begin[body] + i;
+        if (edits[collider] == 0) edited.push_back(collider);
+        edits[collider] |= goes ? kDisturbed | kGone : kDisturbed;
     }
+    for (const std::uint32_t island : islands_beside(body, get<SleepingPairs>()))
+        if (const auto& bodies = get<SleepingIslands>().bodies[island]; !bodies.empty())
+            wake(bodies.front());
 }
 
-void WorldState::forget_pairs(const std::vector<std::uint8_t>& of)
+void WorldState::wake_pairs()
+{
+    get<Pairs>().changed = false;  // whatever follows the list has followed it by now
+    std::visit(
+        [](auto& chosen) {
+            using Real = typename std::decay_t<decltype(chosen)>::Number;
+            throng::wake_pairs<Real>(pair_data(chosen.data));
+        },
+        step);
+}
+
+void WorldState::call_all_pairs()
+{
+    call_all(get<SleepingPairs>());
+    wake_pairs();
+}
+
+void WorldState::settle()
+{
+    wake_pairs();
+    if (edited.empty()) return;
+    const auto& colliders = get<Colliders>();
+    edits.resize(colliders.size(), 0);
+    bool gone = false;
+    for (const PairKey key : get<Pairs>().keys) {
+        const std::uint32_t a = first_of(key), b = second_of(key);
+        const std::uint8_t edit_a = edits[a], edit_b = edits[b];
+        if ((edit_a | edit_b) == 0) continue;
+        gone = gone || ((edit_a | edit_b) & kGone) != 0;
+        if (edit_a != 0 && colliders.body[b] != kNoBody) wake(colliders.body[b]);
+        if (edit_b != 0 && colliders.body[a] != kNoBody) wake(colliders.body[a]);
+    }
+    wake_pairs();
+    if (gone) forget_pairs();
+    for (const std::uint32_t collider : edited) edits[collider] = 0;
+    edited.clear();
+}
+
+void WorldState::forget_pairs()
 {
     auto& pairs = get<Pairs>();
-    const auto& colliders = get<Colliders>();
     std::vector<std::uint32_t> kept_as(pairs.keys.size(), Pairs::kNewPair);
     std::uint32_t kept = 0;
     for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
         const PairKey key = pairs.keys[i];
-        if (of[colliders.body[first_of(key)]] != 0 || of[colliders.body[second_of(key)]] != 0)
-            continue;
+        if (((edits[first_of(key)] | edits[second_of(key)]) & kGone) != 0) continue;
         pairs.keys[kept] = key;
         kept_as[i] = kept++;
     }
@@ -134,7 +167,10 @@ void WorldState::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& 
 void WorldState::empty_unused()
 {
     const Set<Effect> on = effects.on;
-    if (!on.has(Effect::sleeping)) wake_all();
+    if (!on.has(Effect::sleeping)) {
+        wake_all();
+        wake_pairs();
+    }
     if (!on.has(Effect::escalation)) get<OverloadedIslands>().efforts.clear();
     if (!may_escalate(settings)) get<OverloadedIslands>().forget_all();
     if (!on.meets(kEventDriven)) {
@@ -152,8 +188,9 @@ void WorldState::empty_unused()
             if (!on.has(Effect::mesh_contact)) empty(MeshContacts<Real>{});
             if (!on.meets(kSolidContact)) empty(SolidContacts<Real>{});
             if (on.has(Effect::contact)) return;
-            empty(Pairs{}, ConvexContacts<Real>{}, MethodPairs{}, ActiveContacts{}, Islands{},
-                  Layout{}, ContactConstraints<Real>{}, ExternalAcceleration{});
+            empty(Pairs{}, ConvexContacts<Real>{}, MethodPairs{}, SleepingPairs{},
+                  SleepingContacts<Real>{}, ActiveContacts{}, Islands{}, Layout{},
+                  ContactConstraints<Real>{}, ExternalAcceleration{});
         },
         step);
 }
@@ -167,12 +204,11 @@ void World::remove(std::span<const BodyId> bodies)
     // What rested on them has to notice; and whoever takes their places next is somebody else.
     std::vector<std::uint8_t> going(state.generation.size(), 0);
     for (const BodyId id : bodies) going[id.index] = 1;
-    state.wake_neighbors(going);
-    state.forget_pairs(going);
     for (const BodyId id : bodies) {
         const std::uint32_t body = id.index;
         if (states.kind[body] == BodyKind::removed) continue;
         state.wake(body);
+        state.disturb(body, true);
         state.mark_changed(body);
         states.kind[body] = BodyKind::removed;
         states.awake[body] = 0;
@@ -220,9 +256,7 @@ void World::set_pose(BodyId body, const Pose& pose)
     auto& poses = state_->get<Poses>();
     poses.orientation[at] = Quat(pose.orientation.coeffs() / length);
     poses.position[at] = poses.orientation[at] * state_->center[at] + pose.position;
-    std::vector<std::uint8_t> moved(state_->generation.size(), 0);
-    moved[at] = 1;
-    state_->wake_neighbors(moved);
+    state_->disturb(at, false);
     state_->wake(at);
     state_->mark_changed(at);
 }

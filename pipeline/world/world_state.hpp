@@ -48,8 +48,9 @@ struct WorldState {
     Effects effects;
     Requests requests;
     bool effects_stale = true;
-    bool active_bodies_stale = true;  // somebody awoke between steps
-    bool idle = false;                // the last step found nobody awake and left all as it was
+    bool active_bodies_stale = true;   // somebody came or went between steps
+    std::vector<std::uint32_t> woken;  // bodies, between steps
+    bool idle = false;                 // the last step found nobody awake and left all as it was
     bool in_order = false;
     StepWatch* watch = nullptr;  // sees the stages run; null for nobody
     StepReport report;
@@ -62,6 +63,11 @@ struct WorldState {
     std::vector<std::uint32_t> free_bodies;  // descending, so the least goes first
     std::map<std::uint32_t, std::vector<std::uint32_t>> free_colliders;  // by how many in a row
     std::size_t alive = 0;
+
+    // Of edits, until they are settled.
+    static constexpr std::uint8_t kDisturbed = 1, kGone = 2;
+    std::vector<std::uint8_t> edits;    // [colliders] may be shorter
+    std::vector<std::uint32_t> edited;  // colliders
 
     SceneFields fields;
 
@@ -101,10 +107,16 @@ struct WorldState {
     void wake_all();
     /// The broad phase has to look at a body's colliders again, and it may lie deep in others.
     void mark_changed(std::uint32_t body);
-    /// Wakes whoever is in a pair with one of some bodies (by body: 1 for those).
-    void wake_neighbors(const std::vector<std::uint8_t>& of);
-    /// Drops the pairs of some bodies with all they remember.
-    void forget_pairs(const std::vector<std::uint8_t>& of);
+    /// Whoever is in a pair with a body wakes, by settle() at the latest; where it goes away, its
+    /// pairs are dropped then with all they remember.
+    void disturb(std::uint32_t body, bool goes);
+    /// What edits call for among the pairs, for all of them at once.
+    void settle();
+    /// Puts pairs back whose islands woke, or all.
+    void wake_pairs();
+    void call_all_pairs();
+    /// Drops the pairs of colliders that are gone with all they remember.
+    void forget_pairs();
     /// Sets velocities as far as the body is free to have them, and wakes it. Beyond what a step
     /// can hold it is quarantined.
     void set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular);

@@ -82,7 +82,7 @@ TEST(RunStats, HoldTheFieldsOfTheContract)
               (Names{"motion", "gravity", "rotation", "gyroscopic", "contact", "friction", "seams",
                      "sleeping"}));
     const auto stage = stats.first(at("stages"));
-    EXPECT_EQ(stats.text(stats.find(stage, "name")), "update_bounds");
+    EXPECT_EQ(stats.text(stats.find(stage, "name")), "sleep_pairs");
     EXPECT_EQ(stats.kind(stats.find(stage, "ms_mean")), JsonKind::number);
     EXPECT_EQ(stats.kind(stats.find(stage, "ms_p99")), JsonKind::number);
 }

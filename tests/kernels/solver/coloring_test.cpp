@@ -20,7 +20,7 @@ using given::random_graph;
 void lay_out_again(const Graph& graph, ConstraintGraph& constraint_graph, Layout& layout)
 {
     Islands islands;
-    IslandFinder().find(graph.contacts, graph.states, {}, islands);
+    IslandFinder().find(graph.contacts, graph.states, graph.movable_bodies(), {}, islands);
     constraint_graph.lay_out(islands, graph.contacts, graph.states, graph.positions, layout);
 }
 

@@ -66,7 +66,7 @@ TEST(Islands, AreThoseOfASearchThroughTheGraph)
         const auto bodies = static_cast<std::uint32_t>(1 + random() % 120);
         const Graph graph = random_graph(bodies, random() % (2 * bodies), random);
         Islands got;
-        IslandFinder().find(graph.contacts, graph.states, {}, got);
+        IslandFinder().find(graph.contacts, graph.states, graph.movable_bodies(), {}, got);
         const Islands wanted = islands_by_search(graph);
         ASSERT_EQ(got.body_begin, wanted.body_begin) << "seed " << seed;
         ASSERT_EQ(got.bodies, wanted.bodies) << "seed " << seed;
@@ -82,10 +82,10 @@ TEST(Islands, HoldTheSameBodiesWhateverTheOrderOfContacts)
         std::mt19937 random(seed);
         Graph graph = random_graph(100, 90, random);
         Islands before, after;
-        IslandFinder().find(graph.contacts, graph.states, {}, before);
+        IslandFinder().find(graph.contacts, graph.states, graph.movable_bodies(), {}, before);
         std::shuffle(graph.contacts.entries.begin(), graph.contacts.entries.end(), random);
         for (auto& contact : graph.contacts.entries) std::swap(contact.body_a, contact.body_b);
-        IslandFinder().find(graph.contacts, graph.states, {}, after);
+        IslandFinder().find(graph.contacts, graph.states, graph.movable_bodies(), {}, after);
         ASSERT_EQ(before.body_begin, after.body_begin) << "seed " << seed;
         ASSERT_EQ(before.bodies, after.bodies) << "seed " << seed;
         ASSERT_EQ(before.contact_begin, after.contact_begin) << "seed " << seed;
@@ -95,7 +95,7 @@ TEST(Islands, HoldTheSameBodiesWhateverTheOrderOfContacts)
 TEST(Islands, OfNothingAreNone)
 {
     Islands islands;
-    IslandFinder().find({}, {}, {}, islands);
+    IslandFinder().find({}, {}, {}, {}, islands);
     EXPECT_EQ(islands.size(), 0u);
     EXPECT_TRUE(islands.lone.empty());
 }
@@ -107,14 +107,14 @@ TEST(Islands, DoNotDependOnThreads)
     const std::uint32_t bodies = 60'000;
     const Graph graph = random_graph(bodies, bodies, random);
     Islands wanted;
-    IslandFinder().find(graph.contacts, graph.states, {}, wanted);
+    IslandFinder().find(graph.contacts, graph.states, graph.movable_bodies(), {}, wanted);
     ASSERT_GT(wanted.size(), 1000u);
     ThreadPool pool(4);
     IslandFinder finder;
     for (int again = 0; again < 5; ++again) {
         Islands got;
         pool.run([&](std::size_t, std::size_t, std::size_t) {
-            finder.find(graph.contacts, graph.states, {}, got);
+            finder.find(graph.contacts, graph.states, graph.movable_bodies(), {}, got);
         });
         ASSERT_EQ(got.body_begin, wanted.body_begin);
         ASSERT_EQ(got.bodies, wanted.bodies);

@@ -14,6 +14,13 @@ struct Graph {
     std::vector<Vec3> positions;
 
     bool movable(std::uint32_t body) const { return states.movable(body); }
+    std::vector<std::uint32_t> movable_bodies() const
+    {
+        std::vector<std::uint32_t> bodies;
+        for (std::uint32_t body = 0; body < states.kind.size(); ++body)
+            if (movable(body)) bodies.push_back(body);
+        return bodies;
+    }
 };
 
 inline void add_body(Graph& graph, BodyKind kind, bool awake)

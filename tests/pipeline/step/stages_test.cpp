@@ -1,6 +1,8 @@
 // Stages: each called with a few arrays, no world needed.
 #include "pipeline/step/stages.hpp"
 
+#include "pipeline/contacts/wake_pairs.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -246,18 +248,18 @@ TEST(WakeIslands, WakesTheWholeBedOfWhoeverIsTouched)
         b.states.awake[body] = 0;
         b.states.sleeping_island[body] = 0;
     }
-    Pairs pairs;
+    StepData<float> step;
+    auto& pairs = std::get<Pairs>(step);
     pairs.keys = {pair_key(0, 1), pair_key(2, 3)};
-    ConvexContacts<float> contacts;
+    auto& contacts = std::get<ConvexContacts<float>>(step);
     contacts.of_pair.resize(2);
-    SolidContacts<float> solids;
     SleepEvents sleep_events;
-    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+    wake_islands(b.colliders, b.velocities, pair_data(step), sleeping_islands, b.states,
                  sleep_events);
     EXPECT_TRUE(sleep_events.woke.empty());
     contacts.contacts.resize(1);
     contacts.of_pair[0].contact = 0;
-    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+    wake_islands(b.colliders, b.velocities, pair_data(step), sleeping_islands, b.states,
                  sleep_events);
     EXPECT_EQ(sleep_events.woke, (std::vector<std::uint32_t>{1, 3}));
     EXPECT_EQ(b.states.awake[3], 1);
@@ -271,19 +273,20 @@ TEST(WakeIslands, SolidsWakeWhomTheyTouchAndNobodyNear)
     b.states.sleeping_island[1] = 0;
     SleepingIslands sleeping_islands;
     sleeping_islands.bodies = {{1}};
-    Pairs pairs;
+    StepData<float> step;
+    auto& pairs = std::get<Pairs>(step);
     pairs.keys = {pair_key(0, 1)};
     pairs.on_solid = {0};
-    ConvexContacts<float> contacts;
+    auto& contacts = std::get<ConvexContacts<float>>(step);
     contacts.of_pair.resize(1);
-    SolidContacts<float> solids;
+    auto& solids = std::get<SolidContacts<float>>(step);
     solids.entries.resize(1);
     SleepEvents sleep_events;
-    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+    wake_islands(b.colliders, b.velocities, pair_data(step), sleeping_islands, b.states,
                  sleep_events);
     EXPECT_TRUE(sleep_events.woke.empty()) << "a contact without points";
     solids.entries[0].contact.count = 1;
-    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+    wake_islands(b.colliders, b.velocities, pair_data(step), sleeping_islands, b.states,
                  sleep_events);
     EXPECT_EQ(sleep_events.woke, (std::vector<std::uint32_t>{1}));
 }
@@ -296,18 +299,18 @@ TEST(WakeIslands, WhatMovesByItselfWakesOnlyWhileItMoves)
     b.states.sleeping_island[1] = 0;
     SleepingIslands sleeping_islands;
     sleeping_islands.bodies = {{1}};
-    Pairs pairs;
+    StepData<double> step;
+    auto& pairs = std::get<Pairs>(step);
     pairs.keys = {pair_key(0, 1)};
-    ConvexContacts<double> contacts;
+    auto& contacts = std::get<ConvexContacts<double>>(step);
     contacts.contacts.resize(1);
     contacts.of_pair.push_back({{}, 0});
-    const SolidContacts<double> solids;
     SleepEvents sleep_events;
-    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+    wake_islands(b.colliders, b.velocities, pair_data(step), sleeping_islands, b.states,
                  sleep_events);
     EXPECT_TRUE(sleep_events.woke.empty());
     b.velocities.angular[0] = Vec3(0, 0, 1);
-    wake_islands(pairs, b.colliders, b.velocities, contacts, solids, sleeping_islands, b.states,
+    wake_islands(b.colliders, b.velocities, pair_data(step), sleeping_islands, b.states,
                  sleep_events);
     EXPECT_EQ(sleep_events.woke, (std::vector<std::uint32_t>{1}));
 }
