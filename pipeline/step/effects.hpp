@@ -4,10 +4,8 @@
 // is on, and never asks again.
 #pragma once
 
-#include "kernels/data/bodies.hpp"
-#include "kernels/data/forces.hpp"
+#include "pipeline/step/effect_census.hpp"
 #include "throng/effects.hpp"
-#include "throng/settings.hpp"
 
 #include <array>
 #include <string>
@@ -25,27 +23,20 @@ struct Requests {
     }
 };
 
-struct PairFilter;
-
-/// Everything that decides about effects.
+/// Everything that decides about effects, besides who calls for what.
 struct EffectFacts {
-    const Settings& settings;
-    const Vec3& gravity;
-    const BodyStates& states;
-    const Poses& poses;
-    const Velocities& velocities;
-    const Masses& masses;
+    BodyFacts bodies;
     const PrescribedVelocities& prescribed;
-    const Forces& forces;
-    const Shapes& shapes;
-    const Colliders& colliders;
     const Surfaces& surfaces;
-    const PairFilter& filter;
     const Requests& requests;
     const std::vector<std::string>& body_names;  // may be shorter than the bodies
     const std::vector<std::string>& material_names;
 };
 
-Effects find_effects(const EffectFacts& facts);
+/// What is called for. Takes no longer where there are more bodies.
+Set<Effect> effects_called_for(const EffectFacts& facts, const EffectCensus& census);
+
+/// The same with the first that calls for each.
+Effects find_effects(const EffectFacts& facts, const EffectCensus& census);
 
 }  // namespace throng

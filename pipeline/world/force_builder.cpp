@@ -133,10 +133,9 @@ void join_springs(std::span<const Spring> springs,
     if (!forces.springs.empty()) sort_springs(states, forces);
 }
 
-void drop_forces(std::span<const std::uint8_t> going, const BodyStates& states, Forces& forces)
+void drop_forces(std::span<const std::uint32_t> going, const BodyStates& states, Forces& forces)
 {
-    for (std::uint32_t body = 0; body < going.size(); ++body) {
-        if (going[body] == 0) continue;
+    for (const std::uint32_t body : going) {
         for (auto* const list : {&forces.force, &forces.torque, &forces.pivot_to_center})
             if (body < list->size()) (*list)[body].setZero();
         if (body < forces.has_pivot.size()) forces.has_pivot[body] = 0;
@@ -144,7 +143,9 @@ void drop_forces(std::span<const std::uint8_t> going, const BodyStates& states, 
             if (body < list->size()) (*list)[body] = 0;
     }
     if (forces.springs.empty()) return;
-    const auto goes = [&](std::uint32_t body) { return body != kNoBody && going[body] != 0; };
+    const auto goes = [&](std::uint32_t body) {
+        return body != kNoBody && states.kind[body] == BodyKind::removed;
+    };
     std::erase_if(forces.springs,
                   [&](const SpringForce& spring) { return goes(spring.a) || goes(spring.b); });
     sort_springs(states, forces);

@@ -29,9 +29,8 @@ void join_springs(std::span<const Spring> springs,
                   const BodyStates& states,
                   Forces& forces);
 
-/// Forgets all that acts on some bodies (by body: 1 for those), the springs that hold them
-/// included.
-void drop_forces(std::span<const std::uint8_t> going, const BodyStates& states, Forces& forces);
+/// Forgets all that acts on some bodies, which are removed, the springs that hold them included.
+void drop_forces(std::span<const std::uint32_t> going, const BodyStates& states, Forces& forces);
 
 /// A sentence for each spring that makes its bodies swing wider and wider at these settings: the
 /// limit, and what would do.

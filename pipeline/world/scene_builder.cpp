@@ -248,6 +248,7 @@ PlacedShape SceneBuilder::add_made(const std::string& name, MadeSolid made)
 std::uint32_t SceneBuilder::take_body()
 {
     if (!state_.free_bodies.empty()) {
+        std::pop_heap(state_.free_bodies.begin(), state_.free_bodies.end(), std::greater<>());
         const std::uint32_t body = state_.free_bodies.back();
         state_.free_bodies.pop_back();
         return body;
@@ -409,6 +410,9 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     }
     note_requests(body, stated);
     state_.mark_changed(body);
+    state_.changed.push_back(body);
+    if (stated.motion == Motion::kinematic) state_.active_bodies_stale = true;
+    if (stated.motion == Motion::dynamic) state_.woken.push_back(body);
     ++state_.alive;
     return {body, state_.generation[body]};
 }
@@ -521,6 +525,8 @@ std::vector<BodyId> SceneBuilder::add(const Scene& scene)
     }
     add_forces(scene, ids);
     state_.effects_stale = true;
+    // Springs turn bodies that were there before, or not as they came.
+    if (!scene.springs.empty()) state_.census_stale = true;
     return ids;
 }
 

@@ -22,11 +22,11 @@ bool SceneFields::add(const Scene& scene, std::span<const std::uint32_t> bodies,
     return true;
 }
 
-bool SceneFields::remove(std::span<const std::uint8_t> going, Forces& forces)
+bool SceneFields::remove(std::span<const std::uint32_t> going, Forces& forces)
 {
     bool changed = false;
-    for (std::uint32_t body = 0; body < std::min(going.size(), field_of_.size()); ++body) {
-        if (going[body] == 0 || field_of_[body] == kNoBody) continue;
+    for (const std::uint32_t body : going) {
+        if (body >= field_of_.size() || field_of_[body] == kNoBody) continue;
         Field& field = fields_[field_of_[body]];
         // Its place may be another scene's next.
         field_of_[body] = kNoBody;

@@ -13,9 +13,9 @@ class SceneFields {
 public:
     /// Takes what a scene brings. True where that is anything.
     bool add(const Scene& scene, std::span<const std::uint32_t> bodies, Forces& forces);
-    /// Takes away what scenes brought whose last body goes (by body: 1 for those). True where that
-    /// is anything.
-    bool remove(std::span<const std::uint8_t> going, Forces& forces);
+    /// Takes away what scenes brought whose last body is among those that go. True where that is
+    /// anything.
+    bool remove(std::span<const std::uint32_t> going, Forces& forces);
 
 private:
     struct Field {

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 #include <stdexcept>
 
 namespace throng {
@@ -66,36 +67,41 @@ std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
                                 + " was removed or never was; give one that is alive");
 }
 
+FinderKind WorldState::wanted_finder() const
+{
+    switch (settings.broadphase) {
+    case BroadPhase::embree:
+        return FinderKind::embree;
+    case BroadPhase::grid:
+        return FinderKind::grid;
+    case BroadPhase::sweep:
+        return FinderKind::sweep;
+    case BroadPhase::all_pairs:
+        return FinderKind::all_pairs;
+    default:
+        break;
+    }
+    const auto& colliders = get<Colliders>();
+    const auto& states = get<BodyStates>();
+    std::vector<Box3> boxes(colliders.size());
+    std::vector<std::uint8_t> moving(colliders.size(), 0);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const std::uint32_t body = colliders.body[i];
+        if (body == kNoBody) continue;
+        const Vec3 middle = (get<Poses>().at(body) * colliders.local[i]).position;
+        boxes[i] = {middle.array() - colliders.outer_radius[i],
+                    middle.array() + colliders.outer_radius[i]};
+        moving[i] = states.kind[body] != BodyKind::static_ ? 1 : 0;
+    }
+    return choose_finder(boxes, moving);
+}
+
+// Once more where there are many more bodies than when it was chosen, or many fewer: what there is
+// of them decides, and to look at all takes time.
 void WorldState::choose_broad_phase()
 {
-    const BroadPhase asked = settings.broadphase;
-    const auto& colliders = get<Colliders>();
-    const auto kind = [&] {
-        switch (asked) {
-        case BroadPhase::embree:
-            return FinderKind::embree;
-        case BroadPhase::grid:
-            return FinderKind::grid;
-        case BroadPhase::sweep:
-            return FinderKind::sweep;
-        case BroadPhase::all_pairs:
-            return FinderKind::all_pairs;
-        default:
-            break;
-        }
-        std::vector<Box3> boxes(colliders.size());
-        std::vector<std::uint8_t> moving(colliders.size(), 0);
-        const auto& states = get<BodyStates>();
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const std::uint32_t body = colliders.body[i];
-            if (body == kNoBody) continue;
-            const Vec3 middle = (get<Poses>().at(body) * colliders.local[i]).position;
-            boxes[i] = {middle.array() - colliders.outer_radius[i],
-                        middle.array() + colliders.outer_radius[i]};
-            moving[i] = states.kind[body] != BodyKind::static_ ? 1 : 0;
-        }
-        return choose_finder(boxes, moving);
-    }();
+    finder_chosen_for = alive;
+    const FinderKind kind = wanted_finder();
     AnyPairFinder& finder = get<Finder>().finder;
     const bool any = !get<Pairs>().keys.empty() || get<SleepingPairs>().size() > 0;
     if (finder.index() == make_finder(kind).index() && any) return;
@@ -103,15 +109,17 @@ void WorldState::choose_broad_phase()
     // A new finder has to be asked about everybody, and finds pairs of whoever sleeps, too.
     call_all_pairs();
     auto& bounds = get<Bounds>();
-    bounds.touched.clear();
-    for (std::uint32_t i = 0; i < colliders.size(); ++i) bounds.touched.push_back(i);
+    bounds.touched.resize(get<Colliders>().size());
+    std::iota(bounds.touched.begin(), bounds.touched.end(), 0u);
 }
 
 bool WorldState::nothing_to_do() const
 {
     const auto& context = get<StepContext>();
-    return idle && !effects_stale && !active_bodies_stale && woken.empty() && edited.empty()
-        && get<Bounds>().touched.empty() && context.last_substep == context.substep();
+    const bool edits = !changed.empty() || !woken.empty() || !edited.empty()
+        || active_bodies_stopped || !get<Bounds>().touched.empty();
+    return idle && !edits && !effects_stale && !active_bodies_stale
+        && context.last_substep == context.substep();
 }
 
 void WorldState::follow_stubborn()
@@ -159,8 +167,10 @@ void WorldState::follow_step()
     }
     if (diagnostics.quarantined.empty()) return;
     report.bodies_quarantined += diagnostics.quarantined.size();
-    for (const std::uint32_t body : diagnostics.quarantined) mark_changed(body);
-    effects_stale = true;
+    for (const std::uint32_t body : diagnostics.quarantined) {
+        mark_changed(body);
+        changed.push_back(body);
+    }
     diagnostics.quarantined.clear();
 }
 
@@ -192,14 +202,14 @@ void WorldState::report_state()
 void WorldState::refresh()
 {
     settle();
-    if (effects_stale) refresh_effects();
+    refresh_effects();
     if (active_bodies_stale) {
         list_active_bodies(get<BodyStates>());
-    } else if (!woken.empty()) {
+    } else if (!woken.empty() || active_bodies_stopped) {
         std::sort(woken.begin(), woken.end());
         update_active_bodies(woken, get<BodyStates>());
     }
-    active_bodies_stale = false;
+    active_bodies_stale = active_bodies_stopped = false;
     woken.clear();
 }
 
@@ -259,18 +269,63 @@ void WorldState::warn_of_substeps()
             warnings.push_back(std::move(warning));
 }
 
+EffectFacts WorldState::effect_facts() const
+{
+    return {{settings, get<StepContext>().gravity, get<BodyStates>(), get<Velocities>(),
+             get<Masses>(), get<Forces>(), get<Shapes>(), get<Colliders>(), get<PairFilter>()},
+            get<PrescribedVelocities>(),
+            get<Surfaces>(),
+            requests,
+            names,
+            material_names};
+}
+
+void WorldState::name_causes()
+{
+    refresh();
+    if (causes_stale) effects = find_effects(effect_facts(), census);
+    causes_stale = false;
+}
+
+void WorldState::follow_changes()
+{
+    if (!census_stale && changed.empty()) return;
+    const EffectFacts facts = effect_facts();
+    const std::size_t changes = census.changes();
+    if (census_stale)
+        census.look_at_all(facts.bodies);
+    else
+        for (const std::uint32_t body : changed) census.look_at(body, facts.bodies);
+    effects_stale = effects_stale || census.changes() != changes;
+    causes_stale = true;
+    census_stale = false;
+    changed.clear();
+}
+
 void WorldState::refresh_effects()
 {
-    effects_stale = false;
-    active_bodies_stale = true;
-    auto& context = get<StepContext>();
-    effects = find_effects({settings, context.gravity, get<BodyStates>(), get<Poses>(),
-                            get<Velocities>(), get<Masses>(), get<PrescribedVelocities>(),
-                            get<Forces>(), get<Shapes>(), get<Colliders>(), get<Surfaces>(),
-                            get<PairFilter>(), requests, names, material_names});
-    context.effects = effects.on;
+    const bool all = census_stale;
+    follow_changes();
+    if (effects_stale) {
+        effects_stale = false;
+        causes_stale = true;
+        auto& context = get<StepContext>();
+        effects.on = effects_called_for(effect_facts(), census);
+        const bool same = effects.on == context.effects && !all;
+        context.effects = effects.on;
+        if (!same) remake_graph();
+    }
+    const std::size_t more =
+        alive > finder_chosen_for ? alive - finder_chosen_for : finder_chosen_for - alive;
+    if (effects.on.has(Effect::contact) && (all || 4 * more > finder_chosen_for))
+        choose_broad_phase();
+}
+
+// With what no stage writes any more emptied.
+void WorldState::remake_graph()
+{
     empty_unused();
-    if (effects.on.has(Effect::contact)) choose_broad_phase();
+    finder_chosen_for = 0;
     std::visit(
         [&](auto& chosen) {
             using Graph = typename std::remove_reference_t<decltype(chosen.graph)>::element_type;
@@ -371,7 +426,7 @@ void World::set_settings(const Settings& settings)
     state_->get<Flights>() = {};  // numbers of another rotation, or of another law
     state_->call_all_pairs();     // which may remember what another method found
     state_->set(settings);
-    state_->effects_stale = true;
+    state_->effects_stale = state_->census_stale = true;
     state_->warn_of_substeps();
 }
 
@@ -381,7 +436,7 @@ void World::set_gravity(const Vec3& gravity)
 {
     if (!gravity.allFinite()) throw std::invalid_argument("set_gravity: give finite numbers, m/s2");
     state_->get<StepContext>().gravity = gravity;
-    state_->effects_stale = true;
+    state_->effects_stale = state_->census_stale = true;
     state_->wake_all();
 }
 
@@ -504,7 +559,7 @@ std::vector<StageReport> World::stages() const
 
 const Effects& World::effects()
 {
-    state_->refresh();
+    state_->name_causes();
     return state_->effects;
 }
 

@@ -145,7 +145,8 @@ void WorldState::quarantine(std::uint32_t body)
     quarantine_bodies(diagnostics, get<BodyStates>(), get<Masses>(), get<Velocities>());
     ++report.bodies_quarantined;
     mark_changed(body);
-    effects_stale = true;
+    changed.push_back(body);
+    active_bodies_stopped = true;
 }
 
 void WorldState::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular)
@@ -161,7 +162,7 @@ void WorldState::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& 
     velocities.linear[body] = moves ? linear : Vec3(Vec3::Zero());
     velocities.angular[body] = turns ? angular : Vec3(Vec3::Zero());
     if (!holdable(velocities.linear[body]) || !holdable(velocities.angular[body])) quarantine(body);
-    effects_stale = true;
+    changed.push_back(body);
 }
 
 void WorldState::empty_unused()
@@ -199,19 +200,22 @@ void World::remove(std::span<const BodyId> bodies)
 {
     WorldState& state = *state_;
     for (const BodyId id : bodies) state.place_of(id, "remove");
+    state.follow_changes();
     auto& states = state.get<BodyStates>();
     auto& colliders = state.get<Colliders>();
+    const EffectFacts facts = state.effect_facts();
+    std::vector<std::uint32_t> going;
     // What rested on them has to notice; and whoever takes their places next is somebody else.
-    std::vector<std::uint8_t> going(state.generation.size(), 0);
-    for (const BodyId id : bodies) going[id.index] = 1;
     for (const BodyId id : bodies) {
         const std::uint32_t body = id.index;
         if (states.kind[body] == BodyKind::removed) continue;
+        going.push_back(body);
         state.wake(body);
         state.disturb(body, true);
         state.mark_changed(body);
         states.kind[body] = BodyKind::removed;
         states.awake[body] = 0;
+        state.census.look_at(body, facts.bodies);
         const std::uint32_t first = colliders.begin[body], count = colliders.count[body];
         for (std::uint32_t i = 0; i < count; ++i) {
             colliders.body[first + i] = kNoBody;
@@ -227,16 +231,15 @@ void World::remove(std::span<const BodyId> bodies)
         if (body < state.names.size()) state.names[body].clear();
         ++state.generation[body];
         state.free_bodies.push_back(body);
+        std::push_heap(state.free_bodies.begin(), state.free_bodies.end(), std::greater<>());
         --state.alive;
     }
-    std::sort(state.free_bodies.rbegin(), state.free_bodies.rend());
+    if (!state.get<Forces>().springs.empty()) state.census_stale = true;
     drop_forces(going, states, state.get<Forces>());
     if (state.fields.remove(going, state.get<Forces>())) state.wake_all();
-    state.effects_stale = true;
+    state.effects_stale = state.active_bodies_stopped = true;
     // Whoever comes into an empty world begins from nothing, as in its first step.
-    const bool empty = std::none_of(states.kind.begin(), states.kind.end(),
-                                    [](BodyKind kind) { return kind == BodyKind::dynamic; });
-    if (empty) state.get<StepContext>().last_substep = 0;
+    if (!state.census.any(Call::dynamic)) state.get<StepContext>().last_substep = 0;
 }
 
 void World::set_force_field(ForceField field)
@@ -244,7 +247,7 @@ void World::set_force_field(ForceField field)
     WorldState& state = *state_;
     state.get<Forces>().field = std::move(field);
     state.wake_all();
-    state.effects_stale = true;
+    state.effects_stale = state.census_stale = true;
 }
 
 void World::set_pose(BodyId body, const Pose& pose)

@@ -47,10 +47,16 @@ struct WorldState {
     std::variant<Step<float>, Step<double>> step;
     Effects effects;
     Requests requests;
-    bool effects_stale = true;
-    bool active_bodies_stale = true;   // somebody came or went between steps
-    std::vector<std::uint32_t> woken;  // bodies, between steps
-    bool idle = false;                 // the last step found nobody awake and left all as it was
+    EffectCensus census;
+    bool effects_stale = true;           // something besides bodies changed
+    bool census_stale = true;            // that all bodies depend on
+    bool causes_stale = true;            // of effects
+    std::vector<std::uint32_t> changed;  // bodies that may call for something else, in order
+    std::size_t finder_chosen_for = 0;   // bodies
+    bool active_bodies_stale = true;     // all have to be asked
+    bool active_bodies_stopped = false;  // somebody went or stopped between steps
+    std::vector<std::uint32_t> woken;    // dynamic bodies that awoke or came between steps
+    bool idle = false;                   // the last step found nobody awake and left all as it was
     bool in_order = false;
     StepWatch* watch = nullptr;  // sees the stages run; null for nobody
     StepReport report;
@@ -60,7 +66,7 @@ struct WorldState {
     std::vector<std::string> names;  // may be shorter: the rest have none
     std::vector<Vec3> center;        // of mass, in the body's own frame
     std::vector<Motion> motion;
-    std::vector<std::uint32_t> free_bodies;  // descending, so the least goes first
+    std::vector<std::uint32_t> free_bodies;  // a heap, so the least goes first
     std::map<std::uint32_t, std::vector<std::uint32_t>> free_colliders;  // by how many in a row
     std::size_t alive = 0;
 
@@ -124,6 +130,11 @@ struct WorldState {
     /// Effects, graph and the list of active bodies, brought up to date.
     void refresh();
     void refresh_effects();
+    void name_causes();
+    EffectFacts effect_facts() const;
+    /// Puts who changed into the census.
+    void follow_changes();
+    void remake_graph();
     /// True where a step would change nothing: nobody is awake, and nothing was touched.
     bool nothing_to_do() const;
     /// After a step: who fell asleep, who awoke, who was quarantined.
@@ -135,6 +146,7 @@ struct WorldState {
     /// Empties what no stage writes any more, and wakes all where nobody may sleep.
     void empty_unused();
     void choose_broad_phase();
+    FinderKind wanted_finder() const;
     /// Remarks on substeps that are too long for springs or too short for float, and on penalty
     /// forces that had a substep cut.
     void warn_of_substeps();
