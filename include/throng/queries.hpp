@@ -61,13 +61,15 @@ struct NearestHit {
     Vec3 point = Vec3::Zero();
 };
 
-/// Answers for a world as it was when this was made: make another after a step, or after adding,
-/// removing or moving bodies. Making one costs about as much as a broad phase; ask in batches,
-/// which run on the world's threads. Answers are the same bits for any number of them.
+/// Answers for a world as it is when it is asked. The first question of all takes about as long as
+/// a broad phase; the first after a step, or after bodies were added, removed or moved, looks at
+/// those that moved alone. Ask in batches, which run on the world's threads. Answers are the same
+/// bits for any number of them.
 ///
 /// The world must outlive its queries, and neither step nor change while they are asked. One thread
-/// at a time. Questions that are not numbers, or a direction of length 0, throw
-/// std::invalid_argument, naming the question, and so do spans of different lengths.
+/// at a time, whatever number of Queries a world has. Questions that are not numbers, or a
+/// direction of length 0, throw std::invalid_argument, naming the question, and so do spans of
+/// different lengths.
 class Queries {
 public:
     explicit Queries(const World& world);

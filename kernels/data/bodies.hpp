@@ -168,6 +168,7 @@ struct Colliders {
     std::vector<std::uint32_t> begin, count;  // [bodies] the colliders of each
     std::vector<std::uint8_t> may_swing;      // [bodies] how, by these bits: see turning_arms.hpp
     static constexpr std::uint8_t kMayHang = 1, kFlat = 2, kRim = 4;
+    bool compounds = false;  // some body has several, or had
 
     std::size_t size() const { return body.size(); }
 };

@@ -81,8 +81,19 @@ void check(const char* caller, std::span<const ShapeQuery> queries)
 
 }  // namespace
 
-struct Queries::Inside : QueryScene {
-    using QueryScene::QueryScene;
+struct Queries::Inside {
+    // Asking changes nothing that a step would notice.
+    explicit Inside(const WorldState& world)
+        : state(const_cast<WorldState&>(world))  // NOLINT: what questions go by is no part of it
+    {
+        if (state.queries == nullptr) state.queries = std::make_shared<QueryScene>(state);
+    }
+    QueryScene& now() const
+    {
+        state.queries->refresh();
+        return *state.queries;
+    }
+    WorldState& state;
 };
 
 Queries::Queries(const World& world) : inside_(std::make_unique<Inside>(state_of(world))) { }
@@ -94,7 +105,7 @@ void Queries::cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits)
 {
     check_lengths("cast_rays", rays.size(), hits.size());
     check("cast_rays", rays);
-    inside_->cast_rays(rays, hits);
+    inside_->now().cast_rays(rays, hits);
 }
 
 RayHit Queries::cast_ray(const RayQuery& ray)
@@ -108,7 +119,7 @@ void Queries::find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_
 {
     check_lengths("find_blocked", rays.size(), blocked.size());
     check("find_blocked", rays);
-    inside_->find_blocked(rays, blocked);
+    inside_->now().find_blocked(rays, blocked);
 }
 
 bool Queries::blocked(const RayQuery& ray)
@@ -122,7 +133,7 @@ std::vector<std::vector<BodyId>> Queries::find_overlaps(std::span<const ShapeQue
 {
     check("find_overlaps", shapes);
     std::vector<std::vector<BodyId>> found(shapes.size());
-    inside_->find_overlaps(shapes, found);
+    inside_->now().find_overlaps(shapes, found);
     return found;
 }
 
@@ -135,7 +146,7 @@ void Queries::find_nearest(std::span<const PointQuery> points, std::span<Nearest
 {
     check_lengths("find_nearest", points.size(), nearest.size());
     check("find_nearest", points);
-    inside_->find_nearest(points, nearest);
+    inside_->now().find_nearest(points, nearest);
 }
 
 NearestHit Queries::find_nearest(const PointQuery& point)

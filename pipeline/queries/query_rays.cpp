@@ -59,12 +59,12 @@ void QueryScene::cast(const RayQuery& query,
                       std::uint32_t collider,
                       Best& best) const
 {
-    const Collider& it = colliders_[collider];
-    if ((it.group & query.mask) == 0) return;
-    const Quat back = it.placed.orientation.conjugate();
-    const LocalRay local{back * (ray.from - it.placed.position), back * ray.along,
+    if (!is_asked(collider, query.mask)) return;
+    const Pose at = placed(collider);
+    const Quat back = at.orientation.conjugate();
+    const LocalRay local{back * (ray.from - at.position), back * ray.along,
                          std::min(query.max_distance, best.distance)};
-    const LocalRayHit met = throng::cast_ray(*shapes_, it.shape, local);
+    const LocalRayHit met = throng::cast_ray(shapes_, colliders_.shape[collider], local);
     if (met.found() && beats(met.distance, collider, best))
         best = {met.distance, collider, met.normal};
 }
@@ -78,7 +78,7 @@ void QueryScene::cast_at_candidates(const RayQuery& query,
 {
     order.clear();
     for (const std::uint32_t collider : candidates) {
-        const double enter = part_within(search.ray, boxes_[collider]).first;
+        const double enter = part_within(search.ray, boxes_.held(collider)).first;
         // Entered within what has been looked at: it was a candidate before.
         const bool seen = enter + slack_of(search.ray, enter) < search.searched;
         if (!seen) order.emplace_back(enter, collider);
@@ -94,11 +94,11 @@ QueryScene::Search QueryScene::search_for(const RayQuery& query) const
 {
     Search search;
     search.ray = {query.origin, unit(query.direction), 0};
-    if (bounds_.empty()) return search;
-    const auto [enter, leave] = part_within(search.ray, bounds_);
+    if (boxes_.bounds().empty()) return search;
+    const auto [enter, leave] = part_within(search.ray, boxes_.bounds());
     if (enter - slack_of(search.ray, enter) > leave) return search;
     search.first = std::max(0.0, enter);
-    search.stride = kFirstReach * usual_size_;
+    search.stride = kFirstReach * boxes_.usual_size();
     search.end = std::min(query.max_distance, leave + slack_of(search.ray, leave));
     search.ray.longest = std::min(search.end, search.first + search.stride);
     return search;
@@ -126,7 +126,7 @@ void QueryScene::search_met(std::span<const RayQuery> rays, std::span<Best> best
     while (!open.empty()) {
         rays_.clear();
         for (const std::uint32_t i : open) rays_.push_back(searches[i].ray);
-        tree_.meet_rays(rays_, candidates_);
+        boxes_.meet_rays(rays_, candidates_);
         for_each_block(open.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
             Order order;
             for (std::size_t k = begin; k < end; ++k) {
@@ -145,13 +145,12 @@ void QueryScene::search_met(std::span<const RayQuery> rays, std::span<Best> best
 RayHit QueryScene::hit_of(const RayQuery& ray, const Best& best) const
 {
     if (best.collider == kNoBody) return {};
-    const Collider& it = colliders_[best.collider];
     return {true,
             id(best.collider),
-            it.part,
+            part(best.collider),
             best.distance,
             ray.origin + unit(ray.direction) * best.distance,
-            it.placed.orientation * best.local};
+            placed(best.collider).orientation * best.local};
 }
 
 void QueryScene::cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits)

@@ -70,60 +70,87 @@ ShapeRef set_shape(const QueryShape& shape, Shapes& shapes)
 
 }  // namespace
 
-QueryScene::QueryScene(const WorldState& state)
-    // Asking changes nothing that a step would notice, so it may use the world's own threads.
-    : pool_(&const_cast<WorldState&>(state).pool),  // NOLINT: threads are no part of the state
-      shapes_(&state.get<Shapes>())
+QueryScene::QueryScene(WorldState& state)
+    : state_(state), shapes_(state.get<Shapes>()), colliders_(state.get<Colliders>())
 {
-    const auto& all = state.get<Colliders>();
-    const std::vector<std::uint32_t>& groups = state.get<PairFilter>().group;
-    const auto& poses = state.get<Poses>();
-    const auto& states = state.get<BodyStates>();
-    std::vector<double> sizes;
-    for (std::uint32_t body = 0; body < states.kind.size(); ++body) {
-        if (states.kind[body] == BodyKind::removed) continue;
-        for (std::uint32_t part = 0; part < all.count[body]; ++part) {
-            const std::size_t i = all.begin[body] + part;
-            const auto own = static_cast<std::uint32_t>(colliders_.size());
-            colliders_.push_back({body, state.generation[body], part, groups[i], all.shape[i],
-                                  poses.at(body) * all.local[i]});
-            boxes_.emplace_back();
-            if (all.shape[i].kind == ShapeKind::plane) {
-                planes_.push_back(own);
-                continue;
-            }
-            Box3& box = boxes_.back();
-            box = widened(shape_bounds(*shapes_, all.shape[i], colliders_.back().placed));
-            bounds_ = {bounds_.lower.cwiseMin(box.lower), bounds_.upper.cwiseMax(box.upper)};
-            sizes.push_back((box.upper - box.lower).maxCoeff());
-        }
+    state_.moved.all = true;
+}
+
+void QueryScene::refresh()
+{
+    MovedColliders& moved = state_.moved;
+    const bool stepped = state_.report.step != step_;
+    if (!stepped && !moved.all && moved.some.empty()) return;
+    boxes_.resize(colliders_.size());
+    if (moved.all) {
+        for (std::uint32_t collider = 0; collider < colliders_.size(); ++collider) put(collider);
+    } else {
+        for (const std::uint32_t collider : moved.some) put(collider);
+        const ActiveBodies& active = state_.get<BodyStates>().active_bodies;
+        for (const auto* bodies : {&active.dynamic, &active.kinematic})
+            for (const std::uint32_t body : *bodies)
+                for (std::uint32_t part = 0; stepped && part < colliders_.count[body]; ++part)
+                    put(colliders_.begin[body] + part);
     }
-    if (!sizes.empty()) {
-        const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-        std::nth_element(sizes.begin(), middle, sizes.end());
-        usual_size_ = *middle;
-    }
-    pool_->run([&](std::size_t, std::size_t, std::size_t) { tree_.build(boxes_); });
+    moved.all = false;
+    moved.some.clear();
+    step_ = state_.report.step;
+    state_.pool.run([&](std::size_t, std::size_t, std::size_t) { boxes_.settle(); });
+}
+
+// Who moves has room for what it may do in a while, or less where it is slow.
+void QueryScene::put(std::uint32_t collider)
+{
+    constexpr double kWhile = 0.2;   // s
+    constexpr double kAround = 0.1;  // of its smallest half extent
+    const std::uint32_t body = colliders_.body[collider];
+    const bool plane = body != kNoBody && colliders_.shape[collider].kind == ShapeKind::plane;
+    const auto at = std::lower_bound(planes_.begin(), planes_.end(), collider);
+    const bool known = at != planes_.end() && *at == collider;
+    if (plane && !known) planes_.insert(at, collider);
+    if (!plane && known) planes_.erase(at);
+    if (body == kNoBody || plane) return boxes_.put(collider, {}, Vec3::Zero(), 0);
+    const Box3 box = widened(shape_bounds(shapes_, colliders_.shape[collider], placed(collider)));
+    if (!state_.get<BodyStates>().moves(body)) return boxes_.put(collider, box, Vec3::Zero(), 0);
+    boxes_.put(collider, box, kWhile * state_.get<Velocities>().linear[body],
+               kAround * colliders_.inner_extent[collider]);
 }
 
 BodyId QueryScene::id(std::uint32_t collider) const
 {
-    return {colliders_[collider].body, colliders_[collider].generation};
+    const std::uint32_t body = colliders_.body[collider];
+    return {body, state_.generation[body]};
 }
 
-// Of equals the first collider, which belongs to the smaller body.
+std::uint32_t QueryScene::part(std::uint32_t collider) const
+{
+    return collider - colliders_.begin[colliders_.body[collider]];
+}
+
+Pose QueryScene::placed(std::uint32_t collider) const
+{
+    return state_.get<Poses>().at(colliders_.body[collider]) * colliders_.local[collider];
+}
+
+bool QueryScene::is_asked(std::uint32_t collider, std::uint32_t mask) const
+{
+    return (state_.get<PairFilter>().group[collider] & mask) != 0;
+}
+
+// Of equals the smaller body, and the first of its parts.
 bool QueryScene::beats(double distance, std::uint32_t collider, const Best& best) const
 {
-    return distance < best.distance || (distance == best.distance && collider < best.collider);
+    if (distance != best.distance || best.collider == kNoBody) return distance < best.distance;
+    const std::uint32_t a = colliders_.body[collider], b = colliders_.body[best.collider];
+    return a < b || (a == b && collider < best.collider);
 }
 
 NearestHit QueryScene::hit_of(const PointQuery& query, const Best& best) const
 {
     if (best.collider == kNoBody) return {};
-    const Collider& it = colliders_[best.collider];
     const bool inside = best.distance == 0;
-    return {true, id(best.collider), it.part, best.distance,
-            inside ? query.point : Vec3(it.placed * best.local)};
+    return {true, id(best.collider), part(best.collider), best.distance,
+            inside ? query.point : Vec3(placed(best.collider) * best.local)};
 }
 
 void QueryScene::overlap(const ShapeQuery& query,
@@ -135,11 +162,11 @@ void QueryScene::overlap(const ShapeQuery& query,
     const Quat turn(query.pose.orientation.normalized());
     const Pose pose{query.pose.position, turn};
     const auto try_one = [&](std::uint32_t collider) {
-        const Collider& it = colliders_[collider];
-        if ((it.group & query.mask) == 0) return;
-        const Pose in_query{pose.to_local(it.placed.position),
-                            turn.conjugate() * it.placed.orientation};
-        if (touching(asked, shape, *shapes_, it.shape, in_query)) found.push_back(id(collider));
+        if (!is_asked(collider, query.mask)) return;
+        const Pose at = placed(collider);
+        const Pose in_query{pose.to_local(at.position), turn.conjugate() * at.orientation};
+        if (touching(asked, shape, shapes_, colliders_.shape[collider], in_query))
+            found.push_back(id(collider));
     };
     for (const std::uint32_t plane : planes_) try_one(plane);
     for (const std::uint32_t collider : candidates) try_one(collider);
@@ -161,7 +188,7 @@ void QueryScene::find_overlaps(std::span<const ShapeQuery> queries,
                 regions_[i] = widened(shape_bounds(asked, set_shape(query.shape, asked), pose));
             }
         });
-        tree_.meet_boxes(regions_, candidates_);
+        boxes_.meet_boxes(regions_, candidates_);
         for_each_block(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
             Shapes asked;
             for (std::size_t i = begin; i < end; ++i)
@@ -173,11 +200,10 @@ void QueryScene::find_overlaps(std::span<const ShapeQuery> queries,
 
 void QueryScene::approach(const PointQuery& query, std::uint32_t collider, Best& best) const
 {
-    const Collider& it = colliders_[collider];
-    if ((it.group & query.mask) == 0) return;
+    if (!is_asked(collider, query.mask)) return;
     const double limit = std::min(query.max_distance, best.distance);
-    const NearestPoint nearest =
-        nearest_point(*shapes_, it.shape, it.placed.to_local(query.point), limit);
+    const NearestPoint nearest = nearest_point(shapes_, colliders_.shape[collider],
+                                               placed(collider).to_local(query.point), limit);
     if (nearest.distance <= limit && beats(nearest.distance, collider, best))
         best = {nearest.distance, collider, nearest.point};
 }
@@ -189,8 +215,8 @@ void QueryScene::search_nearest(std::span<const PointQuery> points, std::span<Be
     std::vector<double> radius(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         for (const std::uint32_t plane : planes_) approach(points[i], plane, best[i]);
-        radius[i] = distance_to(bounds_, points[i].point) + usual_size_;
-        if (!bounds_.empty()) open.push_back(i);
+        radius[i] = distance_to(boxes_.bounds(), points[i].point) + boxes_.usual_size();
+        if (!boxes_.bounds().empty()) open.push_back(i);
     }
     while (!open.empty()) {
         regions_.clear();
@@ -198,7 +224,7 @@ void QueryScene::search_nearest(std::span<const PointQuery> points, std::span<Be
             radius[i] = std::min({radius[i], points[i].max_distance, best[i].distance});
             regions_.push_back(cube(points[i].point, radius[i]));
         }
-        tree_.meet_boxes(regions_, candidates_);
+        boxes_.meet_boxes(regions_, candidates_);
         for_each_block(open.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t k = begin; k < end; ++k)
                 for (const std::uint32_t collider : candidates_.of(k))
@@ -208,7 +234,7 @@ void QueryScene::search_nearest(std::span<const PointQuery> points, std::span<Be
             const double known = radius[i];
             radius[i] *= kGrowth;
             return best[i].distance <= known || points[i].max_distance <= known
-                || furthest_of(bounds_, points[i].point) <= known;
+                || furthest_of(boxes_.bounds(), points[i].point) <= known;
         });
     }
 }

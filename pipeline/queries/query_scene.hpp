@@ -1,10 +1,11 @@
-// Query scene: a world's colliders as they were at one time, laid out for questions.
+// Query scene: a world's colliders, laid out for questions, and brought up to date by those that
+// moved since.
 //
 // Boxes name candidates, closed forms in double decide. Planes have no box and are asked one by
 // one.
 #pragma once
 
-#include "broadphase/box_queries.hpp"
+#include "broadphase/live_boxes.hpp"
 #include "pipeline/world/world_state.hpp"
 #include "throng/queries.hpp"
 
@@ -15,7 +16,10 @@ namespace throng {
 /// Answers what Queries asks, once the questions are known to be good.
 class QueryScene {
 public:
-    explicit QueryScene(const WorldState& state);
+    explicit QueryScene(WorldState& state);
+
+    /// Looks at who moved, came and went since the last time. Before each question.
+    void refresh();
 
     void cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits);
     void find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_t> blocked);
@@ -23,11 +27,6 @@ public:
     void find_nearest(std::span<const PointQuery> points, std::span<NearestHit> nearest);
 
 private:
-    struct Collider {
-        std::uint32_t body = 0, generation = 0, part = 0, group = 0;
-        ShapeRef shape;
-        Pose placed;
-    };
     /// The best answer so far: a collider and, in its own frame, the normal where a ray meets it or
     /// the point of it that is nearest.
     struct Best {
@@ -45,12 +44,16 @@ private:
     template <class Work>
     void run_in_batches(std::size_t questions, const Work& work)
     {
-        pool_->run([&](std::size_t, std::size_t, std::size_t) {
+        state_.pool.run([&](std::size_t, std::size_t, std::size_t) {
             for (std::size_t first = 0; first < questions; first += kBatch)
                 work(first, std::min(kBatch, questions - first));
         });
     }
     BodyId id(std::uint32_t collider) const;
+    std::uint32_t part(std::uint32_t collider) const;
+    Pose placed(std::uint32_t collider) const;
+    bool is_asked(std::uint32_t collider, std::uint32_t mask) const;
+    void put(std::uint32_t collider);
     bool beats(double distance, std::uint32_t collider, const Best& best) const;
 
     void cast(const RayQuery& query, const Ray& ray, std::uint32_t collider, Best& best) const;
@@ -73,17 +76,12 @@ private:
     RayHit hit_of(const RayQuery& ray, const Best& best) const;
     NearestHit hit_of(const PointQuery& query, const Best& best) const;
 
-    ThreadPool* pool_;
-    const Shapes* shapes_;
-
-    // By collider, in order of body and part.
-    std::vector<Collider> colliders_;
-    std::vector<Box3> boxes_;  // empty for planes
-
-    std::vector<std::uint32_t> planes_;
-    EmbreeRays tree_;
-    Box3 bounds_;            // of all boxes
-    double usual_size_ = 0;  // m, of a box
+    WorldState& state_;
+    const Shapes& shapes_;
+    const Colliders& colliders_;
+    std::vector<std::uint32_t> planes_;  // ascending
+    LiveBoxes boxes_;
+    std::uint64_t step_ = 0;  // of the world, as of the last refresh
 
     // Of the questions asked last.
     std::vector<Ray> rays_;

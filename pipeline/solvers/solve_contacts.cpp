@@ -17,12 +17,6 @@ namespace throng {
 
 namespace {
 
-bool any_compound(const Colliders& colliders)
-{
-    return std::any_of(colliders.count.begin(), colliders.count.end(),
-                       [](std::uint32_t count) { return count > 1; });
-}
-
 // Whether stiff springs pull at bodies of an island. Exact solves take turns with them, which over
 // long substeps does not come together.
 bool is_stiff(const StepContext& context,
@@ -86,7 +80,7 @@ public:
         if (any_finer(layout_)) flights_.lags.resize(facts_.masses.mass.size());
         start_split_impulse(layout_, split_impulse_);
         const auto& colliders = problem.template get<const Colliders>();
-        if (!solids_.entries.empty() || any_compound(colliders))
+        if (!solids_.entries.empty() || colliders.compounds)
             split_wedged(context_, active_, colliders, facts_.masses, builder_, split_impulse_);
     }
 

@@ -191,7 +191,7 @@ void EffectCensus::count(std::uint32_t body, bool in, const BodyFacts& facts)
     }
 }
 
-void EffectCensus::look_at(std::uint32_t body, const BodyFacts& facts)
+void EffectCensus::recount(std::uint32_t body, const BodyFacts& facts)
 {
     if (calls_.size() <= body) calls_.resize(body + std::size_t{1}, 0);
     const std::uint32_t calls = BodyCalls(body, facts).find();
@@ -201,12 +201,12 @@ void EffectCensus::look_at(std::uint32_t body, const BodyFacts& facts)
     count(body, true, facts);
 }
 
-void EffectCensus::look_at_all(const BodyFacts& facts)
+void EffectCensus::count_all(const BodyFacts& facts)
 {
     const std::size_t changes = changes_ + 1;
     *this = {};
     changes_ = changes;
-    for (std::uint32_t body = 0; body < facts.states.kind.size(); ++body) look_at(body, facts);
+    for (std::uint32_t body = 0; body < facts.states.kind.size(); ++body) recount(body, facts);
 }
 
 }  // namespace throng

@@ -66,8 +66,8 @@ public:
     };
 
     /// A body is new or has changed; or it is removed, and its colliders are as they were.
-    void look_at(std::uint32_t body, const BodyFacts& facts);
-    void look_at_all(const BodyFacts& facts);
+    void recount(std::uint32_t body, const BodyFacts& facts);
+    void count_all(const BodyFacts& facts);
 
     bool any(Call call) const { return counts_[static_cast<std::size_t>(call)] > 0; }
     std::size_t count(Call call) const { return counts_[static_cast<std::size_t>(call)]; }

@@ -281,6 +281,7 @@ void SceneBuilder::place_colliders(std::uint32_t body,
     put(colliders.count, body, count);
     double radius = 0;
     std::uint8_t swings = count > 1 ? Colliders::kMayHang : 0;
+    colliders.compounds = colliders.compounds || count > 1;
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t at = first + i;
         const ShapeRef part = shape->parts[i];

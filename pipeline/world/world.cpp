@@ -156,6 +156,7 @@ void WorldState::follow_step()
     if (!diagnostics.quarantined.empty() || !sleep_events.woke.empty()
         || !sleep_events.fell_asleep.empty())
         update_active_bodies(sleep_events.woke, get<BodyStates>());
+    for (const std::uint32_t body : sleep_events.fell_asleep) note_moved(body);
     const ActiveBodies& active_bodies = get<BodyStates>().active_bodies;
     get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size() + get<SleepingPairs>().size(),
                                         active_bodies.dynamic.size());
@@ -293,9 +294,9 @@ void WorldState::follow_changes()
     const EffectFacts facts = effect_facts();
     const std::size_t changes = census.changes();
     if (census_stale)
-        census.look_at_all(facts.bodies);
+        census.count_all(facts.bodies);
     else
-        for (const std::uint32_t body : changed) census.look_at(body, facts.bodies);
+        for (const std::uint32_t body : changed) census.recount(body, facts.bodies);
     effects_stale = effects_stale || census.changes() != changes;
     causes_stale = true;
     census_stale = false;

@@ -27,10 +27,22 @@ void WorldState::mark_changed(std::uint32_t body)
     auto& bounds = get<Bounds>();
     for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
         bounds.touched.push_back(colliders.begin[body] + i);
+    note_moved(body);
     get<SplitImpulse>().place(body);
     get<OverloadedIslands>().forget(body);
     auto& lags = get<Flights>().lags;
     if (body < lags.size()) lags[body] = 0;
+}
+
+void WorldState::note_moved(std::uint32_t body)
+{
+    if (queries == nullptr || moved.all) return;
+    const auto& colliders = get<Colliders>();
+    for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
+        moved.some.push_back(colliders.begin[body] + i);
+    // Nobody has asked for long.
+    moved.all = moved.some.size() > colliders.size();
+    if (moved.all) moved.some.clear();
 }
 
 // Pairs are in order of their keys, so that to find those of one body takes a look at all of them:
@@ -215,7 +227,7 @@ void World::remove(std::span<const BodyId> bodies)
         state.mark_changed(body);
         states.kind[body] = BodyKind::removed;
         states.awake[body] = 0;
-        state.census.look_at(body, facts.bodies);
+        state.census.recount(body, facts.bodies);
         const std::uint32_t first = colliders.begin[body], count = colliders.count[body];
         for (std::uint32_t i = 0; i < count; ++i) {
             colliders.body[first + i] = kNoBody;

@@ -35,6 +35,14 @@ struct PlacedShape {
     MassProperties mass;      // of unit density
 };
 
+class QueryScene;
+
+/// Colliders that may be elsewhere than when questions were asked last; kept for that alone.
+struct MovedColliders {
+    bool all = false;
+    std::vector<std::uint32_t> some;
+};
+
 struct WorldState {
     explicit WorldState(const Settings& all, int thread_count);
 
@@ -74,6 +82,9 @@ struct WorldState {
     static constexpr std::uint8_t kDisturbed = 1, kGone = 2;
     std::vector<std::uint8_t> edits;    // [colliders] may be shorter
     std::vector<std::uint32_t> edited;  // colliders
+
+    std::shared_ptr<QueryScene> queries;  // once any were asked
+    MovedColliders moved;
 
     SceneFields fields;
 
@@ -116,6 +127,8 @@ struct WorldState {
     /// Whoever is in a pair with a body wakes, by settle() at the latest; where it goes away, its
     /// pairs are dropped then with all they remember.
     void disturb(std::uint32_t body, bool goes);
+    /// Whoever asks about a body's shapes has to look at them again.
+    void note_moved(std::uint32_t body);
     /// What edits call for among the pairs, for all of them at once.
     void settle();
     /// Puts pairs back whose islands woke, or all.

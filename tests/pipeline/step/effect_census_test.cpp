@@ -74,7 +74,7 @@ TEST(EffectCensus, IsThatOfALookAtEverybody)
             const Effects effects = world.effects();
             EffectCensus fresh;
             const EffectFacts facts = state.effect_facts();
-            fresh.look_at_all(facts.bodies);
+            fresh.count_all(facts.bodies);
             for (std::size_t i = 0; i < kCalls; ++i)
                 ASSERT_EQ(state.census.count(static_cast<Call>(i)),
                           fresh.count(static_cast<Call>(i)))
