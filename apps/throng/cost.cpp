@@ -54,7 +54,7 @@ std::string command_for(const Options& options)
     return command;
 }
 
-std::string read_file(std::string_view path)
+std::string report_text(std::string_view path)
 {
     const std::optional<std::string> text = text_of_file(std::string(path));
     if (!text) throw BadInput("--compare: " + in_quotes(path) + " cannot be read");
@@ -66,8 +66,8 @@ int compare_reports(const Options& options)
     if (options.words().size() != 2)
         throw BadInput("--compare: wanted two reports, as in throng cost --compare A.json B.json");
     const std::string_view a = options.words()[0], b = options.words()[1];
-    const CostReport first = read_report(read_file(a), std::string(a)),
-                     second = read_report(read_file(b), std::string(b));
+    const CostReport first = read_report(report_text(a), std::string(a)),
+                     second = read_report(report_text(b), std::string(b));
     std::cout << "A: " << a << "\nB: " << b << "\n\n";
     write_comparison(first, second, std::cout);
     return kDone;

@@ -1,11 +1,18 @@
 // Explain: which effects a scene calls for, and the step that follows from them.
 #include "apps/throng/commands.hpp"
+#include "apps/throng/effect_json.hpp"
 #include "apps/throng/interrupt.hpp"
+#include "apps/throng/json_lines.hpp"
 #include "apps/throng/output_file.hpp"
 #include "apps/throng/progress.hpp"
 #include "apps/throng/scene_argument.hpp"
 #include "apps/throng/step_times.hpp"
+#include "scene/files/json.hpp"
+#include "scene/files/json_writer.hpp"
+#include "scene/names.hpp"
 #include "throng/dials.hpp"
+#include "throng/effect_ledger.hpp"
+#include "throng/version.hpp"
 #include "throng/world.hpp"
 
 #include <algorithm>
@@ -19,6 +26,7 @@ namespace {
 
 constexpr Option kOptions[] = {
     {"--steps", "N", "runs so many steps, from 0, and says what each stage took (default 0)"},
+    {"--json", "FILE", "effects and stages, for programs"},
     {"--dot", "FILE", "the step as a graph, for graphviz"},
     kDtOption,
     kThreadsOption,
@@ -36,22 +44,66 @@ std::string padded(std::string_view text, std::size_t width)
     return all;
 }
 
-void print_effects(const Effects& effects)
+/// Who calls for what, and once steps were run what that cost.
+void print_effects(const std::vector<EffectEntry>& entries, bool costs)
 {
     std::cout << "\neffects\n";
-    for (int i = 0; i < kEffects; ++i) {
-        const auto effect = static_cast<Effect>(i);
-        const bool on = effects.on.has(effect);
-        std::cout << "  " << padded(name_of(effect), 18);
-        if (on)
-            std::cout << padded("on", 19) << effects.cause_of(effect) << '\n';
-        else
+    if (costs)
+        std::cout << "  " << padded("", 18) << "    callers    ms/step      rows      kB  first\n";
+    for (const EffectEntry& entry : entries) {
+        std::cout << "  " << padded(name_of(entry.effect), 18);
+        if (!entry.on) {
             std::cout << "off\n";
+            continue;
+        }
+        char text[80];
+        if (costs)
+            std::snprintf(text, sizeof text, "on %8zu %10.4f %9zu %7.1f  ", entry.callers, entry.ms,
+                          entry.rows, static_cast<double>(entry.bytes) / 1e3);
+        else
+            std::snprintf(text, sizeof text, "on %8zu  ", entry.callers);
+        std::cout << text << entry.first << '\n';
     }
 }
 
 /// What each stage took, by name; empty where no step was run.
 using StageMs = std::map<std::string_view, double>;
+
+std::string stage_json(const Stages& stages, const World::StageInfo& stage, const StageMs& times)
+{
+    const auto earlier = [&](std::size_t at) { return json_string(stages[at].name); };
+    const auto pass = [](const World::PassInfo& of) {
+        return JsonMembers().add_text("name", of.name).add_text("when", of.when).text();
+    };
+    const auto found = times.find(stage.name);
+    return "\n    "
+        + JsonMembers()
+              .add_text("name", stage.name)
+              .add("waits_for", '[' + joined(stage.waits_for, ", ", earlier) + ']')
+              .add("passes", '[' + joined(stage.passes, ", ", pass) + ']')
+              .add("ms", found == times.end() ? 0.0 : found->second)
+              .text();
+}
+
+void write_json(const SceneArgument& argument,
+                const StepTimes& times,
+                const std::vector<EffectEntry>& entries,
+                const Stages& stages,
+                const StageMs& stage_ms,
+                std::ostream& out)
+{
+    JsonLines json(out);
+    json.add("throng", json_string(version()));
+    json.add("scene", json_string(argument.label));
+    json.add("steps", times.steps().count());
+    json.add("ms_per_step", times.steps().mean());
+    json.add("effect_ledger", effect_ledger_json(entries));
+    json.add("stages",
+             '[' + joined(stages, ",", [&](const World::StageInfo& stage) {
+                 return stage_json(stages, stage, stage_ms);
+             }) + ']');
+    json.end();
+}
 
 std::string time_column(const StageMs& times, std::string_view stage)
 {
@@ -138,12 +190,16 @@ int explain(const Options& options)
     const SceneArgument argument = read_scene_argument(options);
     World world = make_world(argument, threads);
     note_interrupts();
-    OutputFile dot("--dot", options.text("--dot"));
-    refuse_same_file(dot, argument.file, "the scene");
-    refuse_same_file(dot, argument.mesh, "--mesh");
+    OutputFile dot("--dot", options.text("--dot")), json("--json", options.text("--json"));
+    refuse_same_file(dot, json.path(), "--json");
+    for (const OutputFile* file : {&dot, &json}) {
+        refuse_same_file(*file, argument.file, "the scene");
+        refuse_same_file(*file, argument.mesh, "--mesh");
+    }
 
-    // What is printed is the step as it begins; bodies that fail on the way may change it.
-    const Effects effects = world.effects();
+    // What is printed is the step as it begins; bodies that fail on the way may change it. What
+    // effects cost is told of those that there are at the end.
+    std::vector<EffectEntry> entries = effect_ledger(world, {});
     const Stages stages = world.step_stages();
     if (dot.asked_for()) write_dot(stages, dot.stream());
     dot.keep();
@@ -153,7 +209,10 @@ int explain(const Options& options)
     for (const StepTimes::OfStage& stage : times.stages())
         stage_ms[stage.name] = stage.times.total() / static_cast<double>(times.steps().count());
 
-    if (dot.is_stdout()) return interrupted() ? kInterrupted : kDone;
+    if (times.steps().count() > 0) entries = effect_ledger(world, times.mean_stages());
+    if (json.asked_for()) write_json(argument, times, entries, stages, stage_ms, json.stream());
+    json.keep();
+    if (dot.is_stdout() || json.is_stdout()) return interrupted() ? kInterrupted : kDone;
     std::cout << "scene: " << argument.label << "\nbodies: " << world.body_count() << '\n';
     if (steps > 0) {
         char text[32];
@@ -166,7 +225,7 @@ int explain(const Options& options)
                       << " a contact and substep (dial relax_iterations)\n";
         }
     }
-    print_effects(effects);
+    print_effects(entries, times.steps().count() > 0);
     print_stages(stages, stage_ms);
     print_solids(world.solids());
     for (const std::string& sentence : unused_dials(argument.scene))

@@ -1,6 +1,7 @@
 // Run stats: what a run has to tell, as JSON for programs and as lines for people.
 #include "apps/throng/run_stats.hpp"
 
+#include "apps/throng/effect_json.hpp"
 #include "apps/throng/json_lines.hpp"
 #include "scene/files/json.hpp"
 #include "scene/files/json_writer.hpp"
@@ -72,10 +73,7 @@ RunStats collect_stats(World& world, StepTimes times)
         stats.bodies_quarantined += world.quarantined(body) ? 1 : 0;
     }
     stats.memory_bytes = world.memory_bytes();
-    const Effects& effects = world.effects();
-    for (int i = 0; i < kEffects; ++i)
-        if (effects.on.has(static_cast<Effect>(i)))
-            stats.effects.push_back(name_of(static_cast<Effect>(i)));
+    stats.effects = effect_ledger(world, times.mean_stages());
     stats.times = std::move(times);
     stats.last = world.report();
     stats.measures = world.measure();
@@ -99,7 +97,11 @@ void write_stats_json(const RunStats& stats, std::ostream& out)
     json.add("threads", static_cast<std::uint64_t>(stats.threads));
     json.add("threads_used", static_cast<std::uint64_t>(stats.threads_used));
     json.add("dials", dials_json(stats.settings));
-    json.add("effects", '[' + joined(stats.effects, ", ", json_string) + ']');
+    std::vector<std::string_view> on;
+    for (const EffectEntry& entry : stats.effects)
+        if (entry.on) on.push_back(name_of(entry.effect));
+    json.add("effects", '[' + joined(on, ", ", json_string) + ']');
+    json.add("effect_ledger", effect_ledger_json(stats.effects));
     json.add("ms_per_step",
              JsonMembers()
                  .add("mean", steps.mean())

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/throng/step_times.hpp"
+#include "throng/effect_ledger.hpp"
 #include "throng/energy_ledger.hpp"
 #include "throng/error_estimate.hpp"
 
@@ -17,7 +18,7 @@ struct RunStats {
     Settings settings;
     int threads = 0, threads_met = 0, threads_used = 0;
     std::size_t bodies = 0, bodies_dynamic = 0, bodies_quarantined = 0, memory_bytes = 0;
-    std::vector<std::string_view> effects;
+    std::vector<EffectEntry> effects;  // their ms a step, on the average
     StepTimes times;
     StepReport last;
     Measures measures;

@@ -44,4 +44,12 @@ void StepTimes::add(double step_ms, std::span<const StageReport> stages)
     }
 }
 
+std::vector<StageReport> StepTimes::mean_stages() const
+{
+    std::vector<StageReport> means;
+    const auto count = static_cast<double>(std::max<std::uint64_t>(1, steps_.count()));
+    for (const OfStage& stage : stages_) means.push_back({stage.name, stage.times.total() / count});
+    return means;
+}
+
 }  // namespace throng

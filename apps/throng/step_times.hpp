@@ -41,6 +41,8 @@ public:
     const TimeSample& steps() const { return steps_; }
     /// In the order in which they were met first: that of the step.
     const std::deque<OfStage>& stages() const { return stages_; }
+    /// Of each, the time a step on the average.
+    std::vector<StageReport> mean_stages() const;
 
 private:
     TimeSample steps_;

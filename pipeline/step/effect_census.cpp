@@ -155,6 +155,14 @@ std::uint32_t EffectCensus::first(Call call) const
     return found == calls_.end() ? kNoBody : static_cast<std::uint32_t>(found - calls_.begin());
 }
 
+std::size_t EffectCensus::count_any(std::initializer_list<Call> calls) const
+{
+    std::uint32_t wanted = 0;
+    for (const Call call : calls) wanted |= bit(call);
+    return static_cast<std::size_t>(std::count_if(
+        calls_.begin(), calls_.end(), [&](std::uint32_t bits) { return (bits & wanted) != 0; }));
+}
+
 bool EffectCensus::is_of(const KindKey& key, std::uint32_t body, const BodyFacts& facts)
 {
     return facts.states.kind[body] != BodyKind::removed && facts.colliders.count[body] > 0

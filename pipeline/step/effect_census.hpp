@@ -71,6 +71,8 @@ public:
 
     bool any(Call call) const { return counts_[static_cast<std::size_t>(call)] > 0; }
     std::size_t count(Call call) const { return counts_[static_cast<std::size_t>(call)]; }
+    /// Bodies that make one of some calls, or several.
+    std::size_t count_any(std::initializer_list<Call> calls) const;
     /// The first that calls; kNoBody where nobody does.
     std::uint32_t first(Call call) const;
 

@@ -118,7 +118,7 @@ bool WorldState::nothing_to_do() const
     const auto& context = get<StepContext>();
     const bool edits = !changed.empty() || !woken.empty() || !edited.empty()
         || active_bodies_stopped || !get<Bounds>().touched.empty();
-    return idle && !edits && !effects_stale && !active_bodies_stale
+    return idle && !edits && !effects_stale && !census_stale && !active_bodies_stale
         && context.last_substep == context.substep();
 }
 
@@ -305,28 +305,28 @@ void WorldState::follow_changes()
 
 void WorldState::refresh_effects()
 {
-    const bool all = census_stale;
     follow_changes();
+    bool anew = graph_stale;
     if (effects_stale) {
         effects_stale = false;
         causes_stale = true;
         auto& context = get<StepContext>();
         effects.on = effects_called_for(effect_facts(), census);
-        const bool same = effects.on == context.effects && !all;
+        anew = anew || effects.on != context.effects;
         context.effects = effects.on;
-        if (!same) remake_graph();
     }
+    if (anew) remake_graph();
     const std::size_t more =
         alive > finder_chosen_for ? alive - finder_chosen_for : finder_chosen_for - alive;
-    if (effects.on.has(Effect::contact) && (all || 4 * more > finder_chosen_for))
+    if (effects.on.has(Effect::contact) && (anew || 4 * more > finder_chosen_for))
         choose_broad_phase();
 }
 
 // With what no stage writes any more emptied.
 void WorldState::remake_graph()
 {
+    graph_stale = false;
     empty_unused();
-    finder_chosen_for = 0;
     std::visit(
         [&](auto& chosen) {
             using Graph = typename std::remove_reference_t<decltype(chosen.graph)>::element_type;
@@ -427,7 +427,7 @@ void World::set_settings(const Settings& settings)
     state_->get<Flights>() = {};  // numbers of another rotation, or of another law
     state_->call_all_pairs();     // which may remember what another method found
     state_->set(settings);
-    state_->effects_stale = state_->census_stale = true;
+    state_->effects_stale = state_->census_stale = state_->graph_stale = true;
     state_->warn_of_substeps();
 }
 

@@ -59,6 +59,7 @@ struct WorldState {
     bool effects_stale = true;           // something besides bodies changed
     bool census_stale = true;            // that all bodies depend on
     bool causes_stale = true;            // of effects
+    bool graph_stale = true;             // other settings choose other stages
     std::vector<std::uint32_t> changed;  // bodies that may call for something else, in order
     std::size_t finder_chosen_for = 0;   // bodies
     bool active_bodies_stale = true;     // all have to be asked

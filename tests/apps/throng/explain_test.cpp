@@ -1,4 +1,5 @@
 // Explain: what is said of scenes whose effects are known.
+#include "scene/files/json.hpp"
 #include "tests/apps/throng/command.hpp"
 
 #include <gtest/gtest.h>
@@ -60,8 +61,9 @@ TEST(Explain, APileHasWhatAPileNeeds)
          {"gravity", "rotation", "gyroscopic", "contact", "friction", "sleeping"})
         EXPECT_TRUE(is_on(said.out, effect)) << effect;
     const std::string stages = part_of(said.out, "stages");
-    for (const char* word : {"\n  find_pairs ", "waits for update_bounds", "\n  solve_soft_step ",
-                             "\n      integrate_velocities ", "each iteration of a substep"})
+    for (const char* word :
+         {"\n  find_pairs ", "waits for sleep_pairs, update_bounds", "\n  solve_soft_step ",
+          "\n      integrate_velocities ", "each iteration of a substep"})
         EXPECT_NE(stages.find(word), std::string::npos) << word;
 }
 
@@ -83,6 +85,30 @@ TEST(Explain, TheSubstepIsThatOfTheResponseAndTheSolver)
         for (const auto& [other, others] : wanted)
             EXPECT_EQ(inner.find(others) != std::string::npos, row == others) << dial << inner;
     }
+}
+
+TEST(Explain, WritesForProgramsWhatItPrints)
+{
+    const TestFolder folder;
+    const std::string file = folder / "explained.json";
+    const Outcome said = run_throng({"explain", "pile:20", "--steps", "3", "--json", file});
+    ASSERT_EQ(said.code, 0) << said.err;
+    const JsonDocument json(folder.read("explained.json"), "explained.json");
+    const auto at = [&](std::string_view key) { return json.find(JsonDocument::kRoot, key); };
+    EXPECT_EQ(json.text(at("scene")), "pile:20");
+    EXPECT_EQ(json.number(at("steps")), 3);
+    double told = 0, all = 0;
+    const auto entries = at("effect_ledger"), stages = at("stages");
+    for (auto entry = json.first(entries); entry != json.next(entries); entry = json.next(entry)) {
+        const std::string name(json.text(json.find(entry, "effect")));
+        EXPECT_EQ(json.kind(json.find(entry, "on")), JsonKind::boolean);
+        EXPECT_EQ(is_on(said.out, name), json.number(json.find(entry, "callers")) > 0) << name;
+        told += json.number(json.find(entry, "ms"));
+    }
+    for (auto stage = json.first(stages); stage != json.next(stages); stage = json.next(stage))
+        all += json.number(json.find(stage, "ms"));
+    EXPECT_GT(all, 0);
+    EXPECT_NEAR(told, all, 1e-9 * all);
 }
 
 TEST(Explain, ATopOnAPivotFalls)

@@ -81,6 +81,12 @@ TEST(RunStats, HoldTheFieldsOfTheContract)
     EXPECT_EQ(effects,
               (Names{"motion", "gravity", "rotation", "gyroscopic", "contact", "friction", "seams",
                      "sleeping"}));
+    const auto entry = stats.first(at("effect_ledger"));
+    EXPECT_EQ(stats.size(at("effect_ledger")), static_cast<std::size_t>(kEffects));
+    EXPECT_EQ(stats.text(stats.find(entry, "effect")), "motion");
+    for (const char* key : {"callers", "ms", "rows", "bytes"})
+        EXPECT_EQ(stats.kind(stats.find(entry, key)), JsonKind::number) << key;
+    EXPECT_EQ(stats.kind(stats.find(entry, "stages")), JsonKind::array);
     const auto stage = stats.first(at("stages"));
     EXPECT_EQ(stats.text(stats.find(stage, "name")), "sleep_pairs");
     EXPECT_EQ(stats.kind(stats.find(stage, "ms_mean")), JsonKind::number);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace throng {
@@ -106,6 +107,24 @@ TEST(EffectCensus, LooksAtWhoChangedAlone)
         world.step();
     }
     EXPECT_EQ(state.census.changes(), changes);
+}
+
+TEST(EffectCensus, OtherSettingsTakeEffectThoughSomebodyGoesBeforeTheStep)
+{
+    SceneOf made;
+    made.floor();
+    for (int i = 0; i < 3; ++i) made.box(Vec3(0.3, 0.3, 0.3), Vec3(2.0 * i, 0, 0.3));
+    World world(made.scene);
+    world.step();
+    Settings settings = world.settings();
+    settings.solver = Solver::pgs;
+    world.set_settings(settings);
+    const BodyId last = world.bodies()[3];
+    world.remove({&last, 1});
+    world.step();
+    const std::vector<StageReport> stages = world.stages();
+    const auto is_pgs = [](const StageReport& stage) { return stage.name == "solve_pgs"; };
+    EXPECT_TRUE(std::any_of(stages.begin(), stages.end(), is_pgs));
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 #include "pipeline/step/effects.hpp"
 
 #include "tests/support/small_scenes.hpp"
+#include "throng/effect_ledger.hpp"
 #include "throng/world.hpp"
 
 #include <gtest/gtest.h>
+
+#include <set>
 
 namespace throng {
 namespace {
@@ -160,6 +163,45 @@ TEST(Effects, AllHaveNamesOfTheirOwn)
     EXPECT_EQ(name_of(Effect::voxel_contact), "voxel contact");
     EXPECT_EQ(name_of(Effect::sleeping), "sleeping");
     EXPECT_EQ(name_of(Effect::springs), "springs");
+}
+
+TEST(EffectLedger, SharesAllTimeAmongThoseWhoCall)
+{
+    SceneOf made;
+    made.scene.materials[0].restitution = 0.3;
+    made.floor();
+    made.box(Vec3(1, 1, 0.1), Vec3(0, 0, 0.1)).motion = Motion::static_;
+    for (int i = 0; i < 3; ++i) made.box(Vec3(0.2, 0.2, 0.2), Vec3(0.5 * i - 0.5, 0, 0.4));
+    made.ball(0.2, Vec3(3, 0, 0.2));
+    World world(made.scene);
+    world.step(5);
+    const std::vector<StageReport> stages = world.stages();
+    const std::vector<EffectEntry> entries = effect_ledger(world, stages);
+    ASSERT_EQ(entries.size(), static_cast<std::size_t>(kEffects));
+    double all = 0, told = 0;
+    for (const StageReport& stage : stages) all += stage.time_ms;
+    std::set<std::string_view> named;
+    for (const EffectEntry& entry : entries) {
+        EXPECT_EQ(entry.on, world.effects().on.has(entry.effect));
+        EXPECT_EQ(entry.first, world.effects().cause_of(entry.effect));
+        told += entry.ms;
+        named.insert(entry.stages.begin(), entry.stages.end());
+        if (entry.on) {
+            EXPECT_GT(entry.callers, 0u) << name_of(entry.effect);
+        } else {
+            EXPECT_EQ(entry.callers + entry.stages.size() + entry.rows + entry.bytes, 0u);
+        }
+    }
+    EXPECT_NEAR(told, all, 1e-9 * all);
+    EXPECT_EQ(named.size(), stages.size());
+    const auto of = [&](Effect effect) { return entries[static_cast<std::size_t>(effect)]; };
+    EXPECT_EQ(of(Effect::motion).callers, 4u);
+    EXPECT_EQ(of(Effect::friction).callers, 1u);
+    EXPECT_EQ(of(Effect::seams).callers, 1u);  // the plane has no rim
+    EXPECT_EQ(of(Effect::contact).rows, 13u);  // three boxes on four points, a ball on one
+    EXPECT_EQ(of(Effect::restitution).rows, 13u);
+    EXPECT_EQ(of(Effect::friction).rows, 12u);  // of four manifolds
+    EXPECT_GT(of(Effect::contact).bytes, 0u);
 }
 
 }  // namespace
