@@ -6,6 +6,7 @@
 #include "throng/contact_check.hpp"
 #include "throng/convex_query.hpp"
 #include "throng/dials.hpp"
+#include "throng/effect_ledger.hpp"
 #include "throng/effects.hpp"
 #include "throng/energy_ledger.hpp"
 #include "throng/error_estimate.hpp"
