@@ -1,5 +1,6 @@
 #include "apps/throng/effect_json.hpp"
 
+#include "apps/throng/json_lines.hpp"
 #include "scene/files/json.hpp"
 #include "scene/files/json_writer.hpp"
 #include "scene/names.hpp"

@@ -14,7 +14,7 @@ using Holder = SleepingPairs::Holder;
 using Held = SleepingPairs::Held;
 using Ref = SleepingPairs::Ref;
 
-// One list of references in so many is cleared of stale ones, so that none grows for good.
+// A list of no more references is never cleared of stale ones.
 constexpr std::size_t kFewRefs = 16;
 
 bool valid(const SleepingPairs& sleeping, const Ref& ref)
@@ -99,17 +99,52 @@ void merge_in(const std::vector<Item>& fresh, std::vector<Item>& items, const Be
     std::inplace_merge(items.begin(), items.begin() + middle, items.end(), before);
 }
 
-// One call for pairs that come back.
+// All lists in which pairs have a place.
 template <class Real>
-class Waking {
-public:
-    explicit Waking(const PairData<Real>& data)
+class PairLists {
+protected:
+    explicit PairLists(const PairData<Real>& data)
         : pairs_(data.template get<Pairs>()), convex_(data.template get<ConvexContacts<Real>>()),
           meshes_(data.template get<MeshContacts<Real>>()),
           solids_(data.template get<SolidContacts<Real>>()),
           methods_(data.template get<MethodPairs>()), sleeping_(data.template get<SleepingPairs>()),
           contacts_(data.template get<SleepingContacts<Real>>())
     { }
+
+    /// Pairs go to other places, or are gone; of the n-th that is new it is asked what it knows.
+    template <class KeyOf, class StateOf, class ApartOf, class MemoryOf>
+    void move_all(const Moves& moves,
+                  const KeyOf& key_of,
+                  const StateOf& state_of,
+                  const ApartOf& apart_of,
+                  const MemoryOf& memory_of)
+    {
+        const bool apart = !convex_.apart_until.empty(), methods = !methods_.of_pair.empty();
+        follow(moves.from, pairs_.keys, key_of, [](PairKey) {});
+        follow(moves.from, convex_.of_pair, state_of, [](const PairState&) {});
+        if (apart) follow(moves.from, convex_.apart_until, apart_of, [](float) {});
+        if (methods) follow(moves.from, methods_.of_pair, memory_of, [](const MethodMemory&) {});
+        for (auto* list : {&pairs_.on_mesh, &pairs_.on_solid, &convex_.followed, &meshes_.followed})
+            renumber(moves.to, *list);
+        renumber(moves.to, meshes_.entries);
+        renumber(moves.to, solids_.entries);
+        renumber(moves.to, solids_.found.pairs);
+    }
+
+    Pairs& pairs_;
+    ConvexContacts<Real>& convex_;
+    MeshContacts<Real>& meshes_;
+    SolidContacts<Real>& solids_;
+    MethodPairs& methods_;
+    SleepingPairs& sleeping_;
+    SleepingContacts<Real>& contacts_;
+};
+
+// One call for pairs that come back.
+template <class Real>
+class Waking : PairLists<Real> {
+public:
+    explicit Waking(const PairData<Real>& data) : PairLists<Real>(data) { }
 
     void run()
     {
@@ -119,31 +154,22 @@ public:
             return sleeping_.kept[a].key < sleeping_.kept[b].key;
         });
         find_moves();
-        follow(
-            moves_.from, pairs_.keys, [&](std::size_t n) { return sleeping_.kept[called[n]].key; },
-            [](PairKey) {});
-        const bool apart = !convex_.apart_until.empty(), methods = !methods_.of_pair.empty();
-        follow(
-            moves_.from, convex_.of_pair, [&](std::size_t n) { return state_of(called[n]); },
-            [](const PairState&) {});
-        if (apart)
-            follow(
-                moves_.from, convex_.apart_until,
-                [&](std::size_t n) { return contacts_.of_kept[called[n]].apart_until; },
-                [](float) {});
-        if (methods)
-            follow(
-                moves_.from, methods_.of_pair, [&](std::size_t n) { return memory_of(called[n]); },
-                [](const MethodMemory&) {});
-        renumber_all();
-        if (!pairs_.on_mesh.empty() || !pairs_.on_solid.empty() || !contacts_.many.empty())
-            wake_many();
+        make_room();
+        this->move_all(
+            moves_, [&](std::size_t n) { return sleeping_.kept[called[n]].key; },
+            [&](std::size_t n) { return state_of(called[n]); },
+            [&](std::size_t n) { return contacts_.of_kept[called[n]].apart_until; },
+            [&](std::size_t n) { return memory_of(called[n]); });
+        if (!contacts_.many.empty()) wake_many();
         for (const std::uint32_t at : called) contacts_.of_kept[at] = {};
         sleeping_.free.insert(sleeping_.free.end(), called.begin(), called.end());
         called.clear();
     }
 
 private:
+    using PairLists<Real>::pairs_, PairLists<Real>::convex_, PairLists<Real>::meshes_,
+        PairLists<Real>::solids_, PairLists<Real>::sleeping_, PairLists<Real>::contacts_;
+
     // Contacts with meshes are the last to follow the list of pairs.
     void follow_with_meshes()
     {
@@ -178,6 +204,18 @@ private:
             moves_.from.push_back(i);
         }
         put_until(std::numeric_limits<PairKey>::max());
+    }
+
+    void make_room()
+    {
+        const auto touches = [&](std::uint32_t at) {
+            return contacts_.of_kept[at].state.contact != PairState::kApart;
+        };
+        const auto touching = static_cast<std::size_t>(
+            std::count_if(sleeping_.called.begin(), sleeping_.called.end(), touches));
+        const std::size_t more = touching - std::min(touching, convex_.free.size());
+        reserve_closely(convex_.contacts, convex_.contacts.size() + more);
+        reserve_closely(convex_.astray, convex_.astray.size() + more);
     }
 
     PairState state_of(std::uint32_t at)
@@ -215,15 +253,6 @@ private:
         return at < contacts_.memories.size() ? contacts_.memories[at] : MethodMemory{};
     }
 
-    void renumber_all()
-    {
-        for (auto* list : {&pairs_.on_mesh, &pairs_.on_solid, &convex_.followed, &meshes_.followed})
-            renumber(moves_.to, *list);
-        renumber(moves_.to, meshes_.entries);
-        renumber(moves_.to, solids_.entries);
-        renumber(moves_.to, solids_.found.pairs);
-    }
-
     void wake_many()
     {
         std::vector<std::uint32_t> on_mesh, on_solid;
@@ -250,66 +279,59 @@ private:
         merge_in(of_solids, solids_.entries, before);
     }
 
-    Pairs& pairs_;
-    ConvexContacts<Real>& convex_;
-    MeshContacts<Real>& meshes_;
-    SolidContacts<Real>& solids_;
-    MethodPairs& methods_;
-    SleepingPairs& sleeping_;
-    SleepingContacts<Real>& contacts_;
     Moves moves_;
     std::vector<std::uint32_t> came_;  // [called] to which places
 };
 
 // One call for pairs that leave.
 template <class Real>
-class FallingAsleep {
+class FallingAsleep : PairLists<Real> {
 public:
     FallingAsleep(const Colliders& colliders, const BodyStates& states, const PairData<Real>& data)
-        : colliders_(colliders), states_(states), pairs_(data.template get<Pairs>()),
-          convex_(data.template get<ConvexContacts<Real>>()),
-          meshes_(data.template get<MeshContacts<Real>>()),
-          solids_(data.template get<SolidContacts<Real>>()),
-          methods_(data.template get<MethodPairs>()), sleeping_(data.template get<SleepingPairs>()),
-          contacts_(data.template get<SleepingContacts<Real>>())
+        : PairLists<Real>(data), colliders_(colliders), states_(states)
     { }
 
     void run()
     {
         find_moves();
         if (moves_.from.size() == pairs_.keys.size()) return;
-        follow(
-            moves_.from, pairs_.keys, [](std::size_t) { return PairKey{}; }, [](PairKey) {});
-        follow(
-            moves_.from, convex_.of_pair, [](std::size_t) { return PairState{}; },
-            [](const PairState&) {});
-        if (!convex_.apart_until.empty())
-            follow(
-                moves_.from, convex_.apart_until, [](std::size_t) { return 0.0F; }, [](float) {});
-        if (!methods_.of_pair.empty())
-            follow(
-                moves_.from, methods_.of_pair, [](std::size_t) { return MethodMemory{}; },
-                [](const MethodMemory&) {});
-        for (auto* list : {&pairs_.on_mesh, &pairs_.on_solid, &convex_.followed, &meshes_.followed})
-            renumber(moves_.to, *list);
-        renumber(moves_.to, meshes_.entries);
-        renumber(moves_.to, solids_.entries);
-        renumber(moves_.to, solids_.found.pairs);
+        this->move_all(
+            moves_, [](std::size_t) { return PairKey{}; }, [](std::size_t) { return PairState{}; },
+            [](std::size_t) { return 0.0F; }, [](std::size_t) { return MethodMemory{}; });
     }
 
 private:
+    using PairLists<Real>::pairs_, PairLists<Real>::convex_, PairLists<Real>::meshes_,
+        PairLists<Real>::solids_, PairLists<Real>::methods_, PairLists<Real>::sleeping_,
+        PairLists<Real>::contacts_;
+
     void find_moves()
     {
         const std::size_t count = pairs_.keys.size();
         moves_.to.assign(count, kNewItem);
         for (std::uint32_t i = 0; i < count; ++i) {
-            if (sleeps(pairs_.keys[i])) {
-                leave(i);
-                continue;
-            }
+            if (sleeps(pairs_.keys[i])) continue;
             moves_.to[i] = static_cast<std::uint32_t>(moves_.from.size());
             moves_.from.push_back(i);
         }
+        make_room(count - moves_.from.size());
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (moves_.to[i] == kNewItem) leave(i);
+    }
+
+    // For all at once: lists of many contacts are long in growing.
+    void make_room(std::size_t leaving)
+    {
+        const auto need = [](auto& list, std::size_t more, std::size_t free) {
+            reserve_closely(list, list.size() + more - std::min(more, free));
+        };
+        std::size_t touching = 0;
+        for (std::size_t i = 0; i < moves_.to.size(); ++i)
+            touching +=
+                moves_.to[i] == kNewItem && convex_.of_pair[i].contact != PairState::kApart ? 1 : 0;
+        need(sleeping_.kept, leaving, sleeping_.free.size());
+        need(contacts_.of_kept, leaving, sleeping_.free.size());
+        need(contacts_.contacts, touching, contacts_.free_contacts.size());
     }
 
     bool sleeps(PairKey key) const
@@ -389,13 +411,6 @@ private:
 
     const Colliders& colliders_;
     const BodyStates& states_;
-    Pairs& pairs_;
-    ConvexContacts<Real>& convex_;
-    MeshContacts<Real>& meshes_;
-    SolidContacts<Real>& solids_;
-    MethodPairs& methods_;
-    SleepingPairs& sleeping_;
-    SleepingContacts<Real>& contacts_;
     Moves moves_;
 };
 
