@@ -197,19 +197,16 @@ int explain(const Options& options)
         refuse_same_file(*file, argument.mesh, "--mesh");
     }
 
-    // What is printed is the step as it begins; bodies that fail on the way may change it. What
-    // effects cost is told of those that there are at the end.
-    std::vector<EffectEntry> entries = effect_ledger(world, {});
+    // The stages that are printed are those of the step as it begins; bodies that fail on the way
+    // may change it. Effects are told as they are at the end, with what they cost.
     const Stages stages = world.step_stages();
     if (dot.asked_for()) write_dot(stages, dot.stream());
     dot.keep();
 
     const StepTimes times = run_steps(world, steps);
     StageMs stage_ms;
-    for (const StepTimes::OfStage& stage : times.stages())
-        stage_ms[stage.name] = stage.times.total() / static_cast<double>(times.steps().count());
-
-    if (times.steps().count() > 0) entries = effect_ledger(world, times.mean_stages());
+    for (const StageReport& stage : times.mean_stages()) stage_ms[stage.name] = stage.time_ms;
+    const std::vector<EffectEntry> entries = effect_ledger(world, times.mean_stages());
     if (json.asked_for()) write_json(argument, times, entries, stages, stage_ms, json.stream());
     json.keep();
     if (dot.is_stdout() || json.is_stdout()) return interrupted() ? kInterrupted : kDone;

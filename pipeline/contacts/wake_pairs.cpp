@@ -113,22 +113,41 @@ protected:
 
     /// Pairs go to other places, or are gone; of the n-th that is new it is asked what it knows.
     template <class KeyOf, class StateOf, class ApartOf, class MemoryOf>
-    void move_all(const Moves& moves,
-                  const KeyOf& key_of,
+    void move_all(const KeyOf& key_of,
                   const StateOf& state_of,
                   const ApartOf& apart_of,
                   const MemoryOf& memory_of)
     {
         const bool apart = !convex_.apart_until.empty(), methods = !methods_.of_pair.empty();
-        follow(moves.from, pairs_.keys, key_of, [](PairKey) {});
-        follow(moves.from, convex_.of_pair, state_of, [](const PairState&) {});
-        if (apart) follow(moves.from, convex_.apart_until, apart_of, [](float) {});
-        if (methods) follow(moves.from, methods_.of_pair, memory_of, [](const MethodMemory&) {});
+        follow(moves_.from, pairs_.keys, key_of, [](PairKey) {});
+        follow(moves_.from, convex_.of_pair, state_of, [](const PairState&) {});
+        if (apart) follow(moves_.from, convex_.apart_until, apart_of, [](float) {});
+        if (methods) follow(moves_.from, methods_.of_pair, memory_of, [](const MethodMemory&) {});
         for (auto* list : {&pairs_.on_mesh, &pairs_.on_solid, &convex_.followed, &meshes_.followed})
-            renumber(moves.to, *list);
-        renumber(moves.to, meshes_.entries);
-        renumber(moves.to, solids_.entries);
-        renumber(moves.to, solids_.found.pairs);
+            renumber(moves_.to, *list);
+        renumber(moves_.to, meshes_.entries);
+        renumber(moves_.to, solids_.entries);
+        renumber(moves_.to, solids_.found.pairs);
+    }
+
+    /// Tells leave(pair) of each that does not stay, makes room before by make_room(how many), and
+    /// takes all of them out of the lists.
+    template <class Stays, class MakeRoom, class Leave>
+    void keep(const Stays& stays, const MakeRoom& make_room, const Leave& leave)
+    {
+        const std::size_t count = pairs_.keys.size();
+        moves_.to.assign(count, kNewItem);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            if (!stays(pairs_.keys[i])) continue;
+            moves_.to[i] = static_cast<std::uint32_t>(moves_.from.size());
+            moves_.from.push_back(i);
+        }
+        if (moves_.from.size() == count) return;
+        make_room(count - moves_.from.size());
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (moves_.to[i] == kNewItem) leave(i);
+        move_all([](std::size_t) { return PairKey{}; }, [](std::size_t) { return PairState{}; },
+                 [](std::size_t) { return 0.0F; }, [](std::size_t) { return MethodMemory{}; });
     }
 
     Pairs& pairs_;
@@ -138,6 +157,7 @@ protected:
     MethodPairs& methods_;
     SleepingPairs& sleeping_;
     SleepingContacts<Real>& contacts_;
+    Moves moves_;
 };
 
 // One call for pairs that come back.
@@ -155,11 +175,10 @@ public:
         });
         find_moves();
         make_room();
-        this->move_all(
-            moves_, [&](std::size_t n) { return sleeping_.kept[called[n]].key; },
-            [&](std::size_t n) { return state_of(called[n]); },
-            [&](std::size_t n) { return contacts_.of_kept[called[n]].apart_until; },
-            [&](std::size_t n) { return memory_of(called[n]); });
+        this->move_all([&](std::size_t n) { return sleeping_.kept[called[n]].key; },
+                       [&](std::size_t n) { return state_of(called[n]); },
+                       [&](std::size_t n) { return contacts_.of_kept[called[n]].apart_until; },
+                       [&](std::size_t n) { return memory_of(called[n]); });
         if (!contacts_.many.empty()) wake_many();
         for (const std::uint32_t at : called) contacts_.of_kept[at] = {};
         sleeping_.free.insert(sleeping_.free.end(), called.begin(), called.end());
@@ -168,7 +187,8 @@ public:
 
 private:
     using PairLists<Real>::pairs_, PairLists<Real>::convex_, PairLists<Real>::meshes_,
-        PairLists<Real>::solids_, PairLists<Real>::sleeping_, PairLists<Real>::contacts_;
+        PairLists<Real>::solids_, PairLists<Real>::sleeping_, PairLists<Real>::contacts_,
+        PairLists<Real>::moves_;
 
     // Contacts with meshes are the last to follow the list of pairs.
     void follow_with_meshes()
@@ -279,7 +299,6 @@ private:
         merge_in(of_solids, solids_.entries, before);
     }
 
-    Moves moves_;
     std::vector<std::uint32_t> came_;  // [called] to which places
 };
 
@@ -293,31 +312,15 @@ public:
 
     void run()
     {
-        find_moves();
-        if (moves_.from.size() == pairs_.keys.size()) return;
-        this->move_all(
-            moves_, [](std::size_t) { return PairKey{}; }, [](std::size_t) { return PairState{}; },
-            [](std::size_t) { return 0.0F; }, [](std::size_t) { return MethodMemory{}; });
+        this->keep([&](PairKey key) { return !sleeps(key); },
+                   [&](std::size_t leaving) { make_room(leaving); },
+                   [&](std::uint32_t pair) { leave(pair); });
     }
 
 private:
     using PairLists<Real>::pairs_, PairLists<Real>::convex_, PairLists<Real>::meshes_,
         PairLists<Real>::solids_, PairLists<Real>::methods_, PairLists<Real>::sleeping_,
-        PairLists<Real>::contacts_;
-
-    void find_moves()
-    {
-        const std::size_t count = pairs_.keys.size();
-        moves_.to.assign(count, kNewItem);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            if (sleeps(pairs_.keys[i])) continue;
-            moves_.to[i] = static_cast<std::uint32_t>(moves_.from.size());
-            moves_.from.push_back(i);
-        }
-        make_room(count - moves_.from.size());
-        for (std::uint32_t i = 0; i < count; ++i)
-            if (moves_.to[i] == kNewItem) leave(i);
-    }
+        PairLists<Real>::contacts_, PairLists<Real>::moves_;
 
     // For all at once: lists of many contacts are long in growing.
     void make_room(std::size_t leaving)
@@ -411,7 +414,22 @@ private:
 
     const Colliders& colliders_;
     const BodyStates& states_;
-    Moves moves_;
+};
+
+// One call for pairs of somebody who is removed.
+template <class Real>
+class Dropping : PairLists<Real> {
+public:
+    explicit Dropping(const PairData<Real>& data) : PairLists<Real>(data) { }
+
+    void run(const std::function<bool(PairKey)>& goes)
+    {
+        this->keep([&](PairKey key) { return !goes(key); }, [](std::size_t) {},
+                   [&](std::uint32_t pair) {
+                       const std::uint32_t place = this->convex_.of_pair[pair].contact;
+                       if (place != PairState::kApart) this->convex_.free.push_back(place);
+                   });
+    }
 };
 
 }  // namespace
@@ -468,7 +486,14 @@ void put_to_sleep(const Colliders& colliders, const BodyStates& states, const Pa
     data.template get<SleepingPairs>().mixed = false;
 }
 
+template <class Real>
+void drop_pairs(const std::function<bool(PairKey)>& goes, const PairData<Real>& data)
+{
+    Dropping<Real>(data).run(goes);
+}
+
 #define THRONG_INSTANTIATE(Real)                                                                   \
+    template void drop_pairs<Real>(const std::function<bool(PairKey)>&, const PairData<Real>&);    \
     template void wake_pairs<Real>(const PairData<Real>&);                                         \
     template void put_to_sleep<Real>(const Colliders&, const BodyStates&, const PairData<Real>&);
 THRONG_INSTANTIATE(float)

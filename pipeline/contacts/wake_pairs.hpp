@@ -1,11 +1,13 @@
 // Wake pairs: pairs that fall asleep leave the lists that a step goes through, and come back as
-// somebody of theirs wakes.
+// somebody of theirs wakes; those of who is removed leave them for good.
 //
 // An island wakes in the midst of a step, and what touches it is solved in that very step: its
 // pairs come back with their contacts as they left, at the places that their keys have.
 #pragma once
 
 #include "pipeline/step/stages.hpp"
+
+#include <functional>
 
 namespace throng {
 
@@ -37,6 +39,10 @@ void call_all(SleepingPairs& sleeping);
 /// Takes the pairs of which neither moves and somebody sleeps out of the lists.
 template <class Real>
 void put_to_sleep(const Colliders& colliders, const BodyStates& states, const PairData<Real>& data);
+
+/// Takes the pairs that go, by their keys, out of the lists with all they remember.
+template <class Real>
+void drop_pairs(const std::function<bool(PairKey)>& goes, const PairData<Real>& data);
 
 /// Calls for each convex contact, contact with a mesh and contact of a solid that sleeps: its key
 /// and the contact, in an order that does not depend on threads.

@@ -4,6 +4,7 @@
 #include "pipeline/world/world_state.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace throng {
 

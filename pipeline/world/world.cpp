@@ -307,6 +307,7 @@ void WorldState::refresh_effects()
 {
     follow_changes();
     bool anew = graph_stale;
+    if (anew) finder_chosen_for = 0;
     if (effects_stale) {
         effects_stale = false;
         causes_stale = true;
@@ -316,10 +317,10 @@ void WorldState::refresh_effects()
         context.effects = effects.on;
     }
     if (anew) remake_graph();
+    if (!effects.on.has(Effect::contact)) finder_chosen_for = 0;
     const std::size_t more =
         alive > finder_chosen_for ? alive - finder_chosen_for : finder_chosen_for - alive;
-    if (effects.on.has(Effect::contact) && (anew || 4 * more > finder_chosen_for))
-        choose_broad_phase();
+    if (effects.on.has(Effect::contact) && 4 * more > finder_chosen_for) choose_broad_phase();
 }
 
 // With what no stage writes any more emptied.

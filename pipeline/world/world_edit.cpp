@@ -80,7 +80,7 @@ void WorldState::call_all_pairs()
 
 void WorldState::settle()
 {
-    wake_pairs();
+    if (!get<SleepingPairs>().called.empty()) wake_pairs();
     if (edited.empty()) return;
     const auto& colliders = get<Colliders>();
     edits.resize(colliders.size(), 0);
@@ -101,46 +101,13 @@ void WorldState::settle()
 
 void WorldState::forget_pairs()
 {
-    auto& pairs = get<Pairs>();
-    std::vector<std::uint32_t> kept_as(pairs.keys.size(), Pairs::kNewPair);
-    std::uint32_t kept = 0;
-    for (std::size_t i = 0; i < pairs.keys.size(); ++i) {
-        const PairKey key = pairs.keys[i];
-        if (((edits[first_of(key)] | edits[second_of(key)]) & kGone) != 0) continue;
-        pairs.keys[kept] = key;
-        kept_as[i] = kept++;
-    }
-    pairs.keys.resize(kept);
-
-    const auto gone = [&](std::uint32_t pair) { return kept_as[pair] == Pairs::kNewPair; };
-    // What is known by the number of the pair.
-    const auto close_up = [&](auto& list) {
-        for (std::uint32_t i = 0; i < list.size(); ++i)
-            if (!gone(i)) list[kept_as[i]] = list[i];
-        list.resize(std::min<std::size_t>(list.size(), kept));
+    const auto goes = [&](PairKey key) {
+        return ((edits[first_of(key)] | edits[second_of(key)]) & kGone) != 0;
     };
-    for (auto* const list : {&pairs.on_mesh, &pairs.on_solid}) {
-        std::erase_if(*list, gone);
-        for (std::uint32_t& pair : *list) pair = kept_as[pair];
-    }
     std::visit(
         [&](auto& chosen) {
             using Real = typename std::decay_t<decltype(chosen)>::Number;
-            auto& contacts = std::get<ConvexContacts<Real>>(chosen.data);
-            auto& states = contacts.of_pair;
-            for (std::uint32_t i = 0; i < states.size(); ++i)
-                if (gone(i) && states[i].contact != PairState::kApart)
-                    contacts.free.push_back(states[i].contact);
-            close_up(states);
-            close_up(contacts.apart_until);
-            close_up(std::get<MethodPairs>(chosen.data).of_pair);
-            const auto keep = [&](auto& list) {
-                std::erase_if(list, [&](const auto& item) { return gone(item.pair); });
-                for (auto& item : list) item.pair = kept_as[item.pair];
-            };
-            keep(std::get<MeshContacts<Real>>(chosen.data).entries);
-            keep(std::get<SolidContacts<Real>>(chosen.data).entries);
-            keep(std::get<SolidContacts<Real>>(chosen.data).found.pairs);
+            drop_pairs<Real>(goes, pair_data(chosen.data));
         },
         step);
 }

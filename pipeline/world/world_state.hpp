@@ -167,10 +167,15 @@ struct WorldState {
     void warn_of_cuts(int cuts);
 };
 
-/// What a world keeps, for the parts of the pipeline that need more than the public door shows.
+/// What a world keeps, for the parts of the pipeline that need more than the public door shows. Who
+/// only reads sees what edits call for done.
 struct WorldAccess {
     static WorldState& state_of(World& world) { return *world.state_; }
-    static const WorldState& state_of(const World& world) { return *world.state_; }
+    static const WorldState& state_of(const World& world)
+    {
+        world.state_->settle();
+        return *world.state_;
+    }
 };
 inline WorldState& state_of(World& world) { return WorldAccess::state_of(world); }
 inline const WorldState& state_of(const World& world) { return WorldAccess::state_of(world); }

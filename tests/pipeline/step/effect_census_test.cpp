@@ -90,14 +90,20 @@ TEST(EffectCensus, IsThatOfALookAtEverybody)
     }
 }
 
-// What is asked of the world each time is only what was done to it.
-TEST(EffectCensus, LooksAtWhoChangedAlone)
+World boxes_after_a_step(int count)
 {
     SceneOf made;
     made.floor();
-    for (int i = 0; i < 50; ++i) made.box(Vec3(0.3, 0.3, 0.3), Vec3(2.0 * i, 0, 0.3));
+    for (int i = 0; i < count; ++i) made.box(Vec3(0.3, 0.3, 0.3), Vec3(2.0 * i, 0, 0.3));
     World world(made.scene);
     world.step();
+    return world;
+}
+
+// What is asked of the world each time is only what was done to it.
+TEST(EffectCensus, LooksAtWhoChangedAlone)
+{
+    World world = boxes_after_a_step(50);
     WorldState& state = state_of(world);
     const std::size_t changes = state.census.changes();
     for (int i = 0; i < 20; ++i) {
@@ -111,11 +117,7 @@ TEST(EffectCensus, LooksAtWhoChangedAlone)
 
 TEST(EffectCensus, OtherSettingsTakeEffectThoughSomebodyGoesBeforeTheStep)
 {
-    SceneOf made;
-    made.floor();
-    for (int i = 0; i < 3; ++i) made.box(Vec3(0.3, 0.3, 0.3), Vec3(2.0 * i, 0, 0.3));
-    World world(made.scene);
-    world.step();
+    World world = boxes_after_a_step(3);
     Settings settings = world.settings();
     settings.solver = Solver::pgs;
     world.set_settings(settings);

@@ -237,5 +237,20 @@ TEST(UnbalancedForces, OfWhatRestsAreNoneAndOfWhatFallsItsWeight)
     EXPECT_TRUE(std::isnan(left[0].z())) << "stands still";
 }
 
+TEST(ContactPairs, OfWhoIsRemovedAreGoneBeforeTheNextStep)
+{
+    SceneOf made = sled();
+    made.box(Vec3(0.2, 0.2, 0.2), Vec3(0, 0, 0.7));
+    World world(made.scene);
+    world.step(5);
+    EXPECT_EQ(contact_pairs(world).size(), 2u);
+    const BodyId top = last_of(world);
+    world.remove({&top, 1});
+    const std::vector<BodyPair> left = contact_pairs(world);
+    ASSERT_EQ(left.size(), 1u);
+    EXPECT_EQ(left[0], (BodyPair{0, 1}));
+    EXPECT_EQ(unbalanced_forces(world).size(), 3u);
+}
+
 }  // namespace
 }  // namespace throng
