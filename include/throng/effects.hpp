@@ -22,10 +22,14 @@ public:
     constexpr void remove(Member member) { bits_ &= ~bit(member); }
     constexpr bool has(Member member) const { return (bits_ & bit(member)) != 0; }
     constexpr bool meets(Set other) const { return (bits_ & other.bits_) != 0; }
+    constexpr Set operator|(Set other) const { return Set(bits_ | other.bits_); }
+    constexpr Set operator&(Set other) const { return Set(bits_ & other.bits_); }
+    constexpr Set without(Set other) const { return Set(bits_ & ~other.bits_); }
     constexpr bool empty() const { return bits_ == 0; }
     constexpr bool operator==(const Set&) const = default;
 
 private:
+    explicit constexpr Set(std::uint64_t bits) : bits_(bits) { }
     static constexpr std::uint64_t bit(Member member)
     {
         return std::uint64_t{1} << static_cast<unsigned>(member);
@@ -71,6 +75,14 @@ inline constexpr Set<Effect> kForces = {Effect::forces, Effect::springs, Effect:
 /// Of those, what changes as bodies go through a step.
 inline constexpr Set<Effect> kFollowBodies = {Effect::forces, Effect::springs, Effect::attractors,
                                               Effect::drag, Effect::pivot};
+/// What each island calls for by itself, or does not: see IslandCalls.
+inline constexpr Set<Effect> kOfIslands =
+    kForces | Set<Effect>{Effect::drive,    Effect::rotation,         Effect::gyroscopic,
+                          Effect::friction, Effect::rolling_friction, Effect::restitution};
+/// What a world can leave out while its bodies call for it: see World::leave_out().
+inline constexpr Set<Effect> kLeftOutByWorld =
+    kSolidContact | Set<Effect>{Effect::gyroscopic, Effect::fast_motion, Effect::mesh_contact,
+                                Effect::seams,      Effect::sleeping,    Effect::escalation};
 inline constexpr int kEffects = static_cast<int>(Effect::escalation) + 1;
 
 std::string_view name_of(Effect effect);

@@ -13,6 +13,7 @@
 #include "throng/final_csv.hpp"
 #include "throng/force_field.hpp"
 #include "throng/impact_query.hpp"
+#include "throng/leave_out.hpp"
 #include "throng/level_set.hpp"
 #include "throng/math.hpp"
 #include "throng/momentum_ledger.hpp"

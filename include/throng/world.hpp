@@ -99,6 +99,9 @@ public:
     std::string state_hash() const;
 
     const Effects& effects();
+    /// Effects of kLeftOutByWorld that are not simulated from the next step on, whoever calls for
+    /// them: their stages are not in it. Throws std::invalid_argument for any other.
+    void leave_out(Set<Effect> effects);
     /// What runs within a stage, and how often.
     struct PassInfo {
         std::string_view name, when;

@@ -166,8 +166,11 @@ struct Colliders {
     std::vector<double> inner_extent;         // m, smallest half extent
     std::vector<double> outer_radius;         // m, furthest point from the body's center of mass
     std::vector<std::uint32_t> begin, count;  // [bodies] the colliders of each
-    std::vector<std::uint8_t> may_swing;      // [bodies] how, by these bits: see turning_arms.hpp
-    static constexpr std::uint8_t kMayHang = 1, kFlat = 2, kRim = 4;
+    // [bodies] what their shapes are: not convex, or about another point than the body's, so that
+    // it may hang; flat somewhere; with rims to roll on (see turning_arms.hpp); round along a line;
+    // anything but a ball about the body's center.
+    std::vector<std::uint8_t> shape_bits;
+    static constexpr std::uint8_t kMayHang = 1, kFlat = 2, kRim = 4, kRound = 8, kOffCenter = 16;
     bool compounds = false;  // some body has several, or had
 
     std::size_t size() const { return body.size(); }

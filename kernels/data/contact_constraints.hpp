@@ -6,6 +6,7 @@
 // that is not in use has the still body on both sides and zero masses.
 #pragma once
 
+#include "kernels/data/islands.hpp"
 #include "kernels/parallel/wavefront.hpp"
 
 #include <cstdint>
@@ -67,13 +68,11 @@ struct GyroscopicInertia {
 ///
 ///   axis      as the step began
 ///   radius    m; 0: the body has none, or none that is followed
-///   contacts  that it has in this step
-///   rolls     whether it turns, or somebody who touches it does; followed or not
+///   contacts  of the body
 struct RoundRim {
     double axis[3] = {0, 0, 1};
     double radius = 0;
     std::uint32_t contacts = 0;
-    bool rolls = false;
 };
 
 /// What forces add to a body's motion, as SolverBody::motion has it, a second.
@@ -237,11 +236,13 @@ struct Effort {
 /// What is solved together: some small islands, or one big one.
 struct Batch {
     std::uint32_t first_slice = 0, slices = 0;
+    std::uint32_t first_island = 0, islands = 0;
     std::uint32_t contacts = 0, on_faces = 0;  // how many, and how many of three points or four
     bool wide = false;                         // big: all threads share it
     bool direct = false;                       // one island, for the direct solver
     std::uint8_t times = 1;                    // as many substeps as the settings say
     bool limited = false;                      // contacts are held to making no energy
+    IslandCalls calls;                         // of each of its islands
 };
 
 /// Which contact goes into which lane, and which body is which solver body: first the still one,
@@ -252,8 +253,9 @@ struct Layout {
     std::vector<Batch> batches;
     std::vector<Slice> slices;
     std::vector<Color> colors;
-    std::vector<LaneSource> lanes;     // [blocks * 16]
-    std::vector<std::uint8_t> points;  // [blocks] greatest number of points of a lane
+    std::vector<std::uint32_t> island_begin;  // [islands + 1] among the solver bodies
+    std::vector<LaneSource> lanes;            // [blocks * 16]
+    std::vector<std::uint8_t> points;         // [blocks] greatest number of points of a lane
     std::vector<std::int32_t> solver_index_a,
         solver_index_b;  // [blocks * 16] places among the solver bodies
     std::vector<std::uint32_t>
@@ -285,19 +287,19 @@ struct Layout {
     }
 };
 
-/// The constraints of a step. What an effect needs is there only where the effect is.
+/// The constraints of a step. What is called for is there only where some batch calls for it, and
+/// told only of the batches that do.
 ///
 ///   first_point         [blocks] place of the first among the points
 ///   restitutions        [blocks] while restitution acts
 ///   rolling_frictions   [blocks] while rolling friction acts
 ///   surface_velocities  [blocks] while something turns that carries what lies on it, a spin goes
 ///                       along with an axis that turns, or somebody walks
-///   surfaces_turn       something turns that carries what lies on it
-///   axes_turn           somebody's spin goes along with an axis that turns enough to be seen
 ///   turning_arms        [blocks] while somebody moves that may swing
 ///   prescribed          [bodies] while bodies that contacts push are driven
 ///   point_frictions     [points] while friction acts at points or within a pyramid
 ///   inertias            [bodies] while the gyroscopic torque acts
+///   precesses           [bodies] likewise: 1 of those on whom it does
 ///   rims                [bodies] while a cylinder turns
 ///   accelerations       [bodies] while forces act
 ///   settled             [bodies] while the direct solver acts: who has its new state already, and
@@ -310,12 +312,12 @@ struct ContactConstraints {
     std::vector<RestitutionWide<Real>> restitutions;
     std::vector<RollingFrictionWide<Real>> rolling_frictions;
     std::vector<SurfaceVelocityWide<Real>> surface_velocities;
-    bool surfaces_turn = false, axes_turn = false;
     std::vector<TurningArmsWide<Real>> turning_arms;
     std::vector<SolverPrescribedVelocity<Real>> prescribed;
     std::vector<PointFrictionWide<Real>> point_frictions;
     std::vector<SolverBody<Real>> bodies;
     std::vector<GyroscopicInertia<Real>> inertias;
+    std::vector<std::uint8_t> precesses;
     std::vector<RoundRim> rims;
     std::vector<SolverAcceleration<Real>> accelerations;
     enum class Settled : std::uint8_t { no, yes, lost };

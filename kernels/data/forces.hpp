@@ -5,6 +5,7 @@
 
 #include "throng/force_field.hpp"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -55,6 +56,29 @@ struct Forces {
     {
         return body < has_pivot.size() && has_pivot[body] != 0;
     }
+    /// Whether a constant force or torque acts on a body.
+    bool push(std::uint32_t body) const
+    {
+        return body < force.size() && !(force[body].isZero(0) && torque[body].isZero(0));
+    }
+    /// Whether drag acts on how a body moves or turns.
+    bool is_damped(std::uint32_t body) const
+    {
+        return is_dragged(body) || (body < angular_drag.size() && angular_drag[body] != 0);
+    }
+    /// Whether something else than drag may turn a body that can turn.
+    bool turn(std::uint32_t body) const
+    {
+        if (field || on_pivot(body) || (body < torque.size() && !torque[body].isZero(0)))
+            return true;
+        if (body + std::size_t{1} >= first_spring.size()) return false;
+        const auto beside_center = [&](std::uint32_t k) {
+            const SpringForce& spring = springs[k];
+            return !(spring.a == body ? spring.at_a : spring.at_b).isZero(0);
+        };
+        return std::any_of(spring_of.begin() + first_spring[body],
+                           spring_of.begin() + first_spring[body + 1], beside_center);
+    }
     /// Whether a body is held by something that may move it from rest at any time.
     bool keeps_awake(std::uint32_t body) const { return field || has_springs(body); }
     /// Whether drag acts on how a body moves; its spin may be dragged by itself.
@@ -72,8 +96,7 @@ struct Forces {
     /// would make energy. So would drag, for one that is thrown back within the step.
     bool depends_on_state(std::uint32_t body) const
     {
-        return force_depends_on_state(body)
-            || (body < angular_drag.size() && angular_drag[body] != 0);
+        return force_depends_on_state(body) || is_damped(body);
     }
     /// Whether there is any body of that kind: most scenes have none, and nobody is looked at.
     bool may_depend_on_state() const
@@ -82,11 +105,7 @@ struct Forces {
             || !linear_drag.empty();
     }
     /// Whether anything but gravity acts on a body.
-    bool act_on(std::uint32_t body) const
-    {
-        return depends_on_state(body)
-            || (body < force.size() && !(force[body].isZero(0) && torque[body].isZero(0)));
-    }
+    bool act_on(std::uint32_t body) const { return depends_on_state(body) || push(body); }
     /// From where a body's position is to its center of mass, m, body axes.
     Vec3 pivot_to_center_of(std::uint32_t body) const
     {

@@ -74,6 +74,12 @@ void ConstraintGraph::gather_slices(const Islands& islands,
     const auto effort_of = [&](std::size_t island) {
         return efforts.empty() ? Effort{} : efforts[island];
     };
+    const auto calls_of = [&](std::size_t island) {
+        return islands.calls.empty() ? IslandCalls{} : islands.calls[island];
+    };
+    layout.island_begin.resize(islands.size() + 1);
+    for (std::size_t i = 0; i <= islands.size() && !islands.body_begin.empty(); ++i)
+        layout.island_begin[i] = islands.body_begin[i] + 1;
     for (std::size_t first = 0, last = 0; first < islands.size(); first = last) {
         const std::uint32_t begin = islands.contact_begin[first];
         const auto contacts_until = [&](std::size_t island) {
@@ -84,10 +90,15 @@ void ConstraintGraph::gather_slices(const Islands& islands,
         batch.direct = effort.direct || is_direct(first);
         batch.times = effort.times;
         batch.limited = effort.limited;
-        const bool alone = effort.direct || direct_limit > 0;
+        batch.calls = calls_of(first);
+        const bool alone = effort.direct || direct_limit > 0 || batch.calls.alone;
         for (last = first + 1; !alone && last < islands.size(); ++last)
-            if (contacts_until(last + 1) > kBatchContacts || effort_of(last) != effort) break;
+            if (contacts_until(last + 1) > kBatchContacts || effort_of(last) != effort
+                || calls_of(last) != batch.calls)
+                break;
 
+        batch.first_island = static_cast<std::uint32_t>(first);
+        batch.islands = static_cast<std::uint32_t>(last - first);
         batch.first_slice = static_cast<std::uint32_t>(layout.slices.size());
         batch.contacts = contacts_until(last);
         batch.wide = batch.contacts > kBatchContacts && !batch.direct;

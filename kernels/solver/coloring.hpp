@@ -12,9 +12,10 @@ namespace throng {
 /// enough that the constraints of a batch stay in one core's cache through all substeps.
 inline constexpr std::size_t kBatchContacts = 512;
 
-/// Gathers small islands into batches, cuts big ones into slices, colors each slice greedily in the
-/// order of its contacts, and lays the contacts out: slice by slice, color by color, those of more
-/// points before those of fewer. Ids and positions decide, and nothing of the step before.
+/// Gathers small islands that call for the same into batches, cuts big ones into slices, colors
+/// each slice greedily in the order of its contacts, and lays the contacts out: slice by slice,
+/// color by color, those of more points before those of fewer. Ids and positions decide, and
+/// nothing of the step before.
 class ConstraintGraph {
 public:
     SplitRule split_rule;

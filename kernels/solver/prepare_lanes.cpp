@@ -1,6 +1,8 @@
 // Contacts as they are kept, made into constraints: written once over the width of the registers.
 #include "kernels/solver/solve_lanes.hpp"
 
+#include <array>
+
 namespace throng::THRONG_LANES {
 
 namespace {
@@ -377,15 +379,39 @@ template <class L>
 
 }  // namespace
 
+// The other lanes keep their very bits: made of other numbers they would differ by the last one.
 template <class Real>
-void update_masses(const ContactConstraintsView<Real>& constraints, std::size_t place)
+void update_masses(const ContactConstraintsView<Real>& constraints,
+                   std::size_t place,
+                   std::uint16_t lanes)
 {
-    for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
-        update_masses_lanes<Lanes<Real>>(constraints, place, at);
+    ContactConstraintWide<Real>& block = constraints.blocks[place];
+    ContactPointWide<Real>* const points = constraints.points + block.first_point;
+    const ContactConstraintWide<Real> before = block;
+    std::array<Lane16<Real>, 4> mass_before;
+    for (int k = 0; k < block.points; ++k) mass_before[std::size_t(k)] = points[k].mass;
+
+    constexpr int kWidth = Lanes<Real>::kWidth;
+    for (int at = 0; at < kBlock; at += kWidth)
+        if ((lanes >> at & ((1u << kWidth) - 1)) != 0)
+            update_masses_lanes<Lanes<Real>>(constraints, place, at);
+
+    const auto keep = [&](Lane16<Real>& now, const Lane16<Real>& then) {
+        for (int lane = 0; lane < kBlock; ++lane)
+            now.at[lane] = (lanes >> lane & 1) != 0 ? now.at[lane] : then.at[lane];
+    };
+    for (int k = 0; k < block.points; ++k) keep(points[k].mass, mass_before[std::size_t(k)]);
+    for (int k = 0; k < 21; ++k) keep(block.inverse_mass[k], before.inverse_mass[k]);
+    for (int k = 0; k < 3; ++k) keep(block.friction_mass[k], before.friction_mass[k]);
+    keep(block.sliding_mass, before.sliding_mass);
+    keep(block.sliding_inverse_mass, before.sliding_inverse_mass);
+    keep(block.torsional_mass, before.torsional_mass);
 }
 
-template void update_masses<float>(const ContactConstraintsView<float>&, std::size_t);
-template void update_masses<double>(const ContactConstraintsView<double>&, std::size_t);
+template void
+update_masses<float>(const ContactConstraintsView<float>&, std::size_t, std::uint16_t);
+template void
+update_masses<double>(const ContactConstraintsView<double>&, std::size_t, std::uint16_t);
 
 template <class Real>
 void prepare(const PackedContacts<Real>& packed,

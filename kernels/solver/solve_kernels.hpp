@@ -70,6 +70,24 @@ struct ContactConstraintsView {
     TurningArmsWide<Real>* turning_arms = nullptr;
     const RoundRim* rims = nullptr;
 
+    /// Of a batch whose islands call for that.
+    static ContactConstraintsView of(ContactConstraints<Real>& constraints,
+                                     const IslandCalls& calls)
+    {
+        ContactConstraintsView view = of(constraints);
+        const auto keep = [](bool called, auto*& list) {
+            if (!called) list = nullptr;
+        };
+        keep(calls.effects.has(Effect::restitution), view.restitutions);
+        keep(calls.effects.has(Effect::rolling_friction), view.rolling_frictions);
+        keep(calls.effects.has(Effect::friction), view.point_frictions);
+        keep(calls.effects.has(Effect::gyroscopic), view.inertias);
+        keep(calls.effects.has(Effect::drive), view.prescribed);
+        keep(calls.surfaces_go(), view.surface_velocities);
+        keep(calls.swings, view.turning_arms);
+        keep(calls.rolls, view.rims);
+        return view;
+    }
     static ContactConstraintsView of(ContactConstraints<Real>& constraints)
     {
         return {constraints.blocks.data(),
@@ -118,7 +136,8 @@ inline constexpr double kAtRest = 1e-4;
 ///   solve                    moves every point towards its wanted normal speed, never pulling;
 ///                            then friction, a round cone of the contact's normal impulse; then the
 ///                            points again
-///   update_masses            effective masses of those at `place`, whose arms have changed
+///   update_masses            effective masses of those at `place` whose arms have changed: bit a
+///                            lane
 ///   apply_restitution        impacts, one contact after another: points that come in faster than
 ///                            `restitution_threshold` and would touch before the substep ends leave
 ///                            again, those of a contact together, with friction within the cone of
@@ -152,7 +171,9 @@ struct SolveKernels {
                     std::size_t place,
                     const ContactConstraintsView<Real>& constraints,
                     bool turns);
-    void (*update_masses)(const ContactConstraintsView<Real>& constraints, std::size_t place);
+    void (*update_masses)(const ContactConstraintsView<Real>& constraints,
+                          std::size_t place,
+                          std::uint16_t lanes);
     void (*warm_start)(const ContactConstraintsView<Real>& constraints,
                        std::size_t begin,
                        std::size_t end,

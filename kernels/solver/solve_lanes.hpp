@@ -13,7 +13,9 @@ void prepare(const PackedContacts<Real>& packed,
              bool turns);
 
 template <class Real>
-void update_masses(const ContactConstraintsView<Real>& constraints, std::size_t place);
+void update_masses(const ContactConstraintsView<Real>& constraints,
+                   std::size_t place,
+                   std::uint16_t lanes);
 
 template <class Real>
 void begin_substep(SolverBody<Real>* bodies,

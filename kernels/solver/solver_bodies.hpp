@@ -94,18 +94,22 @@ bool carries(const SolverBody<Real>& carrier, const InverseMass& carried, double
     return carries(vector_at(carrier.motion + 4), inverse_mass_of(carrier), carried, dt);
 }
 
-/// Whether the axis that a body is symmetric about, and its spin with it (see spin_frame), turns
-/// enough in dt to be seen where the body rolls, and less than kFarthestAxisTurn. Who can only turn
-/// rolls nowhere.
+/// Whether an axis that a body is symmetric about, and its spin with it (see spin_frame), turns
+/// enough in dt to be seen where the body rolls, and less than kFarthestAxisTurn.
+inline bool axis_turns(const Vec3& axis, const Vec3& spin, double dt)
+{
+    constexpr double kSeen = 1e-3;  // rad
+    const double about = axis.dot(spin);
+    const double squared = (spin.squaredNorm() - about * about) * dt * dt;
+    return squared > kSeen * kSeen && squared < kFarthestAxisTurn * kFarthestAxisTurn;
+}
+
+/// The same of a body. Who can only turn rolls nowhere.
 template <class Real>
 bool axis_turns(const SolverBody<Real>& body, const GyroscopicInertia<Real>& inertia, double dt)
 {
-    constexpr double kSeen = 1e-3;  // rad
-    if (!(inertia.axis[3] > 0) || !(body.inertia[0] > 0)) return false;
-    const Vec3 spin = vector_at(body.motion + 4);
-    const double about = vector_at(inertia.axis).dot(spin);
-    const double squared = (spin.squaredNorm() - about * about) * dt * dt;
-    return squared > kSeen * kSeen && squared < kFarthestAxisTurn * kFarthestAxisTurn;
+    return inertia.axis[3] > 0 && body.inertia[0] > 0
+        && axis_turns(vector_at(inertia.axis), vector_at(body.motion + 4), dt);
 }
 
 /// Whether a body is pushed, along a normal at an arm, straight below the axis that it is symmetric

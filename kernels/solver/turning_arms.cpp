@@ -400,7 +400,7 @@ void turn_arms(const ContactConstraintsView<Real>& constraints,
         if (lanes == 0) continue;
         for (std::size_t lane = 0; lane < kBlock; ++lane)
             if (has(lanes, lane)) turn_lane(constraints, place, lane, time);
-        solve_kernels<Real>().update_masses(constraints, place);
+        solve_kernels<Real>().update_masses(constraints, place, lanes);
     }
 }
 

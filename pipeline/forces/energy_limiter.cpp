@@ -175,7 +175,7 @@ EnergyLimiter<Real>::EnergyLimiter(const Layout& layout,
                                    const StateDependentForces* springs,
                                    Whose whose,
                                    const Vec3& fall)
-    : springs_(springs), fall_(fall)
+    : springs_(springs), calls_(batch.calls), fall_(fall)
 {
     Sets sets(layout, batch, springs);
     if (springs != nullptr) sets.list_springs(groups_);
@@ -186,6 +186,7 @@ EnergyLimiter<Real>::EnergyLimiter(const Layout& layout,
     std::erase_if(groups_, [&](const Group& group) {
         return group.driven || (whose == Whose::turning && !group.turns);
     });
+    for (Group& group : groups_) group.watched = whose != Whose::stacked;
 }
 
 template <class Real>
@@ -250,8 +251,10 @@ EnergyLimiter<Real>::warm_start_of(const Group& group, const ContactConstraints<
 template <class Real>
 void EnergyLimiter<Real>::scale(const Group& group,
                                 Real share,
-                                ContactConstraints<Real>& constraints)
+                                ContactConstraints<Real>& constraints) const
 {
+    const bool at_points =
+        calls_.effects.has(Effect::friction) && !constraints.point_frictions.empty();
     for (const Member& member : group.members) {
         SolverBody<Real>& body = constraints.bodies[member.solver_index];
         for (int k = 0; k < 8; ++k)
@@ -265,11 +268,11 @@ void EnergyLimiter<Real>::scale(const Group& group,
         for (std::size_t k = 0; k < static_cast<std::size_t>(block.points); ++k) {
             const std::size_t point = block.first_point + k;
             scale_lane(constraints.points[point].impulse, lane, share);
-            if (constraints.point_frictions.empty()) continue;
+            if (!at_points) continue;
             for (auto& impulse : constraints.point_frictions[point].impulse)
                 scale_lane(impulse, lane, share);
         }
-        if (constraints.rolling_frictions.empty()) continue;
+        if (!calls_.effects.has(Effect::rolling_friction)) continue;
         for (auto& impulse : constraints.rolling_frictions[at].impulse)
             scale_lane(impulse, lane, share);
     }
@@ -286,9 +289,13 @@ void EnergyLimiter<Real>::take_share(ContactConstraints<Real>& constraints) cons
 
 template <class Real>
 void EnergyLimiter<Real>::take_share_of_blow(double speed,
-                                             ContactConstraints<Real>& constraints) const
+                                             std::pair<std::size_t, std::size_t> island,
+                                             ContactConstraints<Real>& constraints)
 {
-    for (const Group& group : groups_) {
+    for (Group& group : groups_) {
+        const std::uint32_t first = group.members.front().solver_index;
+        if (first < island.first || first >= island.second) continue;
+        group.watched = true;
         if (group.members.size() < kFewestInBlow) continue;
         const WarmStart start = warm_start_of(group, constraints);
         if (start.gained > group.mass() * speed * speed / 2)
@@ -323,10 +330,9 @@ void EnergyLimiter<Real>::add_to_free(const ContactConstraints<Real>& constraint
 }
 
 template <class Real>
-bool EnergyLimiter<Real>::is_fed(const Group& group,
-                                 const ContactConstraints<Real>& constraints) const
+bool EnergyLimiter<Real>::is_fed(const Group& group) const
 {
-    return group.fed || !constraints.prescribed.empty()
+    return group.fed || calls_.effects.has(Effect::drive)
         || std::any_of(group.springs.begin(), group.springs.end(),
                        [&](std::uint32_t i) { return springs_->springs_of(i).are_drawn(); });
 }
@@ -395,7 +401,7 @@ template <class Real>
 void EnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
-        if (group.springs.empty() || is_fed(group, constraints)) continue;
+        if (group.springs.empty() || is_fed(group)) continue;
         const double kinetic = kinetic_of(group, constraints);
         take_energy(group, kinetic, gained(group, kinetic, constraints), constraints);
     }
@@ -406,6 +412,7 @@ void EnergyLimiter<Real>::limit_contacts(double slowest,
                                          ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
+        if (!group.watched) continue;
         const double given = given_by_contacts(group, constraints);
         if (!(given > 0)) continue;
         const double kinetic = kinetic_of(group, constraints);

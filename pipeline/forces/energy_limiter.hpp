@@ -27,6 +27,7 @@
 #include "pipeline/step/step_data.hpp"
 
 #include <span>
+#include <utility>
 
 namespace throng {
 
@@ -68,14 +69,17 @@ public:
     /// Before contacts are solved: takes motions and impulses to the share that serves best.
     void take_share(ContactConstraints<Real>& constraints) const;
     /// The same where all of them would make more of it than none, by what takes a group to a
-    /// speed, m/s: only after a blow, and of what it may go through.
-    void take_share_of_blow(double speed, ContactConstraints<Real>& constraints) const;
+    /// speed, m/s: only after a blow, and of what it may go through. Of the groups of an island, by
+    /// its solver bodies, first and behind the last.
+    void take_share_of_blow(double speed,
+                            std::pair<std::size_t, std::size_t> island,
+                            ContactConstraints<Real>& constraints);
     /// The same where they make more of it than gravity gives in a substep. Notes what bodies do
     /// without contacts.
     void open_free(ContactConstraints<Real>& constraints);
     /// Once contacts are solved: slows down groups that have more than they would without them, but
     /// for those that are slower than that by and large, m/s: what all but rests gives way and
-    /// comes back.
+    /// comes back. Of those that touch in numbers only where a blow went through their island.
     void limit_contacts(double slowest, ContactConstraints<Real>& constraints) const;
     /// The same against what was noted, where they have more by what gravity gives in a substep.
     void close_free(ContactConstraints<Real>& constraints) const;
@@ -102,6 +106,7 @@ private:
         bool turns = false;                  // somebody can only turn
         bool fed = false;                    // may be given energy by more than springs and gravity
         bool driven = false;                 // touches what moves by itself
+        bool watched = true;                 // contacts are held to giving it nothing
         double weighs = 0;                   // kg, of all members
         double kinetic = 0;                  // J, as the substep began
 
@@ -123,8 +128,8 @@ private:
     static double given_by_contacts(const Group& group,
                                     const ContactConstraints<Real>& constraints);
     static WarmStart warm_start_of(const Group& group, const ContactConstraints<Real>& constraints);
-    static void scale(const Group& group, Real share, ContactConstraints<Real>& constraints);
-    bool is_fed(const Group& group, const ContactConstraints<Real>& constraints) const;
+    void scale(const Group& group, Real share, ContactConstraints<Real>& constraints) const;
+    bool is_fed(const Group& group) const;
     double
     gained(const Group& group, double kinetic, const ContactConstraints<Real>& constraints) const;
     bool counts(const Group& group, double gained) const;
@@ -135,6 +140,7 @@ private:
                      ContactConstraints<Real>& constraints) const;
 
     const StateDependentForces* springs_;
+    IslandCalls calls_;  // of the batch
     Vec3 fall_;
     std::vector<Group> groups_;
 };

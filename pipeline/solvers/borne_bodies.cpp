@@ -18,9 +18,11 @@ template <class Real>
 class BorneBodies {
 public:
     BorneBodies(const ContactConstraints<Real>& constraints,
+                const IslandCalls& calls,
                 std::span<const ForcedBody> forced,
                 double substep)
         : constraints_(constraints), forced_(forced), substep_(substep),
+          at_points_(calls.effects.has(Effect::friction) && !constraints.point_frictions.empty()),
           given_(forced.size(), Vec3::Zero()), slips_(forced.size(), 0)
     { }
 
@@ -86,7 +88,7 @@ private:
                      std::size_t lane,
                      const Vec3& normal) const
     {
-        if (!constraints_.point_frictions.empty()) return Vec3::Zero();
+        if (at_points_) return Vec3::Zero();
         const Vec3 tangent = in_double(block.tangent, lane);
         return tangent * double{block.friction_impulse[0].at[lane]}
         + normal.cross(tangent) * double{block.friction_impulse[1].at[lane]};
@@ -117,6 +119,7 @@ private:
     const ContactConstraints<Real>& constraints_;
     std::span<const ForcedBody> forced_;
     double substep_;
+    bool at_points_;                   // friction
     std::vector<Vec3> given_;          // N s
     std::vector<Standing> standing_;   // on contacts that have no impulse yet
     std::vector<std::uint8_t> slips_;  // on one that gives way, or rolls
@@ -165,7 +168,7 @@ void find_borne(const Layout& layout,
                 std::span<ForcedBody> forced)
 {
     const ForcedPlaces places(layout, batch, forced);
-    BorneBodies<Real> bodies(constraints, forced, substep);
+    BorneBodies<Real> bodies(constraints, batch.calls, forced, substep);
     visit_lanes(layout, batch, [&](std::size_t at, std::size_t lane) {
         const ContactConstraintWide<Real>& block = constraints.blocks[at];
         bodies.add(block, lane, places.of(block.a[lane]), places.of(block.b[lane]));
@@ -181,7 +184,7 @@ void find_least_speeds(const Layout& layout,
                        int substeps,
                        ContactConstraints<Real>& constraints)
 {
-    if (constraints.restitutions.empty()) return;
+    if (!batch.calls.effects.has(Effect::restitution)) return;
     const ForcedPlaces places(layout, batch, forced);
     const auto change_of = [&](std::int32_t body) -> Vec3 {
         const std::size_t at = places.of(body);

@@ -77,10 +77,11 @@ ConstraintBuilder<Real>::ConstraintBuilder(const StepContext& context,
                                            MeshContacts<Real>& meshes,
                                            SolidContacts<Real>& solids,
                                            JoinedContacts<Real>& joined,
+                                           const IslandCalls& calls,
                                            ContactConstraints<Real>& constraints)
     : layout_(layout), active_(active), convex_(convex), meshes_(meshes), solids_(solids),
-      joined_(joined), constraints_(constraints),
-      view_(ContactConstraintsView<Real>::of(constraints)), kernels_(solve_kernels<Real>()),
+      joined_(joined), constraints_(constraints), calls_(calls),
+      view_(ContactConstraintsView<Real>::of(constraints, calls)), kernels_(solve_kernels<Real>()),
       turns_(context.has(Effect::rotation)
              || parameters.friction_at_points_or_pyramid(context.effects)),
       uncut_(parameters.friction_at_points_or_pyramid(context.effects)
@@ -122,7 +123,7 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
         block.writes_a = static_cast<std::uint16_t>(block.writes_a | writes(block.a[lane]));
         block.writes_b = static_cast<std::uint16_t>(block.writes_b | writes(block.b[lane]));
         const Contact<Real>& contact = contact_of(source);
-        on_rim[lane] = rolls_on_rim(place, contact);
+        if (calls_.rolls) on_rim[lane] = rolls_on_rim(place, contact);
         pack_contact(contact,
                      {Real(materials.friction), Real(materials.restitution),
                       Real(materials.rolling_friction), softness_[source.points - 1u],
@@ -133,9 +134,9 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
     kernels_.prepare(packed, at, view_, turns_);
     if (view_.surface_velocities != nullptr) {
         constraints_.surface_velocities[at] = {};
-        if (constraints_.surfaces_turn) find_carried(at);
+        if (calls_.carries) find_carried(at);
         if (view_.prescribed != nullptr) kernels_.walk_surface_velocity(view_, at, up_);
-        if (constraints_.axes_turn) find_turning_axes(at);
+        if (calls_.axes_turn) find_turning_axes(at);
     }
     const bool turn = view_.turning_arms != nullptr;
     if (turn) view_.turning_arms[at].lanes = 0;
@@ -286,7 +287,7 @@ template <class Real>
 RollsFlat ConstraintBuilder<Real>::rolls_on_rim(std::size_t place,
                                                 const Contact<Real>& contact) const
 {
-    if (constraints_.rims.empty()) return RollsFlat::no;
+    if (!calls_.rolls) return RollsFlat::no;
     const std::int32_t a = layout_.solver_index_a[place], b = layout_.solver_index_b[place];
     return throng::rolls_on_rim(contact, rim_of(a), rim_of(b), layout_.movable(a),
                                 layout_.movable(b));

@@ -26,7 +26,8 @@ double rigid_overlap(double extent, int points);
 template <class Real>
 class ConstraintBuilder {
 public:
-    /// Of constraints that have their places (see prepare_constraints).
+    /// Of constraints that have their places (see prepare_constraints), of batches whose islands
+    /// call for that.
     ConstraintBuilder(const StepContext& context,
                       const SolverParameters& parameters,
                       const Layout& layout,
@@ -35,6 +36,7 @@ public:
                       MeshContacts<Real>& meshes,
                       SolidContacts<Real>& solids,
                       JoinedContacts<Real>& joined,
+                      const IslandCalls& calls,
                       ContactConstraints<Real>& constraints);
 
     /// Makes the constraints of blocks from `begin` to before `end`. Bodies have not moved yet.
@@ -81,6 +83,7 @@ private:
     SolidContacts<Real>& solids_;
     JoinedContacts<Real>& joined_;
     ContactConstraints<Real>& constraints_;
+    const IslandCalls& calls_;
     ContactConstraintsView<Real> view_;
     const SolveKernels<Real>& kernels_;
     bool turns_;

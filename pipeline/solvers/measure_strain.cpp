@@ -105,9 +105,7 @@ public:
           velocities_(velocities), convex_(convex), meshes_(meshes), solids_(solids),
           joined_(joined), constraints_(constraints), overloaded_(overloaded),
           resting_(kResting * context.gravity.norm()), step_(context.dt), gravity_(context.gravity),
-          falls_(context.gravity.norm() * context.dt),
-          falls_only_(!context.effects.meets(kForces) && !context.effects.meets(kFollowBodies)
-                      && constraints.prescribed.empty())
+          falls_(context.gravity.norm() * context.dt)
     {
         for (int points = 1; points <= 4; ++points) {
             const double omega = contact_frequency(context, parameters, points);
@@ -178,7 +176,9 @@ private:
     // some to what moves on, and rightly so: then there is nothing for the limiter to take.
     bool gains(std::size_t island) const
     {
-        if (!falls_only_ || !moves(island)) return false;
+        const IslandCalls& calls = islands_.calls[island];
+        const Set<Effect> pushed = kForces | Set<Effect>{Effect::drive};
+        if (calls.effects.meets(pushed) || !moves(island)) return false;
         double mass = 0, twice_energy = 0, twice_gained = 0;
         for (std::uint32_t k = islands_.body_begin[island]; k < islands_.body_begin[island + 1];
              ++k) {
@@ -484,7 +484,6 @@ private:
     double step_;          // s
     Vec3 gravity_;         // m/s2
     double falls_;         // m/s, in a step
-    bool falls_only_;      // nothing but gravity acts
     double per_speed_[4];  // s, by points, less one: overlap over the rigid share of the extent
 };
 

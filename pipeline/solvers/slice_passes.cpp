@@ -33,7 +33,7 @@ SlicePasses<Real>::SlicePasses(const StepContext& context,
                                const ConstraintBuilder<Real>& builder,
                                ContactConstraints<Real>& constraints)
     : context_(context), layout_(layout), batch_(batch), builder_(builder),
-      constraints_(constraints), view_(ContactConstraintsView<Real>::of(constraints)),
+      constraints_(constraints), view_(ContactConstraintsView<Real>::of(constraints, batch.calls)),
       kernels_(solve_kernels<Real>()), time_(static_cast<Real>(context.substep()))
 {
     const bool otherwise = parameters.friction_at_points_or_pyramid(context.effects);
@@ -222,7 +222,7 @@ void SlicePasses<Real>::begin_substep(const Slice& slice, bool shared, bool firs
             : Substep<Real>::Gyroscopic::direct;
     for_bodies(slice, shared, [&](std::size_t at, std::size_t count) {
         kernels_.begin_substep(constraints_.bodies.data() + at, inertias_at(at), count, substep);
-        if (!constraints_.accelerations.empty()) apply_acceleration(at, count);
+        if (context_.effects.meets(kForces)) apply_acceleration(at, count);
     });
 }
 

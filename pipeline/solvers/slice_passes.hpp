@@ -81,7 +81,7 @@ private:
     void begin_substep(const Slice& slice, bool shared, bool first);
     const GyroscopicInertia<Real>* inertias_at(std::size_t at) const
     {
-        return constraints_.inertias.empty() ? nullptr : constraints_.inertias.data() + at;
+        return view_.inertias == nullptr ? nullptr : view_.inertias + at;
     }
     void apply_acceleration(std::size_t at, std::size_t count);
     void advance(const Slice& slice, bool shared);

@@ -183,13 +183,13 @@ private:
     // Before the first substep nobody has turned; but rims are told ahead.
     void turn_arms()
     {
-        const bool any = !constraints_.turning_arms.empty();
-        if (any && (substep_ > 0 || !constraints_.rims.empty())) add(SlicePass::Kind::turn_arms);
+        if (batch_.calls.swings && (substep_ > 0 || batch_.calls.rolls))
+            add(SlicePass::Kind::turn_arms);
     }
 
     void update_surface_velocity()
     {
-        if (constraints_.surfaces_turn || constraints_.axes_turn)
+        if (batch_.calls.carries || batch_.calls.axes_turn)
             add(SlicePass::Kind::update_surface_velocity);
     }
 
@@ -223,7 +223,7 @@ private:
 
     void place_rims()
     {
-        if (!constraints_.rims.empty()) add(SlicePass::Kind::place_rims);
+        if (batch_.calls.rolls) add(SlicePass::Kind::place_rims);
     }
 
     void relax()
@@ -292,10 +292,12 @@ private:
             limiter_.emplace(layout_, batch_, facts_, stiff ? &*state_forces_ : nullptr,
                              all ? Whose::all : Whose::on_springs,
                              context_.gravity * context_.substep());
-        if (!stiff && constraints_.prescribed.empty() && somebody_only_turns())
+        if (!stiff && !is_driven() && somebody_only_turns())
             spin_limiter_.emplace(layout_, batch_, facts_, nullptr, Whose::turning,
                                   context_.gravity * context_.substep());
     }
+
+    bool is_driven() const { return context_.has(Effect::drive); }
 
     bool somebody_only_turns() const
     {
@@ -319,18 +321,26 @@ private:
             return limiter_->take_share(constraints_);
         }
         if (parts_) return limit_while_parting();
-        const Slice& slice = layout_.slices[batch_.first_slice];
         const double speed = blow_speed();
-        if (batch_.slices > 1 || slice.kinematic > 0 || !constraints_.prescribed.empty()) return;
-        if (!(speed > 0) && (context_.effects.meets(kForces) || facts_.forces.field)) return;
-        const auto bodies = std::span(constraints_.bodies).subspan(slice.first_body, slice.dynamic);
-        const bool gains = may_gain<Real>(bodies, batch_.contacts > kBatchContacts, speed);
-        if (!blow_limiter_ && (gains || batch_.limited)) {
-            using Whose = typename EnergyLimiter<Real>::Whose;
-            blow_limiter_.emplace(layout_, batch_, facts_, nullptr,
-                                  batch_.limited ? Whose::all : Whose::stacked, Vec3::Zero());
+        if (batch_.slices > 1 || batch_.calls.driven || is_driven()) return;
+        if (!(speed > 0) && context_.effects.meets(kForces)) return;
+        if (!blow_limiter_ && batch_.limited) limit_blows(true);
+        const std::size_t end = std::size_t{batch_.first_island} + batch_.islands;
+        for (std::size_t island = batch_.first_island; island < end; ++island) {
+            const std::size_t begin = layout_.island_begin[island];
+            const auto bodies = std::span(constraints_.bodies)
+                                    .subspan(begin, layout_.island_begin[island + 1] - begin);
+            if (!may_gain<Real>(bodies, batch_.contacts > kBatchContacts, speed)) continue;
+            if (!blow_limiter_) limit_blows(batch_.limited);
+            blow_limiter_->take_share_of_blow(speed, {begin, begin + bodies.size()}, constraints_);
         }
-        if (gains) blow_limiter_->take_share_of_blow(speed, constraints_);
+    }
+
+    void limit_blows(bool all)
+    {
+        using Whose = typename EnergyLimiter<Real>::Whose;
+        blow_limiter_.emplace(layout_, batch_, facts_, nullptr, all ? Whose::all : Whose::stacked,
+                              Vec3::Zero());
     }
 
     // While bodies part contacts are stiff and push nobody, so they give no energy; but of what
@@ -339,12 +349,12 @@ private:
     // the warm start is limited; a blow so limited presses some through a floor.
     void limit_while_parting()
     {
-        if (!constraints_.prescribed.empty()) return;
+        if (is_driven()) return;
         slices_.run();
-        if (!blow_limiter_)
-            blow_limiter_.emplace(layout_, batch_, facts_, nullptr, EnergyLimiter<Real>::Whose::all,
-                                  Vec3::Zero());
-        if (state_forces_) blow_limiter_->take_share_of_blow(blow_speed(), constraints_);
+        if (!blow_limiter_) limit_blows(true);
+        if (state_forces_)
+            blow_limiter_->take_share_of_blow(blow_speed(), {0, constraints_.bodies.size()},
+                                              constraints_);
     }
 
     // What acts once bodies have moved is no work of contacts.

@@ -63,18 +63,11 @@ public:
                    meshes_,
                    solids_,
                    joined_,
+                   nothing_,
                    constraints_),
-          effort_(effort), islands_{context_,
-                                    parameters_,
-                                    effort_,
-                                    layout_,
-                                    active_,
-                                    facts_,
-                                    problem.template get<const ExternalAcceleration>(),
-                                    problem.template get<const PrescribedVelocities>(),
-                                    builder_,
-                                    problem.template get<Poses>(),
-                                    problem.template get<Velocities>()}
+          effort_(effort), accelerations_(problem.template get<const ExternalAcceleration>()),
+          prescribed_(problem.template get<const PrescribedVelocities>()),
+          poses_(problem.template get<Poses>()), velocities_(problem.template get<Velocities>())
     {
         start_islands(layout_, constraints_, diagnostics_);
         if (any_finer(layout_)) flights_.lags.resize(facts_.masses.mass.size());
@@ -94,10 +87,10 @@ public:
         for_batches([&](const Batch& batch) {
             const bool parts =
                 split_impulse_.some && uses_split_impulse(layout_, batch, split_impulse_);
-            if (!parts && batch.direct && !rolls_on_rims(batch)
+            if (!parts && batch.direct && !batch.calls.rolls
                 && !any_only_turns(layout_, batch, facts_.masses)
                 && !is_stiff(context_, facts_, layout_, batch))
-                solve_island(islands_, batch, constraints_, diagnostics_);
+                solve_exactly(batch);
             else if (!parts && batch.times > 1)
                 return iterate_finer(batch);
             else
@@ -111,7 +104,7 @@ public:
     {
         for_batches([&](const Batch& batch) {
             if (batch.direct)
-                solve_island(islands_, batch, constraints_, diagnostics_);
+                solve_exactly(batch);
             else
                 iterate(batch);
         });
@@ -133,15 +126,6 @@ private:
         update_split_impulse(split_impulse_);
     }
 
-    bool rolls_on_rims(const Batch& batch) const
-    {
-        return !constraints_.rims.empty() && any_body_of(layout_, batch, [&](std::uint32_t body) {
-            const RoundRim& rim =
-                constraints_.rims[static_cast<std::size_t>(layout_.solver_index[body])];
-            return rim.rolls;
-        });
-    }
-
     // Whether two in touch are so unlike. The impulses that relaxing takes from who bears so much
     // are slow to come back, and he sinks in; where he is held by a face they come soon enough.
     bool any_unlike(const Batch& batch) const
@@ -152,15 +136,33 @@ private:
                 .subspan(layout_.slices[batch.first_slice].first_contact, batch.contacts));
     }
 
+    // What makes the constraints of a batch, of no more than that calls for.
+    ConstraintBuilder<Real>
+    builder_of(const Batch& batch, const StepContext& context, const SolverParameters& parameters)
+    {
+        return {context, parameters, layout_, active_,     convex_,
+                meshes_, solids_,    joined_, batch.calls, constraints_};
+    }
+
+    void solve_exactly(const Batch& batch)
+    {
+        const StepContext context = context_.of(batch.calls);
+        const ConstraintBuilder<Real> builder = builder_of(batch, context, parameters_);
+        solve_island<Real>({context, parameters_, effort_, layout_, active_, facts_, accelerations_,
+                            prescribed_, builder, poses_, velocities_},
+                           batch, constraints_, diagnostics_);
+    }
+
     void iterate(const Batch& batch)
     {
-        solve_batch(context_, parameters_, facts_, layout_, batch, builder_, constraints_,
-                    split_impulse_);
+        const StepContext context = context_.of(batch.calls);
+        solve_batch(context, parameters_, facts_, layout_, batch,
+                    builder_of(batch, context, parameters_), constraints_, split_impulse_);
     }
 
     void iterate_finer(const Batch& batch)
     {
-        StepContext finer = context_;
+        StepContext finer = context_.of(batch.calls);
         SolverParameters parameters = parameters_;
         finer.substeps *= batch.times;
         finer.times_finer = batch.times;
@@ -169,8 +171,7 @@ private:
         parameters.relax_iterations = !lies_on_faces(batch) && any_unlike(batch)
             ? relax_iterations(parameters, finer.substeps, batch)
             : finer_relax_iterations(parameters, finer.substeps, batch);
-        const ConstraintBuilder<Real> with(finer, parameters, layout_, active_, convex_, meshes_,
-                                           solids_, joined_, constraints_);
+        const ConstraintBuilder<Real> with = builder_of(batch, finer, parameters);
         for (const Slice& slice : slices_of(batch)) {
             // Impulses are kept as of the substep that the settings say.
             with.scale_impulses(slice, Real(1) / Real(batch.times));
@@ -219,9 +220,13 @@ private:
     Flights& flights_;
     StepDiagnostics& diagnostics_;
     const RigidFacts facts_;
-    const ConstraintBuilder<Real> builder_;
+    const IslandCalls nothing_;
+    const ConstraintBuilder<Real> builder_;  // of contacts, not of constraints
     const DirectEffort effort_;
-    const IslandScene<Real> islands_;
+    const ExternalAcceleration& accelerations_;
+    const PrescribedVelocities& prescribed_;
+    Poses& poses_;
+    Velocities& velocities_;
 };
 
 template <class Real>

@@ -7,7 +7,6 @@
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace throng {
@@ -74,98 +73,65 @@ void fill_acceleration(std::uint32_t body,
     }
 }
 
-// Whether anybody turns who would carry what is as light as any, and as easily turned.
-template <class Real>
-bool anybody_carries(const std::vector<SolverBody<Real>>& bodies, double dt)
-{
-    const auto turns = [](const SolverBody<Real>& body) {
-        return body.motion[4] != 0 || body.motion[5] != 0 || body.motion[6] != 0;
-    };
-    // The first that moves says so, but in a crowd of those that never turn.
-    if (std::none_of(bodies.begin(), bodies.end(), turns)) return false;
-    InverseMass lightest;
-    for (const SolverBody<Real>& body : bodies) {
-        const InverseMass inverse_mass = inverse_mass_of(body);
-        lightest = {std::max(lightest.linear, inverse_mass.linear),
-                    std::max(lightest.angular, inverse_mass.angular)};
-    }
-    return std::any_of(bodies.begin(), bodies.end(), [&](const SolverBody<Real>& body) {
-        // Most are told by a number or two.
-        if (!turns(body)) return false;
-        const double inverse_mass{body.inertia[0]};
-        return !(inverse_mass > 0 && inverse_mass * kHeavier > lightest.linear)
-            && carries(body, lightest, dt);
-    });
-}
-
-// Somebody who may hang, or lie with a flat side on a round one.
-bool anybody_swings(const Layout& layout, const Shapes& shapes, const Colliders& colliders)
-{
-    const bool rounds = !shapes.capsules.empty() || !shapes.cylinders.empty();
-    const unsigned how = Colliders::kMayHang | (rounds ? Colliders::kFlat : 0u);
-    const auto first = layout.body_of_solver_index.begin() + 1;
-    return std::any_of(first, first + layout.dynamic,
-                       [&](std::uint32_t body) { return (colliders.may_swing[body] & how) != 0; });
-}
-
-// Of all that have one, where they are; none where nobody has.
-void place_rims(const Layout& layout,
+// Of those that roll, where they are.
+void place_rims(const Islands& islands,
+                const Layout& layout,
                 const Poses& poses,
                 const Shapes& shapes,
                 const Colliders& colliders,
                 std::vector<RoundRim>& rims)
 {
-    rims.clear();
-    if (shapes.cylinders.empty()) return;
-    for (std::size_t i = 1; i <= layout.dynamic; ++i) {
-        const std::uint32_t body = layout.body_of_solver_index[i];
-        if ((colliders.may_swing[body] & Colliders::kRim) == 0) continue;
-        rims.resize(layout.body_of_solver_index.size());
+    rims.assign(layout.body_of_solver_index.size(), {});
+    for (const auto& [body, contacts] : islands.rolling) {
+        RoundRim& rim = rims[layout.solver_index[body]];
+        rim.contacts = contacts;
         const std::uint32_t collider = colliders.begin[body];
         const Quat turn = poses.orientation[body] * colliders.local[collider].orientation;
         const Vec3 axis = turn * Vec3::UnitZ();
-        for (int k = 0; k < 3; ++k) rims[i].axis[k] = axis[k];
-        rims[i].radius = shapes.cylinders[colliders.shape[collider].index].radius;
+        for (int k = 0; k < 3; ++k) rim.axis[k] = axis[k];
+        rim.radius = shapes.cylinders[colliders.shape[collider].index].radius;
     }
 }
 
-// Of those that turn, or touch somebody who does; none where nobody does.
-void find_rims(double dt,
-               const Layout& layout,
-               const Poses& poses,
-               const Velocities& velocities,
-               const Shapes& shapes,
-               const Colliders& colliders,
-               std::vector<RoundRim>& rims)
+// What any batch calls for.
+IslandCalls called_for(const Layout& layout)
 {
-    constexpr double kSeen = 1e-4;  // rad, in a step
-    // Who is held at more places rolls nowhere: in a heap it would cost a fifth of the step.
-    constexpr std::uint32_t kMostContacts = 2;
-    place_rims(layout, poses, shapes, colliders, rims);
-    if (rims.empty()) return;
-    const auto turns = [&](std::size_t i) {
-        return i > 0 && i <= layout.dynamic
-            && (velocities.angular[layout.body_of_solver_index[i]] * dt).squaredNorm()
-            > kSeen * kSeen;
+    IslandCalls any;
+    for (const Batch& batch : layout.batches) {
+        any.effects = any.effects | batch.calls.effects;
+        any.carries = any.carries || batch.calls.carries;
+        any.axes_turn = any.axes_turn || batch.calls.axes_turn;
+        any.swings = any.swings || batch.calls.swings;
+        any.rolls = any.rolls || batch.calls.rolls;
+    }
+    return any;
+}
+
+// Calls fill(body, solver index) for the solver bodies of batches that call for some of the
+// effects, with their copies of others.
+void for_bodies_that_call(const Layout& layout, Set<Effect> effects, const auto& fill)
+{
+    const auto fill_all = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t at = begin; at < end; ++at) fill(layout.body_of_solver_index[at], at);
     };
-    for (std::size_t place = 0; place < layout.lanes.size(); ++place) {
-        if (layout.lanes[place].entry == LaneSource{}.entry) continue;
-        const auto a = static_cast<std::size_t>(layout.solver_index_a[place]),
-                   b = static_cast<std::size_t>(layout.solver_index_b[place]);
-        if (!(rims[a].radius > 0) && !(rims[b].radius > 0)) continue;
-        const bool rolls = turns(a) || turns(b);
-        for (const std::size_t i : {a, b}) {
-            if (!(rims[i].radius > 0)) continue;
-            ++rims[i].contacts;
-            rims[i].rolls = rims[i].rolls || rolls;
+    const auto fill_copies = [&](const Batch& batch) {
+        const std::size_t last = batch.first_slice + batch.slices;
+        fill_all(layout.slices[batch.first_slice].first_kinematic_copy,
+                 last < layout.slices.size() ? layout.slices[last].first_kinematic_copy
+                                             : layout.body_of_solver_index.size());
+    };
+    for_each_block(layout.batches.size(), 1, [&](auto from, auto to, std::size_t) {
+        for (std::size_t i = from; i < to; ++i) {
+            const Batch& batch = layout.batches[i];
+            if (!batch.calls.effects.meets(effects)) continue;
+            const std::size_t begin = layout.island_begin[batch.first_island],
+                              end = layout.island_begin[batch.first_island + batch.islands];
+            for_each_block(end - begin, kBodies, [&](auto first, auto last, std::size_t) {
+                fill_all(begin + first, begin + last);
+            });
+            fill_copies(batch);
         }
-    }
-    bool some = false;
-    for (RoundRim& rim : rims) {
-        if (!rim.rolls || rim.contacts > kMostContacts) rim.radius = 0;
-        some = some || rim.rolls;
-    }
-    if (!some) rims.clear();
+    });
 }
 
 template <class Real>
@@ -220,12 +186,11 @@ std::uint32_t place_points(const Layout& layout, ContactConstraints<Real>& const
     return points;
 }
 
-// Whose axes turn, who swings or is driven, has the lists that tell of it.
+// Lists that tell of what is called for.
 template <class Real>
-void make_room(const StepContext& context,
-               const SolverParameters& parameters,
+void make_room(const SolverParameters& parameters,
                const Layout& layout,
-               bool swings,
+               const IslandCalls& calls,
                ContactConstraints<Real>& constraints)
 {
     const std::size_t blocks = layout.points.size();
@@ -233,14 +198,12 @@ void make_room(const StepContext& context,
     const std::uint32_t points = place_points(layout, constraints);
     constraints.blocks.resize(blocks);
     constraints.points.resize(points);
-    constraints.restitutions.resize(when(context.has(Effect::restitution), blocks));
-    constraints.surface_velocities.resize(
-        when(constraints.surfaces_turn || constraints.axes_turn || !constraints.prescribed.empty(),
-             blocks));
-    constraints.turning_arms.resize(when(swings, blocks));
+    constraints.restitutions.resize(when(calls.effects.has(Effect::restitution), blocks));
+    constraints.surface_velocities.resize(when(calls.surfaces_go(), blocks));
+    constraints.turning_arms.resize(when(calls.swings, blocks));
     constraints.point_frictions.resize(
-        when(parameters.friction_at_points_or_pyramid(context.effects), points));
-    constraints.rolling_frictions.resize(when(context.has(Effect::rolling_friction), blocks));
+        when(parameters.friction_at_points_or_pyramid(calls.effects), points));
+    constraints.rolling_frictions.resize(when(calls.effects.has(Effect::rolling_friction), blocks));
 }
 
 }  // namespace
@@ -248,6 +211,7 @@ void make_room(const StepContext& context,
 template <class Real>
 void prepare_constraints(const StepContext& context,
                          const SolverParameters& parameters,
+                         const Islands& islands,
                          const Layout& layout,
                          const Forces& forces,
                          const Poses& poses,
@@ -264,44 +228,50 @@ void prepare_constraints(const StepContext& context,
     lag_velocities(context, forces, masses,
                    std::span(layout.body_of_solver_index).subspan(1, layout.dynamic), flights,
                    velocities);
-    const bool forced = context.effects.meets(kForces);
-    const bool gyroscopic = context.has(Effect::gyroscopic);
-    std::atomic<bool> axes_turn = false;
-    constraints.bodies.resize(layout.body_of_solver_index.size());
-    constraints.inertias.resize(gyroscopic ? constraints.bodies.size() : 0);
-    constraints.accelerations.resize(forced ? constraints.bodies.size() : 0);
+    const IslandCalls calls = called_for(layout);
+    const std::size_t bodies = layout.body_of_solver_index.size();
+    constraints.bodies.resize(bodies);
     const auto fill = [&](std::uint32_t body, std::size_t solver_index, std::size_t = 0) {
         fill_body(body, poses, velocities, masses, states, constraints.bodies[solver_index]);
-        if (gyroscopic) {
-            auto& inertia = constraints.inertias[solver_index];
-            fill_inertia(body, poses, masses, states, inertia);
-            if (!axes_turn && axis_turns(constraints.bodies[solver_index], inertia, context.dt))
-                axes_turn = true;
-        }
-        if (forced)
-            fill_acceleration(body, accelerations, states, constraints.accelerations[solver_index]);
     };
     fill(kNoBody, 0);
     SolverBodyBlocks(layout, kBodies).for_each(fill);
-    for (std::size_t solver_index = layout.dynamic + std::size_t{1};
-         solver_index < constraints.bodies.size(); ++solver_index)
-        fill(layout.body_of_solver_index[solver_index], solver_index);
+    for (std::size_t at = layout.dynamic + std::size_t{1}; at < bodies; ++at)
+        fill(layout.body_of_solver_index[at], at);
 
-    constraints.surfaces_turn = anybody_carries(constraints.bodies, context.dt);
-    constraints.axes_turn = axes_turn && context.has(Effect::friction);
-    if (context.has(Effect::drive))
+    const bool gyroscopic = calls.effects.has(Effect::gyroscopic);
+    constraints.inertias.resize(gyroscopic ? bodies : 0);
+    constraints.precesses.assign(gyroscopic ? bodies : 0, 0);
+    const auto fill_inertia_of = [&](std::uint32_t body, std::size_t solver_index) {
+        auto& inertia = constraints.inertias[solver_index];
+        fill_inertia(body, poses, masses, states, inertia);
+        constraints.precesses[solver_index] = inertia.share[6] > 0 ? 1 : 0;
+    };
+    if (gyroscopic) {
+        fill_inertia_of(kNoBody, 0);
+        for_bodies_that_call(layout, {Effect::gyroscopic}, fill_inertia_of);
+    }
+    const bool forced = calls.effects.meets(kForces);
+    constraints.accelerations.resize(forced ? bodies : 0);
+    if (forced)
+        for_bodies_that_call(layout, kForces, [&](std::uint32_t body, std::size_t solver_index) {
+            fill_acceleration(body, accelerations, states, constraints.accelerations[solver_index]);
+        });
+    if (calls.effects.has(Effect::drive))
         prepare_prescribed_velocities(prescribed, layout, constraints);
     else
         constraints.prescribed.clear();
-    find_rims(context.dt, layout, poses, velocities, shapes, colliders, constraints.rims);
-    const bool swings = !constraints.rims.empty() || anybody_swings(layout, shapes, colliders);
-    make_room(context, parameters, layout, swings, constraints);
+    if (calls.rolls)
+        place_rims(islands, layout, poses, shapes, colliders, constraints.rims);
+    else
+        constraints.rims.clear();
+    make_room(parameters, layout, calls, constraints);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void prepare_constraints<Real>(                                                       \
-        const StepContext&, const SolverParameters&, const Layout&, const Forces&, const Poses&,   \
-        const Masses&, const BodyStates&, const Shapes&, const Colliders&,                         \
+        const StepContext&, const SolverParameters&, const Islands&, const Layout&, const Forces&, \
+        const Poses&, const Masses&, const BodyStates&, const Shapes&, const Colliders&,           \
         const ExternalAcceleration&, const PrescribedVelocities&, Flights&, Velocities&,           \
         ContactConstraints<Real>&);
 THRONG_INSTANTIATE(float)

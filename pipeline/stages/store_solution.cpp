@@ -23,8 +23,7 @@ bool take_back(const SolverBody<Real>& solver_body,
     if (ran_away(solver_body)) return false;
     const Vec3 moved = vector_at(solver_body.delta_pose);
     const Vec3 v = vector_at(solver_body.motion), spin = vector_at(solver_body.motion + 4);
-    const bool goes_along = inertia != nullptr && inertia->share[6] > 0;
-    const Vec3 w = goes_along ? spin_frame(solver_body, inertia) * spin : spin;
+    const Vec3 w = inertia != nullptr ? spin_frame(solver_body, inertia) * spin : spin;
     const Vec3 position = poses.position[body] + moved;
     Quat orientation = poses.orientation[body];
     // Who has not turned keeps its very bits.
@@ -54,7 +53,9 @@ void store_solution(const Layout& layout,
             constraints.settled.empty() ? Settled::no : constraints.settled[solver_index];
         if (settled == Settled::yes) return;
         const GyroscopicInertia<Real>* const inertia =
-            constraints.inertias.empty() ? nullptr : &constraints.inertias[solver_index];
+            constraints.precesses.empty() || constraints.precesses[solver_index] == 0
+            ? nullptr
+            : &constraints.inertias[solver_index];
         if (settled == Settled::lost
             || !take_back(constraints.bodies[solver_index], inertia, body, poses, velocities))
             diagnostics.scratch.of_block[block].push_back(body);

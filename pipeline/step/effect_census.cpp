@@ -91,40 +91,15 @@ private:
         call_if(forces.on_pivot(body_), Call::pivot);
     }
 
-    bool turned_by_forces() const
-    {
-        const Forces& forces = facts_.forces;
-        if (forces.field || forces.on_pivot(body_)) return true;
-        if (body_ < forces.torque.size() && !forces.torque[body_].isZero(0)) return true;
-        if (body_ + std::size_t{1} >= forces.first_spring.size()) return false;
-        for (std::uint32_t k = forces.first_spring[body_]; k < forces.first_spring[body_ + 1];
-             ++k) {
-            const SpringForce& spring = forces.springs[forces.spring_of[k]];
-            if (!(spring.a == body_ ? spring.at_a : spring.at_b).isZero(0)) return true;
-        }
-        return false;
-    }
-
-    // A ball about its own center is turned by friction alone; anything else by any touch.
-    bool turned_by_touch() const
-    {
-        const Colliders& colliders = facts_.colliders;
-        for (std::uint32_t k = 0; k < colliders.count[body_]; ++k) {
-            const std::uint32_t collider = colliders.begin[body_] + k;
-            if (colliders.shape[collider].kind != ShapeKind::sphere
-                || !colliders.local[collider].position.isZero(0))
-                return true;
-        }
-        return false;
-    }
-
     void find_turning()
     {
         const bool free = facts_.masses.inverse_inertia[body_] != Sym3{};
         const bool touches = free && facts_.colliders.count[body_] > 0;
         const bool by_itself =
-            !facts_.velocities.angular[body_].isZero(0) || (free && turned_by_forces());
-        const bool touched = touches && turned_by_touch();
+            !facts_.velocities.angular[body_].isZero(0) || (free && facts_.forces.turn(body_));
+        // A ball about its own center is turned by friction alone; anything else by any touch.
+        const bool touched =
+            touches && (facts_.colliders.shape_bits[body_] & Colliders::kOffCenter) != 0;
         call_if(by_itself, Call::turns);
         call_if(touched, Call::turns_touched);
         call_if(touches, Call::turns_rubbed);

@@ -66,7 +66,7 @@ private:
     template <class Who>
     void call(Effect effect, const Who& who)
     {
-        if (found_.on.has(effect)) return;
+        if (found_.on.has(effect) || facts_.left_out.has(effect)) return;
         found_.on.add(effect);
         if (names_) found_.cause[static_cast<std::size_t>(effect)] = who();
     }

@@ -31,6 +31,7 @@ struct EffectFacts {
     const Requests& requests;
     const std::vector<std::string>& body_names;  // may be shorter than the bodies
     const std::vector<std::string>& material_names;
+    Set<Effect> left_out;  // whoever calls for them
 };
 
 /// What is called for. Takes no longer where there are more bodies.

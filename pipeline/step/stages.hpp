@@ -138,6 +138,25 @@ void split_islands(const StepContext&,
                    IslandFinder&,
                    Islands&);
 
+/// What each island calls for of its solve; those that call for the same come side by side.
+template <class Real>
+void sort_islands(const StepContext&,
+                  const ActiveContacts&,
+                  const BodyStates&,
+                  const Poses&,
+                  const Velocities&,
+                  const Masses&,
+                  const Forces&,
+                  const Shapes&,
+                  const Colliders&,
+                  const PrescribedVelocities&,
+                  const SplitImpulse&,
+                  const ConvexContacts<Real>&,
+                  const MeshContacts<Real>&,
+                  const SolidContacts<Real>&,
+                  const JoinedContacts<Real>&,
+                  Islands&);
+
 /// Stubborn islands by how stubborn they are: who gets more substeps, who the direct solver.
 void escalate_islands(const StepContext&, const Islands&, OverloadedIslands&);
 
@@ -168,6 +187,7 @@ void apply_forces(const StepContext&,
 template <class Real>
 void prepare_constraints(const StepContext&,
                          const SolverParameters&,
+                         const Islands&,
                          const Layout&,
                          const Forces&,
                          const Poses&,

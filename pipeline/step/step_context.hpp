@@ -1,6 +1,7 @@
 // Step context: what holds for a whole step, the same for every body: how time goes on.
 #pragma once
 
+#include "kernels/data/islands.hpp"
 #include "pipeline/step/effects.hpp"
 #include "throng/math.hpp"
 #include "throng/settings.hpp"
@@ -36,6 +37,13 @@ struct StepContext {
     /// m/s: slower than what gravity gives in two steps is resting, not bouncing.
     double resting_speed() const { return 2 * gravity.norm() * dt; }
     bool has(Effect effect) const { return effects.has(effect); }
+    /// The same for islands that call for no more than that.
+    StepContext of(const IslandCalls& calls) const
+    {
+        StepContext narrowed = *this;
+        narrowed.effects = effects.without(kOfIslands) | (effects & calls.effects);
+        return narrowed;
+    }
 };
 
 }  // namespace throng

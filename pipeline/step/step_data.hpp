@@ -60,6 +60,8 @@ struct SplitImpulse {
         steps[body] |= kPlaced;
         some = true;
     }
+    /// Whether a body was put where it is, or parts already.
+    bool knows(std::size_t body) const { return body < steps.size() && steps[body] != 0; }
     bool parts(std::size_t body) const
     {
         return body < steps.size() && (steps[body] & ~kPlaced) != 0;

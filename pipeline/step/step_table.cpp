@@ -39,6 +39,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, gather_contacts<Real>>       ({contact}),
     stage<Real, join_contacts<Real>>         ({restitution, seams}),
     stage<Real, split_islands>               ({contact}),
+    stage<Real, sort_islands<Real>>          ({contact}),
     stage<Real, escalate_islands>            ({escalation}),
     stage<Real, color_constraints>           ({contact}),
     stage<Real, apply_forces>                (kForces),
@@ -66,10 +67,10 @@ constexpr DataSet data_sets = (DataSet{} | ... | data_set<Real, Kinds>);
 template <class Real>
 consteval bool reads_follow_writes()
 {
-    DataSet ready =
-        data_sets<Real, StepContext, NarrowPhaseParameters, ImpactParameters, SolverParameters,
-                  SleepParameters, Shapes, Surfaces, PairFilter, PrescribedVelocities, Forces,
-                  Poses, Velocities, Masses, BodyStates, Colliders, SleepEvents, OverloadedIslands>;
+    DataSet ready = data_sets<Real, StepContext, NarrowPhaseParameters, ImpactParameters,
+                              SolverParameters, SleepParameters, Shapes, Surfaces, PairFilter,
+                              PrescribedVelocities, Forces, Poses, Velocities, Masses, BodyStates,
+                              Colliders, SleepEvents, OverloadedIslands, SplitImpulse>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;

@@ -42,7 +42,7 @@ void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const
     const auto& layout = std::get<Layout>(data);
     const auto& active = std::get<ActiveContacts>(data);
     for (const Batch& batch : layout.batches) {
-        if (batch.direct) continue;
+        if (batch.direct || !batch.calls.effects.has(Effect::restitution)) continue;
         const Slice &first = layout.slices[batch.first_slice],
                     &last = layout.slices[batch.first_slice + batch.slices - 1];
         for (std::size_t i = first.first_contact; i < last.first_contact + last.contacts; ++i) {

@@ -280,7 +280,7 @@ void SceneBuilder::place_colliders(std::uint32_t body,
     put(colliders.begin, body, first);
     put(colliders.count, body, count);
     double radius = 0;
-    std::uint8_t swings = count > 1 ? Colliders::kMayHang : 0;
+    std::uint8_t bits = count > 1 ? Colliders::kMayHang : 0;
     colliders.compounds = colliders.compounds || count > 1;
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t at = first + i;
@@ -289,12 +289,15 @@ void SceneBuilder::place_colliders(std::uint32_t body,
         local.position -= state_.center[body];
         const double outer = local.position.norm() + outer_radius(shapes, part);
         // By what is not convex, or round about another point.
-        if (part.kind == ShapeKind::solid || !local.position.isZero(0))
-            swings |= Colliders::kMayHang;
+        if (part.kind == ShapeKind::solid || !local.position.isZero(0)) bits |= Colliders::kMayHang;
         if (part.kind == ShapeKind::cylinder && count == 1 && local.position.isZero(0)
             && may_run_round(shapes.cylinders[part.index]))
-            swings |= Colliders::kRim;
-        if (part.kind == ShapeKind::box || part.kind == ShapeKind::hull) swings |= Colliders::kFlat;
+            bits |= Colliders::kRim;
+        if (part.kind == ShapeKind::box || part.kind == ShapeKind::hull) bits |= Colliders::kFlat;
+        if (part.kind == ShapeKind::capsule || part.kind == ShapeKind::cylinder)
+            bits |= Colliders::kRound;
+        if (part.kind != ShapeKind::sphere || !local.position.isZero(0))
+            bits |= Colliders::kOffCenter;
         put(colliders.body, at, body);
         put(colliders.shape, at, part);
         put(colliders.local, at, local);
@@ -308,7 +311,7 @@ void SceneBuilder::place_colliders(std::uint32_t body,
         filter.mask[at] = stated.mask;
         if (std::isfinite(outer)) radius = std::max(radius, outer);
     }
-    put(colliders.may_swing, body, swings);
+    put(colliders.shape_bits, body, bits);
     put(state_.get<BodyStates>().radius, body, radius);
 }
 
@@ -467,7 +470,7 @@ void SceneBuilder::grow_lists(std::size_t bodies)
     auto& c = state_.get<Colliders>();
     auto& filter = state_.get<PairFilter>();
     reserve(bodies, c.body, c.shape, c.local, c.material, c.inner_extent, c.outer_radius, c.begin,
-            c.count, c.may_swing, filter.body, filter.group, filter.mask);
+            c.count, c.shape_bits, filter.body, filter.group, filter.mask);
 }
 
 void SceneBuilder::add_forces(const Scene& scene, std::span<const BodyId> ids)

@@ -136,7 +136,7 @@ void WorldState::follow_stubborn()
     for (const std::uint32_t body : overloaded.gainers)
         if (overloaded.limited_for(body) > 0) first = std::min(first, body);
     const bool any = first != kNoBody;
-    if (any == effects.on.has(Effect::escalation)) return;
+    if (any == effects.on.has(Effect::escalation) || left_out.has(Effect::escalation)) return;
     requests.first[static_cast<std::size_t>(Effect::escalation)].clear();
     if (any) requests.ask(Effect::escalation, called(first));
     effects_stale = true;
@@ -161,8 +161,8 @@ void WorldState::follow_step()
     get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size() + get<SleepingPairs>().size(),
                                         active_bodies.dynamic.size());
     // A body that has become fast calls for what looks after it from the next step on.
-    if (const std::uint32_t fast_candidate = get<Bounds>().fast_candidate;
-        fast_candidate != kNoBody && !effects.on.has(Effect::fast_motion)) {
+    if (const std::uint32_t fast_candidate = get<Bounds>().fast_candidate; fast_candidate != kNoBody
+        && !effects.on.has(Effect::fast_motion) && !left_out.has(Effect::fast_motion)) {
         requests.ask(Effect::fast_motion, called(fast_candidate));
         effects_stale = true;
     }
@@ -278,7 +278,8 @@ EffectFacts WorldState::effect_facts() const
             get<Surfaces>(),
             requests,
             names,
-            material_names};
+            material_names,
+            left_out};
 }
 
 void WorldState::name_causes()
@@ -563,6 +564,19 @@ const Effects& World::effects()
 {
     state_->name_causes();
     return state_->effects;
+}
+
+void World::leave_out(Set<Effect> effects)
+{
+    for (int i = 0; i < kEffects; ++i)
+        if (const auto effect = static_cast<Effect>(i);
+            effects.has(effect) && !kLeftOutByWorld.has(effect))
+            throw std::invalid_argument(
+                std::string(name_of(effect))
+                + ": a world cannot leave it out; take what calls for it out of the scene, as "
+                  "throng::leave_out() does");
+    state_->left_out = effects;
+    state_->effects_stale = true;
 }
 
 std::vector<World::StageInfo> World::step_stages()

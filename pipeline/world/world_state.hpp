@@ -56,6 +56,7 @@ struct WorldState {
     Effects effects;
     Requests requests;
     EffectCensus census;
+    Set<Effect> left_out;                // see World::leave_out()
     bool effects_stale = true;           // something besides bodies changed
     bool census_stale = true;            // that all bodies depend on
     bool causes_stale = true;            // of effects

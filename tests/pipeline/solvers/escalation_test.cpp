@@ -177,7 +177,7 @@ TEST(Escalation, HoldsGreatStructuresAndOnAnyNumberOfThreads)
 TEST(Escalation, LeavesGreatHeapsAlone)
 {
     World world(many_cubes(0.03));
-    world.step(150);
+    world.step(75);
     EXPECT_GT(world.report().contacts, 1500u);
     const std::size_t before = world.report().islands_escalated;
     world.step(60);

@@ -1,0 +1,396 @@
+// Sort islands: what each calls for of its solve, and those that call for the same side by side.
+//
+// Batches are made of neighbors that call for the same. So what is not called for is not in the
+// solve of an island whatever others do, far away, and its bits are those that it would have alone.
+#include "kernels/parallel/blocks.hpp"
+#include "kernels/solver/coloring.hpp"
+#include "kernels/solver/solver_bodies.hpp"
+#include "pipeline/contacts/contact_lists.hpp"
+#include "pipeline/step/stages.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace throng {
+
+namespace {
+
+constexpr std::size_t kIslands = 16;  // a block
+
+// What contacts alone tell.
+constexpr Set<Effect> kByContacts = {Effect::friction, Effect::rolling_friction,
+                                     Effect::restitution};
+
+// Who is held at more places rolls nowhere: in a heap to follow him would cost a fifth of the step.
+constexpr std::uint32_t kMostRimContacts = 2;
+constexpr double kRollSeen = 1e-4;  // rad, in a step
+
+// Overlap from which who was put somewhere may have to part, and who is wedged: less than
+// split_impulse.cpp has, as shares of the half extent.
+constexpr double kMayPart = 1e-5, kMayBeWedged = 0.1;
+
+// A carrier is looked for with this much to spare: contacts decide, in their own precision.
+constexpr double kToSpare = 1 + 1e-5;
+
+template <class Real>
+struct Scene {
+    const StepContext& context;
+    const ActiveContacts& contacts;
+    const BodyStates& states;
+    const Poses& poses;
+    const Velocities& velocities;
+    const Masses& masses;
+    const Forces& forces;
+    const Shapes& shapes;
+    const Colliders& colliders;
+    std::span<const std::uint8_t> is_driven;  // [bodies] where any is
+    const SplitImpulse& split_impulse;
+    const ConvexContacts<Real>& convex;
+    const MeshContacts<Real>& meshes;
+    const SolidContacts<Real>& solids;
+    const JoinedContacts<Real>& joined;
+
+    const Set<Effect> by_contacts = context.effects & kByContacts;
+    const bool acted_on = context.effects.meets(kForces), drives = context.has(Effect::drive),
+               turn = context.has(Effect::rotation),
+               // Touched by what moves by itself; by what is round, for flat ones.
+        sides = !states.active_bodies.kinematic.empty() || !states.is_conveyor.empty(),
+               rounds = !shapes.capsules.empty() || !shapes.cylinders.empty(),
+               wedges = !solids.entries.empty() || colliders.compounds;
+};
+
+// One island.
+template <class Real>
+class IslandSearch {
+public:
+    IslandSearch(const Scene<Real>& scene, const Islands& islands, std::size_t island)
+        : scene_(scene), bodies_(islands.bodies_of(island)), contacts_(islands.contacts_of(island))
+    { }
+
+    // Adds to the bodies whose rims are followed.
+    IslandCalls find(std::vector<Islands::Rolling>& rolling)
+    {
+        for (const std::uint32_t body : bodies_) shapes_ |= scene_.colliders.shape_bits[body];
+        ask_contacts();  // first: friction turns bodies
+        for (const std::uint32_t body : bodies_) {
+            if (scene_.turn) find_turning(body);
+            if (scene_.acted_on) find_forces(body);
+            if (scene_.drives && scene_.is_driven[body] != 0) calls_.effects.add(Effect::drive);
+        }
+        if (!calls_.alone) calls_.alone = may_part();
+        if (spins_ || !sides_.empty()) find_carriers();
+        if (spins_ && calls_.effects.has(Effect::gyroscopic)
+            && calls_.effects.has(Effect::friction))
+            find_turning_axes();
+        if ((shapes_ & Colliders::kRim) != 0) find_rolling(rolling);
+        const unsigned swings =
+            Colliders::kMayHang | ((all_shapes_ & Colliders::kRound) != 0 ? Colliders::kFlat : 0u);
+        calls_.swings = calls_.rolls || (shapes_ & swings) != 0;
+        return calls_;
+    }
+
+private:
+    bool on(Effect effect) const { return scene_.context.has(effect); }
+    void call_if(bool calls, Effect effect)
+    {
+        if (calls) calls_.effects.add(effect);
+    }
+
+    // Of a big island as far as there is something left to find.
+    void ask_contacts()
+    {
+        all_shapes_ = shapes_;
+        const bool small = contacts_.size() <= kBatchContacts;
+        const bool sides = scene_.sides || (scene_.rounds && (shapes_ & Colliders::kFlat) != 0);
+        std::size_t on_faces = 0;
+        for (const std::uint32_t place : contacts_) {
+            const bool found = (calls_.effects & kByContacts) == scene_.by_contacts;
+            if (!small && !sides && found) break;
+            const ActiveContacts::Entry& entry = scene_.contacts.entries[place];
+            on_faces += entry.points >= 3 ? 1 : 0;
+            if (!found) ask_materials(materials_of(place));
+            if (!sides) continue;
+            ask_side(entry.body_a);
+            ask_side(entry.body_b);
+        }
+        calls_.on_faces = small && 2 * on_faces > contacts_.size();
+    }
+
+    Surfaces::MaterialPair materials_of(std::uint32_t place) const
+    {
+        const ActiveContacts& contacts = scene_.contacts;
+        if (!contacts.materials.empty()) return contacts.materials[place];
+        const ActiveContacts::Entry& entry = contacts.entries[place];
+        return {entry.friction, entry.restitution, entry.rolling_friction};
+    }
+
+    void ask_materials(const Surfaces::MaterialPair& materials)
+    {
+        Set<Effect> found;
+        if (materials.friction > 0) found.add(Effect::friction);
+        if (materials.rolling_friction > 0) found.add(Effect::rolling_friction);
+        if (materials.restitution > 0) found.add(Effect::restitution);
+        calls_.effects = calls_.effects | (found & scene_.by_contacts);
+    }
+
+    // Whether somebody may lie too deep in another for the usual push.
+    bool may_part() const
+    {
+        const bool placed = scene_.split_impulse.some
+            && std::any_of(bodies_.begin(), bodies_.end(),
+                           [&](std::uint32_t body) { return scene_.split_impulse.knows(body); });
+        if (!placed && !scene_.wedges) return false;
+        const auto& count = scene_.colliders.count;
+        return std::any_of(contacts_.begin(), contacts_.end(), [&](std::uint32_t place) {
+            const ActiveContacts::Entry& entry = scene_.contacts.entries[place];
+            const bool wedges = entry.list == ContactList::solid
+                || (count[entry.body_a] > 1 && count[entry.body_b] > 1);
+            if (!placed && !wedges) return false;
+            const Contact<Real>& contact =
+                contact_of(scene_.convex, scene_.meshes, scene_.solids, scene_.joined, entry);
+            return double{contact.overlap(entry.points)}
+            > (placed ? kMayPart : kMayBeWedged) * double{entry.extent};
+        });
+    }
+
+    // What contacts do not push.
+    void ask_side(std::uint32_t body)
+    {
+        if (scene_.states.movable(body)) return;
+        all_shapes_ |= scene_.colliders.shape_bits[body];
+        const bool moves = scene_.states.kind[body] == BodyKind::kinematic;
+        calls_.driven = calls_.driven || moves;
+        call_if(on(Effect::rotation) && !scene_.velocities.angular[body].isZero(0),
+                Effect::rotation);
+        if ((moves || scene_.states.carries(body)) && (sides_.empty() || sides_.back() != body))
+            sides_.push_back(body);
+    }
+
+    bool turns_free(std::uint32_t body) const
+    {
+        return scene_.masses.inverse_inertia[body] != Sym3{};
+    }
+
+    // As the census has it (see Call), of these bodies and contacts.
+    void find_turning(std::uint32_t body)
+    {
+        const bool uneven = on(Effect::gyroscopic) && scene_.masses.gyroscopic_kind[body] != 0;
+        const Effect asked = uneven ? Effect::gyroscopic : Effect::rotation;
+        if (spins_ && calls_.effects.has(asked)) return;
+        const bool spins = !scene_.velocities.angular[body].isZero(0);
+        spins_ = spins_ || spins;
+        if (calls_.effects.has(asked)) return;
+        const bool touched = (scene_.colliders.shape_bits[body] & Colliders::kOffCenter) != 0
+            || calls_.effects.has(Effect::friction);
+        const bool turns = spins
+            || (turns_free(body)
+                && (scene_.forces.turn(body) || (touched && scene_.colliders.count[body] > 0)));
+        call_if(turns, Effect::rotation);
+        call_if(turns && uneven, Effect::gyroscopic);
+    }
+
+    void find_forces(std::uint32_t body)
+    {
+        const Forces& forces = scene_.forces;
+        calls_.alone = calls_.alone || forces.depends_on_state(body);
+        const auto call = [&](bool acts, Effect effect) { call_if(acts && on(effect), effect); };
+        call(forces.field || forces.push(body), Effect::forces);
+        call(forces.has_springs(body), Effect::springs);
+        call(!forces.attractors.empty(), Effect::attractors);
+        call(forces.is_damped(body), Effect::drag);
+        call(forces.is_damped(body) && !forces.wind.isZero(0), Effect::wind);
+        call(forces.on_pivot(body), Effect::pivot);
+    }
+
+    InverseMass inverse_mass_of(std::uint32_t body) const
+    {
+        if (!scene_.states.dynamic(body)) return {};
+        const Sym3& inverse = scene_.masses.inverse_inertia[body];
+        return {scene_.masses.inverse_mass[body], inverse.xx + inverse.yy + inverse.zz};
+    }
+
+    // Whether anybody turns who would carry what is as light as any, and as easily turned. In most
+    // islands nobody is ten times as heavy as another.
+    void find_carriers()
+    {
+        const double dt = kToSpare * scene_.context.dt;
+        const auto spin_of = [&](std::uint32_t body) { return scene_.velocities.angular[body]; };
+        calls_.carries = std::any_of(sides_.begin(), sides_.end(), [&](std::uint32_t side) {
+            return carries(spin_of(side), {}, {}, dt);
+        });
+        double heaviest = std::numeric_limits<double>::infinity(), lightest = 0;  // 1/kg
+        for (const std::uint32_t body : bodies_) {
+            heaviest = std::min(heaviest, scene_.masses.inverse_mass[body]);
+            lightest = std::max(lightest, scene_.masses.inverse_mass[body]);
+        }
+        if (calls_.carries || heaviest * kHeavier > kToSpare * lightest) return;
+        InverseMass carried;
+        for (const std::uint32_t body : bodies_) {
+            const InverseMass inverse_mass = inverse_mass_of(body);
+            carried = {std::max(carried.linear, kToSpare * inverse_mass.linear),
+                       std::max(carried.angular, kToSpare * inverse_mass.angular)};
+        }
+        calls_.carries = std::any_of(bodies_.begin(), bodies_.end(), [&](std::uint32_t body) {
+            return carries(spin_of(body), inverse_mass_of(body), carried, dt);
+        });
+    }
+
+    // Whether the axis of anybody goes along.
+    void find_turning_axes()
+    {
+        calls_.axes_turn = std::any_of(bodies_.begin(), bodies_.end(), [&](std::uint32_t body) {
+            const Vec3& spin = scene_.velocities.angular[body];
+            const Vec3& axis = scene_.masses.symmetry_axis[body];
+            return !spin.isZero(0) && !axis.isZero(0) && scene_.masses.inverse_mass[body] > 0
+                && axis_turns(scene_.poses.orientation[body] * axis, spin, scene_.context.dt);
+        });
+    }
+
+    bool has_rim(std::uint32_t body) const
+    {
+        return (scene_.colliders.shape_bits[body] & Colliders::kRim) != 0
+            && scene_.states.movable(body);
+    }
+
+    // Those that turn, or touch somebody who does.
+    void find_rolling(std::vector<Islands::Rolling>& rolling)
+    {
+        struct Rim {
+            std::uint32_t contacts = 0;
+            bool rolls = false;
+        };
+        std::vector<Rim> rims(bodies_.size());
+        const auto rim_of = [&](std::uint32_t body) -> Rim& {
+            const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), body);
+            return rims[static_cast<std::size_t>(at - bodies_.begin())];
+        };
+        const double least = kRollSeen / scene_.context.dt;
+        const auto turns = [&](std::uint32_t body) {
+            return scene_.states.movable(body)
+                && scene_.velocities.angular[body].squaredNorm() > least * least;
+        };
+        for (const std::uint32_t place : contacts_) {
+            const ActiveContacts::Entry& entry = scene_.contacts.entries[place];
+            const bool rolls = turns(entry.body_a) || turns(entry.body_b);
+            for (const std::uint32_t body : {entry.body_a, entry.body_b}) {
+                if (!has_rim(body)) continue;
+                Rim& rim = rim_of(body);
+                ++rim.contacts;
+                rim.rolls = rim.rolls || rolls;
+            }
+        }
+        for (std::size_t i = 0; i < rims.size(); ++i) {
+            calls_.rolls = calls_.rolls || rims[i].rolls;
+            if (rims[i].rolls && rims[i].contacts <= kMostRimContacts)
+                rolling.push_back({bodies_[i], rims[i].contacts});
+        }
+    }
+
+    const Scene<Real>& scene_;
+    std::span<const std::uint32_t> bodies_, contacts_;
+    IslandCalls calls_;
+    unsigned shapes_ = 0, all_shapes_ = 0;  // bits of its bodies; and of all that they touch
+    bool spins_ = false;
+    std::vector<std::uint32_t> sides_;  // that it touches and that move or carry
+};
+
+// Which of the calls that there are each island has; these in order of who is the first.
+std::vector<std::uint32_t> kinds_of(const std::vector<IslandCalls>& calls, std::size_t& count)
+{
+    std::vector<IslandCalls> kinds;
+    std::vector<std::uint32_t> kind(calls.size());
+    for (std::size_t i = 0; i < calls.size(); ++i) {
+        // Those side by side are mostly of one kind.
+        std::size_t at = i > 0 && calls[i] == calls[i - 1] ? kind[i - 1] : 0;
+        while (at < kinds.size() && kinds[at] != calls[i]) ++at;
+        if (at == kinds.size()) kinds.push_back(calls[i]);
+        kind[i] = static_cast<std::uint32_t>(at);
+    }
+    count = kinds.size();
+    return kind;
+}
+
+// Takes the lists of islands over in another order.
+void put_in_order(std::span<const std::uint32_t> order, Islands& islands)
+{
+    Islands before;
+    before.bodies.swap(islands.bodies);
+    before.contacts.swap(islands.contacts);
+    before.body_begin = islands.body_begin;
+    before.contact_begin = islands.contact_begin;
+    before.calls = islands.calls;
+    islands.bodies.reserve(before.bodies.size());
+    islands.contacts.reserve(before.contacts.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        islands.calls[i] = before.calls[order[i]];
+        islands.body_begin[i] = static_cast<std::uint32_t>(islands.bodies.size());
+        islands.contact_begin[i] = static_cast<std::uint32_t>(islands.contacts.size());
+        const auto bodies = before.bodies_of(order[i]), contacts = before.contacts_of(order[i]);
+        islands.bodies.insert(islands.bodies.end(), bodies.begin(), bodies.end());
+        islands.contacts.insert(islands.contacts.end(), contacts.begin(), contacts.end());
+    }
+}
+
+void sort_by_calls(Islands& islands)
+{
+    std::size_t count = 0;
+    const std::vector<std::uint32_t> kind = kinds_of(islands.calls, count);
+    if (count < 2 || std::is_sorted(kind.begin(), kind.end())) return;
+    std::vector<std::uint32_t> order(kind.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return kind[a] < kind[b]; });
+    put_in_order(order, islands);
+}
+
+}  // namespace
+
+template <class Real>
+void sort_islands(const StepContext& context,
+                  const ActiveContacts& contacts,
+                  const BodyStates& states,
+                  const Poses& poses,
+                  const Velocities& velocities,
+                  const Masses& masses,
+                  const Forces& forces,
+                  const Shapes& shapes,
+                  const Colliders& colliders,
+                  const PrescribedVelocities& prescribed,
+                  const SplitImpulse& split_impulse,
+                  const ConvexContacts<Real>& convex,
+                  const MeshContacts<Real>& meshes,
+                  const SolidContacts<Real>& solids,
+                  const JoinedContacts<Real>& joined,
+                  Islands& islands)
+{
+    islands.scratch.driven.resize(states.kind.size(), 0);
+    for (const std::uint32_t body : prescribed.body) islands.scratch.driven[body] = 1;
+    const Scene<Real> scene{context,       contacts, states, poses,     velocities,
+                            masses,        forces,   shapes, colliders, islands.scratch.driven,
+                            split_impulse, convex,   meshes, solids,    joined};
+    islands.calls.assign(islands.size(), {});
+    BlockLists<Islands::Rolling> rolling;
+    rolling.start(block_count(islands.size(), kIslands));
+    for_each_block(islands.size(), kIslands, [&](auto begin, auto end, auto block) {
+        for (std::size_t island = begin; island < end; ++island)
+            islands.calls[island] = IslandSearch<Real>(scene, islands, island).find(rolling[block]);
+    });
+    for (const std::uint32_t body : prescribed.body) islands.scratch.driven[body] = 0;
+    islands.rolling.clear();
+    rolling.append_to(islands.rolling);
+    sort_by_calls(islands);
+}
+
+#define THRONG_INSTANTIATE(Real)                                                                   \
+    template void sort_islands<Real>(                                                              \
+        const StepContext&, const ActiveContacts&, const BodyStates&, const Poses&,                \
+        const Velocities&, const Masses&, const Forces&, const Shapes&, const Colliders&,          \
+        const PrescribedVelocities&, const SplitImpulse&, const ConvexContacts<Real>&,             \
+        const MeshContacts<Real>&, const SolidContacts<Real>&, const JoinedContacts<Real>&,        \
+        Islands&);
+THRONG_INSTANTIATE(float)
+THRONG_INSTANTIATE(double)
+#undef THRONG_INSTANTIATE
+
+}  // namespace throng

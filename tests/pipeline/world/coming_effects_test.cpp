@@ -1,0 +1,271 @@
+// Coming effects: bodies go on by the same bits whether somebody far away calls for an effect, or
+// comes to and no longer does.
+#include "tests/support/solid_scenes.hpp"
+#include "throng/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+namespace throng {
+namespace {
+
+using given::SceneOf;
+
+constexpr int kSteps = 130, kChanges = 10;
+
+MeshShape tetrahedron(double size)
+{
+    MeshShape mesh;
+    mesh.vertices = {Vec3(size, 0, -size), Vec3(-size, size, -size), Vec3(-size, -size, -size),
+                     Vec3(0, 0, size)};
+    mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+    return mesh;
+}
+
+// Islands of many kinds, that fall, slide, lean, roll over and come to rest.
+Scene crowd()
+{
+    SceneOf made;
+    made.floor();
+    const std::uint32_t hull = made.shape(HullShape{tetrahedron(0.25).vertices});
+    const std::uint32_t capsule = made.shape(CapsuleShape{0.15, 0.2}),
+                        coin = made.shape(CylinderShape{0.3, 0.05}),
+                        needle = made.shape(CapsuleShape{0.02, 0.5});
+    for (int i = 0; i < 3; ++i) made.box(Vec3(0.3, 0.3, 0.2), Vec3(0.02 * i, 0, 0.2 + 0.401 * i));
+    for (int i = 0; i < 4; ++i) made.box(Vec3(0.2, 0.2, 0.2), Vec3(0.1 * i, 3, 0.2 + 0.6 * i));
+    for (int i = 0; i < 5; ++i)
+        made.ball(0.2, Vec3(3 + 0.05 * i, 0.04 * i, 0.3 + 0.5 * i)).velocity = Vec3(0.4, 0, 0);
+    for (int i = 0; i < 4; ++i) made.body(hull, Vec3(6 + 0.1 * i, 0.05 * i, 0.4 + 0.5 * i));
+    for (int i = 0; i < 3; ++i) made.body(capsule, Vec3(3 + 0.1 * i, 3, 0.4 + 0.5 * i));
+    made.body(needle, Vec3(6, 3, 0.6)).angular_velocity = Vec3(0.5, 0, 0);
+    made.box(Vec3(0.1, 0.1, 0.8), Vec3(9, 0, 0.9)).angular_velocity = Vec3(0, 0.4, 0);
+    made.box(Vec3(2, 2, 0.5), Vec3(9, 3, 0.5)).mass = 1000;
+    made.box(Vec3(0.2, 0.2, 0.2), Vec3(9, 3, 1.3));
+    made.body(coin, Vec3(0, 6, 0.5)).orientation = Quat(std::cos(0.6), std::sin(0.6), 0, 0);
+    return made.scene;
+}
+
+// Where nothing turns, nothing rubs.
+Scene marbles()
+{
+    SceneOf made;
+    made.scene.materials[0].friction = 0;
+    made.floor();
+    for (int i = 0; i < 12; ++i)
+        made.ball(0.2, Vec3(i % 3 * 0.39, i / 3 * 1.5, 0.25 + 0.1 * i)).velocity = Vec3(0.2, 0, 0);
+    return made.scene;
+}
+
+struct Caller {
+    const char* name;
+    void (*call)(SceneOf&, const Vec3& at);
+};
+std::ostream& operator<<(std::ostream& out, const Caller& caller) { return out << caller.name; }
+
+struct How {
+    const char* name;
+    void (*set)(Settings&);
+};
+std::ostream& operator<<(std::ostream& out, const How& how) { return out << how.name; }
+
+BodyDescription& far_box(SceneOf& made, const Vec3& at)
+{
+    return made.box(Vec3(0.2, 0.2, 0.2), at);
+}
+
+// A shelf, and what lies on it.
+BodyDescription& shelved(SceneOf& made, const Vec3& at)
+{
+    made.box(Vec3(2, 2, 0.1), at - Vec3(0, 0, 0.3)).motion = Motion::static_;
+    return far_box(made, at);
+}
+
+void pull(SceneOf& made, std::uint32_t body, const Vec3& at)
+{
+    Spring spring;
+    spring.a = body;
+    spring.at_a = Vec3(0.1, 0, 0);
+    spring.at_b = at + Vec3(0, 0, 1);
+    spring.stiffness = 300;
+    spring.length = 0.5;
+    made.scene.springs.push_back(spring);
+}
+
+const Caller kCallers[] = {
+    {"body", [](SceneOf& made, const Vec3& at) { far_box(made, at); }},
+    {"force", [](SceneOf& made, const Vec3& at) { far_box(made, at).force = Vec3(1, 0, 0); }},
+    {"torque", [](SceneOf& made, const Vec3& at) { shelved(made, at).torque = Vec3(1, 0, 0); }},
+    {"drive", [](SceneOf& made, const Vec3& at) { far_box(made, at).drive_velocity[0] = 1; }},
+    {"drive_on_shelf",
+     [](SceneOf& made, const Vec3& at) { shelved(made, at).drive_velocity[0] = 0.1; }},
+    {"spin",
+     [](SceneOf& made, const Vec3& at) {
+         BodyDescription& body = made.box(Vec3(0.1, 0.2, 0.4), at);
+         body.angular_velocity = Vec3(3, 0.1, 0);
+     }},
+    {"rolling_friction",
+     [](SceneOf& made, const Vec3& at) {
+         made.scene.materials[0].rolling_friction = 0.02;
+         made.ball(0.2, at);
+         shelved(made, at + Vec3(0, 0, 3));
+     }},
+    {"restitution",
+     [](SceneOf& made, const Vec3& at) {
+         made.scene.materials[0].restitution = 0.7;
+         shelved(made, at).velocity = Vec3(0, 0, -2);
+     }},
+    {"fast", [](SceneOf& made, const Vec3& at) { far_box(made, at).velocity = Vec3(300, 0, 0); }},
+    {"mesh",
+     [](SceneOf& made, const Vec3& at) {
+         const std::uint32_t mesh = made.shape(given::mesh_of(given::block_under(
+             [](double x, double y) { return 0.05 * (x * x + y * y); }, 6, 0.5)));
+         made.body(mesh, at).motion = Motion::static_;
+         made.ball(0.2, at + Vec3(0, 0, 0.6));
+     }},
+    {"solid",
+     [](SceneOf& made, const Vec3& at) {
+         const std::uint32_t ring = made.shape(given::mesh_of(torus_mesh(0.3, 0.12, 12, 6)));
+         made.body(ring, at + Vec3(0, 0, 0.3));
+         shelved(made, at);
+     }},
+    {"seams",
+     [](SceneOf& made, const Vec3& at) {
+         for (int i = 0; i < 2; ++i)
+             made.box(Vec3(0.5, 0.5, 0.1), at + Vec3(i, 0, 0)).motion = Motion::static_;
+         made.box(Vec3(0.3, 0.3, 0.1), at + Vec3(0.4, 0, 0.21)).velocity = Vec3(1, 0, 0);
+     }},
+    {"spring",
+     [](SceneOf& made, const Vec3& at) {
+         far_box(made, at);
+         pull(made, 0, at);
+     }},
+    {"spring_on_shelf",
+     [](SceneOf& made, const Vec3& at) {
+         shelved(made, at);
+         pull(made, 1, at);
+     }},
+    {"drag",
+     [](SceneOf& made, const Vec3& at) {
+         BodyDescription& body = shelved(made, at);
+         body.linear_drag = 0.3;
+         body.angular_drag = 0.1;
+     }},
+    {"pivot", [](SceneOf& made, const Vec3& at) { far_box(made, at).pivot = Vec3(0.2, 0.2, 0.2); }},
+    {"rolling_can",
+     [](SceneOf& made, const Vec3& at) {
+         made.box(Vec3(3, 3, 0.1), at - Vec3(0, 0, 0.6)).motion = Motion::static_;
+         BodyDescription& coin = made.body(made.shape(CylinderShape{0.3, 0.05}), at);
+         coin.orientation = Quat(std::cos(0.5), std::sin(0.5), 0, 0);
+         coin.angular_velocity = Vec3(0, 0, 6);
+     }},
+    {"carousel",
+     [](SceneOf& made, const Vec3& at) {
+         BodyDescription& plate = made.box(Vec3(2, 2, 0.1), at - Vec3(0, 0, 0.3));
+         plate.motion = Motion::kinematic;
+         plate.angular_velocity = Vec3(0, 0, 1);
+         far_box(made, at);
+     }},
+    {"seesaw",
+     [](SceneOf& made, const Vec3& at) {
+         made.body(made.shape(CapsuleShape{0.2, 0.5}), at).motion = Motion::static_;
+         BodyDescription& plank = made.box(Vec3(0.2, 1, 0.05), at + Vec3(0, 0.02, 0.26));
+         plank.orientation = Quat(std::cos(0.02), std::sin(0.02), 0, 0);
+     }},
+    {"load",
+     [](SceneOf& made, const Vec3& at) {
+         shelved(made, at);
+         made.box(Vec3(0.4, 0.4, 0.4), at + Vec3(0, 0, 0.61)).mass = 40000;
+     }},
+    {"blow",
+     [](SceneOf& made, const Vec3& at) {
+         shelved(made, at);
+         for (int i = 1; i < 8; ++i)
+             far_box(made, at + Vec3(0, 0, 0.41 * i)).velocity = Vec3(0, 0, -4);
+     }},
+};
+
+const How kSettings[] = {
+    {"soft_step", [](Settings&) {}},
+    {"doubles", [](Settings& s) { s.precision = Precision::double_; }},
+    {"pgs", [](Settings& s) { s.solver = Solver::pgs; }},
+    {"direct", [](Settings& s) { s.solver = Solver::direct; }},
+    {"penalty", [](Settings& s) { s.response = Response::penalty; }},
+    {"kinematic", [](Settings& s) { s.response = Response::kinematic; }},
+    {"point_friction", [](Settings& s) { s.friction_at = FrictionAt::points; }},
+    {"splitting", [](Settings& s) { s.integrator = Integrator::splitting; }},
+};
+
+Scene far_away(const Caller& caller)
+{
+    SceneOf made;
+    caller.call(made, Vec3(500, 20, 40));
+    return made.scene;
+}
+
+using Motions = std::vector<std::array<double, 13>>;
+
+Motions motions_of(const World& world, std::span<const BodyId> bodies)
+{
+    Motions motions;
+    for (const BodyId body : bodies) {
+        const Pose pose = world.pose(body);
+        const Vec3 v = world.velocity(body), w = world.angular_velocity(body);
+        motions.push_back({pose.position.x(), pose.position.y(), pose.position.z(),
+                           pose.orientation.w(), pose.orientation.x(), pose.orientation.y(),
+                           pose.orientation.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
+    }
+    return motions;
+}
+
+// Once more with the caller there throughout, or coming and going by turns.
+std::vector<Motions> run(Scene scene, const How& how, const Caller& caller, bool throughout)
+{
+    how.set(scene.settings);
+    World world(scene, 1);
+    const std::vector<BodyId> bodies = world.bodies();
+    std::vector<Motions> motions;
+    std::vector<BodyId> others;
+    if (throughout) others = world.add(far_away(caller));
+    for (int step = 0; step < kSteps; ++step) {
+        if (!throughout && step % (kSteps / (kChanges + 1)) == 5) {
+            if (others.empty()) {
+                others = world.add(far_away(caller));
+            } else {
+                world.remove(others);
+                others.clear();
+            }
+        }
+        world.step();
+        motions.push_back(motions_of(world, bodies));
+    }
+    return motions;
+}
+
+class ComingEffects : public ::testing::TestWithParam<std::tuple<How, Caller>> { };
+
+TEST_P(ComingEffects, LeaveOthersTheirBits)
+{
+    const auto& [how, caller] = GetParam();
+    for (Scene (*made)() : {crowd, marbles}) {
+        const std::vector<Motions> with = run(made(), how, caller, true),
+                                   by_turns = run(made(), how, caller, false);
+        for (int step = 0; step < kSteps; ++step)
+            for (std::size_t body = 0; body < with[0].size(); ++body)
+                ASSERT_EQ(with[static_cast<std::size_t>(step)][body],
+                          by_turns[static_cast<std::size_t>(step)][body])
+                    << "body " << body << " after " << step + 1 << " steps";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Callers,
+                         ComingEffects,
+                         ::testing::Combine(::testing::ValuesIn(kSettings),
+                                            ::testing::ValuesIn(kCallers)),
+                         [](const ::testing::TestParamInfo<std::tuple<How, Caller>>& info) {
+                             return std::string(std::get<0>(info.param).name) + "_"
+                                 + std::get<1>(info.param).name;
+                         });
+
+}  // namespace
+}  // namespace throng
