@@ -6,7 +6,7 @@ build_packages=(g++ cmake ninja-build ccache libtbb-dev libeigen3-dev libembree-
     libopenvdb-dev libboost-dev libxxhash-dev python3)
 test_packages=(libgtest-dev)
 peer_packages=(libbullet-dev libode-dev)  # used where they are, never installed
-check_packages=(clang-14 clang-format-14 clang-tidy-14 libbenchmark-dev)
+check_packages=(clang-14 clang-format-14 clang-tidy-14 libbenchmark-dev valgrind)
 docs_packages=(doxygen python3)  # tools/docs.sh alone
 
 say() { printf 'throng: %s\n' "$*" >&2; }
@@ -159,7 +159,7 @@ test_sanitized() {  # PRESET [SECONDS]
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi
     else
-        local compares="SameBits|SolidBits|SolveWidths|PlantedFault|OtherFaults|ChangesNoBit"
+        local compares="SameBits|ComingEffects|SolidBits|SolveWidths|PlantedFault|OtherFaults|ChangesNoBit"
         compares+="|OnAnyNumberOfThreads|IslandsThatAreCut|Catalog.(SameSeed|OtherSeed)"
         local repeats="KeepsItsBounds/H(37|43|47|48|72)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
         repeats+="|ProgressIs|Bench.ValuesOfADial|ConvexCover.T|ConvexParts.(ErrorIs|SizeChanges)"

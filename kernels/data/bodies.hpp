@@ -97,12 +97,36 @@ using PrescribedVelocity = std::array<double, 3>;
 struct PrescribedVelocities {
     std::vector<std::uint32_t> body;  // ascending
     std::vector<PrescribedVelocity> velocity;
+    std::vector<std::uint8_t> is_driven;  // [bodies] 1 of those; may be shorter
 
+    bool drives(std::uint32_t who) const { return who < is_driven.size() && is_driven[who] != 0; }
     /// Null for who is not driven.
     const PrescribedVelocity* of(std::uint32_t who) const
     {
-        const auto at = std::lower_bound(body.begin(), body.end(), who);
-        return at != body.end() && *at == who ? &velocity[std::size_t(at - body.begin())] : nullptr;
+        return drives(who) ? &velocity[place_of(who)] : nullptr;
+    }
+    void put(std::uint32_t who, const PrescribedVelocity& wanted)
+    {
+        const auto at = static_cast<std::ptrdiff_t>(place_of(who));
+        velocity.insert(velocity.begin() + at, wanted);
+        body.insert(body.begin() + at, who);
+        if (is_driven.size() <= who) is_driven.resize(who + std::size_t{1}, 0);
+        is_driven[who] = 1;
+    }
+    void erase(std::uint32_t who)
+    {
+        if (!drives(who)) return;
+        const auto at = static_cast<std::ptrdiff_t>(place_of(who));
+        velocity.erase(velocity.begin() + at);
+        body.erase(body.begin() + at);
+        is_driven[who] = 0;
+    }
+
+private:
+    std::size_t place_of(std::uint32_t who) const
+    {
+        return static_cast<std::size_t>(std::lower_bound(body.begin(), body.end(), who)
+                                        - body.begin());
     }
 };
 
@@ -126,6 +150,7 @@ struct BodyStates {
     std::vector<double> radius;  // m, furthest point of its shapes from its center
 
     std::vector<std::uint8_t> is_conveyor;  // still, and its surface is driven; may be shorter
+    bool conveyors = false;                 // some body is one, or was
 
     std::vector<std::uint8_t> fast;  // marked so by the user; may be shorter
 

@@ -9,6 +9,7 @@
 #include "kernels/data/islands.hpp"
 #include "kernels/parallel/wavefront.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -279,6 +280,21 @@ struct Layout {
     std::span<const std::uint32_t> bodies_of(const Slice& slice) const
     {
         return std::span(body_of_solver_index).subspan(slice.first_body, slice.dynamic);
+    }
+    /// Those of a batch that can be moved.
+    std::span<const std::uint32_t> bodies_of(const Batch& batch) const
+    {
+        const std::uint32_t first = island_begin[batch.first_island];
+        return std::span(body_of_solver_index)
+            .subspan(first, island_begin[batch.first_island + batch.islands] - first);
+    }
+    /// Which island of a batch a solver body is of that can be moved: its place among them.
+    std::size_t island_of(const Batch& batch, std::int32_t solver_index) const
+    {
+        const auto first = island_begin.begin() + batch.first_island;
+        const auto behind = std::upper_bound(first + 1, first + batch.islands,
+                                             static_cast<std::uint32_t>(solver_index));
+        return static_cast<std::size_t>(behind - first) - 1;
     }
     /// Of a place among the solver bodies.
     bool movable(std::int32_t place) const

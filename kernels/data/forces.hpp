@@ -98,12 +98,6 @@ struct Forces {
     {
         return force_depends_on_state(body) || is_damped(body);
     }
-    /// Whether there is any body of that kind: most scenes have none, and nobody is looked at.
-    bool may_depend_on_state() const
-    {
-        return field || !attractors.empty() || !springs.empty() || !has_pivot.empty()
-            || !linear_drag.empty();
-    }
     /// Whether anything but gravity acts on a body.
     bool act_on(std::uint32_t body) const { return depends_on_state(body) || push(body); }
     /// From where a body's position is to its center of mass, m, body axes.
@@ -137,6 +131,7 @@ struct FlightMemory {
 struct Flights {
     std::vector<FlightMemory> memory;
     std::vector<std::uint8_t> lags;
+    bool finer = false;  // some are behind by less than half a substep, or were
 
     std::uint8_t lags_of(std::size_t body) const { return body < lags.size() ? lags[body] : 0; }
 };

@@ -3,6 +3,8 @@
 
 #include "throng/effects.hpp"
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,8 +27,13 @@ struct IslandCalls {
     Set<Effect> effects;
     bool carries = false, axes_turn = false, swings = false, rolls = false, on_faces = false,
          driven = false, alone = false;
+    bool nothing = false;  // fills it up, to be compared as two numbers
 
-    bool operator==(const IslandCalls&) const = default;
+    bool operator==(const IslandCalls& other) const
+    {
+        using Numbers = std::array<std::uint64_t, 2>;
+        return std::bit_cast<Numbers>(*this) == std::bit_cast<Numbers>(other);
+    }
     /// Whether sliding sees surfaces that go: see SurfaceVelocityWide.
     bool surfaces_go() const { return carries || axes_turn || effects.has(Effect::drive); }
 };
@@ -48,7 +55,8 @@ struct Islands {
     std::vector<IslandCalls> calls;
     std::vector<Rolling> rolling;
     struct Scratch {
-        std::vector<std::uint8_t> driven;  // [bodies] all 0 between stages
+        std::vector<std::uint32_t> body_begin, bodies, contact_begin, contacts;
+        std::vector<IslandCalls> calls;
     } scratch;
 
     std::size_t size() const { return body_begin.empty() ? 0 : body_begin.size() - 1; }

@@ -409,10 +409,11 @@ void EnergyLimiter<Real>::close(ContactConstraints<Real>& constraints) const
 
 template <class Real>
 void EnergyLimiter<Real>::limit_contacts(double slowest,
+                                         const std::function<bool(std::uint32_t)>& wanted,
                                          ContactConstraints<Real>& constraints) const
 {
     for (const Group& group : groups_) {
-        if (!group.watched) continue;
+        if (!group.watched || !wanted(group.members.front().solver_index)) continue;
         const double given = given_by_contacts(group, constraints);
         if (!(given > 0)) continue;
         const double kinetic = kinetic_of(group, constraints);

@@ -26,6 +26,7 @@
 #include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/step/step_data.hpp"
 
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -79,8 +80,11 @@ public:
     void open_free(ContactConstraints<Real>& constraints);
     /// Once contacts are solved: slows down groups that have more than they would without them, but
     /// for those that are slower than that by and large, m/s: what all but rests gives way and
-    /// comes back. Of those that touch in numbers only where a blow went through their island.
-    void limit_contacts(double slowest, ContactConstraints<Real>& constraints) const;
+    /// comes back. Of those that touch in numbers only where a blow went through their island; and
+    /// of a group only if `wanted` says so of its first solver body.
+    void limit_contacts(double slowest,
+                        const std::function<bool(std::uint32_t)>& wanted,
+                        ContactConstraints<Real>& constraints) const;
     /// The same against what was noted, where they have more by what gravity gives in a substep.
     void close_free(ContactConstraints<Real>& constraints) const;
     /// Between the two: forces that act once bodies have moved give what is no gain. Adds motions

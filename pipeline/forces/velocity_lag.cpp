@@ -2,6 +2,8 @@
 
 #include "pipeline/forces/rigid_law.hpp"
 
+#include <algorithm>
+
 namespace throng {
 
 namespace {
@@ -62,19 +64,24 @@ bool has_flown(const Flights& flights, std::uint32_t body)
 void lag_velocities(const StepContext& context,
                     const Forces& forces,
                     const Masses& masses,
-                    std::span<const std::uint32_t> bodies,
+                    const Layout& layout,
                     Flights& flights,
                     Velocities& velocities)
 {
     if (!anybody_differs(context)) return;
     flights.lags.resize(masses.mass.size());
-    for (const std::uint32_t body : bodies) {
+    const auto lag = [&](std::uint32_t body) {
         if (flights.lags[body] != 0 || !(masses.inverse_mass[body] > 0)
             || !differs(context, forces, body))
-            continue;
+            return;
         if (has_flown(flights, body)) velocities.linear[body] -= half_fall(context);
         flights.lags[body] = 1;
-    }
+    };
+    // By kicks who is acted on alone.
+    const bool all = !falls_by_kicks(context.integrator);
+    for (const Batch& batch : layout.batches)
+        if (all || batch.calls.effects.meets(kForces))
+            std::ranges::for_each(layout.bodies_of(batch), lag);
 }
 
 template <class Real>

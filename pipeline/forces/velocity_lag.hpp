@@ -17,12 +17,12 @@
 
 namespace throng {
 
-/// Before contacts are solved: velocities of these bodies, where they are of the moment, to where
-/// the solver has them.
+/// Before contacts are solved: velocities of bodies, where they are of the moment, to
+/// where the solver has them.
 void lag_velocities(const StepContext& context,
                     const Forces& forces,
                     const Masses& masses,
-                    std::span<const std::uint32_t> bodies,
+                    const Layout& layout,
                     Flights& flights,
                     Velocities& velocities);
 

@@ -180,6 +180,7 @@ template <class Real>
 void find_least_speeds(const Layout& layout,
                        const Batch& batch,
                        std::span<const ForcedBody> forced,
+                       std::span<const double> slow,
                        const Vec3& fall,
                        int substeps,
                        ContactConstraints<Real>& constraints)
@@ -194,9 +195,12 @@ void find_least_speeds(const Layout& layout,
     visit_lanes(layout, batch, [&](std::size_t at, std::size_t lane) {
         const ContactConstraintWide<Real>& block = constraints.blocks[at];
         const std::int32_t a = block.a[lane], b = block.b[lane];
-        if (places.of(a) == kNotForced && places.of(b) == kNotForced) return;
-        constraints.restitutions[at].least_speed.at[lane] = static_cast<Real>(
-            least_speed_of(in_double(block.normal, lane), change_of(a), change_of(b), substeps));
+        double least = slow[layout.island_of(batch, layout.movable(a) ? a : b)];
+        if (places.of(a) != kNotForced || places.of(b) != kNotForced)
+            least = std::max(least,
+                             least_speed_of(in_double(block.normal, lane), change_of(a),
+                                            change_of(b), substeps));
+        constraints.restitutions[at].least_speed.at[lane] = static_cast<Real>(least);
     });
 }
 
@@ -204,8 +208,8 @@ void find_least_speeds(const Layout& layout,
     template void find_borne<Real>(const Layout&, const Batch&, const ContactConstraints<Real>&,   \
                                    const Masses&, double, std::span<ForcedBody>);                  \
     template void find_least_speeds<Real>(const Layout&, const Batch&,                             \
-                                          std::span<const ForcedBody>, const Vec3&, int,           \
-                                          ContactConstraints<Real>&);
+                                          std::span<const ForcedBody>, std::span<const double>,    \
+                                          const Vec3&, int, ContactConstraints<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -34,13 +34,17 @@ least_speed_of(const Vec3& normal, const Vec3& change_a, const Vec3& change_b, i
     return 2 * substeps * std::max(0.0, normal.dot(Vec3(change_a - change_b)));
 }
 
-/// The same for all contacts of forced bodies: sets RestitutionWide::least_speed.
+/// The same for all contacts of forced bodies, and of their islands what is slow there: sets
+/// RestitutionWide::least_speed.
 ///
+///   slow  m/s, of each island of the batch: twice the least of what acts on a forced body in a
+///         step; 0 where there is none
 ///   fall  m/s, what gravity does in a substep
 template <class Real>
 void find_least_speeds(const Layout& layout,
                        const Batch& batch,
                        std::span<const ForcedBody> forced,
+                       std::span<const double> slow,
                        const Vec3& fall,
                        int substeps,
                        ContactConstraints<Real>& constraints);

@@ -53,13 +53,6 @@ SlicePasses<Real>::SlicePasses(const StepContext& context,
         iteration_.gravity_step[k] = static_cast<Real>(context.gravity[k] * context.substep());
 }
 
-template <class Real>
-void SlicePasses<Real>::raise_restitution_threshold(double speed)
-{
-    iteration_.restitution_threshold =
-        std::max(iteration_.restitution_threshold, static_cast<Real>(speed));
-}
-
 // A single slice needs no waiting, so it has its passes at once.
 template <class Real>
 void SlicePasses<Real>::add(const SlicePass& pass)

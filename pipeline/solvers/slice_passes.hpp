@@ -54,8 +54,6 @@ public:
     /// bodies as the ones before have left them.
     void apply_restitution();
 
-    /// Slower than that, m/s, is resting, not bouncing.
-    void raise_restitution_threshold(double speed);
     /// Makes room for velocities and impulses that are put aside.
     void start_saving() { saved_motion_ = SavedMotion<Real>(layout_, batch_, constraints_); }
     const SavedMotion<Real>& saved_motion() const { return saved_motion_; }

@@ -6,12 +6,15 @@
 #include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/solvers/batch_bodies.hpp"
 #include "pipeline/solvers/borne_bodies.hpp"
+#include "pipeline/solvers/kept_islands.hpp"
 #include "pipeline/solvers/relax_iterations.hpp"
 #include "pipeline/solvers/slice_passes.hpp"
 #include "pipeline/step/passes.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace throng {
@@ -228,9 +231,10 @@ private:
 
     void relax()
     {
-        if (late_) return answer_late_forces();
-        if (!parts_)
-            add(SlicePass::Kind::relax, relax_iterations(parameters_, context_.substeps, batch_));
+        if (parts_) return;
+        const int iterations = relax_iterations(parameters_, context_.substeps, batch_);
+        add(SlicePass::Kind::relax, iterations);
+        if (late_) relax_late_islands(kInLateForces - iterations);
     }
 
     // Where half of what springs and pivots do acts after bodies moved, these iterations alone are
@@ -238,8 +242,22 @@ private:
     void answer_late_forces()
     {
         if (late_ && !parts_)
-            add(SlicePass::Kind::relax,
+            relax_late_islands(
                 std::max(relax_iterations(parameters_, context_.substeps, batch_), kInLateForces));
+    }
+
+    // Islands that wait for nothing of the kind are left as they are.
+    void relax_late_islands(int iterations)
+    {
+        if (iterations <= 0) return;
+        const bool all =
+            std::find(late_islands_.begin(), late_islands_.end(), 0) == late_islands_.end();
+        if (all) return add(SlicePass::Kind::relax, iterations);
+        slices_.run();
+        const KeptIslands<Real> kept(layout_, batch_, late_islands_, constraints_);
+        add(SlicePass::Kind::relax, iterations);
+        slices_.run();
+        kept.restore(constraints_);
     }
 
     void close_energy_limiter()
@@ -254,8 +272,7 @@ private:
     // Forces that change as the bodies of the batch go.
     void find_state_forces()
     {
-        const Forces& forces = facts_.forces;
-        if (!forces.may_depend_on_state()) return;
+        if (!context_.effects.meets(kFollowBodies)) return;
         std::vector<std::uint32_t> bodies;
         for (std::uint32_t i = 0; i < batch_.slices; ++i) {
             const auto of_slice = layout_.bodies_of(layout_.slices[batch_.first_slice + i]);
@@ -278,9 +295,23 @@ private:
         for (const ForcedBody& forced : state_forces_->forced_bodies())
             if (forced.falls_late)
                 constraints_.bodies[layout_.solver_index[forced.body]].inertia[7] = 1;
-        slices_.raise_restitution_threshold(2 * state_forces_->least_change_of_step());
-        find_least_speeds(layout_, batch_, std::span(state_forces_->forced_bodies()),
+        std::vector<double> slow(batch_.islands, std::numeric_limits<double>::infinity());
+        late_islands_.assign(batch_.islands, 0);
+        for (const ForcedBody& forced : state_forces_->forced_bodies()) {
+            const std::size_t island = island_of(forced);
+            slow[island] = std::min(slow[island], 2 * context_.substeps * forced.change.norm());
+            if (forced.late) late_islands_[island] = 1;
+        }
+        for (double& speed : slow)
+            if (!std::isfinite(speed)) speed = 0;
+        find_least_speeds(layout_, batch_, std::span(state_forces_->forced_bodies()), slow,
                           context_.gravity * context_.substep(), context_.substeps, constraints_);
+    }
+
+    std::size_t island_of(const ForcedBody& forced) const
+    {
+        return layout_.island_of(batch_,
+                                 static_cast<std::int32_t>(layout_.solver_index[forced.body]));
     }
 
     // By pgs it is for a few iterations to take back what is too much of a warm start.
@@ -360,11 +391,21 @@ private:
     // What acts once bodies have moved is no work of contacts.
     void limit_contacts()
     {
-        if (blow_limiter_ && !late_)
-            blow_limiter_->limit_contacts(context_.gravity.norm() * context_.dt, constraints_);
+        if (blow_limiter_)
+            blow_limiter_->limit_contacts(
+                context_.gravity.norm() * context_.dt,
+                [&](std::uint32_t solver_index) { return !acts_late(solver_index); }, constraints_);
         if (!spin_limiter_ || parts_) return;
         slices_.run();
         spin_limiter_->close_free(constraints_);
+    }
+
+    // Whether forces acted on a body's island after bodies moved, in this substep.
+    bool acts_late(std::uint32_t solver_index) const
+    {
+        return late_
+            && late_islands_[layout_.island_of(batch_, static_cast<std::int32_t>(solver_index))]
+            != 0;
     }
 
     // Followers as they are now, less what contacts gave in this substep if that is asked.
@@ -483,8 +524,9 @@ private:
     SlicePasses<Real> slices_;
     bool on_faces_;
     int substep_ = 0;
-    bool parts_ = false;  // bodies of the batch part
-    bool late_ = false;   // forces acted after bodies moved, in this substep
+    bool parts_ = false;                      // bodies of the batch part
+    bool late_ = false;                       // forces acted after bodies moved, in this substep
+    std::vector<std::uint8_t> late_islands_;  // [islands of the batch] they do so there
     std::optional<StateDependentForces> state_forces_;
     std::optional<EnergyLimiter<Real>> limiter_, blow_limiter_, spin_limiter_;
 };

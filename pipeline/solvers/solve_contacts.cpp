@@ -70,7 +70,10 @@ public:
           poses_(problem.template get<Poses>()), velocities_(problem.template get<Velocities>())
     {
         start_islands(layout_, constraints_, diagnostics_);
-        if (any_finer(layout_)) flights_.lags.resize(facts_.masses.mass.size());
+        if (any_finer(layout_)) {
+            flights_.lags.resize(facts_.masses.mass.size());
+            flights_.finer = true;
+        }
         start_split_impulse(layout_, split_impulse_);
         const auto& colliders = problem.template get<const Colliders>();
         if (!solids_.entries.empty() || colliders.compounds)
@@ -194,7 +197,7 @@ private:
     // Of a slice that was solved by so many times the substeps, or comes from such a solve.
     void lag_by_usual(const Slice& slice, int times)
     {
-        if (flights_.lags.empty()) return;
+        if (!flights_.finer) return;
         const auto bodies = layout_.bodies_of(slice);
         const auto finer = [&](std::uint32_t body) { return flights_.lags_of(body) > 1; };
         if (times == 1 && std::none_of(bodies.begin(), bodies.end(), finer)) return;

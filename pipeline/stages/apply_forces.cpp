@@ -14,8 +14,8 @@ constexpr std::size_t kGrain = 64;  // bodies a block
 }  // namespace
 
 void apply_forces(const StepContext& context,
+                  const Layout& layout,
                   const Forces& forces,
-                  const SleepEvents& sleep_events,
                   const Poses& poses,
                   const Velocities& velocities,
                   const Masses& masses,
@@ -26,24 +26,26 @@ void apply_forces(const StepContext& context,
     accelerations.linear.resize(states.kind.size());
     accelerations.angular.resize(states.kind.size());
     const RigidRule rule = rigid_rule(context);
-    const Flights none;
-    std::vector<std::uint32_t> active_bodies = states.active_bodies.dynamic;
-    if (context.has(Effect::sleeping))  // who awoke in this step is moved in it
-        active_bodies.insert(active_bodies.end(), sleep_events.woke.begin(),
-                             sleep_events.woke.end());
-    for_each_block(
-        active_bodies.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+    const auto apply = [&](std::span<const std::uint32_t> bodies) {
+        const Flights none;
+        for_each_block(bodies.size(), kGrain, [&](auto begin, auto end, std::size_t) {
             RigidMotion law(rule, {forces, masses, poses, velocities});
             for (std::size_t i = begin; i < end; ++i) {
-                const std::uint32_t body = active_bodies[i];
+                const std::uint32_t body = bodies[i];
                 accelerations.linear[body] = accelerations.angular[body] = Vec3::Zero();
-                if (forces.depends_on_state(body)) continue;
+                if (forces.depends_on_state(body) || !forces.push(body)) continue;
                 law.take({&body, 1}, none);
                 const RigidMotion::Acceleration pull = law.mean_acceleration(0, context.dt);
                 accelerations.linear[body] = pull.linear;
                 accelerations.angular[body] = pull.angular;
             }
         });
+    };
+    for_each_block(layout.batches.size(), 1, [&](auto begin, auto end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (layout.batches[i].calls.effects.meets(kForces))
+                apply(layout.bodies_of(layout.batches[i]));
+    });
 }
 
 }  // namespace throng

@@ -153,16 +153,14 @@ void prepare_prescribed_velocities(const PrescribedVelocities& prescribed,
                                    const Layout& layout,
                                    ContactConstraints<Real>& constraints)
 {
-    constraints.prescribed.clear();
     const auto solver_index = [&](std::uint32_t body) {
         return body < layout.solver_index.size() ? layout.solver_index[body]
                                                  : Layout::kNoSolverIndex;
     };
-    if (std::none_of(prescribed.body.begin(), prescribed.body.end(), [&](std::uint32_t body) {
-            return solver_index(body) != Layout::kNoSolverIndex;
-        }))
-        return;
-    constraints.prescribed.assign(constraints.bodies.size(), SolverPrescribedVelocity<Real>{});
+    constraints.prescribed.resize(constraints.bodies.size());
+    constraints.prescribed[0] = {};
+    for_bodies_that_call(layout, {Effect::drive},
+                         [&](std::uint32_t, std::size_t at) { constraints.prescribed[at] = {}; });
     for_each_block(prescribed.body.size(), kBodies, [&](auto begin, auto end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i)
             if (const std::uint32_t at = solver_index(prescribed.body[i]);
@@ -225,9 +223,7 @@ void prepare_constraints(const StepContext& context,
                          Velocities& velocities,
                          ContactConstraints<Real>& constraints)
 {
-    lag_velocities(context, forces, masses,
-                   std::span(layout.body_of_solver_index).subspan(1, layout.dynamic), flights,
-                   velocities);
+    lag_velocities(context, forces, masses, layout, flights, velocities);
     const IslandCalls calls = called_for(layout);
     const std::size_t bodies = layout.body_of_solver_index.size();
     constraints.bodies.resize(bodies);

@@ -55,8 +55,7 @@ void sleep_islands(const StepContext& context,
         // Who is driven wants to move, even where something holds it up; what a spring or a field
         // will do to it nobody here knows; and who is moved apart has no speed for it.
         const bool quiet = states.moves(body)  // not put to rest in this very step
-            && speed_of(velocities, states, body) < parameters.speed
-            && !std::binary_search(prescribed.body.begin(), prescribed.body.end(), body)
+            && speed_of(velocities, states, body) < parameters.speed && !prescribed.drives(body)
             && !forces.keeps_awake(body) && !split_impulse.parts(body);
         states.sleep_time[body] = quiet ? states.sleep_time[body] + context.dt : 0.0;
         return states.sleep_time[body];

@@ -6,11 +6,11 @@
 #include "kernels/solver/coloring.hpp"
 #include "kernels/solver/solver_bodies.hpp"
 #include "pipeline/contacts/contact_lists.hpp"
+#include "pipeline/forces/state_dependent_forces.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace throng {
 
@@ -21,6 +21,11 @@ constexpr std::size_t kIslands = 16;  // a block
 // What contacts alone tell.
 constexpr Set<Effect> kByContacts = {Effect::friction, Effect::rolling_friction,
                                      Effect::restitution};
+
+constexpr std::uint32_t kMayTurn = EffectCensus::bit(Call::turns)
+    | EffectCensus::bit(Call::turns_touched) | EffectCensus::bit(Call::turns_rubbed);
+constexpr std::uint32_t kActedOn = EffectCensus::bit(Call::forces) | EffectCensus::bit(Call::drag)
+    | EffectCensus::bit(Call::pivot);
 
 // Who is held at more places rolls nowhere: in a heap to follow him would cost a fifth of the step.
 constexpr std::uint32_t kMostRimContacts = 2;
@@ -34,7 +39,7 @@ constexpr double kMayPart = 1e-5, kMayBeWedged = 0.1;
 constexpr double kToSpare = 1 + 1e-5;
 
 template <class Real>
-struct Scene {
+struct IslandFacts {
     const StepContext& context;
     const ActiveContacts& contacts;
     const BodyStates& states;
@@ -44,7 +49,8 @@ struct Scene {
     const Forces& forces;
     const Shapes& shapes;
     const Colliders& colliders;
-    std::span<const std::uint8_t> is_driven;  // [bodies] where any is
+    const EffectCensus& census;
+    const PrescribedVelocities& prescribed;
     const SplitImpulse& split_impulse;
     const ConvexContacts<Real>& convex;
     const MeshContacts<Real>& meshes;
@@ -55,16 +61,18 @@ struct Scene {
     const bool acted_on = context.effects.meets(kForces), drives = context.has(Effect::drive),
                turn = context.has(Effect::rotation),
                // Touched by what moves by itself; by what is round, for flat ones.
-        sides = !states.active_bodies.kinematic.empty() || !states.is_conveyor.empty(),
+        sides = !states.active_bodies.kinematic.empty() || states.conveyors,
                rounds = !shapes.capsules.empty() || !shapes.cylinders.empty(),
-               wedges = !solids.entries.empty() || colliders.compounds;
+               wedges = !solids.entries.empty() || colliders.compounds,
+               acts_on_all = acted_on && (forces.field || !forces.attractors.empty()),
+               springs_act = acted_on && !forces.springs.empty();
 };
 
 // One island.
 template <class Real>
 class IslandSearch {
 public:
-    IslandSearch(const Scene<Real>& scene, const Islands& islands, std::size_t island)
+    IslandSearch(const IslandFacts<Real>& scene, const Islands& islands, std::size_t island)
         : scene_(scene), bodies_(islands.bodies_of(island)), contacts_(islands.contacts_of(island))
     { }
 
@@ -73,10 +81,13 @@ public:
     {
         for (const std::uint32_t body : bodies_) shapes_ |= scene_.colliders.shape_bits[body];
         ask_contacts();  // first: friction turns bodies
+        const std::uint32_t asked = (scene_.turn ? kMayTurn : 0) | (scene_.acted_on ? kActedOn : 0);
         for (const std::uint32_t body : bodies_) {
-            if (scene_.turn) find_turning(body);
-            if (scene_.acted_on) find_forces(body);
-            if (scene_.drives && scene_.is_driven[body] != 0) calls_.effects.add(Effect::drive);
+            const std::uint32_t calls = scene_.census.calls_of(body) & asked;
+            if ((calls & kMayTurn) != 0) find_turning(body);
+            if ((calls & kActedOn) != 0 || scene_.acts_on_all) find_forces(body);
+            if (scene_.springs_act && scene_.forces.has_springs(body)) find_forces(body);
+            if (scene_.drives && scene_.prescribed.drives(body)) calls_.effects.add(Effect::drive);
         }
         if (!calls_.alone) calls_.alone = may_part();
         if (spins_ || !sides_.empty()) find_carriers();
@@ -109,7 +120,7 @@ private:
             if (!small && !sides && found) break;
             const ActiveContacts::Entry& entry = scene_.contacts.entries[place];
             on_faces += entry.points >= 3 ? 1 : 0;
-            if (!found) ask_materials(materials_of(place));
+            if (!found) ask_materials(place);
             if (!sides) continue;
             ask_side(entry.body_a);
             ask_side(entry.body_b);
@@ -117,21 +128,21 @@ private:
         calls_.on_faces = small && 2 * on_faces > contacts_.size();
     }
 
-    Surfaces::MaterialPair materials_of(std::uint32_t place) const
+    // What is too little for float to hold is still called for.
+    void ask_materials(std::uint32_t place)
     {
-        const ActiveContacts& contacts = scene_.contacts;
-        if (!contacts.materials.empty()) return contacts.materials[place];
-        const ActiveContacts::Entry& entry = contacts.entries[place];
-        return {entry.friction, entry.restitution, entry.rolling_friction};
-    }
-
-    void ask_materials(const Surfaces::MaterialPair& materials)
-    {
-        Set<Effect> found;
-        if (materials.friction > 0) found.add(Effect::friction);
-        if (materials.rolling_friction > 0) found.add(Effect::rolling_friction);
-        if (materials.restitution > 0) found.add(Effect::restitution);
-        calls_.effects = calls_.effects | (found & scene_.by_contacts);
+        const auto ask = [&](const auto& pair) {
+            const auto call = [&](auto value, Effect effect) {
+                if (value > 0 && scene_.by_contacts.has(effect)) calls_.effects.add(effect);
+            };
+            call(pair.friction, Effect::friction);
+            call(pair.rolling_friction, Effect::rolling_friction);
+            call(pair.restitution, Effect::restitution);
+        };
+        if (scene_.contacts.materials.empty())
+            ask(scene_.contacts.entries[place]);
+        else
+            ask(scene_.contacts.materials[place]);
     }
 
     // Whether somebody may lie too deep in another for the usual push.
@@ -193,7 +204,7 @@ private:
     void find_forces(std::uint32_t body)
     {
         const Forces& forces = scene_.forces;
-        calls_.alone = calls_.alone || forces.depends_on_state(body);
+        calls_.alone = calls_.alone || is_held_by_forces(body);
         const auto call = [&](bool acts, Effect effect) { call_if(acts && on(effect), effect); };
         call(forces.field || forces.push(body), Effect::forces);
         call(forces.has_springs(body), Effect::springs);
@@ -201,6 +212,18 @@ private:
         call(forces.is_damped(body), Effect::drag);
         call(forces.is_damped(body) && !forces.wind.isZero(0), Effect::wind);
         call(forces.on_pivot(body), Effect::pivot);
+    }
+
+    // By what takes an island of its own: somebody on a pivot, or springs that are too stiff.
+    bool is_held_by_forces(std::uint32_t body) const
+    {
+        const Forces& forces = scene_.forces;
+        if (forces.on_pivot(body)) return true;
+        if (!forces.depends_on_state(body)) return false;
+        if (!(scene_.masses.inverse_mass[body] > 0)) return true;
+        return forces.has_springs(body)
+            && too_stiff(scene_.context, {forces, scene_.masses, scene_.poses, scene_.velocities},
+                         forces.groups[forces.group_of[body]]);
     }
 
     InverseMass inverse_mass_of(std::uint32_t body) const
@@ -287,7 +310,7 @@ private:
         }
     }
 
-    const Scene<Real>& scene_;
+    const IslandFacts<Real>& scene_;
     std::span<const std::uint32_t> bodies_, contacts_;
     IslandCalls calls_;
     unsigned shapes_ = 0, all_shapes_ = 0;  // bits of its bodies; and of all that they touch
@@ -295,53 +318,92 @@ private:
     std::vector<std::uint32_t> sides_;  // that it touches and that move or carry
 };
 
-// Which of the calls that there are each island has; these in order of who is the first.
-std::vector<std::uint32_t> kinds_of(const std::vector<IslandCalls>& calls, std::size_t& count)
+// Islands side by side that call for the same.
+struct Run {
+    std::uint32_t kind = 0, first = 0, last = 0;
+};
+
+// Kinds count up in the order in which they come first.
+std::vector<Run> runs_of(const std::vector<IslandCalls>& calls)
 {
-    std::vector<IslandCalls> kinds;
-    std::vector<std::uint32_t> kind(calls.size());
-    for (std::size_t i = 0; i < calls.size(); ++i) {
-        // Those side by side are mostly of one kind.
-        std::size_t at = i > 0 && calls[i] == calls[i - 1] ? kind[i - 1] : 0;
-        while (at < kinds.size() && kinds[at] != calls[i]) ++at;
-        if (at == kinds.size()) kinds.push_back(calls[i]);
-        kind[i] = static_cast<std::uint32_t>(at);
+    std::vector<Run> runs;
+    std::vector<std::uint32_t> first_of;  // [kinds] island
+    for (std::uint32_t first = 0, last = 0; first < calls.size(); first = last) {
+        while (last < calls.size() && calls[last] == calls[first]) ++last;
+        const auto same = [&](std::uint32_t island) { return calls[island] == calls[first]; };
+        const auto known = std::find_if(first_of.begin(), first_of.end(), same);
+        const auto kind = static_cast<std::uint32_t>(known - first_of.begin());
+        if (known == first_of.end()) first_of.push_back(first);
+        runs.push_back({kind, first, last});
     }
-    count = kinds.size();
-    return kind;
+    return runs;
 }
 
-// Takes the lists of islands over in another order.
-void put_in_order(std::span<const std::uint32_t> order, Islands& islands)
-{
-    Islands before;
-    before.bodies.swap(islands.bodies);
-    before.contacts.swap(islands.contacts);
-    before.body_begin = islands.body_begin;
-    before.contact_begin = islands.contact_begin;
-    before.calls = islands.calls;
-    islands.bodies.reserve(before.bodies.size());
-    islands.contacts.reserve(before.contacts.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        islands.calls[i] = before.calls[order[i]];
-        islands.body_begin[i] = static_cast<std::uint32_t>(islands.bodies.size());
-        islands.contact_begin[i] = static_cast<std::uint32_t>(islands.contacts.size());
-        const auto bodies = before.bodies_of(order[i]), contacts = before.contacts_of(order[i]);
-        islands.bodies.insert(islands.bodies.end(), bodies.begin(), bodies.end());
-        islands.contacts.insert(islands.contacts.end(), contacts.begin(), contacts.end());
+// Lists by island in another order, run by run.
+class Sorting {
+public:
+    explicit Sorting(Islands& islands) : islands_(islands), sorted_(islands.scratch)
+    {
+        sorted_.calls.resize(islands.calls.size());
+        sorted_.bodies.resize(islands.bodies.size());
+        sorted_.contacts.resize(islands.contacts.size());
+        sorted_.body_begin.resize(islands.body_begin.size());
+        sorted_.contact_begin.resize(islands.contact_begin.size());
+        sorted_.body_begin.back() = islands.body_begin.back();
+        sorted_.contact_begin.back() = islands.contact_begin.back();
     }
-}
+
+    void append(const Run& run)
+    {
+        const auto first = run.first, count = run.last - run.first;
+        std::copy_n(islands_.calls.begin() + first, count, sorted_.calls.begin() + done_);
+        append(first, count, islands_.body_begin, islands_.bodies, bodies_done_,
+               sorted_.body_begin.data() + done_, sorted_.bodies);
+        append(first, count, islands_.contact_begin, islands_.contacts, contacts_done_,
+               sorted_.contact_begin.data() + done_, sorted_.contacts);
+        done_ += count;
+    }
+
+    void finish()
+    {
+        sorted_.calls.swap(islands_.calls);
+        sorted_.bodies.swap(islands_.bodies);
+        sorted_.contacts.swap(islands_.contacts);
+        sorted_.body_begin.swap(islands_.body_begin);
+        sorted_.contact_begin.swap(islands_.contact_begin);
+    }
+
+private:
+    static void append(std::size_t first,
+                       std::size_t count,
+                       const std::vector<std::uint32_t>& begins,
+                       const std::vector<std::uint32_t>& items,
+                       std::uint32_t& done,
+                       std::uint32_t* new_begins,
+                       std::vector<std::uint32_t>& sorted)
+    {
+        const std::uint32_t begin = begins[first], moved = done - begin;
+        for (std::size_t i = 0; i < count; ++i) new_begins[i] = begins[first + i] + moved;
+        const std::uint32_t items_of_run = begins[first + count] - begin;
+        std::copy_n(items.begin() + begin, items_of_run, sorted.begin() + done);
+        done += items_of_run;
+    }
+
+    Islands& islands_;
+    Islands::Scratch& sorted_;
+    std::size_t done_ = 0;
+    std::uint32_t bodies_done_ = 0, contacts_done_ = 0;
+};
 
 void sort_by_calls(Islands& islands)
 {
-    std::size_t count = 0;
-    const std::vector<std::uint32_t> kind = kinds_of(islands.calls, count);
-    if (count < 2 || std::is_sorted(kind.begin(), kind.end())) return;
-    std::vector<std::uint32_t> order(kind.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return kind[a] < kind[b]; });
-    put_in_order(order, islands);
+    std::vector<Run> runs = runs_of(islands.calls);
+    const auto before = [](const Run& a, const Run& b) { return a.kind < b.kind; };
+    if (std::is_sorted(runs.begin(), runs.end(), before)) return;
+    std::stable_sort(runs.begin(), runs.end(), before);
+    Sorting sorting(islands);
+    for (const Run& run : runs) sorting.append(run);
+    sorting.finish();
 }
 
 }  // namespace
@@ -356,6 +418,7 @@ void sort_islands(const StepContext& context,
                   const Forces& forces,
                   const Shapes& shapes,
                   const Colliders& colliders,
+                  const EffectCensus& census,
                   const PrescribedVelocities& prescribed,
                   const SplitImpulse& split_impulse,
                   const ConvexContacts<Real>& convex,
@@ -364,11 +427,9 @@ void sort_islands(const StepContext& context,
                   const JoinedContacts<Real>& joined,
                   Islands& islands)
 {
-    islands.scratch.driven.resize(states.kind.size(), 0);
-    for (const std::uint32_t body : prescribed.body) islands.scratch.driven[body] = 1;
-    const Scene<Real> scene{context,       contacts, states, poses,     velocities,
-                            masses,        forces,   shapes, colliders, islands.scratch.driven,
-                            split_impulse, convex,   meshes, solids,    joined};
+    const IslandFacts<Real> scene{context, contacts, states,    poses,  velocities, masses,
+                                  forces,  shapes,   colliders, census, prescribed, split_impulse,
+                                  convex,  meshes,   solids,    joined};
     islands.calls.assign(islands.size(), {});
     BlockLists<Islands::Rolling> rolling;
     rolling.start(block_count(islands.size(), kIslands));
@@ -376,7 +437,6 @@ void sort_islands(const StepContext& context,
         for (std::size_t island = begin; island < end; ++island)
             islands.calls[island] = IslandSearch<Real>(scene, islands, island).find(rolling[block]);
     });
-    for (const std::uint32_t body : prescribed.body) islands.scratch.driven[body] = 0;
     islands.rolling.clear();
     rolling.append_to(islands.rolling);
     sort_by_calls(islands);
@@ -386,9 +446,9 @@ void sort_islands(const StepContext& context,
     template void sort_islands<Real>(                                                              \
         const StepContext&, const ActiveContacts&, const BodyStates&, const Poses&,                \
         const Velocities&, const Masses&, const Forces&, const Shapes&, const Colliders&,          \
-        const PrescribedVelocities&, const SplitImpulse&, const ConvexContacts<Real>&,             \
-        const MeshContacts<Real>&, const SolidContacts<Real>&, const JoinedContacts<Real>&,        \
-        Islands&);
+        const EffectCensus&, const PrescribedVelocities&, const SplitImpulse&,                     \
+        const ConvexContacts<Real>&, const MeshContacts<Real>&, const SolidContacts<Real>&,        \
+        const JoinedContacts<Real>&, Islands&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

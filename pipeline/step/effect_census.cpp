@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kCounted = 1u << kCalls;
 
-constexpr std::uint32_t bit(Call call) { return 1u << static_cast<unsigned>(call); }
+constexpr auto bit = EffectCensus::bit;
 
 Call contact_of(SolidRepresentation way)
 {

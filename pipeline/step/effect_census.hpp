@@ -69,6 +69,10 @@ public:
     void recount(std::uint32_t body, const BodyFacts& facts);
     void count_all(const BodyFacts& facts);
 
+    /// Those of a body, as bits.
+    std::uint32_t calls_of(std::uint32_t body) const { return calls_[body]; }
+    static constexpr std::uint32_t bit(Call call) { return 1u << static_cast<unsigned>(call); }
+
     bool any(Call call) const { return counts_[static_cast<std::size_t>(call)] > 0; }
     std::size_t count(Call call) const { return counts_[static_cast<std::size_t>(call)]; }
     /// Bodies that make one of some calls, or several.

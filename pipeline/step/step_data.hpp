@@ -13,6 +13,7 @@
 #include "kernels/solver/coloring.hpp"
 #include "kernels/solver/islands.hpp"
 #include "narrowphase/alternatives/method_contacts.hpp"
+#include "pipeline/step/effect_census.hpp"
 #include "pipeline/step/parameters.hpp"
 #include "pipeline/step/sleeping_pairs.hpp"
 #include "pipeline/step/step_context.hpp"
@@ -180,6 +181,7 @@ using StepData = std::tuple<StepContext,
                             PairFilter,
                             PrescribedVelocities,
                             Forces,
+                            EffectCensus,
                             Poses,
                             Velocities,
                             Masses,

@@ -69,8 +69,8 @@ consteval bool reads_follow_writes()
 {
     DataSet ready = data_sets<Real, StepContext, NarrowPhaseParameters, ImpactParameters,
                               SolverParameters, SleepParameters, Shapes, Surfaces, PairFilter,
-                              PrescribedVelocities, Forces, Poses, Velocities, Masses, BodyStates,
-                              Colliders, SleepEvents, OverloadedIslands, SplitImpulse>;
+                              PrescribedVelocities, Forces, EffectCensus, Poses, Velocities, Masses,
+                              BodyStates, Colliders, SleepEvents, OverloadedIslands, SplitImpulse>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;

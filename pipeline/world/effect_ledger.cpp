@@ -25,14 +25,15 @@ public:
     EffectEntry entry(Effect effect) const
     {
         EffectEntry entry{effect, on_.has(effect), state_.effects.cause_of(effect), 0, {}, 0, 0, 0};
-        if (!entry.on) return entry;
-        entry.callers = callers(effect);
-        entry.rows = rows(effect);
+        if (entry.on) {
+            entry.callers = callers(effect);
+            entry.rows = rows(effect);
+        }
         std::visit(
             [&](const auto& chosen) {
                 using Real = typename std::decay_t<decltype(chosen)>::Number;
                 entry.bytes = bytes<Real>(effect, chosen.data);
-                share_stages<Real>(effect, entry);
+                if (entry.on) share_stages<Real>(effect, entry);
             },
             state_.step);
         return entry;
@@ -61,7 +62,7 @@ private:
 
     std::size_t callers(Effect effect) const
     {
-        const EffectCensus& census = state_.census;
+        const EffectCensus& census = state_.get<EffectCensus>();
         const Forces& forces = facts_.bodies.forces;
         const bool rubs = on_.has(Effect::friction);
         switch (effect) {
@@ -119,7 +120,7 @@ private:
     std::size_t material_pairs(Effect effect) const
     {
         std::size_t pairs = 0;
-        const auto& materials = state_.census.materials();
+        const auto& materials = state_.get<EffectCensus>().materials();
         for (const auto& [a, use_a] : materials)
             for (const auto& [b, use_b] : materials) {
                 if (b < a || use_a.on_dynamic + use_b.on_dynamic == 0) continue;
@@ -181,6 +182,8 @@ private:
         case Effect::voxel_contact:
         case Effect::sphere_contact:
         case Effect::image_contact: {
+            // They share their lists.
+            if (!on_.has(effect) && on_.meets(kSolidContact)) return 0;
             const auto& solids = std::get<SolidContacts<Real>>(data);
             return bytes_of(solids.entries, solids.before, solids.found.patches);
         }
@@ -203,10 +206,8 @@ private:
                             std::get<SleepingIslands>(data).bodies, contacts.of_kept,
                             contacts.contacts, contacts.found);
         }
-        case Effect::escalation: {
-            const auto& overloaded = std::get<OverloadedIslands>(data);
-            return bytes_of(overloaded.strain, overloaded.strained, overloaded.efforts);
-        }
+        case Effect::escalation:
+            return bytes_of(std::get<OverloadedIslands>(data).efforts);
         default:
             return 0;
         }
@@ -220,7 +221,9 @@ private:
         const auto& constraints = std::get<ContactConstraints<Real>>(data);
         const auto& layout = std::get<Layout>(data);
         const auto& bounds = std::get<Bounds>(data);
-        return bytes_of(pairs.keys, pairs.from, convex.of_pair, convex.contacts, convex.found,
+        const auto& overloaded = std::get<OverloadedIslands>(data);
+        return bytes_of(overloaded.strain, overloaded.strained, pairs.keys, pairs.from,
+                        convex.of_pair, convex.contacts, convex.found,
                         std::get<ActiveContacts>(data).entries, constraints.blocks,
                         constraints.points, constraints.bodies, layout.lanes,
                         layout.body_of_solver_index, bounds.boxes, bounds.near, bounds.placed);

@@ -398,19 +398,17 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     put(state_.motion, body, stated.motion);
     if (!stated.name.empty()) put(state_.names, body, stated.name);
 
-    auto& prescribed = state_.get<PrescribedVelocities>();
     const auto& drive = stated.drive_velocity;
     const Vec3 surface(drive[0].value_or(0), drive[1].value_or(0), drive[2].value_or(0));
-    put(states.is_conveyor, body, std::uint8_t{!moves && !surface.isZero(0)});
+    const bool carries = !moves && !surface.isZero(0);
+    put(states.is_conveyor, body, std::uint8_t{carries});
+    states.conveyors = states.conveyors || carries;
     put(states.fast, body, std::uint8_t{moves && stated.fast});
     if (!moves) velocities.linear[body] = surface;
     if (drive[0] || drive[1] || drive[2]) {
         const double free = std::nan("");
-        const auto at = std::lower_bound(prescribed.body.begin(), prescribed.body.end(), body);
-        prescribed.velocity.insert(
-            prescribed.velocity.begin() + (at - prescribed.body.begin()),
-            {drive[0].value_or(free), drive[1].value_or(free), drive[2].value_or(free)});
-        prescribed.body.insert(at, body);
+        state_.get<PrescribedVelocities>().put(
+            body, {drive[0].value_or(free), drive[1].value_or(free), drive[2].value_or(free)});
     }
     note_requests(body, stated);
     state_.mark_changed(body);

@@ -285,7 +285,7 @@ EffectFacts WorldState::effect_facts() const
 void WorldState::name_causes()
 {
     refresh();
-    if (causes_stale) effects = find_effects(effect_facts(), census);
+    if (causes_stale) effects = find_effects(effect_facts(), get<EffectCensus>());
     causes_stale = false;
 }
 
@@ -293,6 +293,7 @@ void WorldState::follow_changes()
 {
     if (!census_stale && changed.empty()) return;
     const EffectFacts facts = effect_facts();
+    auto& census = get<EffectCensus>();
     const std::size_t changes = census.changes();
     if (census_stale)
         census.count_all(facts.bodies);
@@ -313,7 +314,7 @@ void WorldState::refresh_effects()
         effects_stale = false;
         causes_stale = true;
         auto& context = get<StepContext>();
-        effects.on = effects_called_for(effect_facts(), census);
+        effects.on = effects_called_for(effect_facts(), get<EffectCensus>());
         anew = anew || effects.on != context.effects;
         context.effects = effects.on;
     }

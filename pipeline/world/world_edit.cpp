@@ -194,19 +194,14 @@ void World::remove(std::span<const BodyId> bodies)
         state.mark_changed(body);
         states.kind[body] = BodyKind::removed;
         states.awake[body] = 0;
-        state.census.recount(body, facts.bodies);
+        state.get<EffectCensus>().recount(body, facts.bodies);
         const std::uint32_t first = colliders.begin[body], count = colliders.count[body];
         for (std::uint32_t i = 0; i < count; ++i) {
             colliders.body[first + i] = kNoBody;
             state.get<PairFilter>().mask[first + i] = 0;
         }
         if (count > 0) state.free_colliders[count].push_back(first);
-        auto& prescribed = state.get<PrescribedVelocities>();
-        const auto at = std::lower_bound(prescribed.body.begin(), prescribed.body.end(), body);
-        if (at != prescribed.body.end() && *at == body) {
-            prescribed.velocity.erase(prescribed.velocity.begin() + (at - prescribed.body.begin()));
-            prescribed.body.erase(at);
-        }
+        state.get<PrescribedVelocities>().erase(body);
         if (body < state.names.size()) state.names[body].clear();
         ++state.generation[body];
         state.free_bodies.push_back(body);
@@ -218,7 +213,7 @@ void World::remove(std::span<const BodyId> bodies)
     if (state.fields.remove(going, state.get<Forces>())) state.wake_all();
     state.effects_stale = state.active_bodies_stopped = true;
     // Whoever comes into an empty world begins from nothing, as in its first step.
-    if (!state.census.any(Call::dynamic)) state.get<StepContext>().last_substep = 0;
+    if (!state.get<EffectCensus>().any(Call::dynamic)) state.get<StepContext>().last_substep = 0;
 }
 
 void World::set_force_field(ForceField field)

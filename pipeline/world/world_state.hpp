@@ -55,7 +55,6 @@ struct WorldState {
     std::variant<Step<float>, Step<double>> step;
     Effects effects;
     Requests requests;
-    EffectCensus census;
     Set<Effect> left_out;                // see World::leave_out()
     bool effects_stale = true;           // something besides bodies changed
     bool census_stale = true;            // that all bodies depend on

@@ -157,5 +157,44 @@ TEST(Explain, TheGraphHasEveryStage)
     EXPECT_EQ(folder.files(), std::vector<std::string>{"step.dot"});
 }
 
+TEST(Explain, WithoutAnEffectSaysWhatThatSavesAndGetsWrong)
+{
+    const TestFolder folder;
+    const auto without = [&](const std::string& effect, const std::string& scene) {
+        const Outcome said = run_throng({"explain", scene, "--steps", "12", "--without", effect,
+                                         "--json", folder / "without.json"});
+        EXPECT_EQ(said.code, 0) << said.err;
+        EXPECT_NE(said.out.find("\nwithout "), std::string::npos) << said.out;
+        const JsonDocument json(folder.read("without.json"), "without.json");
+        const auto report = json.find(JsonDocument::kRoot, "without");
+        EXPECT_EQ(json.number(json.find(report, "windows")), 2);
+        EXPECT_NEAR(json.number(json.find(report, "window_s")), 0.1, 1e-9);
+        EXPECT_GT(json.number(json.find(report, "ms_per_step_without")), 0);
+        return json.number(json.find(report, "drift_m"));
+    };
+    // In a tenth of a second what falls and what does not part by g t2 / 2, and a little more by
+    // steps that are not short.
+    EXPECT_NEAR(without("gravity", "pile:20"), 0.049, 0.01);
+    EXPECT_EQ(without("springs", "pile:20"), 0);  // there are none
+    EXPECT_GT(without("rotation", "pile:20"), 1e-4);
+    EXPECT_GT(without("rolling_friction", "rolling:4") + without("friction", "rolling:4"), 1e-4);
+    const Outcome wrong = run_throng({"explain", "pile:20", "--without", "frictio"});
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_NE(wrong.err.find("did you mean"), std::string::npos) << wrong.err;
+    EXPECT_EQ(run_throng({"explain", "pile:20", "--without", "motion"}).code, 2);
+}
+
+TEST(Explain, DrawsTheStep)
+{
+    const TestFolder folder;
+    const Outcome said =
+        run_throng({"explain", "pile:20", "--steps", "2", "--svg", folder / "step.svg"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    const std::string drawn = folder.read("step.svg");
+    for (const char* word : {"<svg ", ">sort_islands<", " ms<", ">make_constraints, ", "</svg>"})
+        EXPECT_NE(drawn.find(word), std::string::npos) << word;
+    EXPECT_EQ(run_throng({"explain", "pile:20", "--svg", "a", "--dot", "a"}).code, 2);
+}
+
 }  // namespace
 }  // namespace throng

@@ -77,7 +77,7 @@ TEST(EffectCensus, IsThatOfALookAtEverybody)
             const EffectFacts facts = state.effect_facts();
             fresh.count_all(facts.bodies);
             for (std::size_t i = 0; i < kCalls; ++i)
-                ASSERT_EQ(state.census.count(static_cast<Call>(i)),
+                ASSERT_EQ(state.get<EffectCensus>().count(static_cast<Call>(i)),
                           fresh.count(static_cast<Call>(i)))
                     << "call " << i << ", edit " << edit << ", seed " << seed;
             const Effects wanted = find_effects(facts, fresh);
@@ -105,14 +105,14 @@ TEST(EffectCensus, LooksAtWhoChangedAlone)
 {
     World world = boxes_after_a_step(50);
     WorldState& state = state_of(world);
-    const std::size_t changes = state.census.changes();
+    const std::size_t changes = state.get<EffectCensus>().changes();
     for (int i = 0; i < 20; ++i) {
         world.set_velocity(world.bodies()[7], Vec3(0.1, 0, 0), Vec3::Zero());
         EXPECT_EQ(state.changed.size(), 1u);
         EXPECT_FALSE(state.census_stale || state.effects_stale || state.active_bodies_stale);
         world.step();
     }
-    EXPECT_EQ(state.census.changes(), changes);
+    EXPECT_EQ(state.get<EffectCensus>().changes(), changes);
 }
 
 TEST(EffectCensus, OtherSettingsTakeEffectThoughSomebodyGoesBeforeTheStep)

@@ -57,6 +57,30 @@ Scene marbles()
     return made.scene;
 }
 
+// Where forces follow bodies: dragged ones that bounce, roll and rest, some on springs.
+Scene dragged()
+{
+    SceneOf made;
+    made.scene.materials[0].restitution = 0.4;
+    made.floor();
+    for (int i = 0; i < 12; ++i) {
+        const Vec3 at(1.5 * (i % 4), 1.5 * (i / 4), 0.25 + 0.15 * i);
+        BodyDescription& body =
+            i % 2 == 0 ? made.ball(0.25, at) : made.box(Vec3(0.2, 0.2, 0.2), at);
+        body.velocity = Vec3(0.3, 0, 0);
+        body.linear_drag = 0.2 * i;
+        body.angular_drag = 0.01;
+        if (i % 3 != 0) continue;
+        Spring spring;
+        spring.a = static_cast<std::uint32_t>(i + 1);
+        spring.at_b = at + Vec3(0, 0, 1);
+        spring.stiffness = i % 2 == 0 ? 60 : 5e4;
+        spring.length = 1;
+        made.scene.springs.push_back(spring);
+    }
+    return made.scene;
+}
+
 struct Caller {
     const char* name;
     void (*call)(SceneOf&, const Vec3& at);
@@ -152,6 +176,16 @@ const Caller kCallers[] = {
          body.angular_drag = 0.1;
      }},
     {"pivot", [](SceneOf& made, const Vec3& at) { far_box(made, at).pivot = Vec3(0.2, 0.2, 0.2); }},
+    {"dragged_balls",
+     [](SceneOf& made, const Vec3& at) {
+         made.scene.materials[0].restitution = 0.6;
+         made.box(Vec3(3, 3, 0.1), at - Vec3(0, 0, 0.5)).motion = Motion::static_;
+         for (int i = 0; i < 4; ++i) {
+             BodyDescription& ball = made.ball(0.2, at + Vec3(0.6 * i, 0, 0.3 * i));
+             ball.linear_drag = 0.1;
+             ball.velocity = Vec3(0, 0.4, -1);
+         }
+     }},
     {"rolling_can",
      [](SceneOf& made, const Vec3& at) {
          made.box(Vec3(3, 3, 0.1), at - Vec3(0, 0, 0.6)).motion = Motion::static_;
@@ -247,7 +281,7 @@ class ComingEffects : public ::testing::TestWithParam<std::tuple<How, Caller>> {
 TEST_P(ComingEffects, LeaveOthersTheirBits)
 {
     const auto& [how, caller] = GetParam();
-    for (Scene (*made)() : {crowd, marbles}) {
+    for (Scene (*made)() : {crowd, marbles, dragged}) {
         const std::vector<Motions> with = run(made(), how, caller, true),
                                    by_turns = run(made(), how, caller, false);
         for (int step = 0; step < kSteps; ++step)
