@@ -187,6 +187,7 @@ write_outputs(World& world, RunStats& stats, RunFrames& frames, Outputs& outputs
     const auto note = [&](std::string trouble) {
         if (!trouble.empty()) troubles.push_back(std::move(trouble));
     };
+    frames.effects_told(stats.effects);
     note(frames.close());
     if (outputs.final.asked_for()) write_final_csv(world, outputs.final.stream());
     note(outputs.final.try_keep());

@@ -39,6 +39,11 @@ void RunFrames::step_done(std::int64_t step, const StepError& error, bool last)
     written_ = step;
 }
 
+void RunFrames::effects_told(std::span<const EffectEntry> effects)
+{
+    if (writer_ && trouble_.empty()) attempt([&] { writer_->write_effects(effects); });
+}
+
 std::string RunFrames::close()
 {
     if (!writer_) return {};

@@ -20,6 +20,8 @@ public:
               std::int64_t every);
     /// After a step, of which this is told; the last one is a frame whatever its number.
     void step_done(std::int64_t step, const StepError& error, bool last);
+    /// As the run ended.
+    void effects_told(std::span<const EffectEntry> effects);
     bool asked_for() const { return writer_.has_value(); }
     /// Closes the file. Answers what went wrong since it was begun, and what is there, or nothing.
     std::string close();

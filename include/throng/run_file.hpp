@@ -11,6 +11,9 @@
 //   /bodies/shape_kind        [N] a place in its attribute `kinds`: none, sphere, capsule, ...
 //   /bodies/size              [N, 3] m: radius of a sphere; radius and half length of a capsule or
 //                             cylinder; half extents of a box; 0 for the rest
+//   /effects/name             [E] text, of each effect (effect_ledger.hpp); of a run that ended
+//   /effects/on, callers, ms, rows, bytes  [E] as at its end; ms a step
+//   /effects/first            [E] text, who calls first
 //   /frames/step, time        [F] steps done; s
 //   /frames/position          [F, N, 3] of the body's own frame, double
 //   /frames/orientation       [F, N, 4] w, x, y, z, of the body's own frame, float
@@ -28,10 +31,12 @@
 // no longer does so at exit.
 #pragma once
 
+#include "throng/effect_ledger.hpp"
 #include "throng/error_estimate.hpp"
 #include "throng/world.hpp"
 
 #include <memory>
+#include <span>
 #include <stdexcept>
 
 namespace throng {
@@ -65,6 +70,9 @@ public:
     /// Adds the world as it is now, and what its last step was about off by. After this has failed
     /// there are no more frames.
     void write_frame(const World& world, const StepError& error = {});
+    /// Adds what effects the run called for and what they cost; once, and before the file is
+    /// closed.
+    void write_effects(std::span<const EffectEntry> effects);
     /// Writes what is left and closes the file; where a frame has failed, closes it with those that
     /// are whole.
     void close();

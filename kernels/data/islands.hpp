@@ -21,8 +21,8 @@ namespace throng {
 ///   rolls      some rim does, or would if it were held at fewer places
 ///   on_faces   most contacts have three points or more; told of those that may share a batch
 ///   driven     it touches what moves by itself
-///   alone      it shares its batch with nobody: forces follow its bodies, which tell for all of
-///              them how they are solved, or somebody was put where he is
+///   alone      it shares its batch with nobody: a pivot or stiff springs tell how all of it is
+///              solved, or somebody lies so deep in another that the two may have to part
 struct IslandCalls {
     Set<Effect> effects;
     bool carries = false, axes_turn = false, swings = false, rolls = false, on_faces = false,

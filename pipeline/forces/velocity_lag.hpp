@@ -17,8 +17,8 @@
 
 namespace throng {
 
-/// Before contacts are solved: velocities of bodies, where they are of the moment, to
-/// where the solver has them.
+/// Before contacts are solved: velocities of bodies, where they are of the moment, to where the
+/// solver has them.
 void lag_velocities(const StepContext& context,
                     const Forces& forces,
                     const Masses& masses,

@@ -204,6 +204,30 @@ void write_bodies(hid_t file, const Scene& scene, const World& world)
              "m");
 }
 
+void write_effects_of(hid_t file, std::span<const EffectEntry> effects)
+{
+    const Handle group = new_group(file, "effects");
+    const auto add = [&](const char* name, hid_t type, const auto& of) {
+        std::vector<std::decay_t<decltype(of(effects.front()))>> values;
+        for (const EffectEntry& entry : effects) values.push_back(of(entry));
+        return add_array(group, name, type, {effects.size()}, values.data());
+    };
+    std::vector<std::string> names;
+    for (const EffectEntry& entry : effects) names.emplace_back(name_of(entry.effect));
+    const auto place = [&](const EffectEntry& entry) {
+        return static_cast<std::size_t>(&entry - effects.data());
+    };
+    add("name", text_type(), [&](const EffectEntry& e) { return names[place(e)].c_str(); });
+    add("on", H5T_NATIVE_UINT8, [](const EffectEntry& e) { return std::uint8_t{e.on}; });
+    add("first", text_type(),
+        [](const EffectEntry& e) { return e.first.empty() ? nullptr : e.first.c_str(); });
+    add("callers", H5T_NATIVE_UINT64,
+        [](const EffectEntry& e) { return std::uint64_t{e.callers}; });
+    add_text(add("ms", H5T_NATIVE_DOUBLE, [](const EffectEntry& e) { return e.ms; }), "unit", "ms");
+    add("rows", H5T_NATIVE_UINT64, [](const EffectEntry& e) { return std::uint64_t{e.rows}; });
+    add("bytes", H5T_NATIVE_UINT64, [](const EffectEntry& e) { return std::uint64_t{e.bytes}; });
+}
+
 void write_facts(hid_t file, const World& world, const RunFacts& facts)
 {
     add_text(file, "throng", facts.version);
@@ -502,6 +526,15 @@ void RunFile::write_frame(const World& world, const StepError& error)
         inside_->failed = true;
         throw;
     }
+}
+
+void RunFile::write_effects(std::span<const EffectEntry> effects)
+{
+    if (!inside_ || inside_->failed) throw RunFileError("cannot add effects: the file is closed");
+    const Silence silence;
+    constexpr std::size_t kMost = std::size_t{1} << 16;  // bytes
+    inside_->disk_space.keep(inside_->size(), kMost);
+    write_effects_of(inside_->file, effects);
 }
 
 void RunFile::close()

@@ -70,6 +70,30 @@ std::string read_text(const std::string& path, const char* owner, const char* na
 
 using Sizes = std::vector<hsize_t>;
 
+TEST_F(RunFileTest, TellsWhatTheRunCalledFor)
+{
+    const Scene scene = make_scene("pile", 20);
+    World world(scene);
+    RunFile file(path_, scene, world, {"pile:20", "1.2.3", 1, 1});
+    world.step(30);
+    file.write_frame(world);
+    const std::vector<EffectEntry> effects = effect_ledger(world, world.stages());
+    file.write_effects(effects);
+    file.close();
+    EXPECT_THROW(file.write_effects(effects), RunFileError);
+    const auto on = read_array<std::uint8_t>(path_, "effects/on", H5T_NATIVE_UINT8);
+    const auto rows = read_array<std::uint64_t>(path_, "effects/rows", H5T_NATIVE_UINT64);
+    const auto ms = read_array<double>(path_, "effects/ms", H5T_NATIVE_DOUBLE);
+    ASSERT_EQ(on.values.size(), static_cast<std::size_t>(kEffects));
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+        EXPECT_EQ(on.values[i] != 0, effects[i].on);
+        EXPECT_EQ(rows.values[i], effects[i].rows);
+        EXPECT_EQ(ms.values[i], effects[i].ms);
+    }
+    EXPECT_EQ(on.values[static_cast<std::size_t>(Effect::contact)], 1);
+    EXPECT_GT(rows.values[static_cast<std::size_t>(Effect::contact)], 0u);
+}
+
 TEST_F(RunFileTest, HoldsEveryFrame)
 {
     // Enough frames for two chunks and a part.
