@@ -118,7 +118,7 @@ public:
     // nobody to wait for.
     bool is_looked_at(std::size_t island) const
     {
-        const auto contacts = contacts_of(island);
+        const auto contacts = islands_.contacts_of(island);
         if (contacts.size() <= kBatchContacts) return contacts.size() >= 2;
         if (contacts.size() > kMostEscalated) return false;
         const auto on_faces =
@@ -141,7 +141,7 @@ public:
         if (gains(island)) return kLimited;
         std::uint8_t before = 0;
         if (!overloaded_.gainers.empty())
-            for (const std::uint32_t body : bodies_of(island))
+            for (const std::uint32_t body : islands_.bodies_of(island))
                 before = std::max(before, overloaded_.limited_for(body));
         return before > 0 ? static_cast<std::uint8_t>(before - 1) : before;
     }
@@ -150,7 +150,7 @@ private:
     double strain_if_free(std::size_t island) const
     {
         const std::size_t bodies = islands_.body_begin[island + 1] - islands_.body_begin[island];
-        const auto contacts = contacts_of(island);
+        const auto contacts = islands_.contacts_of(island);
         const bool exactly = may_be_exact(bodies, contacts.size());
         const double before = strain_before(island);
         // A load that stands at a corner of who bears it has a quarter of him to be held by. In a
@@ -205,7 +205,7 @@ private:
         const auto asked = [&](std::uint32_t body) {
             return layout_.solver_index[body] == Layout::kNoSolverIndex && is_so(body);
         };
-        const auto contacts = contacts_of(island);
+        const auto contacts = islands_.contacts_of(island);
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
             return asked(entry.body_a) || asked(entry.body_b);
@@ -236,9 +236,9 @@ private:
     // Whether any body does faster than it falls in a step.
     bool moves(std::size_t island) const
     {
-        const auto bodies =
-            std::span(constraints_.bodies)
-                .subspan(islands_.body_begin[island] + std::size_t{1}, bodies_of(island).size());
+        const auto bodies = std::span(constraints_.bodies)
+                                .subspan(islands_.body_begin[island] + std::size_t{1},
+                                         islands_.bodies_of(island).size());
         const Real falls = static_cast<Real>(falls_ * falls_);
         return std::any_of(bodies.begin(), bodies.end(), [&](const SolverBody<Real>& body) {
             // Four numbers, of which the last is 0.
@@ -259,7 +259,7 @@ private:
         if (!rests) return lasted;
         // By turns it would be pushed out and sink in again.
         if (before >= kInVain) return kInVain;
-        if (contacts_of(island).size() > kCrushedContacts && is_solved_exactly(island))
+        if (islands_.contacts_of(island).size() > kCrushedContacts && is_solved_exactly(island))
             return lasted;
         return is_deep(island, most) ? -kInVain : lasted;
     }
@@ -280,18 +280,6 @@ private:
         return exactly ? -strain : kFirst * strain;
     }
 
-    std::span<const std::uint32_t> contacts_of(std::size_t island) const
-    {
-        const std::uint32_t begin = islands_.contact_begin[island];
-        return std::span(islands_.contacts)
-            .subspan(begin, islands_.contact_begin[island + 1] - begin);
-    }
-    std::span<const std::uint32_t> bodies_of(std::size_t island) const
-    {
-        const std::uint32_t begin = islands_.body_begin[island];
-        return std::span(islands_.bodies).subspan(begin, islands_.body_begin[island + 1] - begin);
-    }
-
     // How far its load presses a contact in, over where it turns rigid. The lesser of the two
     // masses is what its points have to hold it by.
     double give_of(std::uint32_t place, bool by_most_loaded) const
@@ -310,7 +298,7 @@ private:
     {
         auto& gives = overloaded_.scratch.gives;
         const auto index = [&](std::uint32_t body) { return layout_.solver_index[body]; };
-        for (const std::uint32_t body : bodies_of(island)) gives[index(body)] = {};
+        for (const std::uint32_t body : islands_.bodies_of(island)) gives[index(body)] = {};
         for (std::uint32_t k = islands_.contact_begin[island];
              k < islands_.contact_begin[island + 1]; ++k) {
             const ActiveContacts::Entry& entry = active_.entries[islands_.contacts[k]];
@@ -326,7 +314,7 @@ private:
             }
         }
         float most = 0;
-        for (const std::uint32_t body : bodies_of(island)) {
+        for (const std::uint32_t body : islands_.bodies_of(island)) {
             auto& of = gives[index(body)];
             if (of.ground > 0) of.add(of.ground);
             most = std::max(most, of.count > 2 ? of.second : of.first);
@@ -351,7 +339,7 @@ private:
     double mean_square_speed(std::size_t island) const
     {
         double mass = 0, twice_energy = 0;
-        for (const std::uint32_t body : bodies_of(island)) {
+        for (const std::uint32_t body : islands_.bodies_of(island)) {
             mass += masses_.mass[body];
             twice_energy += masses_.mass[body] * velocities_.linear[body].squaredNorm();
         }
@@ -361,7 +349,7 @@ private:
     // Overlaps are of the step's start, when it had not been helped yet.
     bool is_solved_exactly(std::size_t island) const
     {
-        const auto bodies = bodies_of(island);
+        const auto bodies = islands_.bodies_of(island);
         return std::any_of(bodies.begin(), bodies.end(),
                            [&](std::uint32_t body) { return overloaded_.of(body) < 0; });
     }
@@ -370,7 +358,7 @@ private:
     // who bears next to nothing may well overlap by more than his own load makes.
     bool is_deep(std::size_t island, double most) const
     {
-        const auto contacts = contacts_of(island);
+        const auto contacts = islands_.contacts_of(island);
         return std::any_of(contacts.begin(), contacts.end(), [&](std::uint32_t place) {
             const ActiveContacts::Entry& entry = active_.entries[place];
             const double overlap{contact_of(entry).overlap(entry.points)};
@@ -381,7 +369,7 @@ private:
     // Whether somebody light who touches somebody heavy is still driven in after the step.
     bool is_crushed(std::size_t island) const
     {
-        const auto contacts = contacts_of(island);
+        const auto contacts = islands_.contacts_of(island);
         if (contacts.size() > kCrushedContacts) return false;
         const auto entry = [&](std::uint32_t place) -> const ActiveContacts::Entry& {
             return active_.entries[place];
@@ -439,10 +427,10 @@ private:
                 static_cast<std::uint16_t>(below + 1);
             return true;
         };
-        for (const std::uint32_t body : bodies_of(island))
+        for (const std::uint32_t body : islands_.bodies_of(island))
             overloaded_.scratch.height[layout_.solver_index[body]] = kUnreached;
         // Forth and back by turns: a column is done in two, whichever way its contacts go.
-        const auto contacts = contacts_of(island);
+        const auto contacts = islands_.contacts_of(island);
         const auto lower_by = [&](std::uint32_t contact) {
             const ActiveContacts::Entry& entry = active_.entries[contact];
             const bool a = lower(entry.body_a, height(entry.body_b));
@@ -455,7 +443,7 @@ private:
                 lowered = lower_by(contacts[forth ? k : contacts.size() - 1 - k]) || lowered;
         }
         int highest = 1;
-        for (const std::uint32_t body : bodies_of(island))
+        for (const std::uint32_t body : islands_.bodies_of(island))
             if (height(body) != kUnreached) highest = std::max(highest, height(body));
         return highest;
     }
@@ -464,7 +452,7 @@ private:
     {
         if (overloaded_.strained.empty()) return 0;
         double most = 0;
-        for (const std::uint32_t body : bodies_of(island))
+        for (const std::uint32_t body : islands_.bodies_of(island))
             most = std::max(most, std::abs(double{overloaded_.of(body)}));
         return most;
     }

@@ -61,10 +61,7 @@ void sleep_islands(const StepContext& context,
         return states.sleep_time[body];
     };
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        const auto bodies =
-            std::span(islands.bodies)
-                .subspan(islands.body_begin[island],
-                         islands.body_begin[island + 1] - islands.body_begin[island]);
+        const auto bodies = islands.bodies_of(island);
         double least = std::numeric_limits<double>::infinity();
         for (const std::uint32_t body : bodies) least = std::min(least, quiet_for(body));
         if (least >= parameters.time)
