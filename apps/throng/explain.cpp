@@ -199,8 +199,6 @@ int explain(const Options& options)
     const std::int64_t steps = options.whole("--steps", 0, 0, kMostSteps);
     std::optional<Effect> left_out;
     if (options.has("--without")) left_out = effect_asked("--without", options.text("--without"));
-    if (left_out == Effect::motion)
-        throw BadInput("--without: without motion there is nothing: wanted another effect");
     const int threads = threads_asked(options);
     const SceneArgument argument = read_scene_argument(options);
     World world = make_world(argument, threads);

@@ -3,7 +3,7 @@
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/json_lines.hpp"
 #include "apps/throng/progress.hpp"
-#include "cost/windows/errors.hpp"
+#include "cost/windows/windows.hpp"
 #include "scene/files/json.hpp"
 #include "scene/files/json_writer.hpp"
 #include "scene/names.hpp"
@@ -18,8 +18,6 @@
 namespace throng {
 
 namespace {
-
-constexpr double kWindow = 0.1;  // s, as of `throng cost`
 
 // With what calls for it taken out.
 World world_without(SceneArgument argument, Effect effect, int threads)
@@ -86,14 +84,14 @@ Effect effect_asked(std::string_view option, std::string_view name)
     std::vector<std::string_view> names;
     for (int i = 0; i < kEffects; ++i) {
         const auto effect = static_cast<Effect>(i);
+        if (effect == Effect::motion) continue;  // without it there is nothing
         if (name_of(effect) == spaced) return effect;
         names.push_back(name_of(effect));
     }
     const std::string near = nearest_names(spaced, names);
-    const auto text = [](std::string_view one) { return std::string(one); };
-    throw BadInput(std::string(option) + ": wanted an effect, got " + std::string(name)
-                   + (near.empty() ? "; there are " + joined(names, ", ", text)
-                                   : "; did you mean " + near + "?"));
+    throw BadInput(
+        std::string(option) + ": wanted an effect, got " + in_quotes(name)
+        + (near.empty() ? "; there are: " + either_of(names) : "; did you mean " + near + "?"));
 }
 
 WithoutReport
@@ -105,8 +103,8 @@ run_without(const SceneArgument& argument, Effect effect, std::int64_t steps, in
     report.effect = effect;
     report.on = full.effects().on.has(effect);
     const double dt = argument.scene.settings.dt;
-    const auto of_window =
-        std::min(steps, std::max<std::int64_t>(1, std::llround(std::ceil(kWindow / dt - 1e-9))));
+    const auto of_window = std::min(
+        steps, std::max<std::int64_t>(1, std::llround(std::ceil(WindowPlan{}.length / dt - 1e-9))));
     report.length = static_cast<double>(of_window) * dt;
     std::vector<Errors> errors;
     Progress progress(steps, true);

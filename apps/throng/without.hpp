@@ -24,7 +24,7 @@ struct WithoutReport {
     double drift = 0, turn = 0, velocity = 0;
 };
 
-/// Throws BadInput, which names what there is.
+/// One that can be left out. Throws BadInput, which names what there is.
 Effect effect_asked(std::string_view option, std::string_view name);
 
 /// Runs both, step by step in turn. Ends early where it is interrupted.

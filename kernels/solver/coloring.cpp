@@ -77,9 +77,8 @@ void ConstraintGraph::gather_slices(const Islands& islands,
     const auto calls_of = [&](std::size_t island) {
         return islands.calls.empty() ? IslandCalls{} : islands.calls[island];
     };
-    layout.island_begin.resize(islands.size() + 1);
-    for (std::size_t i = 0; i <= islands.size() && !islands.body_begin.empty(); ++i)
-        layout.island_begin[i] = islands.body_begin[i] + 1;
+    layout.island_begin.clear();
+    for (const std::uint32_t begin : islands.body_begin) layout.island_begin.push_back(begin + 1);
     for (std::size_t first = 0, last = 0; first < islands.size(); first = last) {
         const std::uint32_t begin = islands.contact_begin[first];
         const auto contacts_until = [&](std::size_t island) {

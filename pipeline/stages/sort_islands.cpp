@@ -85,8 +85,9 @@ public:
         for (const std::uint32_t body : bodies_) {
             const std::uint32_t calls = scene_.census.calls_of(body) & asked;
             if ((calls & kMayTurn) != 0) find_turning(body);
-            if ((calls & kActedOn) != 0 || scene_.acts_on_all) find_forces(body);
-            if (scene_.springs_act && scene_.forces.has_springs(body)) find_forces(body);
+            if ((calls & kActedOn) != 0 || scene_.acts_on_all
+                || (scene_.springs_act && scene_.forces.has_springs(body)))
+                find_forces(body);
             if (scene_.drives && scene_.prescribed.drives(body)) calls_.effects.add(Effect::drive);
         }
         if (!calls_.alone) calls_.alone = may_part();

@@ -49,6 +49,15 @@ TriangleSoup block_under(Height height, int cells, double cell)
     return mesh;
 }
 
+inline MeshShape tetrahedron(double size)
+{
+    MeshShape mesh;
+    mesh.vertices = {Vec3(size, 0, -size), Vec3(-size, size, -size), Vec3(-size, -size, -size),
+                     Vec3(0, 0, size)};
+    mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+    return mesh;
+}
+
 inline VoxelsShape voxels_of(const TriangleSoup& mesh, double voxel, double band = 0)
 {
     LevelSetResult made = make_level_set(mesh.vertices, mesh.triangles, voxel, band);

@@ -11,17 +11,9 @@ namespace throng {
 namespace {
 
 using given::SceneOf;
+using given::tetrahedron;
 
 constexpr int kSteps = 130, kChanges = 10;
-
-MeshShape tetrahedron(double size)
-{
-    MeshShape mesh;
-    mesh.vertices = {Vec3(size, 0, -size), Vec3(-size, size, -size), Vec3(-size, -size, -size),
-                     Vec3(0, 0, size)};
-    mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
-    return mesh;
-}
 
 // Islands of many kinds, that fall, slide, lean, roll over and come to rest.
 Scene crowd()

@@ -10,15 +10,7 @@ namespace throng {
 namespace {
 
 using given::SceneOf;
-
-MeshShape tetrahedron(double size)
-{
-    MeshShape mesh;
-    mesh.vertices = {Vec3(size, 0, -size), Vec3(-size, size, -size), Vec3(-size, -size, -size),
-                     Vec3(0, 0, size)};
-    mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
-    return mesh;
-}
+using given::tetrahedron;
 
 // Little heaps beside one another, of every kind of pair, on all kinds of floor; a ball that rolls
 // through them, bodies that fall on them later, and a shelf.
