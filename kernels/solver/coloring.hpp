@@ -14,8 +14,10 @@ inline constexpr std::size_t kBatchContacts = 512;
 
 /// Gathers small islands that call for the same into batches, cuts big ones into slices, colors
 /// each slice greedily in the order of its contacts, and lays the contacts out: slice by slice,
-/// color by color, those of more points before those of fewer. Ids and positions decide, and
-/// nothing of the step before.
+/// color by color, those of more points before those of fewer. In a batch of small islands,
+/// contacts of one point begin a block of their own: a block of such alone is solved in another
+/// way, and how a contact is solved must not hang on the islands beside its own. Ids and positions
+/// decide, and nothing of the step before.
 class ConstraintGraph {
 public:
     SplitRule split_rule;
@@ -41,9 +43,18 @@ private:
     struct Plan {
         std::array<std::uint32_t, kBins> size;  // contacts by color and points
         std::uint32_t blocks, colors, first_block;
+        bool parts_points;  // contacts of one point share no block with others
         std::vector<std::uint32_t> kinematic, conveyors;  // that it touches, ascending
     };
 
+    // Lanes of a color, counted from its first.
+    struct ColorLanes {
+        std::array<std::uint32_t, kPoints> begin, end;  // by kind: 4 points, 3, 2, 1
+        std::uint32_t blocks;
+    };
+
+    static ColorLanes lanes_of(const Plan& plan, std::uint32_t color);
+    static void clear_idle_lanes(const Color& color, const ColorLanes& lanes, Layout& layout);
     void gather_slices(const Islands& islands,
                        const ActiveContacts& active,
                        const BodyStates& states,

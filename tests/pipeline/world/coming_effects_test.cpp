@@ -1,6 +1,7 @@
 // Coming effects: bodies go on by the same bits whether somebody far away calls for an effect, or
-// comes to and no longer does.
+// comes to and no longer does; and whatever other scene there is.
 #include "tests/support/solid_scenes.hpp"
+#include "throng/catalog.hpp"
 #include "throng/world.hpp"
 
 #include <gtest/gtest.h>
@@ -292,6 +293,71 @@ INSTANTIATE_TEST_SUITE_P(Callers,
                              return std::string(std::get<0>(info.param).name) + "_"
                                  + std::get<1>(info.param).name;
                          });
+
+// One of the catalogue, as small as it is made.
+Scene small_scene(std::string_view name)
+{
+    constexpr int kBodies = 14;
+    const CatalogEntry& entry = *find_scene(name);
+    return make_scene(name, std::min(entry.default_size, std::max(kBodies, entry.least)));
+}
+
+void move(Scene& scene, const Vec3& by)
+{
+    for (BodyDescription& body : scene.bodies) {
+        body.position += by;
+        body.name.clear();
+    }
+    for (Instances& group : scene.instances)
+        for (std::size_t at = 0; at < group.records.size(); at += group.stride())
+            for (std::size_t k = 0; k < 3; ++k)
+                group.records[at + k] += by[static_cast<Eigen::Index>(k)];
+    for (Spring& spring : scene.springs) {
+        if (spring.a == kNone) spring.at_a += by;
+        if (spring.b == kNone) spring.at_b += by;
+    }
+}
+
+// With those whose islands share batches with many kinds of others.
+class FarScenes : public ::testing::TestWithParam<std::string> { };
+
+TEST_P(FarScenes, LeaveBodiesTheirBits)
+{
+    constexpr int kShort = 45;
+    const Scene scene = small_scene(GetParam());
+    World alone(scene, 1);
+    const std::vector<BodyId> bodies = alone.bodies();
+    std::vector<Motions> motions;
+    for (int step = 0; step < kShort; ++step) {
+        alone.step();
+        motions.push_back(motions_of(alone, bodies));
+    }
+    World beside(scene, 1);
+    Vec3 at(3000, 1000, 50);
+    for (const char* other : {"knots", "meshes", "pile", "wall"}) {
+        Scene far = small_scene(other);
+        move(far, at);
+        beside.add(far);
+        at.x() += 1000;
+    }
+    for (int step = 0; step < kShort; ++step) {
+        beside.step();
+        ASSERT_EQ(motions_of(beside, bodies), motions[static_cast<std::size_t>(step)])
+            << "after " << step + 1 << " steps";
+    }
+}
+
+std::vector<std::string> names_of_catalog()
+{
+    std::vector<std::string> names;
+    for (const CatalogEntry& entry : catalog()) names.emplace_back(entry.name);
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalog,
+                         FarScenes,
+                         ::testing::ValuesIn(names_of_catalog()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace throng
