@@ -38,6 +38,7 @@ constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous"}};
 constexpr Choice kOverlap[] = {{"allow"}, {"back_up"}, {"subdivide"}};
 constexpr Choice kToiMethod[] = {{"newton"}, {"bisection"}, {"conservative"}};
 constexpr Choice kSleep[] = {{"on"}, {"off"}};
+constexpr Choice kEffects[] = {{"called"}, {"auto"}};
 
 constexpr double kLeastStiffness = 1e-30, kLeastDamping = 0;
 
@@ -180,6 +181,19 @@ std::string set_toi_tolerance(Settings& settings, std::string_view text)
 std::string get_toi_tolerance(const Settings& settings)
 {
     return number_text(settings.toi_tolerance);
+}
+
+std::string set_effects_error(Settings& settings, std::string_view text)
+{
+    const double error = parse_number(text);
+    if (!(error >= 0 && error <= 1)) return wanted("a share of the radius from 0 to 1", text);
+    settings.effects_error = error;
+    return {};
+}
+
+std::string get_effects_error(const Settings& settings)
+{
+    return number_text(settings.effects_error);
 }
 
 std::string set_voxel_size(Settings& settings, std::string_view text)
@@ -360,6 +374,10 @@ std::vector<Dial> make_dials()
             "a smaller tolerance finds the moment of touch more exactly, for more evaluations"),
         named_dial("sleep", kSleep, set_sleep, get_sleep,
             "bodies at rest cost nothing while asleep; off follows the slowest creep"),
+        choice_dial<&S::effects, kEffects>("effects",
+            "auto leaves the gyroscopic torque out of bodies, and rolling friction out of islands that sleep soon, as long as bodies are off by less than effects_error for it"),
+        number_dial("effects_error", "a number from 0 to 1", "of the radius in 0.1 s, and rad", set_effects_error, get_effects_error,
+            "effects auto: a greater error leaves out more"),
     };
     // clang-format on
 }

@@ -20,6 +20,8 @@ std::string effect_ledger_json(const std::vector<EffectEntry>& entries)
                   .add("ms", entry.ms)
                   .add("rows", std::to_string(entry.rows))
                   .add("bytes", std::to_string(entry.bytes))
+                  .add("neglected", std::to_string(entry.neglected))
+                  .add("bound", entry.bound)
                   .text();
     };
     return '[' + joined(entries, ",", item) + ']';

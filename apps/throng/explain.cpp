@@ -1,8 +1,10 @@
 // Explain: which effects a scene calls for, and the step that follows from them.
 #include "apps/throng/commands.hpp"
 #include "apps/throng/effect_json.hpp"
+#include "apps/throng/instructions.hpp"
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/json_lines.hpp"
+#include "apps/throng/neglected.hpp"
 #include "apps/throng/output_file.hpp"
 #include "apps/throng/progress.hpp"
 #include "apps/throng/scene_argument.hpp"
@@ -28,7 +30,9 @@ namespace throng {
 namespace {
 
 constexpr Option kOptions[] = {
-    {"--steps", "N", "runs so many steps, from 0, and says what each stage took (default 0)"},
+    {"--steps", "N",
+     "runs so many steps, from 0, and says what each stage took; by effects=auto also what that "
+     "left out, saves and gets wrong (default 0)"},
     {"--without", "EFFECT",
      "runs the scene with one effect off as well, and says what time that saves and what error it "
      "makes in 0.1 s (without --steps, of 120)"},
@@ -96,10 +100,12 @@ std::string stage_json(const Stages& stages, const World::StageInfo& stage, cons
 
 void write_json(const SceneArgument& argument,
                 const StepTimes& times,
+                std::optional<double> instructions,
                 const std::vector<EffectEntry>& entries,
                 const Stages& stages,
                 const StageMs& stage_ms,
                 const std::optional<WithoutReport>& without,
+                const std::optional<NeglectReport>& neglected,
                 std::ostream& out)
 {
     JsonLines json(out);
@@ -107,8 +113,10 @@ void write_json(const SceneArgument& argument,
     json.add("scene", json_string(argument.label));
     json.add("steps", times.steps().count());
     json.add("ms_per_step", times.steps().mean());
+    if (instructions) json.add("instructions_per_step", *instructions);
     json.add("effect_ledger", effect_ledger_json(entries));
     if (without) json.add("without", without_json(*without));
+    if (neglected) json.add("neglected", neglected_json(*neglected));
     json.add("stages",
              '[' + joined(stages, ",", [&](const World::StageInfo& stage) {
                  return stage_json(stages, stage, stage_ms);
@@ -176,6 +184,15 @@ void write_dot(const Stages& stages, std::ostream& out)
     out << "}\n";
 }
 
+/// None where they were not counted, or no step was run.
+std::optional<double> instructions_per_step(std::optional<std::uint64_t> before,
+                                            std::optional<std::uint64_t> after,
+                                            std::size_t steps)
+{
+    if (!before || !after || steps == 0) return std::nullopt;
+    return static_cast<double>(*after - *before) / static_cast<double>(steps);
+}
+
 StepTimes run_steps(World& world, std::int64_t steps)
 {
     using Clock = std::chrono::steady_clock;
@@ -200,6 +217,7 @@ int explain(const Options& options)
     std::optional<Effect> left_out;
     if (options.has("--without")) left_out = effect_asked("--without", options.text("--without"));
     const int threads = threads_asked(options);
+    const InstructionCounter instructions;  // before the threads that it counts
     const SceneArgument argument = read_scene_argument(options);
     World world = make_world(argument, threads);
     note_interrupts();
@@ -219,15 +237,22 @@ int explain(const Options& options)
     if (dot.asked_for()) write_dot(stages, dot.stream());
     dot.keep();
 
+    const std::optional<std::uint64_t> before = instructions.count();
     const StepTimes times = run_steps(world, steps);
+    const std::optional<double> taken =
+        instructions_per_step(before, instructions.count(), times.steps().count());
     StageMs stage_ms;
     for (const StageReport& stage : times.mean_stages()) stage_ms[stage.name] = stage.time_ms;
     const std::vector<EffectEntry> entries = effect_ledger(world, times.mean_stages());
     std::optional<WithoutReport> without;
     if (left_out)
         without = run_without(argument, *left_out, steps > 0 ? steps : kStepsWithout, threads);
+    std::optional<NeglectReport> neglected;
+    if (steps > 0 && argument.scene.settings.effects == EffectChoice::auto_)
+        neglected = run_neglected(argument, steps, threads);
     if (json.asked_for())
-        write_json(argument, times, entries, stages, stage_ms, without, json.stream());
+        write_json(argument, times, taken, entries, stages, stage_ms, without, neglected,
+                   json.stream());
     json.keep();
     if (svg.asked_for()) draw_step(stages, stage_ms, svg.stream());
     svg.keep();
@@ -239,6 +264,12 @@ int explain(const Options& options)
         std::snprintf(text, sizeof text, "%.4g", times.steps().mean());
         std::cout << "steps: " << times.steps().count() << "\nthreads: " << world.threads_met()
                   << "\nms_per_step: " << text << '\n';
+        if (taken) {
+            std::snprintf(text, sizeof text, "%.4g", *taken);
+            std::cout << "instructions_per_step: " << text << '\n';
+        } else {
+            std::cout << "instructions_per_step: left out, " << instructions.trouble() << '\n';
+        }
         if (const double iterations = world.report().relax_iterations; iterations > 0) {
             std::snprintf(text, sizeof text, "%.3g", iterations);
             std::cout << "relax_visits: " << text
@@ -249,6 +280,7 @@ int explain(const Options& options)
     print_stages(stages, stage_ms);
     print_solids(world.solids());
     if (without) print_without(*without);
+    if (neglected) print_neglected(*neglected, entries);
     for (const std::string& sentence : unused_dials(argument.scene))
         std::cerr << "warning: " << sentence << '\n';
     return interrupted() ? kInterrupted : kDone;

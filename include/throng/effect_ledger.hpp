@@ -19,6 +19,9 @@ namespace throng {
 ///   ms       of those, each shared alike among the effects that call for it
 ///   rows     of the last step's equations that are there for it, a point of contact once
 ///   bytes    of the lists that are there for it alone
+///   neglected  bodies, or contacts, that the last step went without it by the dial effects=auto
+///   bound    no point of theirs is off by more of the radius for it, nor is one turned by more
+///            rad, in 0.1 s
 struct EffectEntry {
     Effect effect = Effect::motion;
     bool on = false;
@@ -27,6 +30,8 @@ struct EffectEntry {
     std::vector<std::string_view> stages;
     double ms = 0;
     std::size_t rows = 0, bytes = 0;
+    std::size_t neglected = 0;
+    double bound = 0;
 };
 
 /// All effects in their order, those that are off included. The sum of ms is that of the stages.

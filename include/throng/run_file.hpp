@@ -12,7 +12,7 @@
 //   /bodies/size              [N, 3] m: radius of a sphere; radius and half length of a capsule or
 //                             cylinder; half extents of a box; 0 for the rest
 //   /effects/name             [E] text, of each effect (effect_ledger.hpp); of a run that ended
-//   /effects/on, callers, ms, rows, bytes  [E] as at its end; ms a step
+//   /effects/on, callers, ms, rows, bytes, neglected, bound  [E] as at its end; ms a step
 //   /effects/first            [E] text, who calls first
 //   /frames/step, time        [F] steps done; s
 //   /frames/position          [F, N, 3] of the body's own frame, double

@@ -45,6 +45,7 @@ enum class ToiMethod : std::uint8_t {
 enum class ImpactLaw : std::uint8_t { sequential, simultaneous };
 enum class FrictionAt : std::uint8_t { manifold, points };
 enum class Escalation : std::uint8_t { auto_, off };
+enum class EffectChoice : std::uint8_t { called, auto_ };
 enum class FrictionCone : std::uint8_t { cone, pyramid };
 
 struct Settings {
@@ -94,6 +95,10 @@ struct Settings {
     ToiMethod toi_method = ToiMethod::newton;
     double toi_tolerance = 1e-4;  // of the smallest half extent of the two shapes
     bool sleep = true;
+    EffectChoice effects = EffectChoice::called;
+    // auto: bodies end no further off than this share of their radius in 0.1 s, root of the mean
+    // square, and turned by no more rad, than with all that is left out.
+    double effects_error = 0.02;
 
     // Sleeping: an island rests once all of it stayed slower than this for this long.
     double sleep_speed = 0.02;  // m/s, of any point of the body

@@ -69,6 +69,8 @@ public:
     Vec3 center_of_mass(BodyId body) const;
     Vec3 velocity(BodyId body) const;          // of the center of mass
     Vec3 angular_velocity(BodyId body) const;  // world axes
+    /// m: no point of its shapes is further from the center of mass; 0 without any, planes apart.
+    double radius(BodyId body) const;
 
     /// These wake the body and what it rests with.
     void set_pose(BodyId body, const Pose& pose);

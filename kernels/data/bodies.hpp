@@ -72,9 +72,13 @@ struct Masses {
     std::vector<double> inverse_mass;   // 1/kg
     std::vector<Sym3> inertia;          // kg m2 about the center, body axes
     std::vector<Sym3> inverse_inertia;  // 1/(kg m2), body axes
-    // 1 where principal moments differ, so that the gyroscopic term acts; 2 where, besides, the
+    // 1 where principal moments differ, so that a gyroscopic torque acts; 2 where, besides, the
     // body's axes are not the principal ones.
+    std::vector<std::uint8_t> inertia_kind;
+    // The same of those in whom this step does not neglect that torque, else 0.
     std::vector<std::uint8_t> gyroscopic_kind;
+    // Of the square of the spin: no greater angular acceleration comes of that torque.
+    std::vector<float> gyroscopic_rate;
     // Of those, body axes: the one about which the inertia is all but symmetric, as of rods, discs
     // and needles of any kind; zero where there is none.
     std::vector<Vec3> symmetry_axis;

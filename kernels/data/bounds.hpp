@@ -1,6 +1,7 @@
 // Bounds: a box round each collider, with a margin for what it may do before it is looked at again.
 #pragma once
 
+#include "kernels/parallel/compact.hpp"
 #include "throng/box3.hpp"
 
 #include <limits>
@@ -39,8 +40,8 @@ struct NearBox {
 ///   flags  [colliders] all 0 between stages
 struct BoundsScratch {
     std::vector<std::uint8_t> flags;
-    std::vector<std::vector<std::uint32_t>> of_block, fast_of_block;
-    std::vector<std::uint32_t> fast_candidate_of_block;
+    std::vector<std::vector<std::uint32_t>> of_block;
+    BlockLists<std::uint32_t> fast_of_block, fast_candidates_of_block;
 };
 
 /// What the broad phase works on.
@@ -66,8 +67,8 @@ struct BoundsScratch {
 ///   flush               [colliders] whether it may lie flush with another, by these bits: all but
 ///                       single ones of dynamic bodies; a plane has no rim
 ///   flush_end           behind the last of those, or further
-///   fast_candidate      the first body that may go about half its smallest half extent in this
-///                       step, or more
+///   fast_candidates     bodies that may go about half their smallest half extent in this step, or
+///                       more, ascending
 struct Bounds {
     std::vector<Box3> boxes;
     std::vector<double> speculative_margin;
@@ -85,8 +86,7 @@ struct Bounds {
     static constexpr std::uint8_t kPlane = 1, kRimmed = 2;
     std::vector<std::uint8_t> flush;
     std::uint32_t flush_end = 0;
-    static constexpr std::uint32_t kNone = 0xffffffffu;
-    std::uint32_t fast_candidate = kNone;
+    std::vector<std::uint32_t> fast_candidates;
     bool still_changed = true;
     BoundsScratch scratch;
 };

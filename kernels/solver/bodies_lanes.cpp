@@ -2,7 +2,12 @@
 #include "kernels/math/gyroscopic_theta.hpp"
 #include "kernels/solver/solve_lanes.hpp"
 
+#include <algorithm>
+#include <bit>
+#include <cstring>
 #include <limits>
+#include <memory>
+#include <new>
 
 namespace throng::THRONG_LANES {
 
@@ -295,60 +300,175 @@ void for_bodies(std::size_t count, Wide wide, One one)
     for (; i < count; ++i) one(i);
 }
 
+constexpr std::size_t kTogether = 128;  // bodies that are looked through for few
+
+// Room for some of a kind, which costs nothing until they are there.
+template <class T, std::size_t most>
+class Room {
+public:
+    T* data() { return std::launder(reinterpret_cast<T*>(bytes_)); }
+    const T& operator[](std::size_t i) { return data()[i]; }
+    void put(std::size_t i, const T& one)
+    {
+        std::construct_at(reinterpret_cast<T*>(bytes_ + i * sizeof(T)), one);
+    }
+
+private:
+    alignas(T) std::byte bytes_[most * sizeof(T)];
+};
+
+// Copies of few bodies among others, side by side.
+template <class Real>
+class Few {
+public:
+    // Of those on whom a gyroscopic torque acts. False where they are not few.
+    bool take(const SolverBody<Real>* bodies,
+              const GyroscopicInertia<Real>* inertias,
+              const std::uint8_t* precesses,
+              std::size_t count)
+    {
+        for (std::size_t first = 0; first < count; first += 8) {
+            std::uint64_t eight = 0;  // of these bytes, each 0 or 1
+            std::memcpy(&eight, precesses + first, std::min<std::size_t>(8, count - first));
+            for (; eight != 0; eight &= eight - 1) {
+                if (2 * (count_ + 1) > count) return false;
+                from_[count_++] = first + static_cast<std::size_t>(std::countr_zero(eight)) / 8;
+            }
+        }
+        for (std::size_t k = 0; k < count_; ++k) put(k, bodies[from_[k]], inertias[from_[k]]);
+        return true;
+    }
+    // Calls run(bodies, inertias, how many) with them, and one of them again to fill the lanes.
+    template <class Run>
+    void run(Run run)
+    {
+        if (count_ == 0) return;
+        std::size_t filled = count_;
+        for (; filled % std::size_t{Lanes<Real>::kWidth} != 0; ++filled)
+            put(filled, bodies_[0], inertias_[0]);
+        run(bodies_.data(), inertias_.data(), filled);
+    }
+    void put_back(SolverBody<Real>* bodies)
+    {
+        for (std::size_t k = 0; k < count_; ++k) bodies[from_[k]] = bodies_[k];
+    }
+
+private:
+    void put(std::size_t at, const SolverBody<Real>& body, const GyroscopicInertia<Real>& inertia)
+    {
+        bodies_.put(at, body);
+        inertias_.put(at, inertia);
+    }
+
+    static constexpr std::size_t kMost = kTogether / 2 + kBlock;
+    std::size_t count_ = 0;
+    std::size_t from_[kMost];
+    Room<SolverBody<Real>, kMost> bodies_;
+    Room<GyroscopicInertia<Real>, kMost> inertias_;
+};
+
+// Calls run(bodies, inertias or null, how many) for all, and sums what it returns; before that for
+// those on whom a gyroscopic torque acts by themselves, where they are few.
+template <class Real, class Run>
+std::size_t for_inertias(SolverBody<Real>* bodies,
+                         const GyroscopicInertia<Real>* inertias,
+                         const std::uint8_t* precesses,
+                         std::size_t count,
+                         Run run)
+{
+    constexpr const GyroscopicInertia<Real>* kNone = nullptr;
+    if (inertias == nullptr || precesses == nullptr) return run(bodies, inertias, count);
+    std::size_t sum = 0;
+    for (std::size_t at = 0; at < count; at += kTogether) {
+        const std::size_t some = std::min(kTogether, count - at);
+        Few<Real> few;
+        if (few.take(bodies + at, inertias + at, precesses + at, some)) {
+            few.run(run);
+            sum += run(bodies + at, kNone, some);
+            few.put_back(bodies + at);
+        } else {
+            sum += run(bodies + at, inertias + at, some);
+        }
+    }
+    return sum;
+}
+
 }  // namespace
 
 template <class Real>
 void begin_substep(SolverBody<Real>* bodies,
                    const GyroscopicInertia<Real>* inertias,
+                   const std::uint8_t* precesses,
                    std::size_t count,
                    const Substep<Real>& substep)
 {
     using L = Lanes<Real>;
     using One = Wide<Real, 1>;
-    const auto at = [&](std::size_t i) { return inertias == nullptr ? nullptr : inertias + i; };
-    for_bodies<Real>(
-        count,
-        [&](std::size_t i) {
-            stop_runaways(bodies + i, L::kWidth);
-            begin_lanes<L>(bodies + i, at(i), ~0u, substep);
-        },
-        [&](std::size_t i) {
-            stop_runaways(bodies + i, 1);
-            begin_lanes<One>(bodies + i, at(i), 1u, substep);
+    for_inertias(
+        bodies, inertias, precesses, count, [&](auto* some, auto* of, std::size_t how_many) {
+            const auto at = [&](std::size_t i) { return of == nullptr ? nullptr : of + i; };
+            for_bodies<Real>(
+                how_many,
+                [&](std::size_t i) {
+                    stop_runaways(some + i, L::kWidth);
+                    begin_lanes<L>(some + i, at(i), ~0u, substep);
+                },
+                [&](std::size_t i) {
+                    stop_runaways(some + i, 1);
+                    begin_lanes<One>(some + i, at(i), 1u, substep);
+                });
+            return std::size_t{0};
         });
 }
 
 template <class Real>
 std::size_t advance(SolverBody<Real>* bodies,
                     const GyroscopicInertia<Real>* inertias,
+                    const std::uint8_t* precesses,
                     std::size_t count,
                     Real time,
                     bool turns)
 {
     using L = Lanes<Real>;
     using One = Wide<Real, 1>;
-    std::size_t fast = 0;
-    const auto at = [&](std::size_t i) { return inertias == nullptr ? nullptr : inertias + i; };
-    const auto tally = [&](auto lanes) {
-        for (int k = 0; k < decltype(lanes)::kWidth; ++k) fast += lanes.get(k) > 0 ? 1 : 0;
-    };
-    for_bodies<Real>(
-        count, [&](std::size_t i) { tally(advance_lanes<L>(bodies + i, at(i), ~0u, time, turns)); },
-        [&](std::size_t i) { tally(advance_lanes<One>(bodies + i, at(i), 1u, time, turns)); });
-    return fast;
+    return for_inertias(
+        bodies, inertias, precesses, count, [&](auto* some, auto* of, std::size_t how_many) {
+            std::size_t fast = 0;
+            const auto tally = [&](auto lanes) {
+                for (int k = 0; k < decltype(lanes)::kWidth; ++k) fast += lanes.get(k) > 0 ? 1 : 0;
+            };
+            const auto at = [&](std::size_t i) { return of == nullptr ? nullptr : of + i; };
+            for_bodies<Real>(
+                how_many,
+                [&](std::size_t i) { tally(advance_lanes<L>(some + i, at(i), ~0u, time, turns)); },
+                [&](std::size_t i) {
+                    tally(advance_lanes<One>(some + i, at(i), 1u, time, turns));
+                });
+            return fast;
+        });
 }
 
 template void begin_substep<float>(SolverBody<float>*,
                                    const GyroscopicInertia<float>*,
+                                   const std::uint8_t*,
                                    std::size_t,
                                    const Substep<float>&);
 template void begin_substep<double>(SolverBody<double>*,
                                     const GyroscopicInertia<double>*,
+                                    const std::uint8_t*,
                                     std::size_t,
                                     const Substep<double>&);
-template std::size_t
-advance<float>(SolverBody<float>*, const GyroscopicInertia<float>*, std::size_t, float, bool);
-template std::size_t
-advance<double>(SolverBody<double>*, const GyroscopicInertia<double>*, std::size_t, double, bool);
+template std::size_t advance<float>(SolverBody<float>*,
+                                    const GyroscopicInertia<float>*,
+                                    const std::uint8_t*,
+                                    std::size_t,
+                                    float,
+                                    bool);
+template std::size_t advance<double>(SolverBody<double>*,
+                                     const GyroscopicInertia<double>*,
+                                     const std::uint8_t*,
+                                     std::size_t,
+                                     double,
+                                     bool);
 
 }  // namespace throng::THRONG_LANES

@@ -67,6 +67,7 @@ struct ContactConstraintsView {
     SurfaceVelocityWide<Real>* surface_velocities = nullptr;
     const SolverPrescribedVelocity<Real>* prescribed = nullptr;
     GyroscopicInertia<Real>* inertias = nullptr;
+    const std::uint8_t* precesses = nullptr;
     TurningArmsWide<Real>* turning_arms = nullptr;
     const RoundRim* rims = nullptr;
 
@@ -82,6 +83,7 @@ struct ContactConstraintsView {
         keep(calls.effects.has(Effect::rolling_friction), view.rolling_frictions);
         keep(calls.effects.has(Effect::friction), view.point_frictions);
         keep(calls.effects.has(Effect::gyroscopic), view.inertias);
+        keep(calls.effects.has(Effect::gyroscopic), view.precesses);
         keep(calls.effects.has(Effect::drive), view.prescribed);
         keep(calls.surfaces_go(), view.surface_velocities);
         keep(calls.swings, view.turning_arms);
@@ -101,6 +103,7 @@ struct ContactConstraintsView {
                                                        : constraints.surface_velocities.data(),
                 constraints.prescribed.empty() ? nullptr : constraints.prescribed.data(),
                 constraints.inertias.empty() ? nullptr : constraints.inertias.data(),
+                constraints.precesses.empty() ? nullptr : constraints.precesses.data(),
                 constraints.turning_arms.empty() ? nullptr : constraints.turning_arms.data(),
                 constraints.rims.empty() ? nullptr : constraints.rims.data()};
     }
@@ -147,7 +150,8 @@ inline constexpr double kAtRest = 1e-4;
 ///                            then, but in the first substep, what all contacts gave in the last
 ///                            one: within a step arms and inertia do not change, but for those that
 ///                            turn_arms() sees to, so it is `motion` less `free`, and no contact
-///                            has to be asked. `inertias` null: no gyroscopic torque
+///                            has to be asked. `inertias` null: no gyroscopic torque;
+///                            `precesses` null: one may act on any of them
 ///   advance                  moves and turns bodies by their velocities for a time; returns how
 ///                            many turn too fast for it and were moved only (see turn_fast)
 ///
@@ -195,10 +199,12 @@ struct SolveKernels {
                               const SolverIteration<Real>& iteration);
     void (*begin_substep)(SolverBody<Real>* bodies,
                           const GyroscopicInertia<Real>* inertias,
+                          const std::uint8_t* precesses,
                           std::size_t count,
                           const Substep<Real>& substep);
     std::size_t (*advance)(SolverBody<Real>* bodies,
                            const GyroscopicInertia<Real>* inertias,
+                           const std::uint8_t* precesses,
                            std::size_t count,
                            Real time,
                            bool turns);

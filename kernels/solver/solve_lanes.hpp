@@ -20,12 +20,14 @@ void update_masses(const ContactConstraintsView<Real>& constraints,
 template <class Real>
 void begin_substep(SolverBody<Real>* bodies,
                    const GyroscopicInertia<Real>* inertias,
+                   const std::uint8_t* precesses,
                    std::size_t count,
                    const Substep<Real>& substep);
 
 template <class Real>
 std::size_t advance(SolverBody<Real>* bodies,
                     const GyroscopicInertia<Real>* inertias,
+                    const std::uint8_t* precesses,
                     std::size_t count,
                     Real time,
                     bool turns);

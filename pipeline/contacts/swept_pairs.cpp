@@ -69,20 +69,28 @@ bool SweptPairs::went_far(std::uint32_t body) const
     return may_have_passed(colliders_, body, length, angle, square);
 }
 
-// Ascending: those that were known to be fast before, and those that a blow made so.
+// Ascending: those that were known to be fast before, and those that a blow made so. Who was no
+// candidate and touched nothing is not asked, where no forces drove him.
 void SweptPairs::find_fast(const std::vector<std::uint32_t>& woke)
 {
     found_ = bounds_.fast;
-    for (const auto* active_bodies :
-         {&states_.active_bodies.dynamic, &states_.active_bodies.kinematic, &woke}) {
+    const auto ask = [&](const std::vector<std::uint32_t>& bodies) {
         BlockLists<std::uint32_t> lists;
-        lists.start(block_count(active_bodies->size(), kMovers));
-        for_each_block(active_bodies->size(), kMovers, [&](auto begin, auto end, auto block) {
+        lists.start(block_count(bodies.size(), kMovers));
+        for_each_block(bodies.size(), kMovers, [&](auto begin, auto end, auto block) {
             for (std::size_t i = begin; i < end; ++i)
-                if (went_far((*active_bodies)[i])) lists[block].push_back((*active_bodies)[i]);
+                if (went_far(bodies[i])) lists[block].push_back(bodies[i]);
         });
         lists.append_to(found_);
+    };
+    if (context_.effects.meets(kForces)) {
+        ask(states_.active_bodies.dynamic);
+    } else {
+        ask(bounds_.fast_candidates);
+        ask(islands_.bodies);
     }
+    ask(states_.active_bodies.kinematic);
+    ask(woke);
     std::sort(found_.begin(), found_.end());
     found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
 }

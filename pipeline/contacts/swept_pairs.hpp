@@ -49,14 +49,16 @@ public:
                const Bounds& bounds,
                const Pairs& pairs,
                const BodyStates& states,
+               const Islands& islands,
                std::span<const std::uint32_t> followed,
                std::span<const std::uint32_t> on_meshes,
                const Poses& poses,
                const Velocities& velocities,
                std::vector<std::uint8_t>& flags)
         : context_(context), parameters_(parameters), shapes_(shapes), colliders_(colliders),
-          filter_(filter), bounds_(bounds), pairs_(pairs), states_(states), followed_(followed),
-          on_meshes_(on_meshes), poses_(poses), velocities_(velocities), flags_(flags)
+          filter_(filter), bounds_(bounds), pairs_(pairs), states_(states), islands_(islands),
+          followed_(followed), on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
+          flags_(flags)
     { }
 
     /// Finds both; `woke`: bodies that woke in this step.
@@ -89,6 +91,7 @@ private:
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;
+    const Islands& islands_;
     std::span<const std::uint32_t> followed_, on_meshes_;
     const Poses& poses_;
     const Velocities& velocities_;

@@ -226,6 +226,9 @@ void write_effects_of(hid_t file, std::span<const EffectEntry> effects)
     add_text(add("ms", H5T_NATIVE_DOUBLE, [](const EffectEntry& e) { return e.ms; }), "unit", "ms");
     add("rows", H5T_NATIVE_UINT64, [](const EffectEntry& e) { return std::uint64_t{e.rows}; });
     add("bytes", H5T_NATIVE_UINT64, [](const EffectEntry& e) { return std::uint64_t{e.bytes}; });
+    add("neglected", H5T_NATIVE_UINT64,
+        [](const EffectEntry& e) { return std::uint64_t{e.neglected}; });
+    add("bound", H5T_NATIVE_DOUBLE, [](const EffectEntry& e) { return e.bound; });
 }
 
 void write_facts(hid_t file, const World& world, const RunFacts& facts)

@@ -214,7 +214,8 @@ void SlicePasses<Real>::begin_substep(const Slice& slice, bool shared, bool firs
             ? Substep<Real>::Gyroscopic::implicit
             : Substep<Real>::Gyroscopic::direct;
     for_bodies(slice, shared, [&](std::size_t at, std::size_t count) {
-        kernels_.begin_substep(constraints_.bodies.data() + at, inertias_at(at), count, substep);
+        kernels_.begin_substep(constraints_.bodies.data() + at, inertias_at(at), precesses_at(at),
+                               count, substep);
         if (context_.effects.meets(kForces)) apply_acceleration(at, count);
     });
 }
@@ -249,7 +250,9 @@ void SlicePasses<Real>::advance(const Slice& slice, bool shared)
     for_bodies(slice, shared, [&](std::size_t at, std::size_t count) {
         const auto bodies = std::span(constraints_.bodies).subspan(at, count);
         const GyroscopicInertia<Real>* const inertias = inertias_at(at);
-        if (kernels_.advance(bodies.data(), inertias, count, time_, iteration_.turns) > 0)
+        if (kernels_.advance(bodies.data(), inertias, precesses_at(at), count, time_,
+                             iteration_.turns)
+            > 0)
             turn_fast(bodies, inertias, time_);
     });
 }

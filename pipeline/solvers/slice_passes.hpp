@@ -81,6 +81,10 @@ private:
     {
         return view_.inertias == nullptr ? nullptr : view_.inertias + at;
     }
+    const std::uint8_t* precesses_at(std::size_t at) const
+    {
+        return view_.precesses == nullptr ? nullptr : view_.precesses + at;
+    }
     void apply_acceleration(std::size_t at, std::size_t count);
     void advance(const Slice& slice, bool shared);
     void apply_restitution_of(const Slice& slice, bool shared, bool backward);

@@ -53,6 +53,7 @@ public:
                         const Bounds& bounds,
                         const Pairs& pairs,
                         const BodyStates& states,
+                        const Islands& islands,
                         std::span<const std::uint32_t> followed,
                         std::span<const std::uint32_t> on_meshes,
                         Poses& poses,
@@ -69,6 +70,7 @@ public:
                  bounds,
                  pairs,
                  states,
+                 islands,
                  followed,
                  on_meshes,
                  poses,
@@ -450,6 +452,7 @@ void continuous_collision(const StepContext& context,
                           const Bounds& bounds,
                           const Pairs& pairs,
                           const BodyStates& states,
+                          const Islands& islands,
                           const SleepEvents& sleep_events,
                           const ConvexContacts<Real>& contacts,
                           const MeshContacts<Real>& on_meshes,
@@ -460,8 +463,8 @@ void continuous_collision(const StepContext& context,
     // Where nothing can touch, nothing is in the way.
     if (bounds.placed.size() != colliders.size()) return;
     ContinuousCollision(context, parameters, shapes, colliders, surfaces, filter, forces, masses,
-                        bounds, pairs, states, contacts.followed, on_meshes.followed, poses,
-                        velocities, fast)
+                        bounds, pairs, states, islands, contacts.followed, on_meshes.followed,
+                        poses, velocities, fast)
         .run(sleep_events.woke);
 }
 
@@ -469,8 +472,8 @@ void continuous_collision(const StepContext& context,
     template void continuous_collision<Real>(                                                      \
         const StepContext&, const ImpactParameters&, const Shapes&, const Colliders&,              \
         const Surfaces&, const PairFilter&, const Forces&, const Masses&, const Bounds&,           \
-        const Pairs&, const BodyStates&, const SleepEvents&, const ConvexContacts<Real>&,          \
-        const MeshContacts<Real>&, Poses&, Velocities&, FastBodies&);
+        const Pairs&, const BodyStates&, const Islands&, const SleepEvents&,                       \
+        const ConvexContacts<Real>&, const MeshContacts<Real>&, Poses&, Velocities&, FastBodies&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -7,6 +7,7 @@
 #include "kernels/solver/solver_bodies.hpp"
 #include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/forces/state_dependent_forces.hpp"
+#include "pipeline/step/neglect.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <algorithm>
@@ -35,12 +36,18 @@ constexpr double kRollSeen = 1e-4;  // rad, in a step
 // split_impulse.cpp has, as shares of the half extent.
 constexpr double kMayPart = 1e-5, kMayBeWedged = 0.1;
 
+// Rolling friction may be neglected in what has been slow enough to sleep for this share of the
+// time that it takes to.
+constexpr double kSoon = 0.25;
+
 // A carrier is looked for with this much to spare: contacts decide, in their own precision.
 constexpr double kToSpare = 1 + 1e-5;
 
 template <class Real>
 struct IslandFacts {
     const StepContext& context;
+    const NeglectParameters& neglect;
+    const SleepParameters& sleep;
     const ActiveContacts& contacts;
     const BodyStates& states;
     const Poses& poses;
@@ -65,7 +72,8 @@ struct IslandFacts {
                rounds = !shapes.capsules.empty() || !shapes.cylinders.empty(),
                wedges = !solids.entries.empty() || colliders.compounds,
                acts_on_all = acted_on && (forces.field || !forces.attractors.empty()),
-               springs_act = acted_on && !forces.springs.empty();
+               springs_act = acted_on && !forces.springs.empty(),
+               neglects = neglect.some && context.has(Effect::sleeping) && context.last_substep > 0;
 };
 
 // One island.
@@ -77,7 +85,7 @@ public:
     { }
 
     // Adds to the bodies whose rims are followed.
-    IslandCalls find(std::vector<Islands::Rolling>& rolling)
+    IslandCalls find(std::vector<Islands::Rolling>& rolling, NeglectedEffects::Share& neglected)
     {
         for (const std::uint32_t body : bodies_) shapes_ |= scene_.colliders.shape_bits[body];
         ask_contacts();  // first: friction turns bodies
@@ -96,6 +104,8 @@ public:
             && calls_.effects.has(Effect::friction))
             find_turning_axes();
         if ((shapes_ & Colliders::kRim) != 0) find_rolling(rolling);
+        if (scene_.neglects && calls_.effects.has(Effect::rolling_friction) && sleeps_soon())
+            neglect_rolling_friction(neglected);
         const unsigned swings =
             Colliders::kMayHang | ((all_shapes_ & Colliders::kRound) != 0 ? Colliders::kFlat : 0u);
         calls_.swings = calls_.rolls || (shapes_ & swings) != 0;
@@ -159,11 +169,53 @@ private:
             const bool wedges = entry.list == ContactList::solid
                 || (count[entry.body_a] > 1 && count[entry.body_b] > 1);
             if (!placed && !wedges) return false;
-            const Contact<Real>& contact =
-                contact_of(scene_.convex, scene_.meshes, scene_.solids, scene_.joined, entry);
-            return double{contact.overlap(entry.points)}
+            return double{contact_at(entry).overlap(entry.points)}
             > (placed ? kMayPart : kMayBeWedged) * double{entry.extent};
         });
+    }
+
+    // Whether all of it has lain still for long, on what does not move.
+    bool sleeps_soon() const
+    {
+        const double soon = kSoon * scene_.sleep.time;
+        return sides_.empty() && !calls_.driven && !calls_.effects.has(Effect::drive)
+            && std::all_of(bodies_.begin(), bodies_.end(), [&](std::uint32_t body) {
+                   return scene_.states.sleep_time[body] >= soon;
+               });
+    }
+
+    // What it gave in the last step that had it would hardly turn anybody.
+    void neglect_rolling_friction(NeglectedEffects::Share& neglected)
+    {
+        NeglectedEffects::Share share;
+        std::vector<double> impulses(bodies_.size());  // N m s on each, in a substep
+        for (const std::uint32_t place : contacts_) {
+            const ActiveContacts::Entry& entry = scene_.contacts.entries[place];
+            if (!(entry.rolling_friction > 0)) continue;
+            ++share.callers;
+            const double impulse = contact_at(entry).rolling.template cast<double>().norm();
+            for (const std::uint32_t body : {entry.body_a, entry.body_b})
+                if (scene_.states.movable(body)) impulses[place_of(body)] += impulse;
+        }
+        for (std::size_t i = 0; i < bodies_.size(); ++i)
+            share.bound =
+                std::max(share.bound,
+                         turned_in_window(impulses[i] * inverse_mass_of(bodies_[i]).angular
+                                          / scene_.context.last_substep));
+        if (!(share.bound <= kOfError * scene_.neglect.error)) return;
+        calls_.effects.remove(Effect::rolling_friction);
+        neglected.add(share);
+    }
+
+    std::size_t place_of(std::uint32_t body) const
+    {
+        const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), body);
+        return static_cast<std::size_t>(at - bodies_.begin());
+    }
+
+    const Contact<Real>& contact_at(const ActiveContacts::Entry& entry) const
+    {
+        return contact_of(scene_.convex, scene_.meshes, scene_.solids, scene_.joined, entry);
     }
 
     // What contacts do not push.
@@ -266,7 +318,8 @@ private:
         calls_.axes_turn = std::any_of(bodies_.begin(), bodies_.end(), [&](std::uint32_t body) {
             const Vec3& spin = scene_.velocities.angular[body];
             const Vec3& axis = scene_.masses.symmetry_axis[body];
-            return !spin.isZero(0) && !axis.isZero(0) && scene_.masses.inverse_mass[body] > 0
+            return scene_.masses.gyroscopic_kind[body] != 0 && !spin.isZero(0) && !axis.isZero(0)
+                && scene_.masses.inverse_mass[body] > 0
                 && axis_turns(scene_.poses.orientation[body] * axis, spin, scene_.context.dt);
         });
     }
@@ -285,10 +338,6 @@ private:
             bool rolls = false;
         };
         std::vector<Rim> rims(bodies_.size());
-        const auto rim_of = [&](std::uint32_t body) -> Rim& {
-            const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), body);
-            return rims[static_cast<std::size_t>(at - bodies_.begin())];
-        };
         const double least = kRollSeen / scene_.context.dt;
         const auto turns = [&](std::uint32_t body) {
             return scene_.states.movable(body)
@@ -299,7 +348,7 @@ private:
             const bool rolls = turns(entry.body_a) || turns(entry.body_b);
             for (const std::uint32_t body : {entry.body_a, entry.body_b}) {
                 if (!has_rim(body)) continue;
-                Rim& rim = rim_of(body);
+                Rim& rim = rims[place_of(body)];
                 ++rim.contacts;
                 rim.rolls = rim.rolls || rolls;
             }
@@ -411,6 +460,8 @@ void sort_by_calls(Islands& islands)
 
 template <class Real>
 void sort_islands(const StepContext& context,
+                  const NeglectParameters& neglect,
+                  const SleepParameters& sleep,
                   const ActiveContacts& contacts,
                   const BodyStates& states,
                   const Poses& poses,
@@ -426,18 +477,25 @@ void sort_islands(const StepContext& context,
                   const MeshContacts<Real>& meshes,
                   const SolidContacts<Real>& solids,
                   const JoinedContacts<Real>& joined,
+                  NeglectedEffects& neglected,
                   Islands& islands)
 {
-    const IslandFacts<Real> scene{context, contacts, states,    poses,  velocities, masses,
-                                  forces,  shapes,   colliders, census, prescribed, split_impulse,
-                                  convex,  meshes,   solids,    joined};
+    const IslandFacts<Real> scene{context,    neglect,       sleep,  contacts, states,    poses,
+                                  velocities, masses,        forces, shapes,   colliders, census,
+                                  prescribed, split_impulse, convex, meshes,   solids,    joined};
     islands.calls.assign(islands.size(), {});
+    const std::size_t blocks = block_count(islands.size(), kIslands);
     BlockLists<Islands::Rolling> rolling;
-    rolling.start(block_count(islands.size(), kIslands));
+    rolling.start(blocks);
+    std::vector<NeglectedEffects::Share>& of_block = neglected.scratch.of_block;
+    of_block.assign(blocks, {});
     for_each_block(islands.size(), kIslands, [&](auto begin, auto end, auto block) {
         for (std::size_t island = begin; island < end; ++island)
-            islands.calls[island] = IslandSearch<Real>(scene, islands, island).find(rolling[block]);
+            islands.calls[island] =
+                IslandSearch<Real>(scene, islands, island).find(rolling[block], of_block[block]);
     });
+    neglected.rolling_friction = {};
+    for (const NeglectedEffects::Share& share : of_block) neglected.rolling_friction.add(share);
     islands.rolling.clear();
     rolling.append_to(islands.rolling);
     sort_by_calls(islands);
@@ -445,11 +503,12 @@ void sort_islands(const StepContext& context,
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void sort_islands<Real>(                                                              \
-        const StepContext&, const ActiveContacts&, const BodyStates&, const Poses&,                \
-        const Velocities&, const Masses&, const Forces&, const Shapes&, const Colliders&,          \
-        const EffectCensus&, const PrescribedVelocities&, const SplitImpulse&,                     \
-        const ConvexContacts<Real>&, const MeshContacts<Real>&, const SolidContacts<Real>&,        \
-        const JoinedContacts<Real>&, Islands&);
+        const StepContext&, const NeglectParameters&, const SleepParameters&,                      \
+        const ActiveContacts&, const BodyStates&, const Poses&, const Velocities&, const Masses&,  \
+        const Forces&, const Shapes&, const Colliders&, const EffectCensus&,                       \
+        const PrescribedVelocities&, const SplitImpulse&, const ConvexContacts<Real>&,             \
+        const MeshContacts<Real>&, const SolidContacts<Real>&, const JoinedContacts<Real>&,        \
+        NeglectedEffects&, Islands&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -115,6 +115,13 @@ void note_form(const Shapes& shapes, const Colliders& colliders, std::size_t at,
     bounds.round[at] = rounded_up(round);
 }
 
+// Ascending, none twice.
+void put_in_order(std::vector<std::uint32_t>& list)
+{
+    if (!std::is_sorted(list.begin(), list.end())) std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
 // One call of the stage.
 class Update {
 public:
@@ -139,14 +146,13 @@ public:
         bounds_.asked.clear();
         if (!bounds_.fast.empty()) std::fill(bounds_.kept.begin(), bounds_.kept.end(), 0.0);
         bounds_.fast.clear();
-        bounds_.fast_candidate = Bounds::kNone;
+        bounds_.fast_candidates.clear();
         of_movers(states_.active_bodies.kinematic, 0);
         of_movers(states_.active_bodies.dynamic, falls_);
         of_others(touched);
         note_placed_anew(touched);
-        std::vector<std::uint32_t>& fast = bounds_.fast;
-        if (!std::is_sorted(fast.begin(), fast.end())) std::sort(fast.begin(), fast.end());
-        fast.erase(std::unique(fast.begin(), fast.end()), fast.end());
+        put_in_order(bounds_.fast);
+        put_in_order(bounds_.fast_candidates);
         for (const std::uint32_t collider : touched) bounds_.scratch.flags[collider] = 0;
     }
 
@@ -174,9 +180,7 @@ private:
         std::vector<std::uint32_t> touched;
         touched.swap(bounds_.touched);
         bounds_.still_changed = !touched.empty();
-        if (!std::is_sorted(touched.begin(), touched.end()))
-            std::sort(touched.begin(), touched.end());
-        touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+        put_in_order(touched);
         for (const std::uint32_t collider : touched) bounds_.scratch.flags[collider] = 1;
         return touched;
     }
@@ -189,14 +193,12 @@ private:
         const ActiveBoundsRule rule{dt_,          kRestingMargin, falls,       margin.base,
                                     margin.steps, margin.longest, margin.loose};
         const std::size_t blocks = block_count(bodies.size(), kGrain);
-        bounds_.scratch.fast_candidate_of_block.assign(blocks, Bounds::kNone);
-        if (bounds_.scratch.fast_of_block.size() < blocks)
-            bounds_.scratch.fast_of_block.resize(blocks);
+        bounds_.scratch.fast_candidates_of_block.start(blocks);
+        bounds_.scratch.fast_of_block.start(blocks);
         in_blocks(bodies.size(), [&](std::size_t begin, std::size_t end, auto& asked) {
             std::array<std::uint32_t, kGrain> colliders, owners, found;
             std::size_t count = 0;
             const std::size_t block = begin / kGrain;
-            bounds_.scratch.fast_of_block[block].clear();
             const auto flush = [&] {
                 const std::size_t left =
                     kernel_(rule, arrays, colliders.data(), owners.data(), count, found.data());
@@ -218,12 +220,8 @@ private:
             });
             flush();
         });
-        for (std::size_t block = 0; block < blocks; ++block) {
-            bounds_.fast_candidate =
-                std::min(bounds_.fast_candidate, bounds_.scratch.fast_candidate_of_block[block]);
-            const std::vector<std::uint32_t>& fast = bounds_.scratch.fast_of_block[block];
-            bounds_.fast.insert(bounds_.fast.end(), fast.begin(), fast.end());
-        }
+        bounds_.scratch.fast_of_block.append_to(bounds_.fast);
+        bounds_.scratch.fast_candidates_of_block.append_to(bounds_.fast_candidates);
     }
 
     // Those of bodies that move.
@@ -262,8 +260,7 @@ private:
     {
         const std::uint32_t body = colliders_.body[collider];
         if (is_fast_candidate(colliders_, velocities_, body, dt_, falls))
-            bounds_.scratch.fast_candidate_of_block[block] =
-                std::min(bounds_.scratch.fast_candidate_of_block[block], body);
+            bounds_.scratch.fast_candidates_of_block[block].push_back(body);
         if (!sweeps_ || !states_.dynamic(body)) return;
         const double inner = colliders_.inner_extent[collider];
         const double turning =

@@ -103,7 +103,7 @@ private:
         call_if(by_itself, Call::turns);
         call_if(touched, Call::turns_touched);
         call_if(touches, Call::turns_rubbed);
-        if (facts_.masses.gyroscopic_kind[body_] == 0) return;
+        if (facts_.masses.inertia_kind[body_] == 0) return;
         call_if(by_itself, Call::uneven_turns);
         call_if(touched, Call::uneven_turns_touched);
         call_if(touches, Call::uneven_turns_rubbed);

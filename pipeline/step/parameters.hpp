@@ -85,6 +85,18 @@ struct SleepParameters {
     }
 };
 
+/// What is left out: see neglect_effects().
+struct NeglectParameters {
+    bool some = false;
+    double error = 0;  // of a body's radius, and rad, that the run may be off by
+
+    void set(const Settings& settings)
+    {
+        some = settings.effects == EffectChoice::auto_;
+        error = settings.effects_error;
+    }
+};
+
 /// Whether islands whose loads are too much get more than others. The direct solver needs no help,
 /// and penalty forces and kinematic pushes go island by island.
 inline bool may_escalate(const Settings& settings)

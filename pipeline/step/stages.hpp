@@ -138,9 +138,21 @@ void split_islands(const StepContext&,
                    IslandFinder&,
                    Islands&);
 
+/// Who is in need of a gyroscopic torque: by the dial effects=auto it is left out of who turns so
+/// slowly, or so evenly, that he is off by no more than effects_error for it.
+void neglect_effects(const StepContext&,
+                     const NeglectParameters&,
+                     const BodyStates&,
+                     const Poses&,
+                     const Velocities&,
+                     Masses&,
+                     NeglectedEffects&);
+
 /// What each island calls for of its solve; those that call for the same come side by side.
 template <class Real>
 void sort_islands(const StepContext&,
+                  const NeglectParameters&,
+                  const SleepParameters&,
                   const ActiveContacts&,
                   const BodyStates&,
                   const Poses&,
@@ -156,6 +168,7 @@ void sort_islands(const StepContext&,
                   const MeshContacts<Real>&,
                   const SolidContacts<Real>&,
                   const JoinedContacts<Real>&,
+                  NeglectedEffects&,
                   Islands&);
 
 /// Stubborn islands by how stubborn they are: who gets more substeps, who the direct solver.
@@ -315,6 +328,7 @@ void continuous_collision(const StepContext&,
                           const Bounds&,
                           const Pairs&,
                           const BodyStates&,
+                          const Islands&,
                           const SleepEvents&,
                           const ConvexContacts<Real>&,
                           const MeshContacts<Real>&,

@@ -131,6 +131,26 @@ struct OverloadedIslands {
     }
 };
 
+/// What this step leaves out: see neglect_effects().
+struct NeglectedEffects {
+    /// callers   that call for it and go without: bodies; contacts that roll
+    /// bound     of the radius, and rad: the greatest that any of them is off by for it in 0.1 s
+    struct Share {
+        std::size_t callers = 0;
+        double bound = 0;
+
+        void add(const Share& other)
+        {
+            callers += other.callers;
+            bound = std::max(bound, other.bound);
+        }
+    };
+    Share gyroscopic, rolling_friction;
+    struct Scratch {
+        std::vector<Share> of_block;
+    } scratch;
+};
+
 /// Who awoke and who fell asleep in this step.
 struct SleepEvents {
     std::vector<std::uint32_t> woke, fell_asleep;
@@ -176,6 +196,7 @@ using StepData = std::tuple<StepContext,
                             ImpactParameters,
                             SolverParameters,
                             SleepParameters,
+                            NeglectParameters,
                             Shapes,
                             Surfaces,
                             PairFilter,
@@ -209,6 +230,7 @@ using StepData = std::tuple<StepContext,
                             Layout,
                             ContactConstraints<Real>,
                             SplitImpulse,
+                            NeglectedEffects,
                             EventDrivenContacts,
                             StepDiagnostics,
                             SleepEvents,

@@ -21,6 +21,7 @@ bool by_direct(const Settings& settings)
     return settings.response == Response::impulse && settings.solver == Solver::direct;
 }
 bool by_penalty(const Settings& settings) { return settings.response == Response::penalty; }
+bool by_auto(const Settings& settings) { return settings.effects == EffectChoice::auto_; }
 bool by_kinematic(const Settings& settings) { return settings.response == Response::kinematic; }
 
 // clang-format off
@@ -34,6 +35,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, collide_solids<Real>>        (kSolidContact),
     stage<Real, wake_islands<Real>>          ({sleeping}),
     stage<Real, collide_meshes<Real>>        ({mesh_contact}),
+    stage<Real, neglect_effects>             ({gyroscopic}, by_auto),
     stage<Real, remove_ghost_contacts<Real>> ({seams}),
     stage<Real, remove_pivot_contacts<Real>> ({pivot}),
     stage<Real, gather_contacts<Real>>       ({contact}),
@@ -67,10 +69,11 @@ constexpr DataSet data_sets = (DataSet{} | ... | data_set<Real, Kinds>);
 template <class Real>
 consteval bool reads_follow_writes()
 {
-    DataSet ready = data_sets<Real, StepContext, NarrowPhaseParameters, ImpactParameters,
-                              SolverParameters, SleepParameters, Shapes, Surfaces, PairFilter,
-                              PrescribedVelocities, Forces, EffectCensus, Poses, Velocities, Masses,
-                              BodyStates, Colliders, SleepEvents, OverloadedIslands, SplitImpulse>;
+    DataSet ready =
+        data_sets<Real, StepContext, NarrowPhaseParameters, ImpactParameters, SolverParameters,
+                  SleepParameters, NeglectParameters, Shapes, Surfaces, PairFilter,
+                  PrescribedVelocities, Forces, EffectCensus, Poses, Velocities, Masses, BodyStates,
+                  Colliders, SleepEvents, OverloadedIslands, SplitImpulse>;
     for (const Stage<Real>& row : kStep<Real>) {
         // A row may read what it writes itself: it keeps that from the last step.
         if (!(ready | row.writes).covers(row.reads)) return false;

@@ -24,10 +24,16 @@ public:
 
     EffectEntry entry(Effect effect) const
     {
-        EffectEntry entry{effect, on_.has(effect), state_.effects.cause_of(effect), 0, {}, 0, 0, 0};
+        EffectEntry entry;
+        entry.effect = effect;
+        entry.on = on_.has(effect);
+        entry.first = state_.effects.cause_of(effect);
         if (entry.on) {
             entry.callers = callers(effect);
             entry.rows = rows(effect);
+            const NeglectedEffects::Share neglected = neglected_of(effect);
+            entry.neglected = neglected.callers;
+            entry.bound = neglected.bound;
         }
         std::visit(
             [&](const auto& chosen) {
@@ -56,6 +62,14 @@ private:
             }
             entry.ms += found->time_ms / sharers;
         }
+    }
+
+    NeglectedEffects::Share neglected_of(Effect effect) const
+    {
+        const auto& neglected = state_.get<NeglectedEffects>();
+        if (effect == Effect::gyroscopic) return neglected.gyroscopic;
+        if (effect == Effect::rolling_friction) return neglected.rolling_friction;
+        return {};
     }
 
     bool meets() const { return on_.has(Effect::contact) || on_.meets(kEventDriven); }

@@ -69,6 +69,18 @@ Vec3 symmetry_axis_of(const PrincipalInertia& principal)
     return principal.axes.col(axis);
 }
 
+// See Masses. Of Euler's equations the greatest factor counts; no three products of two components
+// of a vector come to more than its square over the root of 3.
+float gyroscopic_rate(const Vec3& moments)
+{
+    double greatest = 0;
+    for (int k = 0; k < 3; ++k)
+        greatest =
+            std::max(greatest, std::abs(moments[(k + 1) % 3] - moments[(k + 2) % 3]) / moments[k]);
+    const double rate = greatest / std::sqrt(3.0);
+    return std::nextafter(static_cast<float>(rate), std::numeric_limits<float>::infinity());
+}
+
 Sym3 scaled(const Sym3& m, double by)
 {
     return {m.xx * by, m.yy * by, m.zz * by, m.xy * by, m.xz * by, m.yz * by};
@@ -324,7 +336,9 @@ void SceneBuilder::weigh(std::uint32_t body,
     put(masses.inverse_mass, body, 0.0);
     put(masses.inertia, body, Sym3{});
     put(masses.inverse_inertia, body, Sym3{});
+    put(masses.inertia_kind, body, std::uint8_t{0});
     put(masses.gyroscopic_kind, body, std::uint8_t{0});
+    put(masses.gyroscopic_rate, body, 0.0f);
     put(masses.symmetry_axis, body, Vec3(Vec3::Zero()));
     const Vec3 natural = shape == nullptr ? Vec3(Vec3::Zero()) : shape->mass.center;
     put(state_.center, body, stated.center.value_or(natural));
@@ -358,8 +372,11 @@ void SceneBuilder::weigh(std::uint32_t body,
     if (stated.lock_rotation || inertia == Sym3{}) return;
     const bool in_double = state_.settings.precision == Precision::double_;
     masses.inverse_inertia[body] = turning_inverse_mass(inertia, in_double ? 1e14 : 1e6);
-    masses.gyroscopic_kind[body] = !uneven(inertia) ? 0 : inertia.has_products() ? 2 : 1;
-    if (uneven(inertia)) masses.symmetry_axis[body] = symmetry_axis_of(masses.principal_of(body));
+    if (!uneven(inertia)) return;
+    const PrincipalInertia principal = masses.principal_of(body);
+    masses.inertia_kind[body] = masses.gyroscopic_kind[body] = inertia.has_products() ? 2 : 1;
+    masses.gyroscopic_rate[body] = gyroscopic_rate(principal.moments);
+    masses.symmetry_axis[body] = symmetry_axis_of(principal);
 }
 
 void SceneBuilder::note_requests(std::uint32_t body, const BodyDescription& stated)
@@ -461,9 +478,10 @@ void SceneBuilder::grow_lists(std::size_t bodies)
     auto& m = state_.get<Masses>();
     auto& s = state_.get<BodyStates>();
     reserve(bodies, p.position, p.orientation, v.linear, v.angular, m.mass, m.inverse_mass,
-            m.inertia, m.inverse_inertia, m.gyroscopic_kind, m.symmetry_axis, s.kind, s.awake,
-            s.quarantined, s.sleep_time, s.sleeping_island, s.radius, s.is_conveyor, s.fast,
-            s.active_bodies.dynamic, state_.center, state_.generation, state_.motion);
+            m.inertia, m.inverse_inertia, m.inertia_kind, m.gyroscopic_kind, m.gyroscopic_rate,
+            m.symmetry_axis, s.kind, s.awake, s.quarantined, s.sleep_time, s.sleeping_island,
+            s.radius, s.is_conveyor, s.fast, s.active_bodies.dynamic, state_.center,
+            state_.generation, state_.motion);
     // Most bodies have one collider.
     auto& c = state_.get<Colliders>();
     auto& filter = state_.get<PairFilter>();

@@ -56,6 +56,9 @@ void WorldState::set(const Settings& all)
     get<ImpactParameters>().set(all);
     get<SolverParameters>().set(all);
     get<SleepParameters>().set(all);
+    get<NeglectParameters>().set(all);
+    get<Masses>().gyroscopic_kind = get<Masses>().inertia_kind;
+    get<NeglectedEffects>() = {};
 }
 
 std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
@@ -161,9 +164,9 @@ void WorldState::follow_step()
     get<Bounds>().stretch = stretch_for(get<Pairs>().keys.size() + get<SleepingPairs>().size(),
                                         active_bodies.dynamic.size());
     // A body that has become fast calls for what looks after it from the next step on.
-    if (const std::uint32_t fast_candidate = get<Bounds>().fast_candidate; fast_candidate != kNoBody
+    if (const auto& fast_candidates = get<Bounds>().fast_candidates; !fast_candidates.empty()
         && !effects.on.has(Effect::fast_motion) && !left_out.has(Effect::fast_motion)) {
-        requests.ask(Effect::fast_motion, called(fast_candidate));
+        requests.ask(Effect::fast_motion, called(fast_candidates.front()));
         effects_stale = true;
     }
     if (diagnostics.quarantined.empty()) return;
@@ -509,6 +512,11 @@ Vec3 World::velocity(BodyId body) const
 Vec3 World::angular_velocity(BodyId body) const
 {
     return state_->get<Velocities>().angular[state_->place_of(body, "angular_velocity")];
+}
+
+double World::radius(BodyId body) const
+{
+    return state_->get<BodyStates>().radius[state_->place_of(body, "radius")];
 }
 
 Mat3 World::rotation_matrix(BodyId body) const

@@ -119,6 +119,8 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
     if (settings.solver != Solver::soft_step
         && (name == "contact_rate" || name == "relax_iterations"))
         return "solver " + solver + " has no soft contacts";
+    if (settings.effects == EffectChoice::called && name == "effects_error")
+        return "effects called leaves nothing out";
     if (settings.narrowphase == NarrowPhase::auto_ && name == "method_start")
         return "narrowphase auto always begins with what a pair remembers";
     if (settings.solver != Solver::direct && name == "direct_limit")

@@ -14,13 +14,14 @@ namespace {
 TEST(Dials, AreAllThere)
 {
     const char* const names[] = {
-        "dt",          "substeps",         "iterations",        "contact_rate",    "push_limit",
-        "friction_at", "precision",        "integrator",        "rotation",        "gyroscopic",
-        "broadphase",  "narrowphase",      "method_start",      "bounds_filter",   "nonconvex",
-        "voxel_size",  "image_resolution", "sphere_levels",     "max_parts",       "response",
-        "solver",      "direct_limit",     "penalty_stiffness", "penalty_damping", "friction_cone",
-        "impact_law",  "overlap",          "halvings",          "toi_method",      "toi_tolerance",
-        "sleep",       "escalation",       "relax_iterations",  "mesh_tree"};
+        "dt",           "substeps",         "iterations",        "contact_rate",    "push_limit",
+        "friction_at",  "precision",        "integrator",        "rotation",        "gyroscopic",
+        "broadphase",   "narrowphase",      "method_start",      "bounds_filter",   "nonconvex",
+        "voxel_size",   "image_resolution", "sphere_levels",     "max_parts",       "response",
+        "solver",       "direct_limit",     "penalty_stiffness", "penalty_damping", "friction_cone",
+        "impact_law",   "overlap",          "halvings",          "toi_method",      "toi_tolerance",
+        "sleep",        "escalation",       "relax_iterations",  "mesh_tree",       "effects",
+        "effects_error"};
     for (const char* name : names) EXPECT_NE(find_dial(name), nullptr) << name;
     EXPECT_EQ(find_dial("speed"), nullptr);
 
@@ -90,7 +91,9 @@ TEST(Dials, ValuesSetBackGiveTheSame)
                                   {"toi_tolerance", "0.0001"},
                                   {"solver", "direct"},
                                   {"impact_law", "simultaneous"},
-                                  {"direct_limit", "20"}};
+                                  {"direct_limit", "20"},
+                                  {"effects", "auto"},
+                                  {"effects_error", "0.001"}};
     for (const auto& [name, value] : all) {
         Settings first, second;
         ASSERT_EQ(set_dial(first, name, value), "");
@@ -134,6 +137,8 @@ TEST(Dials, SayWhatWasWanted)
         {"voxel_size", "-1", "voxel_size: wanted auto or a length from 1e-9 to 1e9 m"},
         {"image_resolution", "2", "image_resolution: wanted auto or a whole number from 4 to 512"},
         {"sphere_levels", "2.5", "sphere_levels: wanted auto or a whole number from 1 to 6"},
+        {"effects", "all", "effects: wanted called or auto, not \"all\""},
+        {"effects_error", "2", "effects_error: wanted a share of the radius from 0 to 1, not"},
         {"toi_tolerance", "1e-13", "toi_tolerance: wanted a share of the shape's size from 1e-12"},
         {"substep", "4", "substep: wanted the name of a dial, perhaps substeps"},
         {"presicion", "4", "presicion: wanted the name of a dial, perhaps precision"},

@@ -1,6 +1,7 @@
 // Explain: what is said of scenes whose effects are known.
 #include "scene/files/json.hpp"
 #include "tests/apps/throng/command.hpp"
+#include "throng/catalog.hpp"
 
 #include <gtest/gtest.h>
 
@@ -182,6 +183,29 @@ TEST(Explain, WithoutAnEffectSaysWhatThatSavesAndGetsWrong)
     EXPECT_EQ(wrong.code, 2);
     EXPECT_NE(wrong.err.find("did you mean"), std::string::npos) << wrong.err;
     EXPECT_EQ(run_throng({"explain", "pile:20", "--without", "motion"}).code, 2);
+}
+
+// Of each scene of the catalogue, as small as it is made.
+TEST(Explain, EffectsAutoKeepsItsPromise)
+{
+    const TestFolder folder;
+    std::size_t neglected = 0;
+    for (const CatalogEntry& entry : catalog()) {
+        const int size = std::min(entry.default_size, std::max(14, entry.least));
+        const std::string scene = std::string(entry.name) + ':' + std::to_string(size);
+        const Outcome said = run_throng({"explain", scene, "--steps", "18", "--set", "effects=auto",
+                                         "--json", folder / "auto.json"});
+        ASSERT_EQ(said.code, 0) << said.err;
+        EXPECT_NE(said.out.find("\nneglected by effects=auto"), std::string::npos) << said.out;
+        const JsonDocument json(folder.read("auto.json"), "auto.json");
+        const auto report = json.find(JsonDocument::kRoot, "neglected");
+        EXPECT_TRUE(json.boolean(json.find(report, "kept"))) << said.out;
+        EXPECT_EQ(json.number(json.find(report, "promised_rad")), 0.02);
+        const auto ledger = json.find(JsonDocument::kRoot, "effect_ledger");
+        for (auto entry = json.first(ledger); entry != json.next(ledger); entry = json.next(entry))
+            neglected += json.number(json.find(entry, "neglected")) > 0 ? 1 : 0;
+    }
+    EXPECT_GT(neglected, 5u);
 }
 
 TEST(Explain, DrawsTheStep)

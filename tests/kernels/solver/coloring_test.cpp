@@ -94,11 +94,13 @@ void check_side(const Graph& graph,
     }
 }
 
-// Colors of a slice: contiguous, no body twice, those of more points first. Counts the contacts.
+// Colors of a slice: contiguous, no body twice, those of more points first; where islands share a
+// batch, those of one point in blocks of their own. Counts the contacts.
 void check_colors(const Graph& graph,
                   const Layout& layout,
                   const Slice& slice,
                   const Slice* next,
+                  bool wide,
                   std::size_t& block,
                   std::vector<int>& times)
 {
@@ -139,8 +141,10 @@ void check_colors(const Graph& graph,
                 }
             }
             ASSERT_EQ(layout.points[b], most);
-            // Only the last block of a color has lanes to spare.
-            if (!color.serial && b + 1 < color.first + color.count) {
+            ASSERT_TRUE(wide || most == 1 || last > 1) << "contacts of one point share a block";
+            // Only the last block of a color has lanes to spare, or of its contacts of more points.
+            if (!color.serial && b + 1 < color.first + color.count
+                && (wide || most == 1 || layout.points[b + 1] > 1)) {
                 ASSERT_NE(layout.lanes[b * kBlock + 15u].entry, LaneSource{}.entry);
             }
         }
@@ -178,7 +182,8 @@ void check_layout(const Graph& graph, const Layout& layout)
             contacts += slice.contacts;
             const Slice* const next = i + 1 < batch.slices ? &slice + 1 : nullptr;
             ASSERT_NO_FATAL_FAILURE(check_solver_bodies(graph, layout, slice));
-            ASSERT_NO_FATAL_FAILURE(check_colors(graph, layout, slice, next, block, times));
+            ASSERT_NO_FATAL_FAILURE(
+                check_colors(graph, layout, slice, next, batch.wide, block, times));
         }
         ASSERT_EQ(batch.contacts, contacts);
         ASSERT_EQ(batch.wide, contacts > kBatchContacts);

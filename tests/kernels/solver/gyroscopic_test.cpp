@@ -59,7 +59,7 @@ struct Top {
         substep.first = true;
         substep.gyroscopic =
             implicit ? Substep<Real>::Gyroscopic::implicit : Substep<Real>::Gyroscopic::direct;
-        solve_kernels<Real>().begin_substep(&body, &inertia, 1, substep);
+        solve_kernels<Real>().begin_substep(&body, &inertia, nullptr, 1, substep);
     }
     Vec3 wanted(bool implicit, double time) const
     {

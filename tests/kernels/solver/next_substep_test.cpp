@@ -89,7 +89,7 @@ struct Heap {
         substep.first = first;
         const bool off = substep.gyroscopic == Substep<Real>::Gyroscopic::off;
         solve_kernels<Real>().begin_substep(constraints.bodies.data(),
-                                            off ? nullptr : inertias.data(),
+                                            off ? nullptr : inertias.data(), nullptr,
                                             constraints.bodies.size(), substep);
     }
     void warm_start()
@@ -106,7 +106,7 @@ struct Heap {
     }
     void advance(Real time)
     {
-        solve_kernels<Real>().advance(constraints.bodies.data(), inertias.data(),
+        solve_kernels<Real>().advance(constraints.bodies.data(), inertias.data(), nullptr,
                                       constraints.bodies.size(), time, iteration.turns);
     }
 };

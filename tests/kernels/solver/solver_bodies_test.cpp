@@ -37,7 +37,7 @@ template <class Real>
 std::size_t advance(std::vector<SolverBody<Real>>& bodies, Real time, bool turns = true)
 {
     const std::size_t fast =
-        solve_kernels<Real>().advance(bodies.data(), nullptr, bodies.size(), time, turns);
+        solve_kernels<Real>().advance(bodies.data(), nullptr, nullptr, bodies.size(), time, turns);
     if (fast > 0) turn_fast<Real>(bodies, nullptr, time);
     return fast;
 }
@@ -49,7 +49,7 @@ void begin(std::vector<SolverBody<Real>>& bodies, const Vec3& gravity, bool firs
     for (int k = 0; k < 3; ++k) substep.gravity[k] = static_cast<Real>(gravity[k]);
     substep.time = Real(1) / 256;
     substep.first = first;
-    solve_kernels<Real>().begin_substep(bodies.data(), nullptr, bodies.size(), substep);
+    solve_kernels<Real>().begin_substep(bodies.data(), nullptr, nullptr, bodies.size(), substep);
 }
 
 TEST(SolverBodies, GravityActsOnWhatHasMassAlone)

@@ -71,7 +71,7 @@ struct Top {
         substep.time = static_cast<Real>(kTime);
         substep.first = first;
         substep.gyroscopic = Substep<Real>::Gyroscopic::implicit;
-        solve_kernels<Real>().begin_substep(&body, &inertia, 1, substep);
+        solve_kernels<Real>().begin_substep(&body, &inertia, nullptr, 1, substep);
         // Each substep's contacts are others here.
         for (int k = 0; k < 8; ++k) body.motion[k] = body.free[k];
     }
@@ -90,7 +90,7 @@ struct Top {
     void advance()
     {
         const auto time = static_cast<Real>(kTime);
-        if (solve_kernels<Real>().advance(&body, &inertia, 1, time, true) > 0)
+        if (solve_kernels<Real>().advance(&body, &inertia, nullptr, 1, time, true) > 0)
             turn_fast<Real>({&body, 1}, &inertia, time);
     }
     void give_back()

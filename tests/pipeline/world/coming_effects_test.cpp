@@ -221,6 +221,7 @@ const How kSettings[] = {
     {"kinematic", [](Settings& s) { s.response = Response::kinematic; }},
     {"point_friction", [](Settings& s) { s.friction_at = FrictionAt::points; }},
     {"splitting", [](Settings& s) { s.integrator = Integrator::splitting; }},
+    {"effects_auto", [](Settings& s) { s.effects = EffectChoice::auto_; }},
 };
 
 Scene far_away(const Caller& caller)

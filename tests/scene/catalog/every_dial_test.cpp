@@ -37,6 +37,7 @@ const std::map<std::string_view, std::vector<std::string_view>>& numbers()
         {"max_parts", {"1", "4"}},
         {"halvings", {"1", "8"}},
         {"toi_tolerance", {"1.2e-7", "0.02"}},
+        {"effects_error", {"0", "1"}},
     };
     return kNumbers;
 }

@@ -46,6 +46,10 @@ TEST(UnusedDials, AreThoseThatAnotherMakesMeaningless)
     EXPECT_EQ(unused_dials(scene).size(), 3u);
     scene.settings.narrowphase = NarrowPhase::gjk;
     EXPECT_EQ(unused_dials(scene).size(), 2u);
+    scene.dials_set = {"effects_error"};
+    EXPECT_EQ(unused_dials(scene).size(), 1u);
+    scene.settings.effects = EffectChoice::auto_;
+    EXPECT_TRUE(unused_dials(scene).empty());
 }
 
 TEST(UnusedDials, AreAllOfMovingMeshesWhereNoneMoves)
