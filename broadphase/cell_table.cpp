@@ -23,6 +23,10 @@ constexpr std::size_t kSample = 1024;
 // apart.
 constexpr double kPlaces = 0x1p40;
 
+// A look into a level, from each of the asked boxes, takes as long as so many cells. Boxes of a
+// level of which there are more than a so-manieth of the asked ones do not look for these.
+constexpr double kCellsALook = 8, kFew = 16;
+
 constexpr std::uint32_t kFirstCapacity = 2;  // entries
 // In large worlds memory is what a search waits for: so many places are asked for ahead.
 constexpr std::size_t kAhead = 8, kCellsAhead = 32;
@@ -109,6 +113,12 @@ void CellTable::take_out(std::uint32_t id)
         return;
     }
     --levels_[level].count;
+    if (level != kMiddle) {
+        std::vector<std::uint32_t>& ids = levels_[level].ids;
+        ids[seat_[id]] = ids.back();
+        seat_[ids.back()] = seat_[id];
+        ids.pop_back();
+    }
     // The last of its bucket takes its seat.
     Bucket& bucket = buckets_[places_[id].bucket];
     const Entry& last = entries_[bucket.begin + --bucket.count];
@@ -175,6 +185,10 @@ void CellTable::put(std::uint32_t id, const Box3& box)
         level.per_m = 1 / level.cell;
     }
     ++level.count;
+    if (at != kMiddle) {
+        seat_[id] = static_cast<std::uint32_t>(level.ids.size());
+        level.ids.push_back(id);
+    }
     level.longest = level.longest.cwiseMax(box.upper - box.lower);
     const auto cell = [&](int axis) { return cell_at(box.lower[axis], level.per_m); };
     const std::uint64_t bucket = row_of(at, cell(1), cell(2)) + static_cast<std::uint64_t>(cell(0));
@@ -200,6 +214,7 @@ void CellTable::rebuild(const OverlapQuery& query)
     for (std::vector<std::uint32_t>& free : free_places_) free.clear();
     places_.assign(count, {});
     level_.assign(count, kNowhere);
+    seat_.assign(count, 0);
     aside_.clear();
     active_.clear();
     levels_.fill({});
@@ -208,6 +223,42 @@ void CellTable::rebuild(const OverlapQuery& query)
 }
 
 void CellTable::update(const OverlapQuery& query)
+{
+    take_in(query);
+    choose_searched(query);
+}
+
+// Whether the boxes of a level are so few, and their surroundings so small, that to look there for
+// those of smaller cells is less than to have these look for them.
+bool CellTable::pays_to_look_down(const OverlapQuery& query, std::uint8_t level) const
+{
+    const std::vector<std::uint32_t>& ids = levels_[level].ids;
+    const auto asked = static_cast<double>(named_.size());
+    if (ids.empty() || static_cast<double>(ids.size()) * kFew > asked) return false;
+    double cells = 0;
+    for (const std::uint8_t below : active_) {
+        if (below >= level || levels_[below].count == 0) continue;
+        for (const std::uint32_t id : ids) {
+            cells += cells_round(query.boxes[id], levels_[below]).count;
+            if (!(cells < kCellsALook * asked)) return false;
+        }
+    }
+    return cells > 0;
+}
+
+void CellTable::choose_searched(const OverlapQuery& query)
+{
+    searched_ = named_;
+    for (const std::uint8_t at : active_) {
+        Level& level = levels_[at];
+        level.looks_down = pays_to_look_down(query, at);
+        if (!level.looks_down) continue;
+        for (const std::uint32_t id : level.ids)
+            if (asked_[id] == 0) searched_.push_back(id);
+    }
+}
+
+void CellTable::take_in(const OverlapQuery& query)
 {
     const std::size_t count = query.boxes.size(), before = level_.size();
     THRONG_CHECK(query.moving.size() == count, "a flag for each box");
@@ -228,6 +279,7 @@ void CellTable::update(const OverlapQuery& query)
     }
     places_.resize(count);
     level_.resize(count, kNowhere);
+    seat_.resize(count, 0);
     for (std::size_t i = 0; i < named_.size(); ++i) {
         if (i + kAhead < named_.size()) {
             const EntryPlace& place = places_[named_[i + kAhead]];
@@ -268,12 +320,31 @@ public:
            std::uint32_t id,
            std::vector<PairKey>& pairs)
         : table_(table), query_(query), id_(id), box_(query.boxes[id]),
-          moves_(query.moving[id] != 0), mine_(entry_of(id, box_)), pairs_(pairs)
+          moves_(query.moving[id] != 0), asked_(table.asked_[id] != 0), level_(table.level_[id]),
+          mine_(entry_of(id, box_)), pairs_(pairs)
     { }
+
+    // Whether pairs with boxes of a level are found by this one, whoever is asked; or by those.
+    bool looks_down_to(std::uint8_t level) const
+    {
+        return level >= kLowest && level < level_ && table_.levels_[level_].looks_down;
+    }
+    bool is_found_from(std::uint8_t level) const
+    {
+        return level_ >= kLowest && level > level_ && table_.levels_[level].looks_down;
+    }
+    bool searches(std::uint8_t level) const
+    {
+        return table_.levels_[level].count > 0 && !is_found_from(level)
+            && (asked_ || looks_down_to(level));
+    }
 
     void add_if_overlapping(std::uint32_t other) const
     {
-        if (other == id_ || (table_.asked_[other] != 0 && other < id_)) return;
+        if (other == id_) return;
+        const bool other_asked = table_.asked_[other] != 0;
+        if (!asked_ && !other_asked) return;
+        if (other_asked && other < id_ && !looks_down_to(table_.level_[other])) return;
         if (!moves_ && query_.moving[other] == 0) return;
         if (!box_.overlaps(query_.boxes[other])) return;
         if (query_.filter != nullptr && !query_.filter->allows(id_, other)) return;
@@ -326,7 +397,8 @@ private:
     const OverlapQuery& query_;
     const std::uint32_t id_;
     const Box3& box_;
-    const bool moves_;
+    const bool moves_, asked_;
+    const std::uint8_t level_;
     const Entry mine_;
     std::vector<PairKey>& pairs_;
     std::array<const Bucket*, kCellsAhead> cells_ahead_;
@@ -342,9 +414,8 @@ void CellTable::find_overlaps(const OverlapQuery& query,
     std::array<bool, 256> all{};
     bool scans = false;
     for (const std::uint8_t at : active_) {
-        const Level& level = levels_[at];
-        if (level.count == 0) continue;
-        const Cells cells = cells_round(query.boxes[id], level);
+        if (!search.searches(at)) continue;
+        const Cells cells = cells_round(query.boxes[id], levels_[at]);
         // A large box beside small ones: to look at each of them is less than to look for them.
         if (level_[id] == kAside || !(cells.count < static_cast<double>(level_.size()) / 2 + 64))
             all[at] = scans = true;
@@ -355,6 +426,7 @@ void CellTable::find_overlaps(const OverlapQuery& query,
     if (scans)
         for (const Bucket& bucket : buckets_)
             search.walk(bucket, [&](std::uint32_t other) { return all[level_[other]]; });
+    if (asked_[id] == 0) return;
     for (const std::uint32_t other : aside_) search.add_if_overlapping(other);
 }
 

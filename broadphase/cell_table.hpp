@@ -14,11 +14,15 @@ namespace throng {
 
 class CellTable {
 public:
-    /// Takes in a query: afterwards every box is where it belongs, and asked() is true to it.
+    /// Takes in a query: afterwards every box is where it belongs, and searched() is true to it.
     void update(const OverlapQuery& query);
 
-    /// Appends the pairs of an asked collider with all that its box meets; those of two asked ones
-    /// by the lower id alone. Some may come up twice. May run on several threads.
+    /// Those to find the overlaps of: the asked ones, and of larger boxes that are few all others.
+    const std::vector<std::uint32_t>& searched() const { return searched_; }
+
+    /// Appends the pairs of a collider with all that its box meets, of which one is asked; those of
+    /// two that are searched by one of them alone. Some may come up twice. May run on several
+    /// threads.
     void
     find_overlaps(const OverlapQuery& query, std::uint32_t id, std::vector<PairKey>& pairs) const;
 
@@ -43,6 +47,8 @@ private:
         double cell = 0, per_m = 0;   // m, 1/m; 0 while no box was in it
         Vec3 longest = Vec3::Zero();  // m, of any box that was ever in it
         std::size_t count = 0;
+        std::vector<std::uint32_t> ids;  // of those in it; not told of the middle level
+        bool looks_down = false;         // they look for those of smaller cells, not these for them
     };
     struct Cells {
         std::int64_t first[3], last[3];
@@ -51,7 +57,10 @@ private:
 
     class Search;
 
+    void take_in(const OverlapQuery& query);
     void rebuild(const OverlapQuery& query);
+    void choose_searched(const OverlapQuery& query);
+    bool pays_to_look_down(const OverlapQuery& query, std::uint8_t level) const;
     void put(std::uint32_t id, const Box3& box);
     void take_out(std::uint32_t id);
     void insert(const Entry& entry, std::uint32_t at);
@@ -70,6 +79,8 @@ private:
     std::vector<std::uint8_t> level_;   // [colliders]
     std::vector<std::uint8_t> asked_;   // [colliders] 1 for those of the last query
     std::vector<std::uint32_t> named_;  // whose flag is up
+    std::vector<std::uint32_t> searched_;
+    std::vector<std::uint32_t> seat_;  // [colliders] place in the list of its level, if any
     std::vector<std::uint32_t> aside_;
     std::array<Level, 256> levels_;
     std::vector<std::uint8_t> active_;  // levels that ever held a box

@@ -29,10 +29,11 @@ void UniformGrid::find(const OverlapQuery& query, std::vector<PairKey>& pairs)
     pairs.clear();
     inside_->table.update(query);
     BlockLists<PairKey>& lists = inside_->lists;
-    lists.start(block_count(query.asked.size(), kGrain));
-    for_each_block(query.asked.size(), kGrain, [&](auto begin, auto end, auto block) {
+    const std::vector<std::uint32_t>& searched = inside_->table.searched();
+    lists.start(block_count(searched.size(), kGrain));
+    for_each_block(searched.size(), kGrain, [&](auto begin, auto end, auto block) {
         for (std::size_t i = begin; i < end; ++i)
-            inside_->table.find_overlaps(query, query.asked[i], lists[block]);
+            inside_->table.find_overlaps(query, searched[i], lists[block]);
     });
     lists.append_to(pairs);
     sort_keys(pairs, inside_->scratch);

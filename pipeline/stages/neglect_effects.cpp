@@ -4,7 +4,7 @@
 // (Ii - Ij) / Ik wi wj (Euler's equations), and in all no more than Masses::gyroscopic_rate times
 // the square of its spin. Without that for a time T it is off by half of it times T squared, rad,
 // or that share of its radius. Each step asks anew: who has come to spin faster has his torque back
-// at once.
+// at once. Who is on a pivot keeps it: he is carried by his angular momentum, which saves more.
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/step/neglect.hpp"
 #include "pipeline/step/stages.hpp"
@@ -33,8 +33,9 @@ double gyroscopic_acceleration(const Masses& masses,
 
 }  // namespace
 
-void neglect_effects(const StepContext&,
+void neglect_effects(const StepContext& context,
                      const NeglectParameters& parameters,
+                     const Forces& forces,
                      const BodyStates& states,
                      const Poses& poses,
                      const Velocities& velocities,
@@ -52,11 +53,12 @@ void neglect_effects(const StepContext&,
         const Vec3* const spins = velocities.angular.data();
         std::uint8_t* const wanted = masses.gyroscopic_kind.data();
         const double error = kOfError * parameters.error;
+        const bool pivots = context.has(Effect::pivot);
         std::size_t callers = 0;
         double bound = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = who[i];
-            if (kinds[body] == 0) continue;
+            if (kinds[body] == 0 || (pivots && forces.on_pivot(body))) continue;
             double off = turned_in_window(double{rates[body]} * spins[body].squaredNorm());
             if (off > error && off < kWorthALook * error)
                 off = turned_in_window(

@@ -142,6 +142,7 @@ void split_islands(const StepContext&,
 /// slowly, or so evenly, that he is off by no more than effects_error for it.
 void neglect_effects(const StepContext&,
                      const NeglectParameters&,
+                     const Forces&,
                      const BodyStates&,
                      const Poses&,
                      const Velocities&,
