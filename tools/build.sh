@@ -159,7 +159,7 @@ test_sanitized() {  # PRESET [SECONDS]
         # It needs addresses that are not shuffled; where that cannot be had, it may do without.
         if setarch -R true 2>/dev/null; then steady=(setarch -R); fi
     else
-        local compares="SameBits|ComingEffects|SolidBits|SolveWidths|PlantedFault|OtherFaults|ChangesNoBit"
+        local compares="SameBits|ComingEffects|FarScenes|SolidBits|SolveWidths|PlantedFault|OtherFaults|ChangesNoBit"
         compares+="|OnAnyNumberOfThreads|IslandsThatAreCut|Catalog.(SameSeed|OtherSeed)"
         local repeats="KeepsItsBounds/H(37|43|47|48|72)|Catalog[.]|PeerScene|SolidScenes|ATerrainOfTheCata"
         repeats+="|ProgressIs|Bench.ValuesOfADial|ConvexCover.T|ConvexParts.(ErrorIs|SizeChanges)"

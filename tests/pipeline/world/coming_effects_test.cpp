@@ -14,7 +14,7 @@ namespace {
 using given::SceneOf;
 using given::tetrahedron;
 
-constexpr int kSteps = 130, kChanges = 10;
+constexpr int kSteps = 100, kChanges = 10;
 
 // Islands of many kinds, that fall, slide, lean, roll over and come to rest.
 Scene crowd()
