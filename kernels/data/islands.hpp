@@ -20,14 +20,14 @@ namespace throng {
 ///   swings     contacts may go with their bodies within the step (see turning_arms.hpp)
 ///   rolls      some rim does, or would if it were held at fewer places
 ///   on_faces   most contacts have three points or more; told of those that may share a batch
+///   on_points  each contact has one point; told of the same
 ///   driven     it touches what moves by itself
 ///   alone      it shares its batch with nobody: a pivot or stiff springs tell how all of it is
 ///              solved, or somebody lies so deep in another that the two may have to part
 struct IslandCalls {
     Set<Effect> effects;
     bool carries = false, axes_turn = false, swings = false, rolls = false, on_faces = false,
-         driven = false, alone = false;
-    bool nothing = false;  // fills it up, to be compared as two numbers
+         on_points = false, driven = false, alone = false;  // to be compared as two numbers
 
     bool operator==(const IslandCalls& other) const
     {

@@ -34,9 +34,13 @@ void keep_each_once(std::vector<std::uint32_t>& bodies)
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
 }
 
-void clear_lanes(std::size_t begin, std::size_t end, Layout& layout)
+// Those behind the contacts of a color; or behind each, where they are to go one after another.
+void clear_idle_lanes(const Color& color, std::size_t held, Layout& layout)
 {
-    for (std::size_t lane = begin; lane < end; ++lane) {
+    const std::size_t begin = std::size_t{color.first} * kBlock;
+    const std::size_t end = begin + std::size_t{color.count} * kBlock;
+    for (std::size_t lane = color.serial ? begin : begin + held; lane < end; ++lane) {
+        if (color.serial && lane % kBlock == 0) continue;
         layout.lanes[lane] = {};
         layout.solver_index_a[lane] = layout.solver_index_b[lane] = 0;
     }
@@ -169,42 +173,15 @@ void ConstraintGraph::color_contacts(const ActiveContacts& active,
     count_blocks(plan);
 }
 
-// Those of the last color go one after another, each in a block of its own.
-ConstraintGraph::ColorLanes ConstraintGraph::lanes_of(const Plan& plan, std::uint32_t color)
-{
-    const auto whole = [](std::uint32_t lanes) { return (lanes + kBlock - 1) / kBlock * kBlock; };
-    ColorLanes lanes;
-    std::uint32_t at = 0;
-    for (std::uint32_t kind = 0; kind < kPoints; ++kind) {
-        if (plan.parts_points && kind + 1 == kPoints) at = whole(at);
-        lanes.begin[kind] = at;
-        at += plan.size[kPoints * color + kind] * (color == kColors ? kBlock : 1);
-        lanes.end[kind] = at;
-    }
-    lanes.blocks = whole(at) / kBlock;
-    return lanes;
-}
-
-void ConstraintGraph::clear_idle_lanes(const Color& color, const ColorLanes& lanes, Layout& layout)
-{
-    const std::size_t first = std::size_t{color.first} * kBlock;
-    const std::size_t end = first + std::size_t{color.count} * kBlock;
-    if (color.serial) {
-        for (std::size_t block = first; block < end; block += kBlock)
-            clear_lanes(block + 1, block + kBlock, layout);
-        return;
-    }
-    clear_lanes(first + lanes.end[kPoints - 2], first + lanes.begin[kPoints - 1], layout);
-    clear_lanes(first + lanes.end[kPoints - 1], end, layout);
-}
-
 void ConstraintGraph::count_blocks(Plan& plan)
 {
     plan.blocks = plan.colors = 0;
     for (std::uint32_t color = 0; color <= kColors; ++color) {
-        const std::uint32_t blocks = lanes_of(plan, color).blocks;
-        plan.blocks += blocks;
-        plan.colors += blocks > 0 ? 1 : 0;
+        std::uint32_t held = 0;
+        for (std::uint32_t kind = 0; kind < kPoints; ++kind)
+            held += plan.size[kPoints * color + kind];
+        plan.blocks += color == kColors ? held : (held + kBlock - 1) / kBlock;
+        plan.colors += held > 0 ? 1 : 0;
     }
 }
 
@@ -246,14 +223,16 @@ void ConstraintGraph::place(const ActiveContacts& active,
     std::array<std::uint32_t, kBins> first_lane;
     std::uint32_t block = plan.first_block, color_at = slice.first_color;
     for (std::uint32_t color = 0; color <= kColors; ++color) {
-        const ColorLanes lanes = lanes_of(plan, color);
-        if (lanes.blocks == 0) continue;
-        const std::uint32_t first = block * kBlock;
-        for (std::uint32_t kind = 0; kind < kPoints; ++kind)
-            first_lane[kPoints * color + kind] = first + lanes.begin[kind];
-        layout.colors[color_at] = {block, lanes.blocks, color == kColors};
-        clear_idle_lanes(layout.colors[color_at++], lanes, layout);
-        block += lanes.blocks;
+        const std::uint32_t first = block, per_block = color == kColors ? 1 : kBlock;
+        std::uint32_t held = 0;
+        for (std::uint32_t kind = 0; kind < kPoints; ++kind) {
+            first_lane[kPoints * color + kind] = first * kBlock + held * (kBlock / per_block);
+            held += plan.size[kPoints * color + kind];
+        }
+        if (held == 0) continue;
+        block += (held + per_block - 1) / per_block;
+        layout.colors[color_at] = {first, block - first, color == kColors};
+        clear_idle_lanes(layout.colors[color_at++], held, layout);
     }
 
     const auto solver_index_of = [&](std::uint32_t body) {
@@ -279,7 +258,8 @@ void ConstraintGraph::place(const ActiveContacts& active,
             layout.lane[i] = static_cast<std::uint32_t>(lane);
             layout.solver_index_a[lane] = solver_index_of(contact.body_a);
             layout.solver_index_b[lane] = solver_index_of(contact.body_b);
-            if (lane % kBlock == 0) layout.points[lane / kBlock] = contact.points;
+            if (lane % kBlock == 0)
+                layout.points[lane / kBlock] = std::max(contact.points, plan.least_points);
         }
     });
 }
@@ -309,7 +289,7 @@ void ConstraintGraph::lay_out(const Islands& islands,
     if (plans_.size() < layout.slices.size()) plans_.resize(layout.slices.size());
     for (const Batch& batch : layout.batches)
         for (std::uint32_t i = batch.first_slice; i < batch.first_slice + batch.slices; ++i)
-            plans_[i].parts_points = !batch.wide;
+            plans_[i].least_points = batch.wide || batch.calls.on_points ? 1 : 2;
     for_slices(layout, [&](std::size_t i) { number_solver_bodies(layout.slices[i], layout); });
     for_slices(layout, [&](std::size_t i) {
         color_contacts(active, states, layout, layout.slices[i], plans_[i]);

@@ -14,10 +14,12 @@ inline constexpr std::size_t kBatchContacts = 512;
 
 /// Gathers small islands that call for the same into batches, cuts big ones into slices, colors
 /// each slice greedily in the order of its contacts, and lays the contacts out: slice by slice,
-/// color by color, those of more points before those of fewer. In a batch of small islands,
-/// contacts of one point begin a block of their own: a block of such alone is solved in another
-/// way, and how a contact is solved must not hang on the islands beside its own. Ids and positions
-/// decide, and nothing of the step before.
+/// color by color, those of more points before those of fewer. Ids and positions decide, and
+/// nothing of the step before.
+///
+/// A block of contacts of one point is solved in another way. Where islands share a batch, and not
+/// all contacts of theirs are such, it is told to have two, as a block has of which others are:
+/// who else is in it is a matter of the islands beside.
 class ConstraintGraph {
 public:
     SplitRule split_rule;
@@ -43,18 +45,10 @@ private:
     struct Plan {
         std::array<std::uint32_t, kBins> size;  // contacts by color and points
         std::uint32_t blocks, colors, first_block;
-        bool parts_points;  // contacts of one point share no block with others
+        std::uint8_t least_points;                        // that a block is told to have
         std::vector<std::uint32_t> kinematic, conveyors;  // that it touches, ascending
     };
 
-    // Lanes of a color, counted from its first.
-    struct ColorLanes {
-        std::array<std::uint32_t, kPoints> begin, end;  // by kind: 4 points, 3, 2, 1
-        std::uint32_t blocks;
-    };
-
-    static ColorLanes lanes_of(const Plan& plan, std::uint32_t color);
-    static void clear_idle_lanes(const Color& color, const ColorLanes& lanes, Layout& layout);
     void gather_slices(const Islands& islands,
                        const ActiveContacts& active,
                        const BodyStates& states,

@@ -125,18 +125,20 @@ private:
         all_shapes_ = shapes_;
         const bool small = contacts_.size() <= kBatchContacts;
         const bool sides = scene_.sides || (scene_.rounds && (shapes_ & Colliders::kFlat) != 0);
-        std::size_t on_faces = 0;
+        std::size_t on_faces = 0, on_points = 0;
         for (const std::uint32_t place : contacts_) {
             const bool found = (calls_.effects & kByContacts) == scene_.by_contacts;
             if (!small && !sides && found) break;
             const ActiveContacts::Entry& entry = scene_.contacts.entries[place];
             on_faces += entry.points >= 3 ? 1 : 0;
+            on_points += entry.points == 1 ? 1 : 0;
             if (!found) ask_materials(place);
             if (!sides) continue;
             ask_side(entry.body_a);
             ask_side(entry.body_b);
         }
         calls_.on_faces = small && 2 * on_faces > contacts_.size();
+        calls_.on_points = small && on_points == contacts_.size();
     }
 
     // What is too little for float to hold is still called for.

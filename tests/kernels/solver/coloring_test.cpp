@@ -94,8 +94,7 @@ void check_side(const Graph& graph,
     }
 }
 
-// Colors of a slice: contiguous, no body twice, those of more points first; where islands share a
-// batch, those of one point in blocks of their own. Counts the contacts.
+// Colors of a slice: contiguous, no body twice, those of more points first. Counts the contacts.
 void check_colors(const Graph& graph,
                   const Layout& layout,
                   const Slice& slice,
@@ -140,11 +139,10 @@ void check_colors(const Graph& graph,
                         << "body " << body << " is twice in a color";
                 }
             }
-            ASSERT_EQ(layout.points[b], most);
-            ASSERT_TRUE(wide || most == 1 || last > 1) << "contacts of one point share a block";
-            // Only the last block of a color has lanes to spare, or of its contacts of more points.
-            if (!color.serial && b + 1 < color.first + color.count
-                && (wide || most == 1 || layout.points[b + 1] > 1)) {
+            // Of shared batches none is told to be of single points, which may be as others are.
+            ASSERT_EQ(layout.points[b], wide ? most : std::max(most, 2));
+            // Only the last block of a color has lanes to spare.
+            if (!color.serial && b + 1 < color.first + color.count) {
                 ASSERT_NE(layout.lanes[b * kBlock + 15u].entry, LaneSource{}.entry);
             }
         }
