@@ -1,6 +1,7 @@
 #include "broadphase/live_boxes.hpp"
 
 #include "broadphase/layers.hpp"
+#include "kernels/parallel/compact.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -51,8 +52,7 @@ void LiveBoxes::put(std::uint32_t id, const Box3& box, const Vec3& ahead, double
 void LiveBoxes::settle()
 {
     // Who went away and came back was listed twice.
-    std::sort(loose_.begin(), loose_.end());
-    loose_.erase(std::unique(loose_.begin(), loose_.end()), loose_.end());
+    keep_each_once(loose_);
     std::erase_if(loose_, [&](std::uint32_t id) { return held_by_[id] != kLoose; });
     if (loose_.size() > kFewLoose || any_half_empty())
         grow_tree();

@@ -153,6 +153,12 @@ std::string get_contact_rate(const Settings& settings)
     return settings.contact_rate > 0 ? number_text(settings.contact_rate) : "auto";
 }
 
+template <auto Member>
+std::string get_number(const Settings& settings)
+{
+    return number_text(settings.*Member);
+}
+
 std::string set_push_limit(Settings& settings, std::string_view text)
 {
     const double speed = parse_number(text);
@@ -160,8 +166,6 @@ std::string set_push_limit(Settings& settings, std::string_view text)
     settings.push_limit = speed;
     return {};
 }
-
-std::string get_push_limit(const Settings& settings) { return number_text(settings.push_limit); }
 
 // Below this the rounding of places a few meters away hides it, in double too; above that a contact
 // is not looked for as far out as a body was held.
@@ -178,22 +182,12 @@ std::string set_toi_tolerance(Settings& settings, std::string_view text)
     return {};
 }
 
-std::string get_toi_tolerance(const Settings& settings)
-{
-    return number_text(settings.toi_tolerance);
-}
-
 std::string set_effects_error(Settings& settings, std::string_view text)
 {
     const double error = parse_number(text);
     if (!(error >= 0 && error <= 1)) return wanted("a share of the radius from 0 to 1", text);
     settings.effects_error = error;
     return {};
-}
-
-std::string get_effects_error(const Settings& settings)
-{
-    return number_text(settings.effects_error);
 }
 
 std::string set_voxel_size(Settings& settings, std::string_view text)
@@ -314,7 +308,7 @@ std::vector<Dial> make_dials()
         number_dial("contact_rate", "auto (0.25 a substep for manifolds, 0.5 for one point), a number, fixed:HERTZ",
             "a substep", set_contact_rate, get_contact_rate,
             "a higher rate leaves less overlap and rests less quietly"),
-        number_dial("push_limit", "a number", "m/s", set_push_limit, get_push_limit,
+        number_dial("push_limit", "a number", "m/s", set_push_limit, get_number<&S::push_limit>,
             "a higher limit clears deep overlap sooner and throws bodies about more"),
         choice_dial<&S::friction_at, kFrictionAt>("friction_at",
             "points hold each by its own load, as they lie, where the center has one pull and a twist; they cost a fifth more"),
@@ -370,13 +364,13 @@ std::vector<Dial> make_dials()
             "overlap subdivide: each halves the overlap that is left where bodies meet fast, for two more tries a meeting"),
         choice_dial<&S::toi_method, kToiMethod>("toi_method",
             "time alone: none is ever late; newton asks least, bisection a bit at a time, conservative often where two graze"),
-        number_dial("toi_tolerance", "a number from 1e-12 (float: 1.2e-7) to 0.02", "of the smallest half extent", set_toi_tolerance, get_toi_tolerance,
+        number_dial("toi_tolerance", "a number from 1e-12 (float: 1.2e-7) to 0.02", "of the smallest half extent", set_toi_tolerance, get_number<&S::toi_tolerance>,
             "a smaller tolerance finds the moment of touch more exactly, for more evaluations"),
         named_dial("sleep", kSleep, set_sleep, get_sleep,
             "bodies at rest cost nothing while asleep; off follows the slowest creep"),
         choice_dial<&S::effects, kEffects>("effects",
             "auto leaves the gyroscopic torque out of bodies, and rolling friction out of islands that sleep soon, as long as bodies are off by less than effects_error for it"),
-        number_dial("effects_error", "a number from 0 to 1", "of the radius in 0.1 s, and rad", set_effects_error, get_effects_error,
+        number_dial("effects_error", "a number from 0 to 1", "of the radius in 0.1 s, and rad", set_effects_error, get_number<&S::effects_error>,
             "effects auto: a greater error leaves out more"),
     };
     // clang-format on

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <iostream>
 
 namespace throng {
 
@@ -105,18 +103,6 @@ std::pair<double, double> time_beside(World& full, World& other, std::int64_t st
     }
     const double share = done > 0 ? 1 / static_cast<double>(done) : 0;
     return {ms * share, ms_other * share};
-}
-
-void print_beside(const BesideReport& report, const char* full)
-{
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "  ms_per_step  %.4g, %s %.4g: %.3g %% less\n"
-                  "  error        %.3g m, %.3g rad, %.3g m/s at the end of %.3g s\n"
-                  "               (root mean square over bodies, %zu windows)\n",
-                  report.ms_other, full, report.ms, 100 * report.saved(), report.drift, report.turn,
-                  report.velocity, report.length, report.windows);
-    std::cout << text;
 }
 
 void add_windows(const BesideReport& report, JsonMembers& to)

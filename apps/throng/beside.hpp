@@ -36,10 +36,6 @@ BesideReport run_beside(World& full,
 /// ms a step of both, as they run on side by side without beginning anew.
 std::pair<double, double> time_beside(World& full, World& other, std::int64_t steps);
 
-/// What the other takes and gets wrong.
-///
-///   full  by what words to call the full run
-void print_beside(const BesideReport& report, const char* full);
 /// The windows and their errors, as members of an object.
 void add_windows(const BesideReport& report, JsonMembers& to);
 

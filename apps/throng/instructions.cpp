@@ -20,7 +20,7 @@ InstructionCounter::InstructionCounter()
     constexpr int kThis = 0, kAnyProcessor = -1, kNoGroup = -1;
     file_ = static_cast<int>(
         syscall(SYS_perf_event_open, &wanted, kThis, kAnyProcessor, kNoGroup, 0UL));
-    if (file_ >= 0) return;
+    if (count()) return;
     trouble_ = errno == ENOENT || errno == EOPNOTSUPP
         ? "this machine does not show its processor's counter"
         : "the processor's counter is not for this user (perf_event_open: "

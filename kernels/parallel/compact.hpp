@@ -12,6 +12,14 @@
 
 namespace throng {
 
+/// Puts a list in ascending order, with nothing in it twice.
+template <class T>
+void keep_each_once(std::vector<T>& list)
+{
+    if (!std::is_sorted(list.begin(), list.end())) std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
 /// One list per block. Lists keep their capacity from call to call, but for what they have no use
 /// for.
 template <class T>

@@ -1,6 +1,7 @@
 #include "kernels/solver/coloring.hpp"
 
 #include "kernels/parallel/blocks.hpp"
+#include "kernels/parallel/compact.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -26,12 +27,6 @@ void for_slices(const Layout& layout, Body body)
 void add(std::uint32_t body, std::vector<std::uint32_t>& bodies)
 {
     if (bodies.empty() || bodies.back() != body) bodies.push_back(body);
-}
-
-void keep_each_once(std::vector<std::uint32_t>& bodies)
-{
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
 }
 
 // Those behind the contacts of a color; or behind each, where they are to go one after another.

@@ -91,8 +91,7 @@ void SweptPairs::find_fast(const std::vector<std::uint32_t>& woke)
     }
     ask(states_.active_bodies.kinematic);
     ask(woke);
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    keep_each_once(found_);
 }
 
 // Two of which one at least is dynamic and one fast. A thing that moves by itself has to go
@@ -177,8 +176,7 @@ void SweptPairs::find_ways()
     for (const SweptPair& pair : pairs)
         for (const std::uint32_t at : {first_of(pair.key), second_of(pair.key)})
             bodies.push_back(colliders_.body[at]);
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    keep_each_once(bodies);
     ways.resize(bodies.size());
     for_each_block(bodies.size(), kWays, [&](auto begin, auto end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) ways[i] = way_from_start(bodies[i]);

@@ -115,13 +115,6 @@ void note_form(const Shapes& shapes, const Colliders& colliders, std::size_t at,
     bounds.round[at] = rounded_up(round);
 }
 
-// Ascending, none twice.
-void put_in_order(std::vector<std::uint32_t>& list)
-{
-    if (!std::is_sorted(list.begin(), list.end())) std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 // One call of the stage.
 class Update {
 public:
@@ -151,8 +144,8 @@ public:
         of_movers(states_.active_bodies.dynamic, falls_);
         of_others(touched);
         note_placed_anew(touched);
-        put_in_order(bounds_.fast);
-        put_in_order(bounds_.fast_candidates);
+        keep_each_once(bounds_.fast);
+        keep_each_once(bounds_.fast_candidates);
         for (const std::uint32_t collider : touched) bounds_.scratch.flags[collider] = 0;
     }
 
@@ -180,7 +173,7 @@ private:
         std::vector<std::uint32_t> touched;
         touched.swap(bounds_.touched);
         bounds_.still_changed = !touched.empty();
-        put_in_order(touched);
+        keep_each_once(touched);
         for (const std::uint32_t collider : touched) bounds_.scratch.flags[collider] = 1;
         return touched;
     }
