@@ -290,9 +290,6 @@ void CellTable::take_in(const OverlapQuery& query)
     }
     for (auto id = static_cast<std::uint32_t>(before); id < count; ++id)
         if (asked_[id] == 0) put(id, query.boxes[id]);
-    if (!query.still_changed) return;
-    for (std::uint32_t id = 0; id < before; ++id)
-        if (query.moving[id] == 0 && asked_[id] == 0) put(id, query.boxes[id]);
 }
 
 // The cells in which a box may lie that meets this one.

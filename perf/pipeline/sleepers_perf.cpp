@@ -54,6 +54,7 @@ private:
         BodyDescription body = ball;
         body.shape = 2;
         body.motion = Motion::static_;
+        body.position = Vec3::Zero();
         scene.bodies.assign(1, body);
         const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
         for (std::size_t i = 0; i < count; ++i) {

@@ -12,11 +12,8 @@ namespace throng {
 template <class Is>
 bool any_body_of(const Layout& layout, const Batch& batch, const Is& is)
 {
-    const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
-    return std::any_of(slices.begin(), slices.end(), [&](const Slice& slice) {
-        const auto bodies = layout.bodies_of(slice);
-        return std::any_of(bodies.begin(), bodies.end(), is);
-    });
+    const auto bodies = layout.bodies_of(batch);
+    return std::any_of(bodies.begin(), bodies.end(), is);
 }
 
 /// Whether any of them can only turn, on a pivot or with a locked position.

@@ -126,7 +126,7 @@ private:
                                if (!layout_.batches[i].wide) solve(layout_.batches[i]);
                        });
         finish_islands(context_, parameters_, layout_, diagnostics_);
-        update_split_impulse(split_impulse_);
+        update_split_impulse(layout_, split_impulse_);
     }
 
     // Whether two in touch are so unlike. The impulses that relaxing takes from who bears so much

@@ -1,5 +1,6 @@
 #include "pipeline/solvers/split_impulse.hpp"
 
+#include "kernels/parallel/compact.hpp"
 #include "pipeline/solvers/batch_bodies.hpp"
 #include "pipeline/solvers/unlike_masses.hpp"
 
@@ -133,8 +134,10 @@ void split_wedged(const StepContext& context,
         if (!(depth > kWedged * double{entry.extent})
             || (lifts && are_unlike(masses, entry.body_a, entry.body_b)))
             continue;
-        for (const std::uint32_t body : {entry.body_a, entry.body_b})
+        for (const std::uint32_t body : {entry.body_a, entry.body_b}) {
+            if (split_impulse.steps[body] == 0) split_impulse.bodies.push_back(body);
             split_impulse.steps[body] = std::max(split_impulse.steps[body], kWedgedSteps);
+        }
         split_impulse.some = true;
     }
 }
@@ -166,13 +169,22 @@ void stiffen(const Layout& layout, const Batch& batch, ContactConstraints<Real>&
         block.impulse_scale = {};
 }
 
-void update_split_impulse(SplitImpulse& split_impulse)
+void update_split_impulse(const Layout& layout, SplitImpulse& split_impulse)
 {
     if (!split_impulse.some) return;
-    for (std::uint16_t& steps : split_impulse.steps)
+    std::vector<std::uint32_t>& bodies = split_impulse.bodies;
+    for (std::size_t batch = 0; batch < layout.batches.size(); ++batch)
+        if (split_impulse.scratch.batches[batch] != 0) {
+            const auto its = layout.bodies_of(layout.batches[batch]);
+            bodies.insert(bodies.end(), its.begin(), its.end());
+        }
+    keep_each_once(bodies);
+    std::erase_if(bodies, [&](std::uint32_t body) {
+        std::uint16_t& steps = split_impulse.steps[body];
         steps = (steps & kGoesOn) != 0 ? static_cast<std::uint16_t>(left_of(steps) - 1) : 0;
-    const auto& batches = split_impulse.scratch.batches;
-    split_impulse.some = std::find(batches.begin(), batches.end(), 1) != batches.end();
+        return steps == 0;
+    });
+    split_impulse.some = !bodies.empty();
 }
 
 template <class Real>

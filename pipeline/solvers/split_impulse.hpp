@@ -52,7 +52,7 @@ template <class Real>
 void stiffen(const Layout& layout, const Batch& batch, ContactConstraints<Real>& constraints);
 
 /// After all batches of a step: who parts from now on.
-void update_split_impulse(SplitImpulse& split_impulse);
+void update_split_impulse(const Layout& layout, SplitImpulse& split_impulse);
 
 /// Velocities and impulses of a batch, put aside while it is pushed apart without friction.
 template <class Real>

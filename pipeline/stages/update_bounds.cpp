@@ -136,6 +136,7 @@ public:
     {
         grow_lists();
         const std::vector<std::uint32_t> touched = take_touched();
+        const bool were_still = any_still(touched);
         bounds_.asked.clear();
         if (!bounds_.fast.empty()) std::fill(bounds_.kept.begin(), bounds_.kept.end(), 0.0);
         bounds_.fast.clear();
@@ -143,6 +144,7 @@ public:
         of_movers(states_.active_bodies.kinematic, 0);
         of_movers(states_.active_bodies.dynamic, falls_);
         of_others(touched);
+        bounds_.still_changed = were_still || any_still(touched);
         note_placed_anew(touched);
         keep_each_once(bounds_.fast);
         keep_each_once(bounds_.fast_candidates);
@@ -172,10 +174,15 @@ private:
     {
         std::vector<std::uint32_t> touched;
         touched.swap(bounds_.touched);
-        bounds_.still_changed = !touched.empty();
         keep_each_once(touched);
         for (const std::uint32_t collider : touched) bounds_.scratch.flags[collider] = 1;
         return touched;
+    }
+
+    bool any_still(const std::vector<std::uint32_t>& colliders) const
+    {
+        return std::any_of(colliders.begin(), colliders.end(),
+                           [&](std::uint32_t at) { return bounds_.moving[at] == 0; });
     }
 
     // Every collider of some bodies that move: most of them side by side.

@@ -48,8 +48,9 @@ struct StepDiagnostics {
 struct SplitImpulse {
     static constexpr std::uint16_t kPlaced = 0x4000;
 
-    std::vector<std::uint16_t> steps;  // [bodies] for which it may go on, and kPlaced: see place()
-    bool some = false;                 // somebody is, or was placed
+    std::vector<std::uint16_t> steps;   // [bodies] for which it may go on, and kPlaced: see place()
+    std::vector<std::uint32_t> bodies;  // of which steps are not 0, as the step begins
+    bool some = false;                  // somebody is, or was placed
     struct Scratch {
         std::vector<std::uint8_t> batches;  // [batches] 1: somebody in it is moved apart
     } scratch;
@@ -58,6 +59,7 @@ struct SplitImpulse {
     void place(std::size_t body)
     {
         if (steps.size() <= body) steps.resize(body + 1, 0);
+        if (steps[body] == 0) bodies.push_back(static_cast<std::uint32_t>(body));
         steps[body] |= kPlaced;
         some = true;
     }

@@ -119,7 +119,7 @@ void change(BoxScene& scene, Dice& dice, const BoxKind& kind)
             if (scene.moving[id] == 0 && dice.chance(0.2)) {
                 scene.boxes[id] = random_box(dice, kind);
                 scene.still_changed = true;
-                if (dice.chance(0.5)) asked.insert(id);
+                asked.insert(id);
             }
     scene.asked.assign(asked.begin(), asked.end());
 }
