@@ -30,11 +30,25 @@ V3<L> operator*(const V3<L>& a, L s)
 {
     return {a.x * s, a.y * s, a.z * s};
 }
+/// a s + c.
+template <class L>
+V3<L> mul_add(const V3<L>& a, L s, const V3<L>& c)
+{
+    return {mul_add(a.x, s, c.x), mul_add(a.y, s, c.y), mul_add(a.z, s, c.z)};
+}
+/// Of numbers that are no vectors elsewhere: made into some, they would be copied through memory.
+template <class L>
+L dot(L ax, L ay, L az, L bx, L by, L bz)
+{
+    return mul_add(az, bz, mul_add(ay, by, ax * bx));
+}
 template <class L>
 L dot(const V3<L>& a, const V3<L>& b)
 {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
+    return dot(a.x, a.y, a.z, b.x, b.y, b.z);
 }
+// Each product rounded: that of parallel vectors of few digits is nothing, and what is alike along
+// two axes stays so.
 template <class L>
 V3<L> cross(const V3<L>& a, const V3<L>& b)
 {
@@ -54,7 +68,7 @@ struct ShortestTurn {
     V3<L> operator*(const V3<L>& v) const
     {
         const V3<L> across = cross(axis, v);
-        return v + across + cross(axis, across) * share;
+        return mul_add(cross(axis, across), share, v + across);
     }
 
 private:
@@ -66,7 +80,7 @@ V3<L> turned(const V3<L>& axis, L w, const V3<L>& v)
 {
     const V3<L> t = cross(axis, v);
     const V3<L> twice = t + t;
-    return v + twice * w + cross(axis, twice);
+    return mul_add(twice, w, v) + cross(axis, twice);
 }
 
 }  // namespace throng::THRONG_LANES

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -9,13 +10,33 @@ namespace throng {
 
 namespace {
 
-constexpr const char* kWidths[] = {"avx512", "avx2", "scalar"};  // widest first
+constexpr const char* kWidths[] = {"scalar", "avx2", "avx512"};  // widest last
 
-const char* widest()
+int widest()
 {
-    for (const char* width : kWidths)
-        if (machine_has_lanes(width)) return width;
-    return "scalar";
+    int place = static_cast<int>(std::size(kWidths)) - 1;
+    while (!machine_has_lanes(kWidths[place])) --place;
+    return place;
+}
+
+// Throws std::runtime_error, after `whose`.
+int place_of(const std::string& whose, const char* asked)
+{
+    for (int place = 0; place <= widest(); ++place)
+        if (std::strcmp(asked, kWidths[place]) == 0 && machine_has_lanes(asked)) return place;
+    throw std::runtime_error(whose
+                             + ": wanted scalar, avx2 or avx512, and one that this machine has (it "
+                               "has up to "
+                             + kWidths[widest()] + "), not \"" + asked + "\"");
+}
+
+int& taken()
+{
+    static int place = [] {
+        const char* asked = std::getenv("THRONG_LANES");  // NOLINT(concurrency-mt-unsafe): once
+        return asked == nullptr || *asked == 0 ? widest() : place_of("THRONG_LANES", asked);
+    }();
+    return place;
 }
 
 }  // namespace
@@ -23,25 +44,18 @@ const char* widest()
 bool machine_has_lanes(const char* width)
 {
     if (std::strcmp(width, "scalar") == 0) return true;
-    if (std::strcmp(width, "avx2") == 0) return __builtin_cpu_supports("avx2") != 0;
+    if (std::strcmp(width, "avx2") == 0)
+        return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
     if (std::strcmp(width, "avx512") == 0)
         return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0
             && __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512vl") != 0;
     return false;
 }
 
-const char* lane_width()
-{
-    static const char* const chosen = [] {
-        const char* asked = std::getenv("THRONG_LANES");  // NOLINT(concurrency-mt-unsafe): once
-        if (asked == nullptr || *asked == 0) return widest();
-        for (const char* width : kWidths)
-            if (std::strcmp(asked, width) == 0 && machine_has_lanes(width)) return width;
-        throw std::runtime_error(std::string("THRONG_LANES: wanted scalar, avx2 or avx512, and one "
-                                             "that this machine has (it has up to ")
-                                 + widest() + "), not \"" + asked + "\"");
-    }();
-    return chosen;
-}
+const char* lane_width() { return kWidths[lane_width_place()]; }
+
+int lane_width_place() { return taken(); }
+
+void take_lanes(const char* width) { taken() = place_of("take_lanes", width); }
 
 }  // namespace throng

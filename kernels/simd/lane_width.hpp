@@ -7,8 +7,8 @@
 
 namespace throng {
 
-/// True for "scalar", "avx2" or "avx512" where this machine has it.
-bool machine_has_lanes(const char* width);
+/// Of lane_width(), among scalar, avx2 and avx512.
+int lane_width_place();
 
 /// Of what a file of wide kernels was compiled to for each instruction set, the one of a width;
 /// none (a T{}) where the machine has not got that width or the name is another.
@@ -43,6 +43,7 @@ T of_width(const char* width, T scalar, T avx2, T avx512)
     }                                                                                              \
     __VA_ARGS__ const Type& kernel()                                                               \
     {                                                                                              \
-        static const Type& chosen = *kernel_of(lane_width());                                      \
-        return chosen;                                                                             \
+        static const Type* const all[] = {kernel_of("scalar"), kernel_of("avx2"),                  \
+                                          kernel_of("avx512")};                                    \
+        return *all[lane_width_place()];                                                           \
     }

@@ -1,7 +1,8 @@
 // Lanes: one formula, any width.
 //
 // Wide<T, W> is W numbers that go through the same arithmetic side by side. Every operation is the
-// plain IEEE one, lane by lane, so a formula gives the same bits with 1, 4, 8 or 16 lanes. Built on
+// plain IEEE one, lane by lane, so a formula gives the same bits with 1, 4, 8 or 16 lanes: also
+// mul_add(), which formulas ask for by name and the compiler never puts in by itself. Built on
 // the compiler's vector types: a source that includes this is compiled once for each instruction
 // set (see CMakeLists.txt), each time in a namespace of its own, and may include neither Eigen nor
 // containers, whose inline functions would be shared between instruction sets.
@@ -120,6 +121,48 @@ inline __m512d root(__m512d x) { return _mm512_mask_sqrt_pd(x, 0xff, x); }
 inline __m256 root(__m256 x) { return _mm256_sqrt_ps(x); }
 inline __m256d root(__m256d x) { return _mm256_sqrt_pd(x); }
 #endif
+
+/// a b + c, rounded once.
+inline float mul_add(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
+inline double mul_add(double a, double b, double c) { return __builtin_fma(a, b, c); }
+/// c - a b, likewise.
+inline float neg_mul_add(float a, float b, float c) { return __builtin_fmaf(-a, b, c); }
+inline double neg_mul_add(double a, double b, double c) { return __builtin_fma(-a, b, c); }
+// The compiler writes a sign that it is told of outside of the instruction as one of its own.
+#if THRONG_LANE_BYTES == 64
+inline __m512 mul_add(__m512 a, __m512 b, __m512 c) { return _mm512_fmadd_ps(a, b, c); }
+inline __m512d mul_add(__m512d a, __m512d b, __m512d c) { return _mm512_fmadd_pd(a, b, c); }
+inline __m512 neg_mul_add(__m512 a, __m512 b, __m512 c) { return _mm512_fnmadd_ps(a, b, c); }
+inline __m512d neg_mul_add(__m512d a, __m512d b, __m512d c) { return _mm512_fnmadd_pd(a, b, c); }
+#elif THRONG_LANE_BYTES == 32
+inline __m256 mul_add(__m256 a, __m256 b, __m256 c) { return _mm256_fmadd_ps(a, b, c); }
+inline __m256d mul_add(__m256d a, __m256d b, __m256d c) { return _mm256_fmadd_pd(a, b, c); }
+inline __m256 neg_mul_add(__m256 a, __m256 b, __m256 c) { return _mm256_fnmadd_ps(a, b, c); }
+inline __m256d neg_mul_add(__m256d a, __m256d b, __m256d c) { return _mm256_fnmadd_pd(a, b, c); }
+#endif
+template <class T, int W>
+Wide<T, W> mul_add(Wide<T, W> a, Wide<T, W> b, Wide<T, W> c)
+{
+    if constexpr (W == 1 || W * int(sizeof(T)) == THRONG_LANE_BYTES) {
+        return Wide<T, W>(mul_add(a.v, b.v, c.v));
+    } else {  // a width that is not this instruction set's own
+        Wide<T, W> result;
+        for (int i = 0; i < W; ++i) result.v[i] = mul_add(a.v[i], b.v[i], c.v[i]);
+        return result;
+    }
+}
+template <class T, int W>
+Wide<T, W> neg_mul_add(Wide<T, W> a, Wide<T, W> b, Wide<T, W> c)
+{
+    if constexpr (W == 1 || W * int(sizeof(T)) == THRONG_LANE_BYTES) {
+        return Wide<T, W>(neg_mul_add(a.v, b.v, c.v));
+    } else {
+        Wide<T, W> result;
+        for (int i = 0; i < W; ++i) result.v[i] = neg_mul_add(a.v[i], b.v[i], c.v[i]);
+        return result;
+    }
+}
+
 template <class T, int W>
 Wide<T, W> sqrt(Wide<T, W> a)
 {

@@ -48,9 +48,8 @@ struct Mobility {
     }
     V3<L> turned_by(const V3<L>& torque) const
     {
-        return {xx * torque.x + xy * torque.y + xz * torque.z,
-                xy * torque.x + yy * torque.y + yz * torque.z,
-                xz * torque.x + yz * torque.y + zz * torque.z};
+        const auto row = [&](L x, L y, L z) { return dot(x, y, z, torque.x, torque.y, torque.z); };
+        return {row(xx, xy, xz), row(xy, yy, yz), row(xz, yz, zz)};
     }
 };
 
@@ -98,7 +97,7 @@ struct Motion {
     }
     void apply(const Mobility<L, turns>& how, const V3<L>& impulse, const V3<L>& torque)
     {
-        velocity = velocity + impulse * how.inverse_mass;
+        velocity = mul_add(impulse, how.inverse_mass, velocity);
         if constexpr (turns) spin = spin + how.turned_by(torque);
     }
 };
@@ -123,14 +122,14 @@ struct DeltaPose {
     {
         const V3<L> t = cross(axis, arm);
         const V3<L> twice = t + t;
-        return twice * w + cross(axis, twice);
+        return mul_add(twice, w, cross(axis, twice));
     }
     /// By how much a direction, turned back by the drift, differs from itself.
     V3<L> turned_back(const V3<L>& direction) const
     {
         const V3<L> t = cross(axis, direction);
         const V3<L> twice = t + t;
-        return cross(axis, twice) - twice * w;
+        return mul_add(twice, -w, cross(axis, twice));
     }
 };
 
@@ -177,10 +176,10 @@ struct Frame {
                Motion<L, turns>& a,
                Motion<L, turns>& b) const
     {
-        const V3<L> impulse = normal * by.n + tangent * by.v1 + other * by.v2;
+        const V3<L> impulse = mul_add(other, by.v2, mul_add(tangent, by.v1, normal * by.n));
         const V3<L> back = impulse * L(Real(-1));
         if constexpr (turns) {
-            const V3<L> torque = tangent * by.w1 + other * by.w2 + normal * by.wn;
+            const V3<L> torque = mul_add(normal, by.wn, mul_add(other, by.w2, tangent * by.w1));
             a.apply(how_a, back, cross(center_a, back) - torque);
             b.apply(how_b, impulse, cross(center_b, impulse) + torque);
         } else {

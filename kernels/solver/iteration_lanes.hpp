@@ -43,11 +43,12 @@ struct Contacts {
     }
 };
 
-// What a point of an iteration aims at, and what an impulse on it does to vn, w1, w2.
+// What a point of an iteration aims at, and what an impulse on it does to the normal speeds of
+// those that follow.
 template <class L>
 struct NormalConstraint {
     L bias, scaled_mass, impulse_scale;  // scaled_mass: less the share that impulse_scale takes
-    L dvn, dw1, dw2;
+    L on_later[3];
     L impulse;
 };
 
@@ -69,14 +70,24 @@ SeparationChange<L> separation_change(const Contacts<L, turns>& c,
         const V3<L> turn_a = delta_a.turned_back(c.frame.normal);
         const V3<L> turn_b = delta_b.turned_back(c.frame.normal);
         // A round side is the same however it turns: only what lies within it turns with the body.
-        const V3<L> arm_a = c.frame.center_a - c.frame.normal * lane<L>(c.block.round_a, c.at);
-        const V3<L> arm_b = c.frame.center_b + c.frame.normal * lane<L>(c.block.round_b, c.at);
+        const V3<L> arm_a =
+            mul_add(c.frame.normal, -lane<L>(c.block.round_a, c.at), c.frame.center_a);
+        const V3<L> arm_b =
+            mul_add(c.frame.normal, lane<L>(c.block.round_b, c.at), c.frame.center_b);
         change.center = change.center + (dot(turn_b, arm_b) - dot(turn_a, arm_a));
         const V3<L> turn = turn_b - turn_a;
         change.along_0 = dot(turn, c.frame.other);
         change.along_1 = -dot(turn, c.frame.tangent);
     }
     return change;
+}
+
+// What a point has of a number that changes by the two lever arms.
+template <class L, bool turns>
+L at_lever_arms(const Contacts<L, turns>& c, int point, L along_0, L along_1, L center)
+{
+    return mul_add(lane<L>(c.points[point].lever_arm[1], c.at), along_1,
+                   mul_add(lane<L>(c.points[point].lever_arm[0], c.at), along_0, center));
 }
 
 template <class L, bool turns, int most>
@@ -95,8 +106,7 @@ void build_normal_constraints(const Contacts<L, turns>& c,
         const ContactPointWide<Real>& point = c.points[k];
         separation[k] = lane<L>(point.separation, c.at) + change.center;
         if constexpr (turns && most > 1)
-            separation[k] += lane<L>(point.lever_arm[0], c.at) * change.along_0
-                + lane<L>(point.lever_arm[1], c.at) * change.along_1;
+            separation[k] = at_lever_arms(c, k, change.along_0, change.along_1, separation[k]);
         // A point that this contact has not got, but another of the block has, bears nothing.
         if constexpr (most > 1) {
             const L there = select(lane<L>(point.mass, c.at) > zero, one, zero);
@@ -120,25 +130,26 @@ void build_normal_constraints(const Contacts<L, turns>& c,
             normal.bias = select(open, closing, soft);
             // A corner under a heavy load would sink without end: from `deep` on its spring leaks
             // less, and at twice that not at all.
-            const L depth = -separation[k] * lane<L>(c.block.inverse_deep, c.at) * eased;
-            const L soft_share = max(min(L(Real(2)) - depth, one), zero);
+            const L depth = separation[k] * lane<L>(c.block.inverse_deep, c.at);
+            const L soft_share = max(min(mul_add(depth, eased, L(Real(2))), one), zero);
             normal.impulse_scale =
                 select(open, zero, lane<L>(c.block.impulse_scale, c.at) * soft_share);
-            normal.scaled_mass = mass * (one - normal.impulse_scale);
+            normal.scaled_mass = neg_mul_add(mass, normal.impulse_scale, mass);
         } else {
             normal.bias = select(open, closing, zero);
             normal.impulse_scale = zero;
             normal.scaled_mass = mass;
         }
         if constexpr (turns && most > 1) {
+            if (k + 1 == count) continue;
             const L u = lane<L>(point.lever_arm[0], c.at), w = lane<L>(point.lever_arm[1], c.at);
             const L n1 = c.angular_inverse_mass(0, 0), n2 = c.angular_inverse_mass(1, 0);
             const L w12 = c.inverse_mass(inverse_mass_entry::w12);
-            normal.dvn = c.inverse_mass(inverse_mass_entry::nn) + u * n1 + w * n2;
-            normal.dw1 = n1 + u * c.inverse_mass(inverse_mass_entry::w11) + w * w12;
-            normal.dw2 = n2 + u * w12 + w * c.inverse_mass(inverse_mass_entry::w22);
-        } else {
-            normal.dvn = c.inverse_mass(inverse_mass_entry::nn);
+            const L n = mul_add(w, n2, mul_add(u, n1, c.inverse_mass(inverse_mass_entry::nn)));
+            const L w1 = mul_add(w, w12, mul_add(u, c.inverse_mass(inverse_mass_entry::w11), n1));
+            const L w2 = mul_add(w, c.inverse_mass(inverse_mass_entry::w22), mul_add(u, w12, n2));
+            for (int later = k + 1; later < count; ++later)
+                normal.on_later[later - k - 1] = at_lever_arms(c, later, w1, w2, n);
         }
     }
 }
@@ -170,40 +181,79 @@ void leave_to_restitution(const Contacts<L, turns>& c,
     for (int k = 0; k < count; ++k) {
         L speed = c.relative.n;
         if constexpr (turns && most > 1)
-            speed += lane<L>(c.points[k].lever_arm[0], c.at) * c.relative.w1
-                + lane<L>(c.points[k].lever_arm[1], c.at) * c.relative.w2;
+            speed = at_lever_arms(c, k, c.relative.w1, c.relative.w2, speed);
         normals[k].scaled_mass = select(speed < slow, zero, normals[k].scaled_mass);
     }
 }
 
-// Every point towards its wanted normal speed; then refuse to pull.
-template <class L, bool turns, int most>
-void solve_normals(Contacts<L, turns>& c, NormalConstraint<L> (&normals)[most])
+// An impulse along the normal at the center.
+template <class L, bool turns>
+void apply_normal(Contacts<L, turns>& c, L impulse)
 {
-    using Real = typename L::Number;
-    const int count = most == 1 ? 1 : c.block.points;
+    c.applied.n += impulse;
+    c.relative.n = mul_add(c.inverse_mass(inverse_mass_entry::nn), impulse, c.relative.n);
+}
+
+// The same, and torques about the two tangents.
+template <class L>
+void apply_normal(Contacts<L, true>& c, const V3<L>& by)
+{
+    c.applied.n += by.x;
+    c.applied.w1 += by.y;
+    c.applied.w2 += by.z;
+    const L n1 = c.angular_inverse_mass(0, 0), n2 = c.angular_inverse_mass(1, 0),
+            w12 = c.inverse_mass(inverse_mass_entry::w12);
+    c.relative.n += dot(c.inverse_mass(inverse_mass_entry::nn), n1, n2, by.x, by.y, by.z);
+    c.relative.w1 += dot(n1, c.inverse_mass(inverse_mass_entry::w11), w12, by.x, by.y, by.z);
+    c.relative.w2 += dot(n2, w12, c.inverse_mass(inverse_mass_entry::w22), by.x, by.y, by.z);
+}
+
+// A point towards its wanted normal speed, that it misses by so much; then refuse to pull. Returns
+// the change of its impulse.
+template <class L>
+L solve_normal(NormalConstraint<L>& normal, L missed)
+{
+    const L kept = neg_mul_add(normal.impulse_scale, normal.impulse, normal.impulse);
+    const L total = max(neg_mul_add(normal.scaled_mass, missed, kept), L(typename L::Number(0)));
+    const L more = total - normal.impulse;
+    normal.impulse = total;
+    return more;
+}
+
+template <class L, bool turns>
+void solve_normals(Contacts<L, turns>& c, NormalConstraint<L> (&normals)[1])
+{
+    apply_normal(c, solve_normal(normals[0], c.relative.n + normals[0].bias));
+}
+
+// The same, one point after another. What each does to those that follow is told to them at once,
+// not by way of the contact's speeds: a point waits for nothing else of those before it.
+template <class L>
+void solve_normals(Contacts<L, true>& c, NormalConstraint<L> (&normals)[4])
+{
+    const L zero = typename L::Number(0);
+    const int count = c.block.points;
+    L missed[4];
+    for (int k = 0; k < count; ++k)
+        missed[k] = mul_add(lane<L>(c.points[k].lever_arm[0], c.at), c.relative.w1, c.relative.n)
+            + mul_add(lane<L>(c.points[k].lever_arm[1], c.at), c.relative.w2, normals[k].bias);
+    V3<L> by{zero, zero, zero};
     for (int k = 0; k < count; ++k) {
-        NormalConstraint<L>& normal = normals[k];
-        L speed = c.relative.n, u, w;
-        if constexpr (turns && most > 1) {
-            u = lane<L>(c.points[k].lever_arm[0], c.at);
-            w = lane<L>(c.points[k].lever_arm[1], c.at);
-            speed += u * c.relative.w1 + w * c.relative.w2;
-        }
-        const L wanted = normal.impulse - normal.scaled_mass * (speed + normal.bias)
-            - normal.impulse_scale * normal.impulse;
-        const L total = max(wanted, L(Real(0)));
-        const L more = total - normal.impulse;
-        normal.impulse = total;
-        c.applied.n += more;
-        c.relative.n += normal.dvn * more;
-        if constexpr (turns && most > 1) {
-            c.applied.w1 += u * more;
-            c.applied.w2 += w * more;
-            c.relative.w1 += normal.dw1 * more;
-            c.relative.w2 += normal.dw2 * more;
-        }
+        const L more = solve_normal(normals[k], missed[k]);
+        for (int later = k + 1; later < count; ++later)
+            missed[later] = mul_add(normals[k].on_later[later - k - 1], more, missed[later]);
+        by = {by.x + more, mul_add(lane<L>(c.points[k].lever_arm[0], c.at), more, by.y),
+              mul_add(lane<L>(c.points[k].lever_arm[1], c.at), more, by.z)};
     }
+    apply_normal(c, by);
+}
+
+// Without rotation all points have one speed.
+template <class L>
+void solve_normals(Contacts<L, false>& c, NormalConstraint<L> (&normals)[4])
+{
+    for (int k = 0; k < c.block.points; ++k)
+        apply_normal(c, solve_normal(normals[k], c.relative.n + normals[k].bias));
 }
 
 // Least that a point gives way, as a share of what it answers alone, while all are pushed at once:
@@ -227,21 +277,24 @@ void solve_normals_as_block(Contacts<L, true>& c, NormalConstraint<L> (&normals)
     V3<L> s_n{zero, zero, zero}, pull{zero, zero, zero};
     L s_11 = zero, s_12 = zero, s_22 = zero;
     L stiff[4], alone[4];
+    // What is less than 1 / impulse_scale only nears the answer more slowly: so one number does for
+    // all points that give way.
+    const L soft = one / max(lane<L>(c.block.impulse_scale, c.at), least), hard = one / least;
     for (int k = 0; k < count; ++k) {
         const L u = lane<L>(c.points[k].lever_arm[0], c.at),
                 w = lane<L>(c.points[k].lever_arm[1], c.at);
         const NormalConstraint<L>& normal = normals[k];
-        const L give = one / max(normal.impulse_scale, least);
+        const L give = select(normal.impulse_scale > zero, soft, hard);
         stiff[k] = normal.scaled_mass * give;
-        const L speed = c.relative.n + u * c.relative.w1 + w * c.relative.w2;
+        const L speed = mul_add(w, c.relative.w2, mul_add(u, c.relative.w1, c.relative.n));
         alone[k] =
-            (speed + normal.bias) * stiff[k] + normal.impulse * (normal.impulse_scale * give);
-        pull = pull + V3<L>{alone[k], u * alone[k], w * alone[k]};
+            mul_add(normal.impulse, normal.impulse_scale * give, (speed + normal.bias) * stiff[k]);
+        pull = {pull.x + alone[k], mul_add(u, alone[k], pull.y), mul_add(w, alone[k], pull.z)};
         const L su = stiff[k] * u, sw = stiff[k] * w;
         s_n = s_n + V3<L>{stiff[k], su, sw};
-        s_11 += su * u;
-        s_12 += su * w;
-        s_22 += sw * w;
+        s_11 = mul_add(su, u, s_11);
+        s_12 = mul_add(su, w, s_12);
+        s_22 = mul_add(sw, w, s_22);
     }
     const V3<L> s_1{s_n.y, s_11, s_12}, s_2{s_n.z, s_12, s_22};
     const L n1 = c.angular_inverse_mass(0, 0), n2 = c.angular_inverse_mass(1, 0),
@@ -264,24 +317,19 @@ void solve_normals_as_block(Contacts<L, true>& c, NormalConstraint<L> (&normals)
     for (int k = 0; k < count; ++k) {
         const L u = lane<L>(c.points[k].lever_arm[0], c.at),
                 w = lane<L>(c.points[k].lever_arm[1], c.at);
-        const L there = moved.x + u * moved.y + w * moved.z;
-        total[k] = normals[k].impulse - (alone[k] + stiff[k] * there);
+        const L there = mul_add(w, moved.z, mul_add(u, moved.y, moved.x));
+        total[k] = normals[k].impulse - mul_add(stiff[k], there, alone[k]);
         smallest = min(smallest, total[k]);
         const L more = total[k] - normals[k].impulse;
-        by = by + V3<L>{more, u * more, w * more};
+        by = {by.x + more, mul_add(u, more, by.y), mul_add(w, more, by.z)};
     }
     // On needles the soft direction may drown in rounding: such an answer, or one that is no
     // number, is not taken.
-    const L doubt = max(by.x - p.x, p.x - by.x) - max(p.x, -p.x) * L(Real(1e-3));
+    const L doubt = abs(by.x - p.x) - abs(p.x) * L(Real(1e-3));
     const auto all = select(smallest < zero, one, doubt) < L(Real(1e-30));
     for (int k = 0; k < count; ++k) normals[k].impulse = select(all, total[k], normals[k].impulse);
-    const auto add = [&](L& to, L more) { to += select(all, more, zero); };
-    add(c.applied.n, by.x);
-    add(c.applied.w1, by.y);
-    add(c.applied.w2, by.z);
-    add(c.relative.n, dot(k_n, by));
-    add(c.relative.w1, dot(k_1, by));
-    add(c.relative.w2, dot(k_2, by));
+    apply_normal(c,
+                 V3<L>{select(all, by.x, zero), select(all, by.y, zero), select(all, by.z, zero)});
 }
 
 // The friction mass of W contacts as they keep it.
@@ -308,17 +356,17 @@ FrictionImpulse<L> solve_friction_cone(const FrictionMass<L>& mass,
                                        L friction_limit)
 {
     using Real = typename L::Number;
-    const L stick_1 = old.impulse_1 - (mass.m11 * slip_1 + mass.m12 * slip_2);
-    const L stick_2 = old.impulse_2 - (mass.m12 * slip_1 + mass.m22 * slip_2);
+    const L stick_1 = neg_mul_add(mass.m12, slip_2, neg_mul_add(mass.m11, slip_1, old.impulse_1));
+    const L stick_2 = neg_mul_add(mass.m22, slip_2, neg_mul_add(mass.m12, slip_1, old.impulse_2));
     // Compared as speeds: squares of impulses leave float where bodies are huge or tiny.
     const L limit = friction_limit * mass.sliding_inverse_mass;
     const L try_1 = stick_1 * mass.sliding_inverse_mass,
             try_2 = stick_2 * mass.sliding_inverse_mass;
-    const auto slides = try_1 * try_1 + try_2 * try_2 > limit * limit;
+    const auto slides = mul_add(try_1, try_1, try_2 * try_2) > limit * limit;
 
-    const L slide_1 = old.impulse_1 * mass.sliding_inverse_mass - slip_1;
-    const L slide_2 = old.impulse_2 * mass.sliding_inverse_mass - slip_2;
-    const L length = sqrt(slide_1 * slide_1 + slide_2 * slide_2);
+    const L slide_1 = mul_add(old.impulse_1, mass.sliding_inverse_mass, -slip_1);
+    const L slide_2 = mul_add(old.impulse_2, mass.sliding_inverse_mass, -slip_2);
+    const L length = sqrt(mul_add(slide_1, slide_1, slide_2 * slide_2));
     const L shrink = mass.sliding_mass
         * select(length > limit, limit / select(length > L(Real(0)), length, L(Real(1))),
                  L(Real(1)));
@@ -329,7 +377,7 @@ FrictionImpulse<L> solve_friction_cone(const FrictionMass<L>& mass,
 template <class L, bool turns>
 L torsional_friction_impulse(const Contacts<L, turns>& c, L old, L most)
 {
-    const L wanted = old - lane<L>(c.block.torsional_mass, c.at) * c.relative.wn;
+    const L wanted = neg_mul_add(lane<L>(c.block.torsional_mass, c.at), c.relative.wn, old);
     return max(min(wanted, most), -most);
 }
 
@@ -354,7 +402,7 @@ V3<L> rolling_friction_impulse(const Contacts<L, turns>& c,
     using Real = typename L::Number;
     const L most = lane<L>(rolling.rolling, c.at) * load;
     const L mass = lane<L>(rolling.mass, c.at);
-    const V3<L> wanted = old - V3<L>{c.relative.w1, c.relative.w2, c.relative.wn} * mass;
+    const V3<L> wanted = mul_add(V3<L>{c.relative.w1, c.relative.w2, c.relative.wn}, -mass, old);
     // In units of its greatest part: squares leave float where bodies are huge or tiny.
     const L greatest =
         max(max(max(wanted.x, -wanted.x), max(wanted.y, -wanted.y)), max(wanted.z, -wanted.z));
@@ -381,16 +429,15 @@ V3<L> solve_rolling_friction(Contacts<L, turns>& c,
 template <class L>
 void update_slip_velocities(Contacts<L, true>& c)
 {
-    const auto spin_by = [&](int velocity) {
-        return c.angular_inverse_mass(0, velocity) * c.applied.w1
-            + c.angular_inverse_mass(1, velocity) * c.applied.w2;
+    const auto add = [&](L& to, L n, L w1, L w2) {
+        to += dot(n, w1, w2, c.applied.n, c.applied.w1, c.applied.w2);
     };
-    c.relative.v1 += c.inverse_mass(inverse_mass_entry::n1) * c.applied.n + spin_by(1);
-    c.relative.v2 += c.inverse_mass(inverse_mass_entry::n2) * c.applied.n + spin_by(2);
-    const L w1n = c.inverse_mass(inverse_mass_entry::w1n),
-            w2n = c.inverse_mass(inverse_mass_entry::w2n);
-    c.relative.wn +=
-        c.angular_inverse_mass(2, 0) * c.applied.n + w1n * c.applied.w1 + w2n * c.applied.w2;
+    add(c.relative.v1, c.inverse_mass(inverse_mass_entry::n1), c.angular_inverse_mass(0, 1),
+        c.angular_inverse_mass(1, 1));
+    add(c.relative.v2, c.inverse_mass(inverse_mass_entry::n2), c.angular_inverse_mass(0, 2),
+        c.angular_inverse_mass(1, 2));
+    add(c.relative.wn, c.angular_inverse_mass(2, 0), c.inverse_mass(inverse_mass_entry::w1n),
+        c.inverse_mass(inverse_mass_entry::w2n));
 }
 
 // What resisting to roll does to all, but for what it does about the normal to v1 and v2: that
@@ -417,16 +464,15 @@ void apply_angular_impulse(Contacts<L, true>& c, const V3<L>& by)
 template <class L>
 void update_point_velocities(Contacts<L, true>& c)
 {
-    const L w1n = c.inverse_mass(inverse_mass_entry::w1n),
-            w2n = c.inverse_mass(inverse_mass_entry::w2n);
-    const L f1 = c.applied.v1, f2 = c.applied.v2, torsional_impulse = c.applied.wn;
-    c.relative.n += c.inverse_mass(inverse_mass_entry::n1) * f1
-        + c.inverse_mass(inverse_mass_entry::n2) * f2
-        + c.angular_inverse_mass(2, 0) * torsional_impulse;
-    c.relative.w1 += c.angular_inverse_mass(0, 1) * f1 + c.angular_inverse_mass(0, 2) * f2
-        + w1n * torsional_impulse;
-    c.relative.w2 += c.angular_inverse_mass(1, 1) * f1 + c.angular_inverse_mass(1, 2) * f2
-        + w2n * torsional_impulse;
+    const auto add = [&](L& to, L v1, L v2, L wn) {
+        to += dot(v1, v2, wn, c.applied.v1, c.applied.v2, c.applied.wn);
+    };
+    add(c.relative.n, c.inverse_mass(inverse_mass_entry::n1),
+        c.inverse_mass(inverse_mass_entry::n2), c.angular_inverse_mass(2, 0));
+    add(c.relative.w1, c.angular_inverse_mass(0, 1), c.angular_inverse_mass(0, 2),
+        c.inverse_mass(inverse_mass_entry::w1n));
+    add(c.relative.w2, c.angular_inverse_mass(1, 1), c.angular_inverse_mass(1, 2),
+        c.inverse_mass(inverse_mass_entry::w2n));
 }
 
 // The load that the points bear, and how much they resist torsion.
@@ -442,7 +488,8 @@ void sum_normal_impulses(const Contacts<L, turns>& c,
     for (int k = 0; k < count; ++k) {
         load += normals[k].impulse;
         if constexpr (turns && most > 1)
-            torsional_load += normals[k].impulse * lane<L>(c.points[k].center_distance, c.at);
+            torsional_load = mul_add(normals[k].impulse, lane<L>(c.points[k].center_distance, c.at),
+                                     torsional_load);
     }
 }
 
@@ -455,8 +502,8 @@ void apply_normal_impulses(Contacts<L, turns>& c)
         const L impulse = lane<L>(point.impulse, c.at);
         c.applied.n += impulse;
         if constexpr (turns) {
-            c.applied.w1 += lane<L>(point.lever_arm[0], c.at) * impulse;
-            c.applied.w2 += lane<L>(point.lever_arm[1], c.at) * impulse;
+            c.applied.w1 = mul_add(lane<L>(point.lever_arm[0], c.at), impulse, c.applied.w1);
+            c.applied.w2 = mul_add(lane<L>(point.lever_arm[1], c.at), impulse, c.applied.w2);
         }
     }
 }

@@ -24,16 +24,34 @@ void solve_friction(Contacts<L, turns>& c, L friction_limit)
     c.applied.v2 += held.impulse_2 - old.impulse_2;
 }
 
+// What a point did to the slip.
+template <class L, bool turns>
+void add_applied_normal(Contacts<L, turns>& c)
+{
+    const L n1 = c.inverse_mass(inverse_mass_entry::n1),
+            n2 = c.inverse_mass(inverse_mass_entry::n2);
+    c.relative.v1 = mul_add(n1, c.applied.n, c.relative.v1);
+    c.relative.v2 = mul_add(n2, c.applied.n, c.relative.v2);
+}
+
+// What torsional friction did to it.
+template <class L>
+void add_applied_torsion(Contacts<L, true>& c)
+{
+    c.relative.v1 = mul_add(c.angular_inverse_mass(2, 1), c.applied.wn, c.relative.v1);
+    c.relative.v2 = mul_add(c.angular_inverse_mass(2, 2), c.applied.wn, c.relative.v2);
+}
+
 // Friction of contacts that stand on one point: the three velocities are all there is.
 template <class L, bool turns>
 void solve_center_friction(Contacts<L, turns>& c, L load)
 {
-    c.relative.v1 += c.inverse_mass(inverse_mass_entry::n1) * c.applied.n;
-    c.relative.v2 += c.inverse_mass(inverse_mass_entry::n2) * c.applied.n;
+    add_applied_normal(c);
     solve_friction(c, lane<L>(c.block.friction, c.at) * load);
     if constexpr (turns)
-        c.relative.n += c.inverse_mass(inverse_mass_entry::n1) * c.applied.v1
-            + c.inverse_mass(inverse_mass_entry::n2) * c.applied.v2;
+        c.relative.n =
+            mul_add(c.inverse_mass(inverse_mass_entry::n2), c.applied.v2,
+                    mul_add(c.inverse_mass(inverse_mass_entry::n1), c.applied.v1, c.relative.n));
 }
 
 // Friction of contacts of several points, or that roll.
@@ -47,8 +65,7 @@ void solve_center_friction_with_spin(Contacts<L, true>& c,
     if (rolling != nullptr) apply_angular_impulse(c, solve_rolling_friction(c, *rolling, load));
     const L friction = lane<L>(c.block.friction, c.at);
     if (c.block.points > 1) c.applied.wn += solve_torsional_friction(c, friction * torsional_load);
-    c.relative.v1 += c.angular_inverse_mass(2, 1) * c.applied.wn;
-    c.relative.v2 += c.angular_inverse_mass(2, 2) * c.applied.wn;
+    add_applied_torsion(c);
     solve_friction(c, friction * load);
     update_point_velocities(c);
 }
@@ -120,8 +137,7 @@ void slide(Contacts<L, turns>& c, L friction_limit)
 template <class L, bool turns>
 void slide_point(Contacts<L, turns>& c, const ImpactPoints<L>& impact)
 {
-    c.relative.v1 += c.inverse_mass(inverse_mass_entry::n1) * c.applied.n;
-    c.relative.v2 += c.inverse_mass(inverse_mass_entry::n2) * c.applied.n;
+    add_applied_normal(c);
     slide(c, lane<L>(c.block.friction, c.at) * impact.load);
 }
 
@@ -137,8 +153,7 @@ void slide_points(Contacts<L, true>& c,
             c, rolling_friction_impulse(c, *rolling, V3<L>{zero, zero, zero}, impact.load));
     if (c.block.points > 1)
         c.applied.wn += torsional_friction_impulse(c, zero, friction * impact.torsional_load);
-    c.relative.v1 += c.angular_inverse_mass(2, 1) * c.applied.wn;
-    c.relative.v2 += c.angular_inverse_mass(2, 2) * c.applied.wn;
+    add_applied_torsion(c);
     slide(c, friction * impact.load);
 }
 

@@ -27,16 +27,19 @@ std::vector<Option> all_options()
     return options;
 }
 
-/// Throng on each number of threads, with each value of a dial that is varied, then the peers that
-/// are to be had; the plan's are those.
+/// Throng on each number of threads, by each width of its kernels, with each value of a dial that
+/// is varied, then the peers that are to be had; the plan's are those.
 std::vector<EngineKind> engines_of(Plan& plan, TraceOption* trace)
 {
     std::vector<EngineKind> kinds;
-    for (const int threads : plan.threads) {
-        if (plan.varied.values.empty()) kinds.push_back(bench::throng_engine(threads, trace));
-        for (const std::string& value : plan.varied.values)
-            kinds.push_back(bench::throng_engine(threads, trace, plan.varied.dial, value));
-    }
+    const auto or_none = [](const std::vector<std::string>& list) {
+        return list.empty() ? std::vector<std::string>{""} : list;
+    };
+    for (const int threads : plan.threads)
+        for (const std::string& width : or_none(plan.lanes))
+            for (const std::string& value : or_none(plan.varied.values))
+                kinds.push_back(
+                    bench::throng_engine({threads, trace, width, plan.varied.dial, value}));
     std::vector<EngineKind> peers = bench::peer_engines(plan.peers, plan.peers_asked_for);
     plan.peers.clear();
     for (EngineKind& peer : peers) {
@@ -52,9 +55,10 @@ int run_bench(const Options& options)
     if (options.has("--trace")
         && planned_scenes(plan, 1).size() * plan.threads.size()
                 * std::max<std::size_t>(1, plan.varied.values.size())
+                * std::max<std::size_t>(1, plan.lanes.size())
             != 1)
         throw BadInput("--trace: is of one run; give one scene, one of --sizes, one of --threads "
-                       "and no more than one value to --dt and --vary");
+                       "and no more than one value to --dt, --lanes and --vary");
     const MeshOption mesh(options);
     for (const CatalogEntry* entry : plan.scenes) mesh.check(*entry);
     plan.mesh = mesh.file();

@@ -3,6 +3,7 @@
 
 #include "apps/throng/bench/peer_quality.hpp"
 #include "apps/throng/scene_argument.hpp"
+#include "throng/version.hpp"
 
 namespace throng::bench {
 namespace {
@@ -10,14 +11,16 @@ namespace {
 class ThrongEngine final : public Engine {
 public:
     /// Judged by `given`, which outlives it, where it steps another scene than that.
-    ThrongEngine(const Scene& stepped, const Scene& given, int threads, TraceOption* trace)
-        : world_(stepped, threads), given_(given), varied_(&stepped != &given), trace_(trace)
+    ThrongEngine(const Scene& stepped, const Scene& given, const ThrongRun& run)
+        : world_(stepped, run.threads), given_(given), varied_(&stepped != &given),
+          trace_(run.trace), lanes_(run.lanes.empty() ? lane_width() : run.lanes)
     {
         if (trace_ != nullptr) trace_->watch(world_);
     }
 
     void step() override
     {
+        take_lanes(lanes_.c_str());
         if (trace_ != nullptr) trace_->begin_step(world_.report().step + 1);
         world_.step();
         if (trace_ != nullptr) trace_->end_step();
@@ -42,26 +45,23 @@ private:
     const Scene& given_;
     bool varied_;
     TraceOption* trace_;
+    std::string lanes_;
 };
 
 }  // namespace
 
-EngineKind throng_engine(int threads, TraceOption* trace)
+EngineKind throng_engine(const ThrongRun& run)
 {
-    return {"throng", "", threads, [=](const Scene& scene) {
-                return std::make_unique<ThrongEngine>(scene, scene, threads, trace);
-            }};
-}
-
-EngineKind
-throng_engine(int threads, TraceOption* trace, std::string_view dial, std::string_view value)
-{
-    const std::string name(dial), wanted(value);
-    return {"throng", name + '=' + wanted, threads, [=](const Scene& scene) {
-                Scene varied = scene;
-                set_from_line(varied, "--vary", name, wanted);
-                return std::make_unique<ThrongEngine>(varied, scene, threads, trace);
-            }};
+    const std::string varied = run.dial.empty() ? "" : run.dial + '=' + run.value;
+    std::string setting = run.lanes.empty() ? "" : "lanes=" + run.lanes;
+    if (!setting.empty() && !varied.empty()) setting += ' ';
+    const auto make = [run](const Scene& scene) -> std::unique_ptr<Engine> {
+        if (run.dial.empty()) return std::make_unique<ThrongEngine>(scene, scene, run);
+        Scene other = scene;
+        set_from_line(other, "--vary", run.dial, run.value);
+        return std::make_unique<ThrongEngine>(other, scene, run);
+    };
+    return {"throng", setting + varied, run.threads, make, varied};
 }
 
 }  // namespace throng::bench

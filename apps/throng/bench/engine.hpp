@@ -34,12 +34,15 @@ public:
 
 /// An engine that can be made, again for each repeat.
 ///
-///   setting  of a dial that is varied, as `name=value`; else empty
+///   setting  the width of throng's kernels where several are run, as `lanes=avx2`, and that of a
+///            dial that is varied, as `name=value`; else empty
+///   alike    kinds of one name here have to come to the same state
 struct EngineKind {
     std::string name;
     std::string setting;
     int threads = 1;
     std::function<std::unique_ptr<Engine>(const Scene&)> make;
+    std::string alike = {};
 };
 
 /// As tables tell an engine.
@@ -48,11 +51,17 @@ inline std::string name_of(const std::string& engine, const std::string& setting
     return setting.empty() ? engine : engine + ' ' + setting;
 }
 
-/// Throng on so many threads; its steps go to the trace where one is asked for.
-EngineKind throng_engine(int threads, TraceOption* trace);
-
-/// The same with another value of a dial. What it comes to is judged by the scene as given.
-EngineKind
-throng_engine(int threads, TraceOption* trace, std::string_view dial, std::string_view value);
+/// Throng as it is to be run.
+///
+///   trace  where its steps go to; null: nowhere
+///   lanes  the width of its kernels; empty: that of the process
+///   dial   with another value than the scene's, where it is not empty. What it comes to is judged
+///          by the scene as given
+struct ThrongRun {
+    int threads = 1;
+    TraceOption* trace = nullptr;
+    std::string lanes, dial, value;
+};
+EngineKind throng_engine(const ThrongRun& run);
 
 }  // namespace throng::bench

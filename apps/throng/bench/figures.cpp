@@ -267,10 +267,10 @@ std::vector<Figure> figures_of(const Case& made)
 
 bool hashes_agree(const Case& made)
 {
-    std::map<std::pair<std::string, std::size_t>, std::string> seen;  // by setting and steps
+    std::map<std::pair<std::string, std::size_t>, std::string> seen;  // by kind and steps
     for (const Run& run : made.runs) {
         if (run.state_hash.empty()) continue;
-        const auto [known, first] = seen.try_emplace({run.setting, run.steps()}, run.state_hash);
+        const auto [known, first] = seen.try_emplace({run.alike, run.steps()}, run.state_hash);
         if (!first && known->second != run.state_hash) return false;
     }
     return true;

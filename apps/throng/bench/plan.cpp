@@ -5,6 +5,7 @@
 #include "cost/answers/answers.hpp"
 #include "scene/names.hpp"
 #include "throng/dials.hpp"
+#include "throng/version.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +47,11 @@ constexpr Option kPlanOptions[] = {
     {"--vary", "DIAL=A,B",
      "throng with each of these values of a dial, side by side; all ends are then judged with the "
      "scene's own value"},
+    {"--lanes", "A,B",
+     "throng by each of these widths of its kernels, side by side: scalar, avx2, avx512; their "
+     "ends "
+     "have to be the same (default: the widest that the machine has, or what THRONG_LANES asks "
+     "for)"},
     kSeedOption,
     kMeshOption,
     kSetOption,
@@ -112,6 +118,25 @@ Variation variation_of(std::string_view text)
         varied.values.emplace_back(value);
     }
     return varied;
+}
+
+std::vector<std::string> lanes_of(std::string_view text)
+{
+    std::vector<std::string> widths;
+    if (text.empty()) return widths;
+    for (const std::string_view part : parts_of("--lanes", text)) {
+        std::string width(part);
+        if (width != "scalar" && width != "avx2" && width != "avx512")
+            throw BadInput("--lanes: wanted scalar, avx2 or avx512, some of them with commas "
+                           "between, not "
+                           + in_quotes(part));
+        if (!machine_has_lanes(width.c_str()))
+            throw BadInput("--lanes: this machine has no " + width + "; leave it out");
+        if (std::find(widths.begin(), widths.end(), width) != widths.end())
+            throw BadInput("--lanes: " + in_quotes(part) + " is given twice");
+        widths.push_back(std::move(width));
+    }
+    return widths;
 }
 
 std::string all_cores()
@@ -190,6 +215,7 @@ Plan read_plan(const Options& options)
     plan.peers_asked_for = options.has("--peers");
     plan.peers = peers_of(text_or(options, "--peers", "bullet,ode"));
     plan.varied = variation_of(options.text("--vary"));
+    plan.lanes = lanes_of(options.text("--lanes"));
     if (!plan.errors || options.has("--steps"))
         plan.steps = options.whole("--steps", kStandardSteps, 1, kMostBenchSteps);
     plan.repeats = static_cast<int>(options.whole("--repeat", 2, 1, 1000));

@@ -31,6 +31,7 @@ public:
     {
         run_.engine = kind.name;
         run_.setting = kind.setting;
+        run_.alike = kind.alike;
         run_.threads = kind.threads;
         run_.repeat = repeat;
         memory_.begin();

@@ -121,6 +121,8 @@ TEST(Usage, WrongWordsAreRefusedWithWhatWasWanted)
         {{"bench", "--vary", "substeps"}, "--vary: wanted DIAL=VALUE,VALUE"},
         {{"bench", "--vary", "substeps=4,many"}, "--vary: substeps: wanted a whole number"},
         {{"bench", "--vary", "substeps=4,4"}, "given twice"},
+        {{"bench", "--lanes", "sse"}, "--lanes: wanted scalar, avx2 or avx512"},
+        {{"bench", "--lanes", "scalar,scalar"}, "given twice"},
         {{"bench", "--dt", "soon"}, "--dt: dt: wanted a time"},
         {{"bench", "--dt", "0.01,1/100"}, "given twice"},
         {{"bench", "--error", "--scenes", "rolling,pile"}, "pile has no answer"},

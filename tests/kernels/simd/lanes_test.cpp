@@ -32,6 +32,8 @@ void check_arithmetic()
     expect(x * y, [](T p, T q) { return p * q; });
     expect(x / y, [](T p, T q) { return p / q; });
     expect(-x, [](T p, T) { return -p; });
+    expect(mul_add(x, y, x), [](T p, T q) { return std::fma(p, q, p); });
+    expect(neg_mul_add(x, x, y * y), [](T p, T q) { return std::fma(-p, p, q * q); });
     expect(max(x, y), [](T p, T q) { return p > q ? p : q; });
     expect(min(x, y), [](T p, T q) { return p < q ? p : q; });
     expect(sqrt(x * x), [](T p, T) { return std::sqrt(p * p); });

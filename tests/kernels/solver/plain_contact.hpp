@@ -295,7 +295,8 @@ private:
         apply((point.impulse - before) * normal, point.arm_a, point.arm_b);
     }
     // The impulses with which each point gives way by its share and no other comes in between, by
-    // a full system of equations; only where nobody pulls. A rigid point gives way by a little.
+    // a full system of equations; only where nobody pulls. A rigid point gives way by a little; of
+    // one that is softer than it was only its present impulse leaks by what it is now.
     void solve_normals_as_block()
     {
         const std::size_t count = points.size();
@@ -304,7 +305,7 @@ private:
             const Point& at = points[i];
             const double keep = at.left ? 0 : mass_of(at) * (1 - at.leak);
             for (const Point& other : points) system[i].push_back(keep * answer_at(at, other));
-            system[i][i] += std::max(at.leak, double{0.03f});
+            system[i][i] += at.leak > 0 ? std::max(impulse_scale_, double{0.03f}) : double{0.03f};
             system[i].push_back(-keep * (speed_of(at) + at.bias) - at.leak * at.impulse);
         }
         std::vector<double> more = solved_by_elimination(std::move(system));

@@ -84,7 +84,7 @@ TEST(BenchFigures, HashesOfEqualStepsHaveToAgree)
     EXPECT_TRUE(hashes_agree(made));
     made.runs[2].state_hash = "c";
     EXPECT_FALSE(hashes_agree(made));
-    made.runs[2].setting = "substeps=8";  // comes to what it may
+    made.runs[2].alike = "substeps=8";  // comes to what it may
     EXPECT_TRUE(hashes_agree(made));
 }
 

@@ -1,6 +1,7 @@
 // Bench: what a benchmark prints and writes.
 #include "scene/files/json.hpp"
 #include "tests/apps/throng/command.hpp"
+#include "throng/version.hpp"
 
 #include <gtest/gtest.h>
 
@@ -187,6 +188,27 @@ TEST(Bench, ValuesOfADialRunSideBySide)
     EXPECT_NE(json.text(figures[0], "state_hash"), json.text(figures[1], "state_hash"));
     for (const Node figure : figures)
         EXPECT_GE(json.number(json.at(figure, "quality"), "shared_volume"), 0);
+}
+
+TEST(Bench, WidthsRunSideBySideAndComeToTheSameState)
+{
+    const TestFolder folder;
+    const bool wide = machine_has_lanes("avx2");
+    const Outcome done = run_throng({"bench", "--scenes", "stacks", "--sizes", "30", "--threads",
+                                     "1", "--steps", "5", "--repeat", "1", "--peers", "none",
+                                     "--lanes", wide ? "avx2,scalar" : "scalar", "--vary",
+                                     "substeps=4,5", "--json", folder / "b.json"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_NE(done.out.find("throng lanes=scalar substeps=5"), std::string::npos) << done.out;
+    const Json json(folder.read("b.json"));
+    const std::vector<Node> figures =
+        json.items(json.at(json.items(json.at("cases"))[0], "figures"));
+    ASSERT_EQ(figures.size(), wide ? 4u : 2u);
+    if (wide) {
+        EXPECT_EQ(json.text(figures[0], "state_hash"), json.text(figures[2], "state_hash"));
+        EXPECT_EQ(json.text(figures[1], "setting"), "lanes=avx2 substeps=5");
+    }
+    EXPECT_NE(json.text(figures[0], "state_hash"), json.text(figures[1], "state_hash"));
 }
 
 TEST(Bench, TimeThatIsUpEndsARunEarly)
