@@ -20,11 +20,11 @@ int widest()
 }
 
 // Throws std::runtime_error, after `whose`.
-int place_of(const std::string& whose, const char* asked)
+int place_of(const char* whose, const char* asked)
 {
-    for (int place = 0; place <= widest(); ++place)
+    for (int place = 0; place < static_cast<int>(std::size(kWidths)); ++place)
         if (std::strcmp(asked, kWidths[place]) == 0 && machine_has_lanes(asked)) return place;
-    throw std::runtime_error(whose
+    throw std::runtime_error(std::string(whose)
                              + ": wanted scalar, avx2 or avx512, and one that this machine has (it "
                                "has up to "
                              + kWidths[widest()] + "), not \"" + asked + "\"");

@@ -122,7 +122,7 @@ inline __m256 root(__m256 x) { return _mm256_sqrt_ps(x); }
 inline __m256d root(__m256d x) { return _mm256_sqrt_pd(x); }
 #endif
 
-/// a b + c, rounded once.
+/// Fused multiply-add: a b + c, rounded once.
 inline float mul_add(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
 inline double mul_add(double a, double b, double c) { return __builtin_fma(a, b, c); }
 /// c - a b, likewise.
@@ -140,39 +140,33 @@ inline __m256d mul_add(__m256d a, __m256d b, __m256d c) { return _mm256_fmadd_pd
 inline __m256 neg_mul_add(__m256 a, __m256 b, __m256 c) { return _mm256_fnmadd_ps(a, b, c); }
 inline __m256d neg_mul_add(__m256d a, __m256d b, __m256d c) { return _mm256_fnmadd_pd(a, b, c); }
 #endif
+// An operation that the machine has for whole registers, or number by number where the width is
+// not this instruction set's own.
+template <class T, int W, class Operation, class... More>
+Wide<T, W> by_register(const Operation& operation, Wide<T, W> a, More... more)
+{
+    if constexpr (W == 1 || W * int(sizeof(T)) == THRONG_LANE_BYTES) {
+        return Wide<T, W>(operation(a.v, more.v...));
+    } else {
+        Wide<T, W> result;
+        for (int i = 0; i < W; ++i) result.v[i] = operation(a.v[i], more.v[i]...);
+        return result;
+    }
+}
 template <class T, int W>
 Wide<T, W> mul_add(Wide<T, W> a, Wide<T, W> b, Wide<T, W> c)
 {
-    if constexpr (W == 1 || W * int(sizeof(T)) == THRONG_LANE_BYTES) {
-        return Wide<T, W>(mul_add(a.v, b.v, c.v));
-    } else {  // a width that is not this instruction set's own
-        Wide<T, W> result;
-        for (int i = 0; i < W; ++i) result.v[i] = mul_add(a.v[i], b.v[i], c.v[i]);
-        return result;
-    }
+    return by_register([](auto x, auto y, auto z) { return mul_add(x, y, z); }, a, b, c);
 }
 template <class T, int W>
 Wide<T, W> neg_mul_add(Wide<T, W> a, Wide<T, W> b, Wide<T, W> c)
 {
-    if constexpr (W == 1 || W * int(sizeof(T)) == THRONG_LANE_BYTES) {
-        return Wide<T, W>(neg_mul_add(a.v, b.v, c.v));
-    } else {
-        Wide<T, W> result;
-        for (int i = 0; i < W; ++i) result.v[i] = neg_mul_add(a.v[i], b.v[i], c.v[i]);
-        return result;
-    }
+    return by_register([](auto x, auto y, auto z) { return neg_mul_add(x, y, z); }, a, b, c);
 }
-
 template <class T, int W>
 Wide<T, W> sqrt(Wide<T, W> a)
 {
-    if constexpr (W == 1 || W * int(sizeof(T)) == THRONG_LANE_BYTES) {
-        return Wide<T, W>(root(a.v));
-    } else {  // a width that is not this instruction set's own
-        Wide<T, W> result;
-        for (int i = 0; i < W; ++i) result.v[i] = root(a.v[i]);
-        return result;
-    }
+    return by_register([](auto x) { return root(x); }, a);
 }
 
 // Eight numbers of each of W bodies, turned so that each number has a register of its own. Loads

@@ -90,6 +90,14 @@ L at_lever_arms(const Contacts<L, turns>& c, int point, L along_0, L along_1, L 
                    mul_add(lane<L>(c.points[point].lever_arm[0], c.at), along_0, center));
 }
 
+// Adds an impulse on a point: along the normal, and its torques about the two tangents.
+template <class L, bool turns>
+void add_at_point(const Contacts<L, turns>& c, int point, L impulse, V3<L>& to)
+{
+    to = {to.x + impulse, mul_add(lane<L>(c.points[point].lever_arm[0], c.at), impulse, to.y),
+          mul_add(lane<L>(c.points[point].lever_arm[1], c.at), impulse, to.z)};
+}
+
 template <class L, bool turns, int most>
 void build_normal_constraints(const Contacts<L, turns>& c,
                               const SolverBody<typename L::Number>* bodies,
@@ -242,8 +250,7 @@ void solve_normals(Contacts<L, true>& c, NormalConstraint<L> (&normals)[4])
         const L more = solve_normal(normals[k], missed[k]);
         for (int later = k + 1; later < count; ++later)
             missed[later] = mul_add(normals[k].on_later[later - k - 1], more, missed[later]);
-        by = {by.x + more, mul_add(lane<L>(c.points[k].lever_arm[0], c.at), more, by.y),
-              mul_add(lane<L>(c.points[k].lever_arm[1], c.at), more, by.z)};
+        add_at_point(c, k, more, by);
     }
     apply_normal(c, by);
 }
@@ -286,10 +293,10 @@ void solve_normals_as_block(Contacts<L, true>& c, NormalConstraint<L> (&normals)
         const NormalConstraint<L>& normal = normals[k];
         const L give = select(normal.impulse_scale > zero, soft, hard);
         stiff[k] = normal.scaled_mass * give;
-        const L speed = mul_add(w, c.relative.w2, mul_add(u, c.relative.w1, c.relative.n));
+        const L speed = at_lever_arms(c, k, c.relative.w1, c.relative.w2, c.relative.n);
         alone[k] =
             mul_add(normal.impulse, normal.impulse_scale * give, (speed + normal.bias) * stiff[k]);
-        pull = {pull.x + alone[k], mul_add(u, alone[k], pull.y), mul_add(w, alone[k], pull.z)};
+        add_at_point(c, k, alone[k], pull);
         const L su = stiff[k] * u, sw = stiff[k] * w;
         s_n = s_n + V3<L>{stiff[k], su, sw};
         s_11 = mul_add(su, u, s_11);
@@ -315,13 +322,10 @@ void solve_normals_as_block(Contacts<L, true>& c, NormalConstraint<L> (&normals)
     L total[4], smallest = zero;
     V3<L> by{zero, zero, zero};
     for (int k = 0; k < count; ++k) {
-        const L u = lane<L>(c.points[k].lever_arm[0], c.at),
-                w = lane<L>(c.points[k].lever_arm[1], c.at);
-        const L there = mul_add(w, moved.z, mul_add(u, moved.y, moved.x));
+        const L there = at_lever_arms(c, k, moved.y, moved.z, moved.x);
         total[k] = normals[k].impulse - mul_add(stiff[k], there, alone[k]);
         smallest = min(smallest, total[k]);
-        const L more = total[k] - normals[k].impulse;
-        by = {by.x + more, mul_add(u, more, by.y), mul_add(w, more, by.z)};
+        add_at_point(c, k, total[k] - normals[k].impulse, by);
     }
     // On needles the soft direction may drown in rounding: such an answer, or one that is no
     // number, is not taken.

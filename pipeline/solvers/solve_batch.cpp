@@ -273,12 +273,7 @@ private:
     void find_state_forces()
     {
         if (!context_.effects.meets(kFollowBodies)) return;
-        std::vector<std::uint32_t> bodies;
-        for (std::uint32_t i = 0; i < batch_.slices; ++i) {
-            const auto of_slice = layout_.bodies_of(layout_.slices[batch_.first_slice + i]);
-            bodies.insert(bodies.end(), of_slice.begin(), of_slice.end());
-        }
-        state_forces_.emplace(context_, facts_, bodies);
+        state_forces_.emplace(context_, facts_, layout_.bodies_of(batch_));
         if (state_forces_->forced_bodies().empty()) state_forces_.reset();
     }
 

@@ -20,6 +20,7 @@ constexpr std::string_view kStandardScenes =
 constexpr std::string_view kStandardSizes = "1000,10000,100000";
 constexpr std::string_view kStandardSeconds = "20";
 constexpr std::string_view kKnownPeers[] = {"bullet", "ode"};
+constexpr std::string_view kWidths[] = {"scalar", "avx2", "avx512"};
 
 constexpr Option kPlanOptions[] = {
     {"--scenes", "A,B",
@@ -49,8 +50,7 @@ constexpr Option kPlanOptions[] = {
      "scene's own value"},
     {"--lanes", "A,B",
      "throng by each of these widths of its kernels, side by side: scalar, avx2, avx512; their "
-     "ends "
-     "have to be the same (default: the widest that the machine has, or what THRONG_LANES asks "
+     "ends have to be the same (default: the widest of the machine, or what THRONG_LANES asks "
      "for)"},
     kSeedOption,
     kMeshOption,
@@ -126,10 +126,9 @@ std::vector<std::string> lanes_of(std::string_view text)
     if (text.empty()) return widths;
     for (const std::string_view part : parts_of("--lanes", text)) {
         std::string width(part);
-        if (width != "scalar" && width != "avx2" && width != "avx512")
-            throw BadInput("--lanes: wanted scalar, avx2 or avx512, some of them with commas "
-                           "between, not "
-                           + in_quotes(part));
+        if (std::find(std::begin(kWidths), std::end(kWidths), part) == std::end(kWidths))
+            throw BadInput("--lanes: wanted " + either_of(kWidths)
+                           + ", some of them with commas between, not " + in_quotes(part));
         if (!machine_has_lanes(width.c_str()))
             throw BadInput("--lanes: this machine has no " + width + "; leave it out");
         if (std::find(widths.begin(), widths.end(), width) != widths.end())

@@ -169,6 +169,11 @@ TEST(Bench, ErrorsAreOfAllScenesThatHaveAnAnswer)
         }
 }
 
+std::vector<Node> figures_of_first(const Json& json)
+{
+    return json.items(json.at(json.items(json.at("cases")).at(0), "figures"));
+}
+
 // Both ends are judged by the same geometry.
 TEST(Bench, ValuesOfADialRunSideBySide)
 {
@@ -179,8 +184,7 @@ TEST(Bench, ValuesOfADialRunSideBySide)
     ASSERT_EQ(done.code, 0) << done.err;
     EXPECT_NE(done.out.find("throng nonconvex=hull"), std::string::npos) << done.out;
     const Json json(folder.read("b.json"));
-    const std::vector<Node> figures =
-        json.items(json.at(json.items(json.at("cases"))[0], "figures"));
+    const std::vector<Node> figures = figures_of_first(json);
     ASSERT_GE(figures.size(), 2u);
     const Outcome alone = run_throng({"run", "knots:4", "--steps", "10", "--set", "sleep=off"});
     EXPECT_NE(alone.out.find(json.text(figures[0], "state_hash")), std::string::npos);
@@ -201,8 +205,7 @@ TEST(Bench, WidthsRunSideBySideAndComeToTheSameState)
     ASSERT_EQ(done.code, 0) << done.err;
     EXPECT_NE(done.out.find("throng lanes=scalar substeps=5"), std::string::npos) << done.out;
     const Json json(folder.read("b.json"));
-    const std::vector<Node> figures =
-        json.items(json.at(json.items(json.at("cases"))[0], "figures"));
+    const std::vector<Node> figures = figures_of_first(json);
     ASSERT_EQ(figures.size(), wide ? 4u : 2u);
     if (wide) {
         EXPECT_EQ(json.text(figures[0], "state_hash"), json.text(figures[2], "state_hash"));
