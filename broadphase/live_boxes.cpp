@@ -37,7 +37,7 @@ void LiveBoxes::put(std::uint32_t id, const Box3& box, const Vec3& ahead, double
         boxes_[id] = {};
         return;
     }
-    if (held_by_[id] != kNowhere && boxes_[id].contains(box)) return;
+    if (stays(id, box)) return;
     if (held_by_[id] != kLoose) {
         leave(id);
         held_by_[id] = kLoose;

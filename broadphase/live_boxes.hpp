@@ -21,6 +21,11 @@ public:
     ///
     ///   ahead  m, how far it is thought to go soon, and besides in any direction
     void put(std::uint32_t id, const Box3& box, const Vec3& ahead, double around);
+    /// Whether a box is held, and this one stays within the room that it has.
+    bool stays(std::uint32_t id, const Box3& box) const
+    {
+        return held_by_[id] != kNowhere && boxes_[id].contains(box);
+    }
     /// Once all are where they are, before anybody asks.
     void settle();
 

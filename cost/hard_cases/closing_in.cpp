@@ -14,6 +14,7 @@
 #include "cost/hard_cases/hard_cases.hpp"
 #include "scene/catalog/parts.hpp"
 #include "throng/rotation.hpp"
+#include "throng/world.hpp"
 
 #include <algorithm>
 #include <array>

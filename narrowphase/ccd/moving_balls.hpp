@@ -68,7 +68,7 @@ private:
             : shape(moving.trajectory.at(begin) * moving.local),
               turn(shape.orientation.toRotationMatrix()),
               body(moving.trajectory.at(begin).position), from_body(shape.position - body),
-              spin(moving.trajectory.turn.norm())
+              spin(moving.trajectory.angle())
         { }
         Vec3 arm(const Vec3& center) const { return turn * center + from_body; }
         // m, that turning takes a point so far from where the body turns about at most.

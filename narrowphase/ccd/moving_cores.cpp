@@ -12,16 +12,40 @@ namespace {
 constexpr double kNoLimit = 1e30;
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 
+// The points that a core is spun of, of a hull or a triangle.
+std::span<const Vec3> points_of(const ConvexCore<double>& core)
+{
+    if (core.hull != nullptr) return core.hull->vertices;
+    return {core.corners, core.corner_count};
+}
+
 // Greatest distance of a point of the core from its frame's origin.
 double extent_of(const ConvexCore<double>& core)
 {
     if (core.kind == ShapeKind::sphere) return 0;
     if (core.hull == nullptr && core.corners == nullptr) return core.extents.norm();
     double most = 0;
-    const Vec3* const points = core.hull ? core.hull->vertices.data() : core.corners;
-    const std::size_t count = core.hull ? core.hull->vertices.size() : core.corner_count;
-    for (std::size_t i = 0; i < count; ++i) most = std::max(most, points[i].squaredNorm());
+    for (const Vec3& point : points_of(core)) most = std::max(most, point.squaredNorm());
     return std::sqrt(most);
+}
+
+// The same from a line through a point, along a unit direction.
+double extent_from_line(const ConvexCore<double>& core, const Vec3& on_line, const Vec3& along)
+{
+    if (core.kind == ShapeKind::sphere) return along.cross(on_line).norm();
+    double most = 0;
+    if (core.hull == nullptr && core.corners == nullptr) {
+        for (int k = 0; k < 4; ++k) {
+            const Vec3 corner(core.extents.x(), k & 1 ? -core.extents.y() : core.extents.y(),
+                              k & 2 ? -core.extents.z() : core.extents.z());
+            most = std::max(
+                {most, along.cross(corner - on_line).norm(), along.cross(corner + on_line).norm()});
+        }
+        return most;
+    }
+    for (const Vec3& point : points_of(core))
+        most = std::max(most, along.cross(point - on_line).norm());
+    return most;
 }
 
 double rounding_of(const MovingCore& a, const MovingCore& b, double round)
@@ -73,6 +97,10 @@ MovingCore::MovingCore(const ConvexCore<double>& core, const MovingShape& moving
       outer_radius_(moving.local.position.norm() + extent_of(core))
 {
     trajectory_.begin.position -= from;
+    if (trajectory_.spin.isZero(0)) return;
+    const Quat back = local_.orientation.conjugate();
+    spin_radius_ = extent_from_line(core_, back * -local_.position,
+                                    back * Vec3(trajectory_.spin.normalized()));
 }
 
 SeparationRate MovingCore::extent(const Vec3& direction, double time) const
@@ -90,14 +118,19 @@ Vec3 MovingCore::furthest_along(const Vec3& direction, double time) const
 Vec3 MovingCore::speed_of(const Vec3& point, double time) const
 {
     const Vec3 arm = point - (trajectory_.begin.position + time * trajectory_.shift);
-    return trajectory_.shift + trajectory_.turn.cross(arm);
+    return trajectory_.shift + trajectory_.angular_velocity(time).cross(arm);
 }
 
 SeparationLimits MovingCore::turning_limits(const Vec3& direction) const
 {
     // A point at r moves by w x r: along n at most |n x w| r, and that changes by |w| |n x w| r.
     const double speed = direction.cross(trajectory_.turn).norm() * outer_radius_;
-    return {trajectory_.turn.norm() * speed, speed};
+    if (trajectory_.spin.isZero(0)) return {trajectory_.turn.norm() * speed, speed};
+    // And of the spin, by as much as the point is off its axis, which turns.
+    const double turning = trajectory_.turn.norm();
+    const double spinning = trajectory_.spin.norm() * spin_radius_;
+    return {turning * (speed + 2 * spinning) + trajectory_.spin.norm() * spinning,
+            speed + spinning};
 }
 
 MovingCores::MovingCores(const ConvexCore<double>& core_a,
@@ -166,7 +199,7 @@ SeparationRate OverPlane::separation_rate(const Vec3&, double time) const
     const Vec3 lowest = other_.furthest_along(-normal, time);
     // Against that point of the plane's body that is there now.
     const Vec3 speed = other_.speed_of(lowest, time) - trajectory_.shift
-        - trajectory_.turn.cross(lowest - body.position);
+        - trajectory_.angular_velocity(time).cross(lowest - body.position);
     return {normal.dot(lowest - placed.position) - plane_.offset - other_.core().convex_radius
                 - rounding_,
             normal.dot(speed)};
@@ -177,13 +210,15 @@ SeparationLimits OverPlane::limits_along(const Vec3&) const
     const Vec3 normal = normal_at(0);
     const SeparationLimits turning = other_.turning_limits(normal);
     const Vec3 nearing = trajectory_.shift - other_.trajectory().shift;
-    if (trajectory_.turn.isZero(0)) return {turning.bend, normal.dot(nearing) + turning.speed};
+    if (!trajectory_.turns()) return {turning.bend, normal.dot(nearing) + turning.speed};
     // In the frame of the plane, which turns with it about its body: nothing is further from there
     // than `far`.
-    const double spin = trajectory_.turn.norm(), spin_other = other_.trajectory().turn.norm();
+    const double spin = trajectory_.angle(), spin_other = other_.trajectory().angle();
     const double far = trajectory_.begin.position.norm() + nearing.norm() + other_.outer_radius();
     const double speed = nearing.norm() + spin_other * other_.outer_radius();
-    return {spin * spin * far + 2 * spin * speed + spin_other * spin_other * other_.outer_radius(),
+    const double centripetal = spin * spin + trajectory_.angular_acceleration();
+    const double of_other = spin_other * spin_other + other_.trajectory().angular_acceleration();
+    return {centripetal * far + 2 * spin * speed + of_other * other_.outer_radius(),
             spin * far + speed};
 }
 
@@ -201,12 +236,12 @@ void visit_triangles_in_way(const Mesh& mesh,
         other.local.position.norm() + extent_of(core) + core.convex_radius + approach.margin;
     const Vec3 from = seen_at(approach.begin);
     Vec3 way = seen_at(approach.end) - from;
-    if (!on.trajectory.turn.isZero(0)) {
+    if (on.trajectory.turns()) {
         // As far as the mesh may turn under it, it may be anywhere.
         const double most = (other.trajectory.begin.position - on.trajectory.begin.position).norm()
             + other.trajectory.shift.norm() + on.trajectory.shift.norm();
         radius += (other.trajectory.shift - on.trajectory.shift).norm()
-            + std::min(2.0, on.trajectory.turn.norm()) * most;
+            + std::min(2.0, on.trajectory.angle()) * most;
         way.setZero();
     }
     radius += kRounding * (from.norm() + way.norm() + radius);

@@ -32,6 +32,7 @@ private:
     RigidTrajectory trajectory_;
     Pose local_;
     double outer_radius_ = 0;
+    double spin_radius_ = 0;  // m, of a point of the core from the axis that its body spins about
 };
 
 /// The core of a convex shape or of the ball that stands for it; of a mesh, of its corners.

@@ -46,7 +46,7 @@ Box3 SweptPairs::box_of_way(std::uint32_t at) const
     Box3 box = joined(before, shape_bounds(shapes_, colliders_.shape[at], ends));
     // Between the two it may reach further, by as much as its turning takes any point of it.
     const double angle = velocities_.angular[body].norm() * context_.dt;
-    const double turning = angle > 0 ? std::min(angle, 2.0) * colliders_.outer_radius[at] : 0;
+    const double turning = angle > 0 ? beyond_ends(angle) * colliders_.outer_radius[at] : 0;
     const double slack = turning + parameters_.tolerance * colliders_.inner_extent[at];
     box.lower.array() -= slack;
     box.upper.array() += slack;
@@ -192,8 +192,8 @@ SweptWay SweptPairs::way_from_start(std::uint32_t body) const
     if (states_.kind[body] == BodyKind::static_)
         way.trajectory.begin = poses_.at(body);
     else
-        way.trajectory = trajectory_between(began(body), poses_.at(body),
-                                            velocities_.angular[body] * context_.dt);
+        way.trajectory = trajectory_of(masses_, body, began(body), poses_.at(body),
+                                       velocities_.angular[body] * context_.dt);
     return way;
 }
 

@@ -46,6 +46,7 @@ public:
                const Shapes& shapes,
                const Colliders& colliders,
                const PairFilter& filter,
+               const Masses& masses,
                const Bounds& bounds,
                const Pairs& pairs,
                const BodyStates& states,
@@ -56,9 +57,9 @@ public:
                const Velocities& velocities,
                std::vector<std::uint8_t>& flags)
         : context_(context), parameters_(parameters), shapes_(shapes), colliders_(colliders),
-          filter_(filter), bounds_(bounds), pairs_(pairs), states_(states), islands_(islands),
-          followed_(followed), on_meshes_(on_meshes), poses_(poses), velocities_(velocities),
-          flags_(flags)
+          filter_(filter), masses_(masses), bounds_(bounds), pairs_(pairs), states_(states),
+          islands_(islands), followed_(followed), on_meshes_(on_meshes), poses_(poses),
+          velocities_(velocities), flags_(flags)
     { }
 
     /// Finds both; `woke`: bodies that woke in this step.
@@ -88,6 +89,7 @@ private:
     const Shapes& shapes_;
     const Colliders& colliders_;
     const PairFilter& filter_;
+    const Masses& masses_;
     const Bounds& bounds_;
     const Pairs& pairs_;
     const BodyStates& states_;

@@ -124,12 +124,12 @@ void EventDrivenGroup::find_pairs(double begin, double span)
     pairs_.clear();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const std::uint32_t body = bodies_[i];
-        const double angle = std::min(ends_[i].spin.norm() * span, 2.0);
+        const double beyond = beyond_ends(ends_[i].spin.norm() * span);
         for (std::uint32_t k = 0; k < colliders.count[body]; ++k) {
             const std::uint32_t at = colliders.begin[body] + k;
             Box3 box =
                 joined(scene_.box_of(at, scene_.poses.at(body)), scene_.box_of(at, ends_[i].pose));
-            const double slack = angle * (colliders.outer_radius[at] + scene_.beyond_mesh(at))
+            const double slack = beyond * (colliders.outer_radius[at] + scene_.beyond_mesh(at))
                 + scene_.touching_margin(at);
             box.lower.array() -= slack;
             box.upper.array() += slack;
@@ -148,7 +148,7 @@ void EventDrivenGroup::find_pairs(double begin, double span)
                 box = joined(box, scene_.box_of(at, pose_at(body, begin + span)));
                 const double angle = scene_.velocities.angular[body].norm() * span;
                 const double slack =
-                    std::min(angle, 2.0) * (colliders.outer_radius[at] + scene_.beyond_mesh(at));
+                    beyond_ends(angle) * (colliders.outer_radius[at] + scene_.beyond_mesh(at));
                 box.lower.array() -= slack;
                 box.upper.array() += slack;
             }
@@ -172,7 +172,8 @@ FirstImpact EventDrivenGroup::look_ahead(std::span<const PairKey> asked, double 
                                       : scene_.velocities.angular[body];
         const Pose from = pose_at(body, begin), to = end_of(body, begin + span);
         const ShapeRef shape = colliders.shape[at];
-        shapes.push_back({shape, trajectory_between(from, to, spin * span), colliders.local[at]});
+        shapes.push_back({shape, trajectory_of(scene_.masses, body, from, to, spin * span),
+                          colliders.local[at]});
         shapes.back().pieces = shape.kind == ShapeKind::solid;
         return static_cast<std::uint32_t>(shapes.size() - 1);
     };

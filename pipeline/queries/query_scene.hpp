@@ -53,6 +53,9 @@ private:
     std::uint32_t part(std::uint32_t collider) const;
     Pose placed(std::uint32_t collider) const;
     bool is_asked(std::uint32_t collider, std::uint32_t mask) const;
+    void find_touched(bool stepped);
+    bool stays(std::uint32_t collider) const;
+    Box3 box_of(std::uint32_t collider) const;
     void put(std::uint32_t collider);
     bool beats(double distance, std::uint32_t collider, const Best& best) const;
 
@@ -82,6 +85,10 @@ private:
     std::vector<std::uint32_t> planes_;  // ascending
     LiveBoxes boxes_;
     std::uint64_t step_ = 0;  // of the world, as of the last refresh
+
+    // Of the last refresh: colliders that may have moved, and those of them that left their room.
+    std::vector<std::uint32_t> touched_;
+    BlockLists<std::uint32_t> left_;
 
     // Of the questions asked last.
     std::vector<Ray> rays_;

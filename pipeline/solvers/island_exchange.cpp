@@ -69,7 +69,7 @@ IslandSolver::IslandSolver(const IslandScene<Real>& scene, const Batch& batch)
     const Slice& slice = scene.layout.slices[batch.first_slice];
     parameters_ = scene.parameters;
     effort_ = scene.effort;
-    left_ = effort_.steps * (2 + scene.context.substeps);
+    left_ = effort_.steps * (2 + 2 * scene.context.substeps);
     up_ = up_of(scene.context.gravity);
     restitution_threshold_ = scene.context.resting_speed();
     spins_ = scene.context.response != Response::kinematic;

@@ -70,13 +70,7 @@ bool IslandSolver::reflect(bool in_order, int most_passes, double least_speed)
 // What the impacts did, J, but for rounding; and more than friction and rest may leave of that.
 bool IslandSolver::gains(double work) const
 {
-    double size = 0;
-    for (const DirectPoint& point : others_) {
-        const double speed = relative_velocity(point, before_).norm();
-        size = std::max(size,
-                        point.impulse.norm() * (speed + relative_velocity(point, after_).norm()));
-    }
-    return work_of(others_, free_, after_) > work + Impacts::kRounding * size;
+    return work_of(others_, free_, after_) > work + rounding_of_work(others_, before_, after_);
 }
 
 // Whether those that were struck close no faster than they may. Where somebody heavy lies on

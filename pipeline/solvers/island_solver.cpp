@@ -19,6 +19,19 @@ constexpr int kFewSteps = 6;
 
 }  // namespace
 
+double rounding_of_work(std::span<const DirectPoint> points,
+                        std::span<const DirectBody> before,
+                        std::span<const DirectBody> after)
+{
+    double size = 0;
+    for (const DirectPoint& point : points) {
+        const double speed = relative_velocity(point, before).norm();
+        size =
+            std::max(size, point.impulse.norm() * (speed + relative_velocity(point, after).norm()));
+    }
+    return Impacts::kRounding * size;
+}
+
 Vec3 IslandSolver::arm_now(const Vec3& arm, std::int32_t index, const Vec3& round) const
 {
     if (index < 0) return arm + round;
@@ -263,10 +276,26 @@ void IslandSolver::answer_late_forces(const StepContext&, double time)
 
 void IslandSolver::solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
 {
+    asked_ = bodies;
     residual_ = std::max(residual_, ask(bodies, points));
+    take_back_energy(bodies, points);
 }
 
-// The residual of one more solve. Those of a step together may take as many steps as one a
+// Points that throw nobody back give no energy. Where a solve left off too early they may have: of
+// somebody heavy on somebody light all that there is, at a residual that tells nothing of it. Of
+// its impulses so much stays then as leaves the least.
+void IslandSolver::take_back_energy(std::vector<DirectBody>& bodies,
+                                    std::vector<DirectPoint>& points) const
+{
+    const auto throws_back = [](const DirectPoint& point) { return point.least > 0; };
+    if (std::any_of(points.begin(), points.end(), throws_back)) return;
+    const double work = work_of(points, asked_, bodies);
+    if (!(work > rounding_of_work(points, asked_, bodies))) return;
+    const double at_first = work_of(points, asked_, asked_);
+    leave_share(std::clamp(at_first / (2 * (at_first - work)), 0.0, 1.0), asked_, points, bodies);
+}
+
+// The residual of one more solve. Those of a step together may take as many steps as two a
 // substep, and two more, may at most; from then on each has a few.
 double IslandSolver::ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points)
 {

@@ -53,6 +53,11 @@ struct IslandWalk {
     const PrescribedVelocity *by_a = nullptr, *by_b = nullptr;
 };
 
+/// J, that rounding may make of what the impulses of points did.
+double rounding_of_work(std::span<const DirectPoint> points,
+                        std::span<const DirectBody> before,
+                        std::span<const DirectBody> after);
+
 class IslandSolver {
 public:
     template <class Real>
@@ -131,6 +136,7 @@ private:
     void close_energy_limiter(const StepContext& context, double time);
     void solve(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
     double ask(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points);
+    void take_back_energy(std::vector<DirectBody>& bodies, std::vector<DirectPoint>& points) const;
     // Impacts: see island_impacts.cpp.
     void apply_restitution(const StepContext& context, double time);
     bool list_touching(double time);
@@ -172,6 +178,7 @@ private:
     std::vector<IslandContact> contacts_;
     std::vector<IslandWalk> walks_;
     std::vector<DirectBody> before_, free_, after_, going_;  // [bodies]; going_: how places change
+    std::vector<DirectBody> asked_;                          // [bodies] before the last solve
     std::vector<DirectPoint> points_, others_;               // [touches]
     std::vector<double> separations_;                        // [touches] m, now
     std::vector<DirectBody> struck_;                         // [bodies] after impacts

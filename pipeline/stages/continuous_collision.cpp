@@ -29,14 +29,19 @@ constexpr std::size_t kPairs = 8;  // a block: some 20 microseconds of work
 // Of a shape that touches another from the start contact takes care. What it does not hold back
 // must not get through all the same: that is for the same shape, smaller by so much, or for balls
 // within it. The greatest of them that does not touch yet is taken; contact may have pressed a thin
-// one in by more than a tenth.
-constexpr double kScales[] = {1, 0.9, 0.6, 0.3, 0.1};
+// one in by more than a tenth. Last a ball at the middle: of a needle that lies half through what
+// it met a tenth still touches on either side.
+struct Smaller {
+    double scale;
+    bool ball = false;
+};
+constexpr Smaller kSmaller[] = {{1}, {0.9}, {0.6}, {0.3}, {0.1}, {0.1, true}};
 
 // What a sliding one may meet with no more than this share of its smallest half extent, it is not
 // held by.
 constexpr double kSkin = 0.1;
 
-// The first of these scales: of two that are triangles, of which none but what is within one is
+// The first of these: of two that are triangles, of which none but what is within one is
 // asked; of what touches; and of what contacts look ahead of: they will have held it.
 constexpr std::size_t kWhole = 0, kTouching = 1, kHeldAhead = 2;
 
@@ -67,6 +72,7 @@ public:
                  shapes,
                  colliders,
                  filter,
+                 masses,
                  bounds,
                  pairs,
                  states,
@@ -126,19 +132,20 @@ private:
     }
 
     // One of those, smaller. The middle of a solid may be outside of it.
-    MovingShape smaller(std::uint32_t at, double scale, std::size_t core = 0)
+    MovingShape smaller(std::uint32_t at, Smaller how, std::size_t part = 0)
     {
         MovingShape inner = moving(at);
         const ShapeKind kind = inner.shape.kind;
         SolidCore ball = {Vec3::Zero(), colliders_.inner_extent[at]};
         if (kind == ShapeKind::hull) ball.center = shapes_.hulls[inner.shape.index].center;
         if (kind == ShapeKind::solid && !shapes_.solids[inner.shape.index].cores.empty())
-            ball = shapes_.solids[inner.shape.index].cores[core];
-        if (kind == ShapeKind::hull || kind == ShapeKind::solid || kind == ShapeKind::mesh) {
+            ball = shapes_.solids[inner.shape.index].cores[part];
+        if (how.ball || kind == ShapeKind::hull || kind == ShapeKind::solid
+            || kind == ShapeKind::mesh) {
             inner.local.position += inner.local.orientation * ball.center;
-            inner.ball = scale * ball.radius;
+            inner.ball = how.scale * ball.radius;
         } else {
-            inner.scale = scale;
+            inner.scale = how.scale;
         }
         return inner;
     }
@@ -181,9 +188,9 @@ private:
         Impact impact;
         if (!(colliders_.inner_extent[at] > 0)) return impact;
         const std::size_t cores = core_count(at);
-        for (std::size_t core = 0; core < cores; ++core) {
-            if (cores > 1 && !core_comes_near(at, core, of_a ? b : a)) continue;
-            const Impact met = impact_of_core(candidate, of_a, core, since, first);
+        for (std::size_t part = 0; part < cores; ++part) {
+            if (cores > 1 && !core_comes_near(at, part, of_a ? b : a)) continue;
+            const Impact met = impact_of_core(candidate, of_a, part, since, first);
             if (met.state == ToiState::hit
                 && (impact.state != ToiState::hit || met.time < impact.time))
                 impact = met;
@@ -192,17 +199,18 @@ private:
     }
 
     // Whether the ways of a ball within a solid and of another shape cross.
-    bool core_comes_near(std::uint32_t at, std::size_t core, std::uint32_t other)
+    bool core_comes_near(std::uint32_t at, std::size_t part, std::uint32_t other)
     {
         const SweptWay& way = way_of(colliders_.body[at]);
         if (way.held || way_of(colliders_.body[other]).held) return true;
         if (colliders_.shape[other].kind == ShapeKind::plane) return true;
-        const MovingShape ball = smaller(at, 1, core);
+        const MovingShape ball = smaller(at, {1}, part);
         const Vec3 begins = ball.trajectory.at(0) * ball.local.position;
         const Vec3 ends = ball.trajectory.at(1) * ball.local.position;
         // An arc is no further from its chord than this, nor any place of it than across.
         const double arm = ball.local.position.norm();
-        const double arc = std::min(arm * ball.trajectory.turn.squaredNorm() / 8, 2 * arm);
+        const double angle = ball.trajectory.angle();
+        const double arc = std::min(arm * angle * angle / 8, 2 * arm);
         const double slack = ball.ball + arc + parameters_.tolerance * colliders_.inner_extent[at];
         const Box3 box{begins.cwiseMin(ends).array() - slack,
                        begins.cwiseMax(ends).array() + slack};
@@ -211,15 +219,15 @@ private:
 
     // When a shape within one of the two meets the other: the greatest that does not touch it yet.
     Impact impact_of_core(
-        SweptPair& candidate, bool of_a, std::size_t core, double since, std::size_t first)
+        SweptPair& candidate, bool of_a, std::size_t part, double since, std::size_t first)
     {
         const std::uint32_t a = first_of(candidate.key), b = second_of(candidate.key);
         const ImpactRule rule = rule_of(candidate.key);
         Impact impact;
-        for (std::size_t i = first; i < std::size(kScales); ++i) {
+        for (std::size_t i = first; i < std::size(kSmaller); ++i) {
             impact = of_a
-                ? time_of_impact(shapes_, smaller(a, kScales[i], core), moving(b), since, 1, rule)
-                : time_of_impact(shapes_, moving(a), smaller(b, kScales[i], core), since, 1, rule);
+                ? time_of_impact(shapes_, smaller(a, kSmaller[i], part), moving(b), since, 1, rule)
+                : time_of_impact(shapes_, moving(a), smaller(b, kSmaller[i], part), since, 1, rule);
             if (impact.state != ToiState::touching_at_start) break;
             candidate.pressed = true;
         }
@@ -259,7 +267,7 @@ private:
         const double skin = thick / outer_radius(shapes_, colliders_.shape[at]);
         const ImpactRule rule = rule_of(candidate.key);
         const Impact impact =
-            time_of_impact(shapes_, smaller(at, 1 - skin), moving(other), since, 1, rule);
+            time_of_impact(shapes_, smaller(at, {1 - skin}), moving(other), since, 1, rule);
         if (impact.state == ToiState::separated) candidate.time = kNever;
     }
 

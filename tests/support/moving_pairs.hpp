@@ -42,8 +42,9 @@ inline ShapeRef random_shape(Dice& dice, ShapeKind kind, Shapes& shapes)
 inline constexpr ShapeKind kConvexKinds[] = {ShapeKind::sphere, ShapeKind::capsule,
                                              ShapeKind::cylinder, ShapeKind::box, ShapeKind::hull};
 
-/// Beside one another, on ways that often cross, both turning by up to `turn` on each axis.
-inline MovingPair random_pair(Dice& dice, double turn)
+/// Beside one another, on ways that often cross, both turning by up to `turn` on each axis, and by
+/// up to `spin` on each of their own.
+inline MovingPair random_pair(Dice& dice, double turn, double spin = 0)
 {
     MovingPair pair;
     pair.a.shape = random_shape(dice, kConvexKinds[dice.below(5)], pair.shapes);
@@ -53,6 +54,11 @@ inline MovingPair random_pair(Dice& dice, double turn)
                          dice.point(3) - Vec3(2.5, 0, 0),
                          dice.point(turn)};
     if (dice.chance(0.3)) pair.a.local = {dice.point(0.5), dice.turn()};
+    if (spin == 0) return pair;
+    // Along its length as well: what a rod spins about does not move it.
+    pair.a.trajectory.spin =
+        dice.chance(0.5) ? Vec3(0, 0, dice.between(-spin, spin)) : dice.point(spin);
+    pair.b.trajectory.spin = dice.point(spin);
     return pair;
 }
 
@@ -75,7 +81,7 @@ inline double greatest_speed(const MovingPair& pair)
     const auto of = [&](const MovingShape& moving) {
         const double extent =
             moving.local.position.norm() + convex_core_of<double>(pair.shapes, moving.shape).size;
-        return moving.trajectory.shift.norm() + moving.trajectory.turn.norm() * extent;
+        return moving.trajectory.shift.norm() + moving.trajectory.angle() * extent;
     };
     return of(pair.a) + of(pair.b);
 }

@@ -72,7 +72,7 @@ TEST(TimeOfImpact, IsNeitherLateNorEarlyForAllConvexShapes)
 {
     Dice dice(1);
     for (int i = 0; i < 400; ++i) {
-        const MovingPair pair = test::random_pair(dice, i % 3 == 0 ? 0 : 4);
+        const MovingPair pair = test::random_pair(dice, i % 3 == 0 ? 0 : 4, i % 2 == 0 ? 0 : 5);
         for (const ToiMethod method : kToiMethods) expect_neither_late_nor_early(pair, method);
     }
 }
@@ -81,8 +81,8 @@ TEST(TimeOfImpact, MeetsWhereDenseSamplesTouch)
 {
     Dice dice(2);
     int met = 0;
-    for (int i = 0; i < 200; ++i) {
-        const MovingPair pair = test::random_pair(dice, 3);
+    for (int i = 0; i < 300; ++i) {
+        const MovingPair pair = test::random_pair(dice, 3, i % 2 == 0 ? 0 : 3);
         const double tolerance = kTolerance * impact_size(pair.shapes, pair.a.shape, pair.b.shape);
         const test::Sampled seen = test::sample(pair, 1, tolerance, 400);
         for (const ToiMethod method : kToiMethods) {
@@ -285,6 +285,49 @@ TEST(TrajectoryBetween, EndsWhereItShould)
         EXPECT_LE((found.shift - given.shift).norm(), 1e-14);
         const Quat off = found.at(1).orientation * given.at(1).orientation.conjugate();
         EXPECT_LE(off.vec().norm(), 1e-12);
+    }
+}
+
+TEST(TrajectoryBetween, SpinsAndEndsWhereItShould)
+{
+    Dice dice(7);
+    for (int i = 0; i < 200; ++i) {
+        RigidTrajectory given{{dice.point(1), dice.turn()}, dice.point(2), dice.point(4)};
+        given.spin = dice.point(8);
+        const RigidTrajectory found =
+            trajectory_between(given.at(0), given.at(1), 1.02 * given.turn, given.spin);
+        EXPECT_LE((found.turn - given.turn).norm(), 1e-9);
+        const double time = dice.between(0, 1), soon = 1e-6;
+        const Quat by = given.at(time + soon).orientation * given.at(time).orientation.conjugate();
+        EXPECT_LE((2 / soon * by.vec() - given.angular_velocity(time)).norm(), 1e-3);
+    }
+}
+
+// Of a rod that spins many times round as it tips over, and of a disc that wobbles.
+TEST(TrajectoryOf, IsThatOfAFreeTop)
+{
+    Dice dice(8);
+    for (int i = 0; i < 200; ++i) {
+        const double along = i % 2 == 0 ? 0.01 : 2;
+        Masses masses;
+        masses.gyroscopic_kind = {1};
+        masses.inertia = {{1, 1, along}};
+        masses.symmetry_axis = {Vec3::UnitZ()};
+        const Quat begin = dice.turn();
+        const Vec3 own(dice.between(-1, 1), dice.between(-1, 1), dice.between(-9, 9));
+        const Vec3 momentum = begin * Vec3(own.x(), own.y(), along * own.z());
+        const auto at = [&](double time) {
+            return Quat(exponential(time * momentum) * begin
+                        * exponential(time * (1 - along) * Vec3(0, 0, own.z())));
+        };
+        const Vec3 turn = momentum + at(1) * Vec3(0, 0, (1 - along) * own.z());
+        const RigidTrajectory found =
+            trajectory_of(masses, 0, {Vec3::Zero(), begin}, {Vec3::Zero(), at(1)}, turn);
+        for (const double time : {0.2, 0.5, 0.9}) {
+            const Quat off = found.at(time).orientation * at(time).conjugate();
+            // One that turns by less than a radian is told by one axis.
+            EXPECT_LE(off.vec().norm(), turn.norm() > 1 ? 1e-9 : 0.1);
+        }
     }
 }
 
