@@ -17,6 +17,7 @@ using bench::Case;
 using bench::EngineKind;
 using bench::Plan;
 using bench::PlannedScene;
+using bench::ThrongRun;
 
 std::vector<Option> all_options()
 {
@@ -37,9 +38,14 @@ std::vector<EngineKind> engines_of(Plan& plan, TraceOption* trace)
     };
     for (const int threads : plan.threads)
         for (const std::string& width : or_none(plan.lanes))
-            for (const std::string& value : or_none(plan.varied.values))
-                kinds.push_back(
-                    bench::throng_engine({threads, trace, width, plan.varied.dial, value}));
+            for (const std::string& value : or_none(plan.varied.values)) {
+                ThrongRun run{threads, 0, trace, width, plan.varied.dial, value};
+                kinds.push_back(bench::throng_engine(run));
+                if (!plan.efficiency || threads == 1) continue;
+                run.threads = 1;
+                run.beside = threads - 1;
+                kinds.push_back(bench::throng_engine(run));
+            }
     std::vector<EngineKind> peers = bench::peer_engines(plan.peers, plan.peers_asked_for);
     plan.peers.clear();
     for (EngineKind& peer : peers) {
@@ -55,10 +61,11 @@ int run_bench(const Options& options)
     if (options.has("--trace")
         && planned_scenes(plan, 1).size() * plan.threads.size()
                 * std::max<std::size_t>(1, plan.varied.values.size())
-                * std::max<std::size_t>(1, plan.lanes.size())
+                * std::max<std::size_t>(1, plan.lanes.size()) * (plan.efficiency ? 2 : 1)
             != 1)
-        throw BadInput("--trace: is of one run; give one scene, one of --sizes, one of --threads "
-                       "and no more than one value to --dt, --lanes and --vary");
+        throw BadInput(
+            "--trace: is of one run; give one scene, one of --sizes, one of --threads "
+            "and no more than one value to --dt, --lanes and --vary, and no --efficiency");
     const MeshOption mesh(options);
     for (const CatalogEntry* entry : plan.scenes) mesh.check(*entry);
     plan.mesh = mesh.file();

@@ -5,6 +5,8 @@
 #include "apps/throng/scene_argument.hpp"
 #include "throng/version.hpp"
 
+#include <thread>
+
 namespace throng::bench {
 namespace {
 
@@ -16,11 +18,22 @@ public:
           trace_(run.trace), lanes_(run.lanes.empty() ? lane_width() : run.lanes)
     {
         if (trace_ != nullptr) trace_->watch(world_);
+        for (int i = 0; i < run.beside; ++i)
+            others_.push_back(std::make_unique<World>(stepped, run.threads));
     }
+
+    void begin_turn() override
+    {
+        take_lanes(lanes_.c_str());
+        for (const auto& other : others_)
+            busy_.emplace_back([&world = *other](const std::stop_token& turn_ends) {
+                while (!turn_ends.stop_requested()) world.step();
+            });
+    }
+    void end_turn() override { busy_.clear(); }
 
     void step() override
     {
-        take_lanes(lanes_.c_str());
         if (trace_ != nullptr) trace_->begin_step(world_.report().step + 1);
         world_.step();
         if (trace_ != nullptr) trace_->end_step();
@@ -46,6 +59,8 @@ private:
     bool varied_;
     TraceOption* trace_;
     std::string lanes_;
+    std::vector<std::unique_ptr<World>> others_;
+    std::vector<std::jthread> busy_;  // during a turn, with those
 };
 
 }  // namespace
@@ -61,7 +76,7 @@ EngineKind throng_engine(const ThrongRun& run)
         set_from_line(other, "--vary", run.dial, run.value);
         return std::make_unique<ThrongEngine>(other, scene, run);
     };
-    return {"throng", setting + varied, run.threads, make, varied};
+    return {"throng", setting + varied, run.threads, make, varied, run.beside};
 }
 
 }  // namespace throng::bench

@@ -15,6 +15,9 @@ namespace throng::bench {
 class Engine {
 public:
     virtual ~Engine() = default;
+    /// Before some steps in a row, and after them: other engines step between.
+    virtual void begin_turn() { }
+    virtual void end_turn() { }
     virtual void step() = 0;
     /// Points of contact in the last step.
     virtual std::size_t contacts() const = 0;
@@ -37,18 +40,21 @@ public:
 ///   setting  the width of throng's kernels where several are run, as `lanes=avx2`, and that of a
 ///            dial that is varied, as `name=value`; else empty
 ///   alike    kinds of one name here have to come to the same state
+///   beside   others that step the same scene meanwhile, each on a thread of its own
 struct EngineKind {
     std::string name;
     std::string setting;
     int threads = 1;
     std::function<std::unique_ptr<Engine>(const Scene&)> make;
     std::string alike = {};
+    int beside = 0;
 };
 
 /// As tables tell an engine.
-inline std::string name_of(const std::string& engine, const std::string& setting)
+inline std::string name_of(const std::string& engine, const std::string& setting, int beside = 0)
 {
-    return setting.empty() ? engine : engine + ' ' + setting;
+    const std::string name = setting.empty() ? engine : engine + ' ' + setting;
+    return beside == 0 ? name : name + " beside " + std::to_string(beside);
 }
 
 /// Throng as it is to be run.
@@ -57,8 +63,9 @@ inline std::string name_of(const std::string& engine, const std::string& setting
 ///   lanes  the width of its kernels; empty: that of the process
 ///   dial   with another value than the scene's, where it is not empty. What it comes to is judged
 ///          by the scene as given
+///   beside see EngineKind
 struct ThrongRun {
-    int threads = 1;
+    int threads = 1, beside = 0;
     TraceOption* trace = nullptr;
     std::string lanes, dial, value;
 };

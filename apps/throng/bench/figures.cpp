@@ -56,7 +56,7 @@ std::vector<std::vector<const Run*>> by_engine(const Case& made)
         const auto same = [&](const std::vector<const Run*>& runs) {
             const Run& first = *runs.front();
             return first.engine == run.engine && first.setting == run.setting
-                && first.threads == run.threads;
+                && first.threads == run.threads && first.beside == run.beside;
         };
         const auto found = std::find_if(engines.begin(), engines.end(), same);
         if (found == engines.end())
@@ -92,6 +92,16 @@ Comparison compare(const std::vector<const Run*>& ours, const std::vector<const 
     made.times = spread_of(std::move(times));
     made.cpu_times = spread_of(std::move(cpu_times));
     return made;
+}
+
+Spread efficiency_of(const std::vector<const Run*>& ours, const std::vector<const Run*>& alone)
+{
+    const std::size_t steps = std::min(common_steps(ours), common_steps(alone));
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < std::min(ours.size(), alone.size()); ++i)
+        shares.push_back(mean(alone[i]->ms, 0, steps)
+                         / (ours[i]->threads * mean(ours[i]->ms, 0, steps)));
+    return spread_of(std::move(shares));
 }
 
 std::vector<StageFigure> stages_of(const std::vector<const Run*>& runs)
@@ -132,6 +142,7 @@ Figure figure_of(const Case& made, const std::vector<const Run*>& runs)
     figure.settings = first.settings;
     figure.threads = first.threads;
     figure.threads_met = first.threads_met;
+    figure.beside = first.beside;
     figure.steps = common_steps(runs);
     figure.ms_mean = over(runs, [&](const Run& run) { return mean(run.ms, 0, figure.steps); });
     figure.ms_median = over(runs, [](const Run& run) { return percentile(run.ms, 0.5); }).median;
@@ -216,7 +227,7 @@ const Run* calmest(const Case& made, const std::string& setting, int threads)
     const auto cost = [](const Run& run) { return mean(steady_ms(run), 0, run.steps()); };
     for (const Run& run : made.runs) {
         if (run.engine != "throng" || run.setting != setting || run.threads != threads
-            || run.steps() == 0)
+            || run.beside > 0 || run.steps() == 0)
             continue;
         if (found == nullptr || cost(run) < cost(*found)) found = &run;
     }
@@ -256,10 +267,13 @@ std::vector<Figure> figures_of(const Case& made)
         if (runs.front()->engine != "throng") continue;
         for (const std::vector<const Run*>& others : engines) {
             const Run& other = *others.front();
+            const Run& run = *runs.front();
             const bool serial = other.engine == "throng" && other.threads == 1
-                && other.setting == runs.front()->setting;
-            if (other.engine != "throng" || (serial && runs.front()->threads > 1))
+                && other.setting == run.setting && run.threads > 1;
+            if (other.engine != "throng" || (serial && other.beside == 0))
                 figures.back().against.push_back(compare(runs, others));
+            else if (serial && other.beside + 1 == run.threads)
+                figures.back().efficiency = efficiency_of(runs, others);
         }
     }
     return figures;
@@ -283,7 +297,7 @@ std::vector<Growth> growth_of(const std::vector<Case>& cases)
     std::set<std::tuple<const CatalogEntry*, double, std::string, int>> done;
     for (const Case& one : cases)
         for (const Run& run : one.runs) {
-            if (run.engine != "throng") continue;
+            if (run.engine != "throng" || run.beside > 0) continue;
             if (!done.emplace(one.scene, one.dt, run.setting, run.threads).second) continue;
             std::vector<const Case*> sizes;
             for (const Case& other : cases)

@@ -32,9 +32,12 @@ struct StageFigure {
 /// One engine on one scene of one size.
 struct Figure {
     std::string engine, setting, settings;
-    int threads = 1, threads_met = 1;
+    int threads = 1, threads_met = 1, beside = 0;
     std::size_t steps = 0;
     Spread ms_mean;
+    /// What its threads do together, of what as many worlds of one thread each do beside one
+    /// another; all 0 where that was not asked for.
+    Spread efficiency;
     double ms_median = 0, ms_p99 = 0, cpu_ms = 0, make_ms = 0;
     double ns_a_body = 0;     // over all steps
     double ns_a_contact = 0;  // over the last quarter of them; 0 where nothing touches

@@ -35,6 +35,9 @@ constexpr Option kPlanOptions[] = {
      "ball_cube and elastic_ball_cube, in the unit and for the time of SimBenchmark; others have "
      "no answer and are refused"},
     {"--threads", "N,M", "numbers of threads, 1 to 1024 (default: 1 and all cores)"},
+    {"--efficiency", "",
+     "what the threads of a run do together, of what as many runs of one thread do beside one "
+     "another; takes a run of those for each of --threads"},
     {"--steps", "N",
      "steps of each run, from 1; the same first steps for all (default 200; with --error for as "
      "long as the answer is followed)"},
@@ -211,6 +214,9 @@ Plan read_plan(const Options& options)
         plan.sizes = numbers_of("--sizes", text_or(options, "--sizes", kStandardSizes), 10'000'000);
     plan.dts = dts_of(options.text("--dt"));
     plan.threads = numbers_of("--threads", text_or(options, "--threads", all_cores()), 1024);
+    plan.efficiency = options.has("--efficiency");
+    if (plan.efficiency && plan.threads.back() == 1)
+        throw BadInput("--efficiency: is of more threads than one; give --threads some");
     plan.peers_asked_for = options.has("--peers");
     plan.peers = peers_of(text_or(options, "--peers", "bullet,ode"));
     plan.varied = variation_of(options.text("--vary"));

@@ -33,6 +33,7 @@ struct Plan {
     std::vector<std::string> lanes;  // widths, each a run of its own; none: that of the process
     bool peers_asked_for = false;    // by name; else those that are there
     bool errors = false;             // told beside the times
+    bool efficiency = false;         // of more threads than one, likewise
     std::int64_t steps = 0;          // 0: for as long as each scene's answer is followed
     int repeats = 0;
     double max_seconds = 0;  // an engine may take in all for one scene of one size

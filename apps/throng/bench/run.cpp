@@ -33,6 +33,7 @@ public:
         run_.setting = kind.setting;
         run_.alike = kind.alike;
         run_.threads = kind.threads;
+        run_.beside = kind.beside;
         run_.repeat = repeat;
         memory_.begin();
         const double begin = milliseconds(CLOCK_MONOTONIC);
@@ -53,10 +54,12 @@ public:
     void take_turn(const Plan& plan, const After& after)
     {
         memory_.begin();
+        engine_->begin_turn();
         for (std::int64_t i = 0; i < kTurn && !is_done(plan) && !interrupted(); ++i) {
             step();
             after(run_);
         }
+        engine_->end_turn();
         memory_.end();
     }
 
@@ -129,11 +132,13 @@ double error_of(const SceneAnswer& answer,
 {
     const std::unique_ptr<Engine> engine = kind.make(scene);
     RunError error(answer, scene);
+    engine->begin_turn();
     for (std::size_t step = 1; step <= steps && !interrupted(); ++step) {
         engine->step();
         error.add(static_cast<double>(step) * scene.settings.dt, engine->states());
         after();
     }
+    engine->end_turn();
     return error.mean();
 }
 
@@ -166,8 +171,8 @@ Case run_case(const Plan& plan,
             for (Contestant& contestant : contestants) {
                 contestant.take_turn(plan, [&](const Run& run) {
                     progress.show(++steps_done,
-                                  label + ' ' + name_of(run.engine, run.setting) + " on "
-                                      + std::to_string(run.threads));
+                                  label + ' ' + name_of(run.engine, run.setting, run.beside)
+                                      + " on " + std::to_string(run.threads));
                 });
                 going = going || !contestant.is_done(plan);
             }

@@ -18,7 +18,7 @@ struct StageRun {
 struct Run {
     std::string engine, setting, settings, state_hash;  // setting: see EngineKind
     std::string alike;                                  // likewise
-    int threads = 1, threads_met = 1, repeat = 0;
+    int threads = 1, threads_met = 1, repeat = 0, beside = 0;
     std::vector<double> ms, cpu_ms;  // by step; the second of all threads together
     std::vector<std::size_t> contacts;
     std::vector<StageRun> stages;

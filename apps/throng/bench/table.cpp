@@ -60,11 +60,12 @@ void print_times(const Plan& plan,
     if (plan.errors)
         head.insert(head.begin() + kErrorAt,
                     {"cpu_s", "error_" + std::string(find_answer(made.scene->name)->unit)});
+    if (plan.efficiency) head.emplace_back("efficiency");
     for (const std::string& peer : plan.peers)
         head.insert(head.end(), {"x_" + peer, "cpu_x_" + peer});
     std::vector<Row> rows = {head};
     for (const Figure& figure : figures) {
-        Row row = {name_of(figure.engine, figure.setting),
+        Row row = {name_of(figure.engine, figure.setting, figure.beside),
                    std::to_string(figure.threads_met),
                    std::to_string(figure.steps),
                    text_of(figure.ms_mean.median),
@@ -80,6 +81,9 @@ void print_times(const Plan& plan,
             row.insert(row.begin() + kErrorAt,
                        {text_of(figure.cpu_ms * static_cast<double>(figure.steps) / 1e3),
                         std::isnan(figure.error) ? "-" : text_of(figure.error, "%.3g")});
+        if (plan.efficiency)
+            row.push_back(figure.efficiency.median > 0 ? text_of(figure.efficiency.median, "%.3f")
+                                                       : "-");
         for (const std::string& peer : plan.peers) {
             row.push_back(times_of(figure, peer));
             row.push_back(times_of(figure, peer, &Comparison::cpu_times));
@@ -96,6 +100,7 @@ void print_states(const std::vector<Figure>& figures, std::ostream& out)
                               "shared_volume", "J/body", "height_m", "state_B/body", "heap_B/body",
                               "rss_B/body", "state_hash"}};
     for (const Figure& figure : figures) {
+        if (figure.beside > 0) continue;  // as by itself, and the memory of all of them
         const Quality& quality = figure.quality;
         rows.push_back({name_of(figure.engine, figure.setting), std::to_string(figure.threads_met),
                         text_of(quality.mean_overlap * 1e3),
@@ -151,7 +156,8 @@ void print_all_stages(const Case& made, const std::vector<Figure>& figures, std:
 {
     std::map<std::string, std::vector<const Figure*>> by_setting;
     for (const Figure& figure : figures)
-        if (figure.engine == "throng") by_setting[figure.setting].push_back(&figure);
+        if (figure.engine == "throng" && figure.beside == 0)
+            by_setting[figure.setting].push_back(&figure);
     for (const auto& [setting, ours] : by_setting) print_stages(made, ours, out);
 }
 
@@ -168,6 +174,9 @@ void print_heading(const Plan& plan, std::ostream& out)
            "same\ngeometry for all; shared_volume is that of pairs, of the volume of the bodies "
            "that "
            "are meshes.\n";
+    if (plan.efficiency)
+        out << "efficiency: the work that the threads do together, of what as many runs of one "
+               "thread do beside\none another in the same minutes (the rows `beside`).\n";
     if (!plan.errors) return;
     out << "\nError: mean over the steps, from the end of each, of\n";
     for (const SceneAnswer& answer : scene_answers())

@@ -214,6 +214,28 @@ TEST(Bench, WidthsRunSideBySideAndComeToTheSameState)
     EXPECT_NE(json.text(figures[0], "state_hash"), json.text(figures[1], "state_hash"));
 }
 
+TEST(Bench, TellsWhatThreadsDoTogetherOfWhatRunsDoBesideOneAnother)
+{
+    const TestFolder folder;
+    const Outcome done = run_throng({"bench", "--scenes", "stacks", "--sizes", "30", "--threads",
+                                     "1,2", "--steps", "25", "--repeat", "1", "--peers", "none",
+                                     "--efficiency", "--json", folder / "b.json"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_NE(done.out.find("throng beside 1"), std::string::npos) << done.out;
+    const Json json(folder.read("b.json"));
+    const std::vector<Node> figures = figures_of_first(json);
+    ASSERT_EQ(figures.size(), 3u);
+    const auto mean_ms = [&](const Node& figure) {
+        return json.number(json.at(figure, "ms_mean"), "median");
+    };
+    EXPECT_EQ(json.number(figures[2], "beside"), 1);
+    EXPECT_NEAR(json.number(json.at(figures[1], "efficiency"), "median"),
+                mean_ms(figures[2]) / (2 * mean_ms(figures[1])), 1e-9);
+    EXPECT_EQ(json.number(json.at(figures[0], "efficiency"), "median"), 0);
+    EXPECT_EQ(json.text(figures[0], "state_hash"), json.text(figures[2], "state_hash"));
+    EXPECT_EQ(run_throng({"bench", "--threads", "1", "--efficiency"}).code, 2);
+}
+
 TEST(Bench, TimeThatIsUpEndsARunEarly)
 {
     const TestFolder folder;
