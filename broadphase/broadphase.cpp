@@ -30,11 +30,14 @@ namespace {
 // From timings on 16 to 100 000 boxes: README.md of this folder.
 constexpr std::size_t kFewBoxes = 100;
 constexpr std::size_t kSmallScene = 200;
-// A grid has levels for sizes up to some thousand to one.
-constexpr double kMixedSizes = 2000;
+// From there on the large ones of a grid look through too many cells: of 10,000 balls and boxes of
+// 1:8 a step finds pairs in 1.7 ms by the grid and 2.4 by the tree, of 1:16 in 4.6 and 2.2, of
+// 1:1000 in 52 and 3.2.
+constexpr double kMixedSizes = 8;
 constexpr std::size_t kSample = 1024;
 
-// How many times larger the largest of the moving boxes are than a small one, from a sample.
+// How many times larger a large one of the moving boxes is than a small one, from a sample: a tenth
+// is larger, a tenth smaller. A few that are far larger a grid takes aside.
 double mixture(std::span<const Box3> boxes, std::span<const std::uint8_t> moving)
 {
     std::vector<double> sizes;
@@ -45,7 +48,7 @@ double mixture(std::span<const Box3> boxes, std::span<const std::uint8_t> moving
     }
     if (sizes.empty()) return 1;
     std::sort(sizes.begin(), sizes.end());
-    return sizes[(sizes.size() - 1) * 99 / 100] / sizes[(sizes.size() - 1) / 10];
+    return sizes[(sizes.size() - 1) * 9 / 10] / sizes[(sizes.size() - 1) / 10];
 }
 
 }  // namespace

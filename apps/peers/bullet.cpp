@@ -2,6 +2,7 @@
 #ifdef THRONG_BULLET
 #include "apps/peers/peer.hpp"
 
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <btBulletDynamicsCommon.h>
 #include <cmath>
 #include <map>
@@ -54,7 +55,7 @@ private:
 
     btCollisionShape* plain(const PeerShape& shape)
     {
-        const Key key(shape.kind, shape.hull, shape.size.x(), shape.size.y(), shape.size.z());
+        const Key key(shape.kind, shape.index, shape.size.x(), shape.size.y(), shape.size.z());
         btCollisionShape*& known = known_[key];
         if (known == nullptr) {
             known = make(shape);
@@ -70,7 +71,7 @@ private:
         return kept_.back().get();
     }
 
-    btCollisionShape* make(const PeerShape& shape) const
+    btCollisionShape* make(const PeerShape& shape)
     {
         const btScalar radius = number(shape.size.x()), half_length = number(shape.size.y());
         switch (shape.kind) {
@@ -84,17 +85,48 @@ private:
             return new btBoxShape(vector_of(shape.size));
         case ShapeKind::hull: {
             auto* hull = new btConvexHullShape;
-            for (const Vec3& vertex : scene_.hulls[shape.hull].vertices)
+            for (const Vec3& vertex : scene_.hulls[shape.index].vertices)
                 hull->addPoint(vector_of(vertex), false);
             hull->recalcLocalAabb();
             return hull;
         }
+        case ShapeKind::mesh:
+            return new btBvhTriangleMeshShape(&triangles_of(shape.index), true);
         default:
             refuse_shape("bullet", shape.kind);
         }
     }
 
+    // It refers to numbers of its own kind, and does not copy them.
+    struct Triangles {
+        std::vector<btScalar> numbers;
+        std::vector<int> corners;
+        btTriangleIndexVertexArray array;
+    };
+    btTriangleIndexVertexArray& triangles_of(std::uint32_t index)
+    {
+        const PeerTriangles& mesh = scene_.meshes[index];
+        Triangles& made = *meshes_.emplace_back(std::make_unique<Triangles>());
+        for (const Vec3& vertex : mesh.vertices)
+            for (const double x : {vertex.x(), vertex.y(), vertex.z()})
+                made.numbers.push_back(number(x));
+        for (const auto& triangle : mesh.triangles)
+            for (const std::uint32_t corner : triangle)
+                made.corners.push_back(static_cast<int>(corner));
+        btIndexedMesh part;
+        part.m_numTriangles = static_cast<int>(mesh.triangles.size());
+        part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(made.corners.data());
+        part.m_triangleIndexStride = 3 * sizeof(int);
+        part.m_numVertices = static_cast<int>(mesh.vertices.size());
+        part.m_vertexBase = reinterpret_cast<const unsigned char*>(made.numbers.data());
+        part.m_vertexStride = 3 * sizeof(btScalar);
+        part.m_vertexType = sizeof(btScalar) == sizeof(double) ? PHY_DOUBLE : PHY_FLOAT;
+        made.array.addIndexedMesh(part, PHY_INTEGER);
+        return made.array;
+    }
+
     const PeerScene& scene_;
+    std::vector<std::unique_ptr<Triangles>> meshes_;
     std::map<Key, btCollisionShape*> known_;
     std::vector<std::unique_ptr<btCollisionShape>> kept_;
 };

@@ -26,7 +26,7 @@ struct ConvexData {
     std::vector<dReal> planes, points;
     std::vector<unsigned> polygons;
 
-    explicit ConvexData(const PeerHull& hull)
+    explicit ConvexData(const PeerTriangles& hull)
     {
         for (const Vec3& vertex : hull.vertices)
             points.insert(points.end(), {vertex.x(), vertex.y(), vertex.z()});
@@ -63,7 +63,7 @@ public:
         dHashSpaceSetLevels(space_, -2, 3);
         dWorldSetGravity(world_, scene.gravity.x(), scene.gravity.y(), scene.gravity.z());
         dWorldSetAutoDisableFlag(world_, 0);
-        for (const PeerHull& hull : scene.hulls) hulls_.emplace_back(hull);
+        for (const PeerTriangles& hull : scene.hulls) hulls_.emplace_back(hull);
         bodies_.reserve(scene.bodies.size());
         for (const PeerBody& body : scene_.bodies) add(body);
     }
@@ -218,7 +218,7 @@ private:
         case ShapeKind::box:
             return dCreateBox(space_, 2 * shape.size.x(), 2 * shape.size.y(), 2 * shape.size.z());
         case ShapeKind::hull: {
-            ConvexData& hull = hulls_[shape.hull];
+            ConvexData& hull = hulls_[shape.index];
             return dCreateConvex(space_, hull.planes.data(),
                                  static_cast<unsigned>(hull.planes.size() / 4), hull.points.data(),
                                  static_cast<unsigned>(hull.points.size() / 3),

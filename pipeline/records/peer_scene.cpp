@@ -6,9 +6,9 @@ namespace throng {
 namespace {
 
 // Its polygons as fans of triangles.
-PeerHull peer_hull(const Hull& hull)
+PeerTriangles peer_hull(const Hull& hull)
 {
-    PeerHull made{hull.vertices, {}};
+    PeerTriangles made{hull.vertices, {}};
     for (std::size_t face = 0; face + 1 < hull.face_begin.size(); ++face) {
         const std::uint32_t begin = hull.face_begin[face], end = hull.face_begin[face + 1];
         for (std::uint32_t i = begin + 1; i + 1 < end; ++i)
@@ -37,7 +37,8 @@ PeerShape peer_shape(const Shapes& shapes, ShapeRef shape, const Pose& local)
         made.size = shapes.boxes[shape.index].half_extents;
         break;
     case ShapeKind::hull:
-        made.hull = shape.index;
+    case ShapeKind::mesh:
+        made.index = shape.index;
         break;
     case ShapeKind::plane:
         made.size = shapes.planes[shape.index].normal;
@@ -70,6 +71,7 @@ PeerScene peer_scene(const World& world, const Scene& scene)
     PeerScene made;
     made.gravity = world.gravity();
     for (const Hull& hull : shapes.hulls) made.hulls.push_back(peer_hull(hull));
+    for (const Mesh& mesh : shapes.meshes) made.meshes.push_back({mesh.vertices, mesh.triangles});
     for (const BodyId id : world.bodies()) {
         const std::uint32_t at = state.place_of(id, "peer_scene");
         PeerBody& body = made.bodies.emplace_back();

@@ -15,14 +15,14 @@ namespace throng {
 struct PeerShape {
     ShapeKind kind = ShapeKind::sphere;
     Vec3 size = Vec3::Zero();  // half extents of a box, normal of a plane; else radius, half length
-    std::uint32_t hull = 0;    // place in PeerScene::hulls, of a hull
+    std::uint32_t index = 0;   // place in PeerScene::hulls, of a hull; in meshes, of a mesh
     Pose local;                // from the center of mass, body axes
 
     /// It is where its body is, turned as its body is.
     bool is_centered() const;
 };
 
-struct PeerHull {
+struct PeerTriangles {
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
 };
@@ -42,7 +42,7 @@ struct PeerBody {
 
 struct PeerScene {
     Vec3 gravity = Vec3::Zero();
-    std::vector<PeerHull> hulls;
+    std::vector<PeerTriangles> hulls, meshes;
     std::vector<PeerShape> shapes;
     std::vector<PeerBody> bodies;
 };

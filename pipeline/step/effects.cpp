@@ -119,7 +119,7 @@ private:
                 if ((x.first & y.second) == 0 || (y.first & x.second) == 0) continue;
                 if (a.dynamic == 0 || b.bodies < (x == y ? 2u : 1u)) continue;
                 const Effect how = contact_effect();
-                call(how, [&] { return names_of(x, y); });
+                call(how, [&, &one = x, &other = y] { return names_of(one, other); });
                 // Nobody is swept who is carried from touch to touch.
                 if (how != Effect::contact)
                     found_.on.remove(Effect::fast_motion);

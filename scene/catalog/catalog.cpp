@@ -27,6 +27,8 @@ constexpr CatalogEntry kCatalog[] = {
     {"tumbler",        10000,  1, kMost, "SIZE boxes in a hollow box that turns",                         make_tumbler},
     {"crowd",          10000,  1, kMost, "SIZE people who walk one way or the other among pillars",       make_crowd},
     {"sparse",         10000,  1, kMost, "SIZE boxes in free flight, far apart, without gravity",         make_sparse},
+    {"mixed",          10000,  1, kMost, "SIZE balls and boxes from 5 mm to 5 m that slide and roll about", make_mixed},
+    {"hills",          10000,  1, 100'000, "SIZE bodies dropped on hills of a hundred triangles for each",  make_hills},
     {"meshes",          1000,  1, kMost, "SIZE bodies of six kinds dropped on a terrain of triangles",    make_meshes},
     {"knots",            100,  1, kMost, "SIZE knots, tori and links of a chain dropped in a container",  make_knots, make_knots_of},
     {"chain",             10,  1, kMost, "a chain of SIZE links that hangs between two fixed ones",       make_chain},

@@ -113,6 +113,50 @@ Scene make_sparse(int size, std::uint64_t seed)
     return scene;
 }
 
+// Balls and boxes of all sizes from 5 mm to 5 m, as many of each, dropped on a floor that they
+// slide and roll over at speeds that go with the square roots of their sizes: whatever sorts bodies
+// by where they are has all of these to sort at once.
+//
+// Who is of one size has a quarter of a square to itself, and all smaller ones the quarter across.
+Scene make_mixed(int size, std::uint64_t seed)
+{
+    constexpr int kSizes = 10;                   // each half of the one before
+    constexpr double kGreatest = 5;              // m
+    constexpr double kSquare = 4.4 * kGreatest;  // m: twice the way across a cube
+    Scene scene = begin_scene("mixed", size);
+    Random random(seed);
+    const int squares = (size + kSizes - 1) / kSizes;
+    const int side = static_cast<int>(std::ceil(std::sqrt(squares)));
+    add_static_box(scene, "floor", {0, 0, -2}, Vec3(side * kSquare, side * kSquare, 2));
+
+    const std::uint32_t shapes[] = {add_shape(scene, "ball", SphereShape{0.5}),
+                                    add_shape(scene, "box", BoxShape{Vec3::Constant(0.5)})};
+    for (int kind = 0; kind < 2; ++kind) {
+        const auto count = static_cast<std::size_t>((size + 1 - kind) / 2);
+        if (count == 0) break;
+        Instances& group = add_instances(scene, shapes[kind], count, true);
+        for (int i = kind; i < size; i += 2) {
+            const int square = i / kSizes, level = i % kSizes;
+            const double scale = std::ldexp(1.0, -level);
+            const double extent = kGreatest * scale * random.uniform(0.5, 1);
+            // From the lower corner of the square to that of the level's own, and a quarter on.
+            const double own = kSquare * (1 - scale), quarter = kSquare * scale / 4;
+            const Vec3 corner((square % side - side / 2.0) * kSquare,
+                              (square / side - side / 2.0) * kSquare, 0);
+            const double half = extent / 2;
+            const Vec3 position =
+                corner + Vec3(own + quarter, own + quarter, std::sqrt(3.0) * half + extent / 4);
+            const Vec3 velocity = random_drift(random) * std::sqrt(9.81 * extent);
+            const Quat orientation = random_turn(random, std::numbers::pi);
+            const Vec3 half_extents = kind == 0
+                ? Vec3(half, 0, 0)
+                : Vec3(half, half * random.uniform(0.4, 1), half * random.uniform(0.4, 1));
+            add_record(group, {position, orientation}, velocity, Vec3::Zero(), half_extents);
+        }
+    }
+    return scene;
+}
+
 // Boxes in a hollow box that turns about x at 0.3 rad/s: a heap that never comes to rest, so that
 // nothing may sleep and contacts never grow old.
 Scene make_tumbler(int size, std::uint64_t seed)

@@ -16,10 +16,12 @@ Scene make_pile(int size, std::uint64_t seed);
 Scene make_spheres(int size, std::uint64_t seed);
 Scene make_hulls(int size, std::uint64_t seed);
 Scene make_sparse(int size, std::uint64_t seed);
+Scene make_mixed(int size, std::uint64_t seed);
 Scene make_tumbler(int size, std::uint64_t seed);
 
 // terrain.cpp
 Scene make_meshes(int size, std::uint64_t seed);
+Scene make_hills(int size, std::uint64_t seed);
 Scene make_terrain(int size, std::uint64_t seed);
 Scene make_terrain_of(int size, std::uint64_t seed, const TriangleSoup& mesh);
 

@@ -120,6 +120,20 @@ Vec3 random_size(Kind kind, Random& random)
     return {radius, random.uniform(0.1, 0.35), 0};
 }
 
+template <class Shape>
+void add_terrain(Scene& scene, Shape hills)
+{
+    BodyDescription ground;
+    ground.name = "terrain";
+    ground.shape = add_shape(scene, "terrain", std::move(hills));
+    ground.material = 0;
+    ground.motion = Motion::static_;
+    scene.bodies.push_back(std::move(ground));
+}
+
+// m, no stone reaches further from its middle.
+constexpr double kReachOfStone = 0.6;
+
 // How wide hills must be for so many bodies to be dropped on them, and from where those drop.
 struct Ground {
     explicit Ground(int size)
@@ -129,16 +143,6 @@ struct Ground {
         inner = side * spacing / 2 + 5;
         cells = 2 * static_cast<int>(std::ceil(inner + 5));
         grid = {side, spacing, kHighest + 1};
-    }
-    template <class Shape>
-    void add_to(Scene& scene, Shape hills) const
-    {
-        BodyDescription ground;
-        ground.name = "terrain";
-        ground.shape = add_shape(scene, "terrain", std::move(hills));
-        ground.material = 0;
-        ground.motion = Motion::static_;
-        scene.bodies.push_back(std::move(ground));
     }
 
     double inner = 0;
@@ -169,7 +173,7 @@ Scene make_meshes(int size, std::uint64_t seed)
     Scene scene = begin_scene("meshes", size);
     Random random(seed);
     const Ground ground(size);
-    ground.add_to(scene, mesh_shape(hill_mesh(ground.cells, ground.inner, seed)));
+    add_terrain(scene, mesh_shape(hill_mesh(ground.cells, ground.inner, seed)));
 
     std::array<std::uint32_t, kKinds> shapes = {
         add_shape(scene, "sphere", SphereShape{0.5}),
@@ -211,6 +215,32 @@ Scene make_meshes(int size, std::uint64_t seed)
     return scene;
 }
 
+// Balls, boxes, stones, capsules and cylinders dropped on wide fine hills, a hundred triangles for
+// each and a layer of them: a landscape that is far larger than all who are on it together.
+Scene make_hills(int size, std::uint64_t seed)
+{
+    constexpr double kCell = 0.5;  // m
+    Scene scene = begin_scene("hills", size);
+    Random random(seed);
+    const int rim = 8;  // cells
+    const int cells = 2 * (rim + static_cast<int>(std::ceil(std::sqrt(50.0 * size) / 2)));
+    TriangleSoup ground = hill_mesh(cells, cells / 2.0 - rim, seed);
+    for (Vec3& vertex : ground.vertices) vertex *= kCell;
+    add_terrain(scene, mesh_shape(std::move(ground)));
+
+    std::vector<ShapeDescription> kinds;
+    kinds.push_back({"ball", SphereShape{0.3}});
+    kinds.push_back({"box", BoxShape{{0.35, 0.25, 0.2}}});
+    kinds.push_back({"stone", HullShape{random_stone(random)}});
+    kinds.push_back({"capsule", CapsuleShape{0.2, 0.3}});
+    kinds.push_back({"cylinder", CylinderShape{0.25, 0.25}});
+    const int side = static_cast<int>(std::ceil(std::sqrt(size)));
+    const double width = (cells - 2 * rim) * kCell;
+    drop_in_turn(scene, std::move(kinds), size,
+                 {side, width / side, kHighest * kCell + kReachOfStone}, random);
+    return scene;
+}
+
 namespace {
 
 // A quarter of the hills' cells tells all that they are. The band holds the balls that are dropped.
@@ -229,7 +259,7 @@ Scene drop_on_hills(int size, std::uint64_t seed, std::vector<ShapeDescription> 
     Scene scene = begin_scene("terrain", size);
     Random random(seed);
     const Ground ground(size);
-    ground.add_to(scene, voxels_of(hill_block(ground.cells, ground.inner, seed), ground.cells));
+    add_terrain(scene, voxels_of(hill_block(ground.cells, ground.inner, seed), ground.cells));
 
     std::vector<ShapeDescription> kinds;
     kinds.push_back({"ball", SphereShape{0.4}});

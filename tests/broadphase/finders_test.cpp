@@ -289,7 +289,9 @@ TEST(Finders, ChoiceDependsOnCountAndMixture)
     EXPECT_EQ(choice(box_kinds()[0], 5000), FinderKind::grid);
     EXPECT_EQ(choice(box_kinds()[0], 150), FinderKind::sweep);
     EXPECT_EQ(choice(box_kinds()[1], 5000), FinderKind::grid);
-    // From dust to buildings.
+    // From cups to buildings, and from dust.
+    EXPECT_EQ(choice({.name = "cups", .smallest = 0.1, .largest = 10, .large_share = 0.2}, 5000),
+              FinderKind::embree);
     EXPECT_EQ(choice({.name = "dust", .smallest = 1e-4, .largest = 10, .large_share = 0.2}, 5000),
               FinderKind::embree);
     for (const BoxKind& kind : box_kinds()) choice(kind, 3000);  // nothing crashes

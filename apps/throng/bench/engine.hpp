@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,15 @@ public:
     virtual std::string settings() const { return {}; }
 };
 
+/// Why an engine takes no part in a scene, its name first.
+class EngineRefuses : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
 /// An engine that can be made, again for each repeat.
 ///
+///   make     throws EngineRefuses where it is not given all that the scene has
 ///   setting  the width of throng's kernels where several are run, as `lanes=avx2`, and that of a
 ///            dial that is varied, as `name=value`; else empty
 ///   alike    kinds of one name here have to come to the same state

@@ -20,7 +20,11 @@ public:
         const Scene taken = scene_of_peers(scene);
         const World world(taken);
         dt_ = world.settings().dt;
-        peer_ = entry.make(peer_scene(world, taken));
+        try {
+            peer_ = entry.make(peer_scene(world, taken));
+        } catch (const std::invalid_argument& why) {
+            throw EngineRefuses(why.what());
+        }
     }
     void step() override { peer_->step(dt_); }
     std::size_t contacts() const override { return peer_->contacts(); }

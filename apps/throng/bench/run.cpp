@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <iostream>
 
 namespace throng::bench {
 namespace {
@@ -159,12 +160,22 @@ Case run_case(const Plan& plan,
     const std::string label = std::string(planned.entry->name) + ':' + std::to_string(planned.size);
     const std::int64_t begin = steps_done;
     std::int64_t share = 0;
+    std::vector<const EngineKind*> taking_part;
+    for (const EngineKind& kind : kinds) taking_part.push_back(&kind);
     for (int repeat = 0; repeat < plan.repeats && !interrupted(); ++repeat) {
         trim_memory();
         std::vector<Contestant> contestants;
         contestants.reserve(kinds.size());
-        for (const EngineKind& kind : kinds)
-            contestants.emplace_back(kind, scene, repeat, planned.steps);
+        std::erase_if(taking_part, [&](const EngineKind* kind) {
+            try {
+                contestants.emplace_back(*kind, scene, repeat, planned.steps);
+            } catch (const EngineRefuses& why) {
+                progress.clear();
+                std::cerr << "note: " << label << " goes without " << why.what() << std::endl;
+                return true;
+            }
+            return false;
+        });
         bool going = true;
         while (going && !interrupted()) {
             going = false;
@@ -184,9 +195,10 @@ Case run_case(const Plan& plan,
         share += static_cast<std::int64_t>(kinds.size()) * planned.steps;
         steps_done = begin + share;
     }
-    for (std::size_t i = 0; plan.errors && i < kinds.size() && !interrupted(); ++i) {
+    for (std::size_t i = 0; plan.errors && i < taking_part.size() && !interrupted(); ++i) {
         Run& run = made.runs[i];  // of the first repeat
-        run.error = error_of(*find_answer(planned.entry->name), scene, kinds[i], run.steps(), [&] {
+        const EngineKind& kind = *taking_part[i];
+        run.error = error_of(*find_answer(planned.entry->name), scene, kind, run.steps(), [&] {
             progress.show(++steps_done, label + ", error of " + name_of(run.engine, run.setting));
         });
         steps_done = begin + (share += planned.steps);

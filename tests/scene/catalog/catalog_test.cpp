@@ -146,8 +146,8 @@ TEST(Catalog, SameSeedGivesTheSameBits)
 TEST(Catalog, OtherSeedGivesAnotherSceneWhereChanceHasASay)
 {
     const std::set<std::string_view> chance = {
-        "pile",   "spheres", "hulls", "tumbler", "crowd",     "sparse",
-        "meshes", "knots",   "peg",   "terrain", "ball_cube", "elastic_ball_cube"};
+        "pile",  "spheres", "hulls", "tumbler", "crowd",   "sparse",    "mixed",
+        "hills", "meshes",  "knots", "peg",     "terrain", "ball_cube", "elastic_ball_cube"};
     for (const CatalogEntry& entry : catalog()) {
         const bool same = same_bits(numbers_of(entry.make(50, 5)), numbers_of(entry.make(50, 6)));
         EXPECT_EQ(same, !chance.contains(entry.name)) << entry.name;

@@ -81,7 +81,7 @@ TEST(PeerScene, AHullHasItsTrianglesOutward)
     const Scene scene = make_scene("hulls", 10);
     const PeerScene given = peer_scene(World(scene), scene);
     ASSERT_FALSE(given.hulls.empty());
-    for (const PeerHull& hull : given.hulls) {
+    for (const PeerTriangles& hull : given.hulls) {
         EXPECT_EQ(hull.triangles.size(), 2 * hull.vertices.size() - 4);  // Euler's formula
         for (const auto& triangle : hull.triangles) {
             const Vec3 &a = hull.vertices[triangle[0]], &b = hull.vertices[triangle[1]],
