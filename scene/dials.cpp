@@ -38,6 +38,7 @@ constexpr Choice kImpactLaw[] = {{"sequential"}, {"simultaneous"}};
 constexpr Choice kOverlap[] = {{"allow"}, {"back_up"}, {"subdivide"}};
 constexpr Choice kToiMethod[] = {{"newton"}, {"bisection"}, {"conservative"}};
 constexpr Choice kSleep[] = {{"on"}, {"off"}};
+constexpr Choice kPartialRest[] = {{"off"}, {"on"}};
 constexpr Choice kEffects[] = {{"called"}, {"auto"}};
 
 constexpr double kLeastStiffness = 1e-30, kLeastDamping = 0;
@@ -187,6 +188,14 @@ std::string set_effects_error(Settings& settings, std::string_view text)
     const double error = parse_number(text);
     if (!(error >= 0 && error <= 1)) return wanted("a share of the radius from 0 to 1", text);
     settings.effects_error = error;
+    return {};
+}
+
+std::string set_rest_force(Settings& settings, std::string_view text)
+{
+    const double share = parse_number(text);
+    if (!(share >= 1e-6 && share <= 1)) return wanted("a share of the load from 1e-6 to 1", text);
+    settings.rest_force = share;
     return {};
 }
 
@@ -368,6 +377,10 @@ std::vector<Dial> make_dials()
             "a smaller tolerance finds the moment of touch more exactly, for more evaluations"),
         named_dial("sleep", kSleep, set_sleep, get_sleep,
             "bodies at rest cost nothing while asleep; off follows the slowest creep"),
+        choice_dial<&S::partial_rest, kPartialRest>("partial_rest",
+            "on lets each body that is quiet rest while others of its heap go on, at no cost, until what it bears changes by rest_force"),
+        number_dial("rest_force", "a number from 1e-6 to 1", "of what a body bears", set_rest_force, get_number<&S::rest_force>,
+            "partial_rest on: a greater change is not felt by who rests, and fewer wake"),
         choice_dial<&S::effects, kEffects>("effects",
             "auto leaves the gyroscopic torque out of bodies, and rolling friction out of islands that sleep soon, as long as bodies are off by less than effects_error for it"),
         number_dial("effects_error", "a number from 0 to 1", "of the radius in 0.1 s, and rad", set_effects_error, get_number<&S::effects_error>,

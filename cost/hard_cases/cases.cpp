@@ -186,6 +186,8 @@ constexpr HardCase kCases[] = {
      case_linked_in_flight, Fault::haste},
     {"H126", "errors fall with the step and the tolerance by the order that theory has",
      case_orders, Fault::friction},
+    {"H127", "who rests by itself while others of its heap go on does as if it did not",
+     case_partial_rest, Fault::sink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -95,6 +95,10 @@ struct Settings {
     ToiMethod toi_method = ToiMethod::newton;
     double toi_tolerance = 1e-4;  // of the smallest half extent of the two shapes
     bool sleep = true;
+    // Who is quiet rests by itself while others of its island go on, and stands as if it were
+    // static until what its contacts bear on it changes by more than this share of it.
+    bool partial_rest = false;
+    double rest_force = 0.05;
     EffectChoice effects = EffectChoice::called;
     // auto: bodies end no further off than this share of their radius in 0.1 s, root of the mean
     // square, and turned by no more rad, than with all that is left out.

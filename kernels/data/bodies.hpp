@@ -170,6 +170,8 @@ struct BodyStates {
     }
     bool dynamic(std::size_t body) const { return kind[body] == BodyKind::dynamic; }
     bool marked_fast(std::size_t body) const { return body < fast.size() && fast[body] != 0; }
+    /// Asleep; of who touches somebody awake, by itself: see RestingBodies.
+    bool rests(std::size_t body) const { return dynamic(body) && !moves(body); }
     /// Whether a contact can push it.
     bool movable(std::size_t body) const { return dynamic(body) && moves(body); }
 };

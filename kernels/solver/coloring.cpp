@@ -41,6 +41,13 @@ void clear_idle_lanes(const Color& color, std::size_t held, Layout& layout)
     }
 }
 
+// Who stands still and is more than that to what touches it: its surface moves, or contacts give way
+// by its mass as they did before it came to rest.
+bool has_standing_copy(std::uint32_t body, const BodyStates& states)
+{
+    return states.carries(body) || states.rests(body);
+}
+
 // Where a body is in an ascending list, or its length.
 std::size_t place_in(const std::vector<std::uint32_t>& bodies, std::uint32_t body)
 {
@@ -134,7 +141,7 @@ void ConstraintGraph::color_contacts(const ActiveContacts& active,
 {
     plan.size.fill(0);
     plan.kinematic.clear();
-    plan.conveyors.clear();
+    plan.standing.clear();
     std::uint64_t nobody = 0;
     const auto used_by = [&](std::uint32_t body) -> std::uint64_t& {
         const std::uint32_t solver_index = layout.solver_index[body];
@@ -160,11 +167,11 @@ void ConstraintGraph::color_contacts(const ActiveContacts& active,
         for (const std::uint32_t body : {contact.body_a, contact.body_b}) {
             if (layout.solver_index[body] != Layout::kNoSolverIndex) continue;
             if (states.kind[body] == BodyKind::kinematic) add(body, plan.kinematic);
-            if (states.carries(body)) add(body, plan.conveyors);
+            if (has_standing_copy(body, states)) add(body, plan.standing);
         }
     }
     keep_each_once(plan.kinematic);
-    keep_each_once(plan.conveyors);
+    keep_each_once(plan.standing);
     count_blocks(plan);
 }
 
@@ -189,11 +196,11 @@ void ConstraintGraph::lay_out_colors(Layout& layout)
         Plan& plan = plans_[i];
         auto& sources = layout.body_of_solver_index;
         // Each slice has its own copy of a body that moves by itself: slices are not at the same
-        // time of the step. Conveyors have a velocity and go nowhere.
+        // time of the step. Others have a velocity, or a mass, and go nowhere.
         slice.first_kinematic_copy = static_cast<std::uint32_t>(sources.size());
         slice.kinematic = static_cast<std::uint32_t>(plan.kinematic.size());
         sources.insert(sources.end(), plan.kinematic.begin(), plan.kinematic.end());
-        sources.insert(sources.end(), plan.conveyors.begin(), plan.conveyors.end());
+        sources.insert(sources.end(), plan.standing.begin(), plan.standing.end());
         slice.first_color = colors;
         slice.colors = plan.colors;
         plan.first_block = blocks;
@@ -236,8 +243,8 @@ void ConstraintGraph::place(const ActiveContacts& active,
         std::size_t place = 0;
         if (states.kind[body] == BodyKind::kinematic)
             place = place_in(plan.kinematic, body);
-        else if (states.carries(body))
-            place = plan.kinematic.size() + place_in(plan.conveyors, body);
+        else if (has_standing_copy(body, states))
+            place = plan.kinematic.size() + place_in(plan.standing, body);
         else
             return 0;
         return static_cast<std::int32_t>(slice.first_kinematic_copy + place);

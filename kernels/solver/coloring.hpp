@@ -46,7 +46,7 @@ private:
         std::array<std::uint32_t, kBins> size;  // contacts by color and points
         std::uint32_t blocks, colors, first_block;
         std::uint8_t least_points;                        // that a block is told to have
-        std::vector<std::uint32_t> kinematic, conveyors;  // that it touches, ascending
+        std::vector<std::uint32_t> kinematic, standing;  // that it touches, ascending
     };
 
     void gather_slices(const Islands& islands,

@@ -26,4 +26,18 @@ auto& contact_of(Convex& convex,
     return convex.contacts[entry.list_index];
 }
 
+/// Calls for the key of each pair that a step goes through, and the contact, once a contact.
+template <class Real, class Each>
+void for_each_contact(const Pairs& pairs,
+                      const ConvexContacts<Real>& convex,
+                      const MeshContacts<Real>& meshes,
+                      const SolidContacts<Real>& solids,
+                      const Each& each)
+{
+    for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
+        if (const Contact<Real>* contact = convex.at(i)) each(pairs.keys[i], *contact);
+    for (const auto& entry : meshes.entries) each(pairs.keys[entry.pair], entry.contact);
+    for (const auto& entry : solids.entries) each(pairs.keys[entry.pair], entry.contact);
+}
+
 }  // namespace throng

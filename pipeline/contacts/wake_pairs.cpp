@@ -17,11 +17,6 @@ using Ref = SleepingPairs::Ref;
 // A list of no more references is never cleared of stale ones.
 constexpr std::size_t kFewRefs = 16;
 
-bool valid(const SleepingPairs& sleeping, const Ref& ref)
-{
-    return sleeping.kept[ref.at].generation == ref.generation;
-}
-
 Held& held_by(const Holder& holder, SleepingPairs& sleeping)
 {
     if (holder.still) return sleeping.of_still[holder.place];
@@ -35,7 +30,7 @@ void note_stale(const Holder& holder, SleepingPairs& sleeping)
     Held& held = held_by(holder, sleeping);
     ++held.stale;
     if (held.refs.size() <= kFewRefs || 2 * held.stale <= held.refs.size()) return;
-    std::erase_if(held.refs, [&](const Ref& ref) { return !valid(sleeping, ref); });
+    std::erase_if(held.refs, [&](const Ref& ref) { return !sleeping.holds(ref); });
     held.stale = 0;
     if (held.refs.empty() && holder.still) sleeping.of_still.erase(holder.place);
 }
@@ -46,7 +41,7 @@ void call_island(std::uint32_t island, SleepingPairs& sleeping)
     Held held;
     std::swap(held, sleeping.of_island[island]);
     for (const Ref& ref : held.refs) {
-        if (!valid(sleeping, ref)) continue;
+        if (!sleeping.holds(ref)) continue;
         SleepingPairs::Kept& kept = sleeping.kept[ref.at];
         ++kept.generation;
         sleeping.called.push_back(ref.at);
@@ -108,7 +103,8 @@ protected:
           meshes_(data.template get<MeshContacts<Real>>()),
           solids_(data.template get<SolidContacts<Real>>()),
           methods_(data.template get<MethodPairs>()), sleeping_(data.template get<SleepingPairs>()),
-          contacts_(data.template get<SleepingContacts<Real>>())
+          contacts_(data.template get<SleepingContacts<Real>>()),
+          resting_(data.template get<RestingBodies>())
     { }
 
     /// Pairs go to other places, or are gone; of the n-th that is new it is asked what it knows.
@@ -157,6 +153,7 @@ protected:
     MethodPairs& methods_;
     SleepingPairs& sleeping_;
     SleepingContacts<Real>& contacts_;
+    RestingBodies& resting_;
     Moves moves_;
 };
 
@@ -164,7 +161,9 @@ protected:
 template <class Real>
 class Waking : PairLists<Real> {
 public:
-    explicit Waking(const PairData<Real>& data) : PairLists<Real>(data) { }
+    Waking(const Colliders& colliders, const PairData<Real>& data)
+        : PairLists<Real>(data), colliders_(colliders)
+    { }
 
     void run()
     {
@@ -173,6 +172,7 @@ public:
         std::sort(called.begin(), called.end(), [&](std::uint32_t a, std::uint32_t b) {
             return sleeping_.kept[a].key < sleeping_.kept[b].key;
         });
+        if (!resting_.borne.empty()) follow_contacts();
         find_moves();
         make_room();
         this->move_all([&](std::size_t n) { return sleeping_.kept[called[n]].key; },
@@ -188,7 +188,18 @@ public:
 private:
     using PairLists<Real>::pairs_, PairLists<Real>::convex_, PairLists<Real>::meshes_,
         PairLists<Real>::solids_, PairLists<Real>::sleeping_, PairLists<Real>::contacts_,
-        PairLists<Real>::moves_;
+        PairLists<Real>::resting_, PairLists<Real>::moves_;
+
+    // What they bear on those who rest on is what these remember once more.
+    void follow_contacts()
+    {
+        for (const std::uint32_t at : sleeping_.called)
+            for_each_contact_at(at, sleeping_, contacts_,
+                                [&](PairKey key, const Contact<Real>& contact) {
+                                    resting_.follow(contact, colliders_.body[first_of(key)],
+                                                    colliders_.body[second_of(key)], 1);
+                                });
+    }
 
     // Contacts with meshes are the last to follow the list of pairs.
     void follow_with_meshes()
@@ -299,6 +310,7 @@ private:
         merge_in(of_solids, solids_.entries, before);
     }
 
+    const Colliders& colliders_;
     std::vector<std::uint32_t> came_;  // [called] to which places
 };
 
@@ -320,7 +332,7 @@ public:
 private:
     using PairLists<Real>::pairs_, PairLists<Real>::convex_, PairLists<Real>::meshes_,
         PairLists<Real>::solids_, PairLists<Real>::methods_, PairLists<Real>::sleeping_,
-        PairLists<Real>::contacts_, PairLists<Real>::moves_;
+        PairLists<Real>::contacts_, PairLists<Real>::resting_, PairLists<Real>::moves_;
 
     // For all at once: lists of many contacts are long in growing.
     void make_room(std::size_t leaving)
@@ -367,6 +379,12 @@ private:
         const bool on_mesh = std::binary_search(pairs_.on_mesh.begin(), pairs_.on_mesh.end(), pair);
         if (on_mesh || std::binary_search(pairs_.on_solid.begin(), pairs_.on_solid.end(), pair))
             put_by_many(pair, on_mesh, of_kept);
+        if (resting_.borne.empty()) return;
+        for_each_contact_at(place, sleeping_, contacts_,
+                            [&](PairKey key, const Contact<Real>& contact) {
+                                resting_.follow(contact, colliders_.body[first_of(key)],
+                                                colliders_.body[second_of(key)], -1);
+                            });
     }
 
     void hold(std::uint32_t place, SleepingPairs::Kept& kept)
@@ -457,7 +475,7 @@ std::vector<std::uint32_t> islands_beside(std::uint32_t body, const SleepingPair
     const auto found = sleeping.of_still.find(body);
     if (found == sleeping.of_still.end()) return islands;
     for (const Ref& ref : found->second.refs) {
-        if (!valid(sleeping, ref)) continue;
+        if (!sleeping.holds(ref)) continue;
         for (const Holder& holder : sleeping.kept[ref.at].holders)
             if (!holder.still && holder.place != kNoBody) islands.push_back(holder.place);
     }
@@ -474,9 +492,9 @@ void call_all(SleepingPairs& sleeping)
 }
 
 template <class Real>
-void wake_pairs(const PairData<Real>& data)
+void wake_pairs(const Colliders& colliders, const PairData<Real>& data)
 {
-    if (!data.template get<SleepingPairs>().called.empty()) Waking<Real>(data).run();
+    if (!data.template get<SleepingPairs>().called.empty()) Waking<Real>(colliders, data).run();
 }
 
 template <class Real>
@@ -494,7 +512,7 @@ void drop_pairs(const std::function<bool(PairKey)>& goes, const PairData<Real>& 
 
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void drop_pairs<Real>(const std::function<bool(PairKey)>&, const PairData<Real>&);    \
-    template void wake_pairs<Real>(const PairData<Real>&);                                         \
+    template void wake_pairs<Real>(const Colliders&, const PairData<Real>&);                       \
     template void put_to_sleep<Real>(const Colliders&, const BodyStates&, const PairData<Real>&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)

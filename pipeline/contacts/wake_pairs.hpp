@@ -31,7 +31,7 @@ std::vector<std::uint32_t> islands_beside(std::uint32_t body, const SleepingPair
 
 /// Puts the pairs that were called for back where they belong.
 template <class Real>
-void wake_pairs(const PairData<Real>& data);
+void wake_pairs(const Colliders& colliders, const PairData<Real>& data);
 
 /// Calls for all pairs that sleep, whoever sleeps on; they leave again with the next that do.
 void call_all(SleepingPairs& sleeping);
@@ -44,20 +44,45 @@ void put_to_sleep(const Colliders& colliders, const BodyStates& states, const Pa
 template <class Real>
 void drop_pairs(const std::function<bool(PairKey)>& goes, const PairData<Real>& data);
 
-/// Calls for each convex contact, contact with a mesh and contact of a solid that sleeps: its key
-/// and the contact, in an order that does not depend on threads.
+/// Calls for each contact of a pair that is kept at a place: its key and the contact.
+template <class Real, class Each>
+void for_each_contact_at(std::size_t place,
+                         const SleepingPairs& sleeping,
+                         const SleepingContacts<Real>& contacts,
+                         const Each& each)
+{
+    const PairKey key = sleeping.kept[place].key;
+    const auto& of_kept = contacts.of_kept[place];
+    if (of_kept.state.contact != PairState::kApart)
+        each(key, contacts.contacts[of_kept.state.contact]);
+    if (of_kept.many == kNoBody) return;
+    for (const auto& entry : contacts.many[of_kept.many].entries) each(key, entry.contact);
+}
+
+/// The same for each convex contact, contact with a mesh and contact of a solid that sleeps, in an
+/// order that does not depend on threads.
 template <class Real, class Each>
 void for_each_sleeping_contact(const SleepingPairs& sleeping,
                                const SleepingContacts<Real>& contacts,
                                const Each& each)
 {
-    for (std::size_t at = 0; at < sleeping.kept.size(); ++at) {
-        const PairKey key = sleeping.kept[at].key;
-        const auto& of_kept = contacts.of_kept[at];
-        if (of_kept.state.contact != PairState::kApart)
-            each(key, contacts.contacts[of_kept.state.contact]);
-        if (of_kept.many == kNoBody) continue;
-        for (const auto& entry : contacts.many[of_kept.many].entries) each(key, entry.contact);
+    for (std::size_t place = 0; place < sleeping.kept.size(); ++place)
+        for_each_contact_at(place, sleeping, contacts, each);
+}
+
+/// Calls for the key of each pair that touches and that a sleeping island holds.
+template <class Real, class Each>
+void for_each_touching_pair_of(std::uint32_t island,
+                               const SleepingPairs& sleeping,
+                               const SleepingContacts<Real>& contacts,
+                               const Each& each)
+{
+    if (island >= sleeping.of_island.size()) return;
+    for (const SleepingPairs::Ref& ref : sleeping.of_island[island].refs) {
+        const auto& of_kept = contacts.of_kept[ref.at];
+        const bool touches = of_kept.state.contact != PairState::kApart
+            || (of_kept.many != kNoBody && !contacts.many[of_kept.many].entries.empty());
+        if (touches && sleeping.holds(ref)) each(sleeping.kept[ref.at].key);
     }
 }
 

@@ -166,6 +166,7 @@ private:
         const double square = mean_square_speed(island);
         const bool rests = square < resting_ * resting_;
         if (!(before > 1)) {
+            if (touches_resting(island)) return 0;
             if (!rests) return is_crushed(island) ? -kCrushed : 0;
             return begun(strain, before, exactly, square > kTrembling * kTrembling);
         }
@@ -210,6 +211,14 @@ private:
             const ActiveContacts::Entry& entry = active_.entries[place];
             return asked(entry.body_a) || asked(entry.body_b);
         });
+    }
+
+    // Whether it touches somebody who rests by himself, and so is a part of something greater, which
+    // was borne as it is: it would be thrown by a change to more substeps.
+    bool touches_resting(std::size_t island) const
+    {
+        return touches_unmoved(
+            island, [&](std::uint32_t body) { return masses_.inverse_mass[body] > 0; });
     }
 
     // Whether it touches what moves by itself, which may give it any energy.

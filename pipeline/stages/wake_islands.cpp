@@ -55,7 +55,7 @@ void wake_islands(const Colliders& colliders,
     // Contacts with meshes are not known yet: a mesh that moves wakes whoever is near.
     for (const std::uint32_t i : pairs.on_mesh) touch_each_other(pairs.keys[i]);
     std::sort(sleep_events.woke.begin(), sleep_events.woke.end());
-    wake_pairs<Real>(data);
+    wake_pairs<Real>(colliders, data);
 }
 
 #define THRONG_INSTANTIATE(Real)                                                                   \

@@ -1,5 +1,7 @@
 #include "pipeline/step/effects.hpp"
 
+#include "pipeline/step/parameters.hpp"
+
 #include <algorithm>
 #include <set>
 #include <tuple>
@@ -57,7 +59,8 @@ public:
         find_contact();
         if (meets()) find_materials();
         find_rotation();
-        if (found_.on.has(Effect::contact) && facts_.bodies.settings.sleep)
+        const Settings& settings = facts_.bodies.settings;
+        if (found_.on.has(Effect::contact) && (settings.sleep || rests_by_force(settings)))
             call_if(Effect::sleeping, Call::dynamic);
         return std::move(found_);
     }

@@ -74,14 +74,19 @@ struct SolverParameters {
     }
 };
 
-/// When an island falls asleep: once all of it has been slower for as long.
+/// When an island falls asleep: once all of it has been slower for as long. Who rests by itself
+/// wakes as what it bears changes by more than that share of it.
 struct SleepParameters {
     double speed = 0, time = 0;  // m/s, s
+    bool islands = false;        // as a whole
+    double rest_force = 0;
 
     void set(const Settings& settings)
     {
         speed = settings.sleep_speed;
         time = settings.sleep_time;
+        islands = settings.sleep;
+        rest_force = settings.rest_force;
     }
 };
 
@@ -96,6 +101,12 @@ struct NeglectParameters {
         error = settings.effects_error;
     }
 };
+
+/// Whether bodies rest by themselves. Other responses know no impulses that could wake them.
+inline bool rests_by_force(const Settings& settings)
+{
+    return settings.partial_rest && settings.response == Response::impulse;
+}
 
 /// Whether islands whose loads are too much get more than others. The direct solver needs no help,
 /// and penalty forces and kinematic pushes go island by island.

@@ -45,6 +45,7 @@ struct SleepingPairs {
     std::vector<std::uint32_t> called;
     bool mixed = false, seen = false;
 
+    bool holds(const Ref& ref) const { return kept[ref.at].generation == ref.generation; }
     /// Of pairs that sleep.
     std::size_t size() const { return kept.size() - free.size(); }
 };

@@ -16,7 +16,8 @@ using PairData = StageData<Pairs,
                            SolidContacts<Real>,
                            MethodPairs,
                            SleepingPairs,
-                           SleepingContacts<Real>>;
+                           SleepingContacts<Real>,
+                           RestingBodies>;
 
 /// Pairs of which neither can move until somebody wakes leave the lists that the others are in.
 template <class Real>
@@ -81,6 +82,18 @@ void wake_islands(const Colliders&,
                   SleepingIslands&,
                   BodyStates&,
                   SleepEvents&);
+
+/// Wakes who rests by itself: whom the last step's impulses were told to wake, and whom somebody
+/// touches who will change what is borne by much; with their pairs.
+template <class Real>
+void wake_bodies(const SleepParameters&,
+                 const Colliders&,
+                 const Velocities&,
+                 const Masses&,
+                 const PairData<Real>&,
+                 SleepingIslands&,
+                 BodyStates&,
+                 SleepEvents&);
 
 /// Contacts with edges and sides of colliders that lie flush with one that bears the body end here.
 template <class Real>
@@ -348,5 +361,26 @@ void sleep_islands(const StepContext&,
                    SleepingIslands&,
                    Velocities&,
                    SleepEvents&);
+
+/// Bodies that have been quiet long enough, and are borne steadily, come to rest each by itself;
+/// those that contacts bear otherwise than then are told to wake.
+template <class Real>
+void rest_bodies(const StepContext&,
+                 const SleepParameters&,
+                 const PrescribedVelocities&,
+                 const Forces&,
+                 const Islands&,
+                 const SplitImpulse&,
+                 const OverloadedIslands&,
+                 const Colliders&,
+                 const Pairs&,
+                 const ConvexContacts<Real>&,
+                 const MeshContacts<Real>&,
+                 const SolidContacts<Real>&,
+                 BodyStates&,
+                 SleepingIslands&,
+                 Velocities&,
+                 RestingBodies&,
+                 SleepEvents&);
 
 }  // namespace throng

@@ -15,6 +15,7 @@
 #include "narrowphase/alternatives/method_contacts.hpp"
 #include "pipeline/step/effect_census.hpp"
 #include "pipeline/step/parameters.hpp"
+#include "pipeline/step/resting_bodies.hpp"
 #include "pipeline/step/sleeping_pairs.hpp"
 #include "pipeline/step/step_context.hpp"
 
@@ -220,6 +221,7 @@ using StepData = std::tuple<StepContext,
                             SolidContacts<Real>,
                             SleepingPairs,
                             SleepingContacts<Real>,
+                            RestingBodies,
                             GhostMarks,
                             ExternalAcceleration,
                             Flights,

@@ -22,6 +22,7 @@ bool by_direct(const Settings& settings)
 }
 bool by_penalty(const Settings& settings) { return settings.response == Response::penalty; }
 bool by_auto(const Settings& settings) { return settings.effects == EffectChoice::auto_; }
+bool by_islands(const Settings& settings) { return !rests_by_force(settings); }
 bool by_kinematic(const Settings& settings) { return settings.response == Response::kinematic; }
 
 // clang-format off
@@ -33,7 +34,8 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, find_pairs>                  ({contact}),
     stage<Real, collide_convex<Real>>        ({contact}),
     stage<Real, collide_solids<Real>>        (kSolidContact),
-    stage<Real, wake_islands<Real>>          ({sleeping}),
+    stage<Real, wake_islands<Real>>          ({sleeping}, by_islands),
+    stage<Real, wake_bodies<Real>>           ({sleeping}, rests_by_force),
     stage<Real, collide_meshes<Real>>        ({mesh_contact}),
     stage<Real, neglect_effects>             ({gyroscopic}, by_auto),
     stage<Real, remove_ghost_contacts<Real>> ({seams}),
@@ -58,7 +60,8 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, integrate_poses>             ({motion}),
     stage<Real, quarantine_bodies>           ({motion}),
     stage<Real, continuous_collision<Real>>  ({fast_motion}),
-    stage<Real, sleep_islands>               ({sleeping}),
+    stage<Real, sleep_islands>               ({sleeping}, by_islands),
+    stage<Real, rest_bodies<Real>>           ({sleeping}, rests_by_force),
 };
 // clang-format on
 

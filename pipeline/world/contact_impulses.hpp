@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/solver/contact_packing.hpp"
+#include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/contacts/wake_pairs.hpp"
 #include "pipeline/world/world_state.hpp"
 
@@ -15,7 +16,6 @@ template <class Real, class Each>
 void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const Each& each)
 {
     const auto& colliders = std::get<Colliders>(data);
-    const auto& pairs = std::get<Pairs>(data);
     const auto add = [&](PairKey key, const Contact<Real>& contact) {
         if (contact.count == 0) return;
         const auto on_b = [&] {
@@ -27,13 +27,8 @@ void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const
         };
         each(colliders.body[first_of(key)], colliders.body[second_of(key)], on_b);
     };
-    const auto& convex = std::get<ConvexContacts<Real>>(data);
-    for (std::size_t i = 0; i < convex.of_pair.size(); ++i)
-        if (const Contact<Real>* contact = convex.at(i)) add(pairs.keys[i], *contact);
-    for (const auto& entry : std::get<MeshContacts<Real>>(data).entries)
-        add(pairs.keys[entry.pair], entry.contact);
-    for (const auto& entry : std::get<SolidContacts<Real>>(data).entries)
-        add(pairs.keys[entry.pair], entry.contact);
+    for_each_contact(std::get<Pairs>(data), std::get<ConvexContacts<Real>>(data),
+                     std::get<MeshContacts<Real>>(data), std::get<SolidContacts<Real>>(data), add);
     for_each_sleeping_contact(std::get<SleepingPairs>(data), std::get<SleepingContacts<Real>>(data),
                               add);
 

@@ -382,8 +382,9 @@ void World::step(int steps)
             std::visit([](auto& chosen) { chosen.graph->rest(); }, state.step);
         } else {
             state.refresh();
-            state.idle =
-                state.get<BodyStates>().active_bodies.none() && state.get<Bounds>().touched.empty();
+            state.idle = state.get<BodyStates>().active_bodies.none()
+                && state.get<Bounds>().touched.empty()
+                && state.get<RestingBodies>().waking.empty();
             state.pool.run([&](std::size_t, std::size_t, std::size_t) {
                 std::visit(
                     [&](auto& chosen) {
@@ -431,6 +432,8 @@ void World::set_settings(const Settings& settings)
             "set_settings: precision cannot change in a world; make another");
     check_settings(settings, "set_settings");
     state_->get<Flights>() = {};  // numbers of another rotation, or of another law
+    // Who rests by itself does so by impulses that others may bear by now, each alone.
+    if (rests_by_force(this->settings()) || rests_by_force(settings)) state_->wake_all();
     state_->call_all_pairs();     // which may remember what another method found
     state_->set(settings);
     state_->effects_stale = state_->census_stale = state_->graph_stale = true;

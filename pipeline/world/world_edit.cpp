@@ -67,7 +67,7 @@ void WorldState::wake_pairs()
     std::visit(
         [](auto& chosen) {
             using Real = typename std::decay_t<decltype(chosen)>::Number;
-            throng::wake_pairs<Real>(pair_data(chosen.data));
+            throng::wake_pairs<Real>(std::get<Colliders>(chosen.data), pair_data(chosen.data));
         },
         step);
 }
@@ -151,6 +151,7 @@ void WorldState::empty_unused()
         wake_all();
         wake_pairs();
     }
+    if (!on.has(Effect::sleeping) || !rests_by_force(settings)) get<RestingBodies>() = {};
     if (!on.has(Effect::escalation)) get<OverloadedIslands>().efforts.clear();
     if (!may_escalate(settings)) get<OverloadedIslands>().forget_all();
     if (!on.meets(kEventDriven)) {

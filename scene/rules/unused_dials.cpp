@@ -98,7 +98,7 @@ std::string why_carrying_leaves(const Scene& scene, std::string_view name)
     for (const std::string_view unused :
          {"solver", "contact_rate", "relax_iterations", "direct_limit", "narrowphase",
           "method_start", "bounds_filter", "broadphase", "friction_cone", "friction_at", "sleep",
-          "escalation"})
+          "partial_rest", "rest_force", "escalation"})
         if (name == unused) return "overlap " + overlap + " solves contacts in its own way";
     return {};
 }
@@ -114,13 +114,16 @@ std::string why_settings_leave(const Settings& settings, std::string_view name)
 
     if (settings.response != Response::impulse
         && is_one_of({"solver", "iterations", "relax_iterations", "contact_rate", "push_limit",
-                      "direct_limit", "friction_cone", "friction_at", "impact_law", "escalation"}))
+                      "direct_limit", "friction_cone", "friction_at", "impact_law", "escalation",
+                      "partial_rest", "rest_force"}))
         return "response " + response + " solves no rows";
     if (settings.solver != Solver::soft_step
         && (name == "contact_rate" || name == "relax_iterations"))
         return "solver " + solver + " has no soft contacts";
     if (settings.effects == EffectChoice::called && name == "effects_error")
         return "effects called leaves nothing out";
+    if (!settings.partial_rest && name == "rest_force")
+        return "partial_rest off lets nobody rest by itself";
     if (settings.narrowphase == NarrowPhase::auto_ && name == "method_start")
         return "narrowphase auto always begins with what a pair remembers";
     if (settings.solver != Solver::direct && name == "direct_limit")

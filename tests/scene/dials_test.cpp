@@ -21,7 +21,7 @@ TEST(Dials, AreAllThere)
         "solver",       "direct_limit",     "penalty_stiffness", "penalty_damping", "friction_cone",
         "impact_law",   "overlap",          "halvings",          "toi_method",      "toi_tolerance",
         "sleep",        "escalation",       "relax_iterations",  "mesh_tree",       "effects",
-        "effects_error"};
+        "effects_error", "partial_rest", "rest_force"};
     for (const char* name : names) EXPECT_NE(find_dial(name), nullptr) << name;
     EXPECT_EQ(find_dial("speed"), nullptr);
 
@@ -93,7 +93,9 @@ TEST(Dials, ValuesSetBackGiveTheSame)
                                   {"impact_law", "simultaneous"},
                                   {"direct_limit", "20"},
                                   {"effects", "auto"},
-                                  {"effects_error", "0.001"}};
+                                  {"effects_error", "0.001"},
+                                  {"partial_rest", "on"},
+                                  {"rest_force", "0.1"}};
     for (const auto& [name, value] : all) {
         Settings first, second;
         ASSERT_EQ(set_dial(first, name, value), "");
@@ -139,6 +141,8 @@ TEST(Dials, SayWhatWasWanted)
         {"sphere_levels", "2.5", "sphere_levels: wanted auto or a whole number from 1 to 6"},
         {"effects", "all", "effects: wanted called or auto, not \"all\""},
         {"effects_error", "2", "effects_error: wanted a share of the radius from 0 to 1, not"},
+        {"partial_rest", "true", "partial_rest: wanted off or on, not \"true\""},
+        {"rest_force", "2", "rest_force: wanted a share of the load from 1e-6 to 1, not"},
         {"toi_tolerance", "1e-13", "toi_tolerance: wanted a share of the shape's size from 1e-12"},
         {"substep", "4", "substep: wanted the name of a dial, perhaps substeps"},
         {"presicion", "4", "presicion: wanted the name of a dial, perhaps precision"},

@@ -38,6 +38,7 @@ const std::map<std::string_view, std::vector<std::string_view>>& numbers()
         {"halvings", {"1", "8"}},
         {"toi_tolerance", {"1.2e-7", "0.02"}},
         {"effects_error", {"0", "1"}},
+        {"rest_force", {"1e-6", "1"}},
     };
     return kNumbers;
 }

@@ -50,6 +50,11 @@ TEST(UnusedDials, AreThoseThatAnotherMakesMeaningless)
     EXPECT_EQ(unused_dials(scene).size(), 1u);
     scene.settings.effects = EffectChoice::auto_;
     EXPECT_TRUE(unused_dials(scene).empty());
+    scene.dials_set = {"rest_force"};
+    EXPECT_EQ(unused_dials(scene),
+              Sentences{"rest_force: unused, partial_rest off lets nobody rest by itself"});
+    scene.settings.partial_rest = true;
+    EXPECT_TRUE(unused_dials(scene).empty());
 }
 
 TEST(UnusedDials, AreAllOfMovingMeshesWhereNoneMoves)
