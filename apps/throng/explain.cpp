@@ -276,6 +276,9 @@ int explain(const Options& options)
                       << " a contact and substep (dial relax_iterations)\n";
         }
     }
+    if (const Settings& settings = argument.scene.settings; settings.partial_rest)
+        std::cout << "rest_force: " << dial_value(settings, "rest_force")
+                  << " of what a body bears: a change by which it wakes (dial partial_rest)\n";
     print_effects(entries, times.steps().count() > 0);
     print_stages(stages, stage_ms);
     print_solids(world.solids());

@@ -41,8 +41,8 @@ void clear_idle_lanes(const Color& color, std::size_t held, Layout& layout)
     }
 }
 
-// Who stands still and is more than that to what touches it: its surface moves, or contacts give way
-// by its mass as they did before it came to rest.
+// Who stands still and is more than that to what touches it: its surface moves, or contacts give
+// way by its mass as they did before it came to rest.
 bool has_standing_copy(std::uint32_t body, const BodyStates& states)
 {
     return states.carries(body) || states.rests(body);

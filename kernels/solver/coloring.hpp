@@ -45,7 +45,7 @@ private:
     struct Plan {
         std::array<std::uint32_t, kBins> size;  // contacts by color and points
         std::uint32_t blocks, colors, first_block;
-        std::uint8_t least_points;                        // that a block is told to have
+        std::uint8_t least_points;                       // that a block is told to have
         std::vector<std::uint32_t> kinematic, standing;  // that it touches, ascending
     };
 

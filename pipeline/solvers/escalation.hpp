@@ -16,9 +16,6 @@ namespace throng {
 /// 20 s up to a strain of 1.8; the first fall at 2.4.
 inline constexpr double kStrained = 2, kRelieved = 1.2;
 
-/// Whether a body of that strain belongs to a stubborn island, and not to one on the way there.
-inline bool is_overloaded(double strain) { return strain < 0 || strain > 1; }
-
 /// Strain beyond which the finest substeps do not do.
 inline constexpr double kExactStrain = 256 * kStrained;
 

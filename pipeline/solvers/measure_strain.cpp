@@ -213,12 +213,12 @@ private:
         });
     }
 
-    // Whether it touches somebody who rests by himself, and so is a part of something greater, which
-    // was borne as it is: it would be thrown by a change to more substeps.
+    // Whether it touches somebody who rests by himself, and so is a part of something greater,
+    // which was borne as it is: it would be thrown by a change to more substeps.
     bool touches_resting(std::size_t island) const
     {
-        return touches_unmoved(
-            island, [&](std::uint32_t body) { return masses_.inverse_mass[body] > 0; });
+        return touches_unmoved(island,
+                               [&](std::uint32_t body) { return masses_.inverse_mass[body] > 0; });
     }
 
     // Whether it touches what moves by itself, which may give it any energy.

@@ -3,9 +3,9 @@
 // to wake.
 #include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/contacts/fall_asleep.hpp"
-#include "pipeline/solvers/escalation.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace throng {
 
@@ -17,26 +17,26 @@ using May = RestingBodies::Scratch::May;
 // Of the tolerance: who changes by more from one step to the next is not borne steadily.
 constexpr double kSteady = 0.5;
 
-// Of the tolerance: a change that is felt further in the same step, and by who rests within so many
-// contacts; and of any other.
+// Of the tolerance: a change that is felt as far as may be in the same step; any other by who
+// touches him whom it wakes.
 constexpr double kGreat = 10;
-constexpr std::uint32_t kFar = 4, kNear = 1;
+constexpr std::uint32_t kNear = 1;
 
 // One call of the stage.
 template <class Real>
 class ComingToRest {
 public:
     ComingToRest(const SleepParameters& parameters,
-            const Pairs& pairs,
-            const Colliders& colliders,
-            const ConvexContacts<Real>& convex,
-            const MeshContacts<Real>& meshes,
-            const SolidContacts<Real>& solids,
-            BodyStates& states,
-            SleepingIslands& sleeping_islands,
-            Velocities& velocities,
-            RestingBodies& resting,
-            SleepEvents& sleep_events)
+                 const Pairs& pairs,
+                 const Colliders& colliders,
+                 const ConvexContacts<Real>& convex,
+                 const MeshContacts<Real>& meshes,
+                 const SolidContacts<Real>& solids,
+                 BodyStates& states,
+                 SleepingIslands& sleeping_islands,
+                 Velocities& velocities,
+                 RestingBodies& resting,
+                 SleepEvents& sleep_events)
         : parameters_(parameters), pairs_(pairs), colliders_(colliders), convex_(convex),
           meshes_(meshes), solids_(solids), states_(states), sleeping_islands_(sleeping_islands),
           velocities_(velocities), resting_(resting), sleep_events_(sleep_events)
@@ -148,18 +148,21 @@ private:
 
     void wake_changed()
     {
-        std::vector<std::uint32_t>& rim = resting_.rim;
+        std::vector<std::uint32_t>& border = resting_.border;
         for (const std::uint32_t body : resting_.scratch.touched)
-            if (rests(body)) rim.push_back(body);
-        keep_each_once(rim);
+            if (rests(body)) border.push_back(body);
+        keep_each_once(border);
         resting_.waking.clear();
         const double most = parameters_.rest_force;
-        for (const std::uint32_t body : rim) {
+        for (const std::uint32_t body : border) {
             if (!rests(body)) continue;
             const double by = change(body, resting_.borne[body], now(body));
-            if (by > most) resting_.waking.push_back({body, by > kGreat * most ? kFar : kNear});
+            if (by > most)
+                resting_.waking.push_back(
+                    {body, by > kGreat * most ? RestingBodies::kFarthest : kNear});
         }
-        std::erase_if(rim, [&](std::uint32_t body) { return !rests(body) || now(body).load < 0; });
+        std::erase_if(border,
+                      [&](std::uint32_t body) { return !rests(body) || now(body).load < 0; });
     }
 
     void rest(std::uint32_t body)
@@ -171,7 +174,7 @@ private:
         const bool comes = may(body) == May::yes || (may(body) == May::if_steady && steady);
         was = is;
         if (comes) sleep(body);
-        if (comes || may(body) == May::together) resting_.rim.push_back(body);
+        if (comes || may(body) == May::together) resting_.border.push_back(body);
     }
 
     const SleepParameters& parameters_;
@@ -212,7 +215,7 @@ void rest_bodies(const StepContext& context,
     sleep_events.fell_asleep.clear();
     const Quiet quiet{context, parameters, prescribed, forces, split_impulse, velocities};
     ComingToRest<Real> resting(parameters, pairs, colliders, convex, meshes, solids, states,
-                          sleeping_islands, velocities, resting_bodies, sleep_events);
+                               sleeping_islands, velocities, resting_bodies, sleep_events);
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const auto bodies = islands.bodies_of(island);
         for (const std::uint32_t body : bodies) quiet.count(body, states);
@@ -234,9 +237,9 @@ void rest_bodies(const StepContext& context,
     template void rest_bodies<Real>(                                                               \
         const StepContext&, const SleepParameters&, const PrescribedVelocities&, const Forces&,    \
         const Islands&, const SplitImpulse&, const OverloadedIslands&, const Colliders&,           \
-        const Pairs&,                                                                              \
-        const ConvexContacts<Real>&, const MeshContacts<Real>&, const SolidContacts<Real>&,        \
-        BodyStates&, SleepingIslands&, Velocities&, RestingBodies&, SleepEvents&);
+        const Pairs&, const ConvexContacts<Real>&, const MeshContacts<Real>&,                      \
+        const SolidContacts<Real>&, BodyStates&, SleepingIslands&, Velocities&, RestingBodies&,    \
+        SleepEvents&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

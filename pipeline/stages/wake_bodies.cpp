@@ -11,23 +11,22 @@ namespace throng {
 namespace {
 
 // Of the tolerance: somebody whose momentum is more, in units of what is borne, wakes whom it
-// touches, and who rests within so many contacts of that. Less is left to what comes of it: in a
-// heap that settles all would wake all.
+// touches. Less is left to what comes of it: in a heap that settles all would wake all.
 constexpr double kImpact = 40;
-constexpr std::uint32_t kFarthest = 4;
+constexpr std::uint32_t kFarthest = RestingBodies::kFarthest;
 
 // One call of the stage.
 template <class Real>
 class WakingBodies {
 public:
     WakingBodies(const SleepParameters& parameters,
-           const Colliders& colliders,
-           const Velocities& velocities,
-           const Masses& masses,
-           const PairData<Real>& data,
-           SleepingIslands& sleeping_islands,
-           BodyStates& states,
-           SleepEvents& sleep_events)
+                 const Colliders& colliders,
+                 const Velocities& velocities,
+                 const Masses& masses,
+                 const PairData<Real>& data,
+                 SleepingIslands& sleeping_islands,
+                 BodyStates& states,
+                 SleepEvents& sleep_events)
         : parameters_(parameters), colliders_(colliders), velocities_(velocities), masses_(masses),
           pairs_(data.template get<Pairs>()), convex_(data.template get<ConvexContacts<Real>>()),
           solids_(data.template get<SolidContacts<Real>>()),
@@ -39,8 +38,12 @@ public:
 
     void run()
     {
-        for (const auto& [body, contacts] : resting_.waking) wake(body, contacts);
+        for (const auto& [body, contacts] : resting_.waking) {
+            wake(body, contacts);
+            if (states_.movable(body)) woken_.push_back(body);
+        }
         resting_.waking.clear();
+        keep_each_once(woken_);
         for_each_touching([&](std::uint32_t a, std::uint32_t b) {
             if (disturbs(a, b)) wake(b, kFarthest);
             if (disturbs(b, a)) wake(a, kFarthest);
@@ -87,6 +90,7 @@ private:
     bool disturbs(std::uint32_t a, std::uint32_t b) const
     {
         if (!rests(b) || !states_.moves(a)) return false;
+        if (std::binary_search(woken_.begin(), woken_.end(), a)) return true;
         if (!states_.dynamic(a))
             return !velocities_.linear[a].isZero(0) || !velocities_.angular[a].isZero(0);
         return masses_.mass[a] * speed_of(velocities_, states_, a)
@@ -115,8 +119,9 @@ private:
             std::erase_if(bodies, [&](std::uint32_t body) { return !rests(body); });
             if (contacts > 0) reach_neighbors(bodies, within_[contacts - 1]);
             for (const std::uint32_t body : bodies)
-                wake_island(states_.sleeping_island[body], sleeping_islands_, states_, sleeping_,
-                            sleep_events_.woke);
+                if (rests(body))  // and not woken with others of its own
+                    wake_island(states_.sleeping_island[body], sleeping_islands_, states_,
+                                sleeping_, sleep_events_.woke);
         }
         std::sort(sleep_events_.woke.begin(), sleep_events_.woke.end());
     }
@@ -153,6 +158,7 @@ private:
     SleepingIslands& sleeping_islands_;
     BodyStates& states_;
     SleepEvents& sleep_events_;
+    std::vector<std::uint32_t> woken_;                              // by edits, ascending
     std::array<std::vector<std::uint32_t>, kFarthest + 1> within_;  // [contacts to go on]
 };
 
@@ -171,7 +177,7 @@ void wake_bodies(const SleepParameters& parameters,
     sleep_events.woke.clear();
     if (sleeping_islands.bodies.size() == sleeping_islands.free.size()) return;
     WakingBodies<Real>(parameters, colliders, velocities, masses, data, sleeping_islands, states,
-                 sleep_events)
+                       sleep_events)
         .run();
     wake_pairs<Real>(colliders, data);
 }

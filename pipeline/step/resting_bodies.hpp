@@ -1,5 +1,5 @@
-// Resting bodies: who came to rest by itself while others of its island go on, and what its contacts
-// bore on it then. It stands as if it were static, until they bear something else.
+// Resting bodies: who came to rest by itself while others of its island go on, and what its
+// contacts bore on it then. It stands as if it were static, until they bear something else.
 //
 // What is remembered is of the contacts that a step goes through. As a neighbor comes to rest, too,
 // their pair leaves the lists, and what it bears leaves the sum; as the neighbor wakes, both come
@@ -29,8 +29,8 @@ template <class Real>
 BorneImpulse borne_impulse(const Contact<Real>& contact, bool on_b)
 {
     Vec3 linear = Vec3::Zero(), middle = Vec3::Zero();
-    Vec3 angular = (contact.rolling + contact.torsional_impulse * contact.normal)
-                       .template cast<double>();
+    Vec3 angular =
+        (contact.rolling + contact.torsional_impulse * contact.normal).template cast<double>();
     const auto act = [&](const Vec3& impulse, const Vec3& arm) {
         linear += impulse;
         angular += arm.cross(impulse);
@@ -59,19 +59,21 @@ double load_of(const Contact<Real>& contact)
 }
 
 ///   borne   [bodies] of who rests; of who may soon, as of the last step; may be shorter
-///   rim     who rests and was touched by what a step goes through, ascending
-///   waking  whom the last step's impulses wake, each with who rests within so many contacts of it;
-///           ascending
+///   border     who rests and was touched by what a step goes through, ascending
+///   waking  whom the last step's impulses wake, or an edit woke, each with who rests within so
+///   many
+///           contacts of it
 struct RestingBodies {
     struct Borne {
         BorneImpulse impulse;
         double load = -1;  // N s, of all contacts as it came to rest; below 0: nothing is known
     };
+    static constexpr std::uint32_t kFarthest = 4;  // contacts that a great change is felt through
     struct Waking {
         std::uint32_t body = 0, contacts = 0;
     };
     std::vector<Borne> borne;
-    std::vector<std::uint32_t> rim;
+    std::vector<std::uint32_t> border;
     std::vector<Waking> waking;
     /// now      [bodies] what is borne in this step; nothing between stages
     /// may      [bodies] whether it may come to rest: with all of its island; no between stages

@@ -72,6 +72,9 @@ struct SplitImpulse {
     }
 };
 
+/// Whether a body of that strain belongs to a stubborn island, and not to one on the way there.
+inline bool is_overloaded(double strain) { return strain < 0 || strain > 1; }
+
 /// Islands whose loads are too much for the solver (see solvers/escalation.hpp), from step to step.
 ///
 ///   strain    [bodies] that of a stubborn island in the last step, else 0; may be shorter

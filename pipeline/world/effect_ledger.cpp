@@ -218,8 +218,7 @@ private:
             const auto& contacts = std::get<SleepingContacts<Real>>(data);
             return bytes_of(std::get<SleepingPairs>(data).kept,
                             std::get<SleepingIslands>(data).bodies, contacts.of_kept,
-                            contacts.contacts, contacts.found,
-                            std::get<RestingBodies>(data).borne);
+                            contacts.contacts, contacts.found, std::get<RestingBodies>(data).borne);
         }
         case Effect::escalation:
             return bytes_of(std::get<OverloadedIslands>(data).efforts);

@@ -227,6 +227,8 @@ std::size_t World::memory_bytes() const
             const auto& joined = std::get<JoinedContacts<Real>>(chosen.data);
             const auto& sleeping = std::get<SleepingPairs>(chosen.data);
             const auto& asleep = std::get<SleepingContacts<Real>>(chosen.data);
+            const auto& resting = std::get<RestingBodies>(chosen.data);
+            sum += bytes(resting.borne, resting.scratch.now, resting.scratch.may);
             for (const auto& held : sleeping.of_island) sum += bytes(held.refs);
             for (const auto& [body, held] : sleeping.of_still) sum += bytes(held.refs);
             sum += bytes(sleeping.kept, sleeping.free, sleeping.of_island, asleep.of_kept,

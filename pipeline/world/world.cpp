@@ -383,8 +383,7 @@ void World::step(int steps)
         } else {
             state.refresh();
             state.idle = state.get<BodyStates>().active_bodies.none()
-                && state.get<Bounds>().touched.empty()
-                && state.get<RestingBodies>().waking.empty();
+                && state.get<Bounds>().touched.empty() && state.get<RestingBodies>().waking.empty();
             state.pool.run([&](std::size_t, std::size_t, std::size_t) {
                 std::visit(
                     [&](auto& chosen) {
@@ -434,7 +433,7 @@ void World::set_settings(const Settings& settings)
     state_->get<Flights>() = {};  // numbers of another rotation, or of another law
     // Who rests by itself does so by impulses that others may bear by now, each alone.
     if (rests_by_force(this->settings()) || rests_by_force(settings)) state_->wake_all();
-    state_->call_all_pairs();     // which may remember what another method found
+    state_->call_all_pairs();  // which may remember what another method found
     state_->set(settings);
     state_->effects_stale = state_->census_stale = state_->graph_stale = true;
     state_->warn_of_substeps();

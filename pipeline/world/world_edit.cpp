@@ -21,6 +21,13 @@ void WorldState::wake(std::uint32_t body)
         wake_island(island, get<SleepingIslands>(), states, get<SleepingPairs>(), woken);
 }
 
+void WorldState::wake_beside(std::uint32_t body)
+{
+    wake(body);
+    if (rests_by_force(settings) && get<BodyStates>().dynamic(body))
+        get<RestingBodies>().waking.push_back({body, RestingBodies::kFarthest});
+}
+
 void WorldState::mark_changed(std::uint32_t body)
 {
     const auto& colliders = get<Colliders>();
@@ -58,7 +65,7 @@ void WorldState::disturb(std::uint32_t body, bool goes)
     }
     for (const std::uint32_t island : islands_beside(body, get<SleepingPairs>()))
         if (const auto& bodies = get<SleepingIslands>().bodies[island]; !bodies.empty())
-            wake(bodies.front());
+            wake_beside(bodies.front());
 }
 
 void WorldState::wake_pairs()
@@ -90,8 +97,8 @@ void WorldState::settle()
         const std::uint8_t edit_a = edits[a], edit_b = edits[b];
         if ((edit_a | edit_b) == 0) continue;
         gone = gone || ((edit_a | edit_b) & kGone) != 0;
-        if (edit_a != 0 && colliders.body[b] != kNoBody) wake(colliders.body[b]);
-        if (edit_b != 0 && colliders.body[a] != kNoBody) wake(colliders.body[a]);
+        if (edit_a != 0 && colliders.body[b] != kNoBody) wake_beside(colliders.body[b]);
+        if (edit_b != 0 && colliders.body[a] != kNoBody) wake_beside(colliders.body[a]);
     }
     wake_pairs();
     if (gone) forget_pairs();

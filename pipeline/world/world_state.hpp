@@ -122,6 +122,9 @@ struct WorldState {
 
     /// Wakes a body with all that sleeps with it.
     void wake(std::uint32_t body);
+    /// The same of one beside which something was changed; who rests near him wakes in the next
+    /// step.
+    void wake_beside(std::uint32_t body);
     void wake_all();
     /// The broad phase has to look at a body's colliders again, and it may lie deep in others.
     void mark_changed(std::uint32_t body);

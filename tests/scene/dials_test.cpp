@@ -13,15 +13,44 @@ namespace {
 
 TEST(Dials, AreAllThere)
 {
-    const char* const names[] = {
-        "dt",           "substeps",         "iterations",        "contact_rate",    "push_limit",
-        "friction_at",  "precision",        "integrator",        "rotation",        "gyroscopic",
-        "broadphase",   "narrowphase",      "method_start",      "bounds_filter",   "nonconvex",
-        "voxel_size",   "image_resolution", "sphere_levels",     "max_parts",       "response",
-        "solver",       "direct_limit",     "penalty_stiffness", "penalty_damping", "friction_cone",
-        "impact_law",   "overlap",          "halvings",          "toi_method",      "toi_tolerance",
-        "sleep",        "escalation",       "relax_iterations",  "mesh_tree",       "effects",
-        "effects_error", "partial_rest", "rest_force"};
+    const char* const names[] = {"dt",
+                                 "substeps",
+                                 "iterations",
+                                 "contact_rate",
+                                 "push_limit",
+                                 "friction_at",
+                                 "precision",
+                                 "integrator",
+                                 "rotation",
+                                 "gyroscopic",
+                                 "broadphase",
+                                 "narrowphase",
+                                 "method_start",
+                                 "bounds_filter",
+                                 "nonconvex",
+                                 "voxel_size",
+                                 "image_resolution",
+                                 "sphere_levels",
+                                 "max_parts",
+                                 "response",
+                                 "solver",
+                                 "direct_limit",
+                                 "penalty_stiffness",
+                                 "penalty_damping",
+                                 "friction_cone",
+                                 "impact_law",
+                                 "overlap",
+                                 "halvings",
+                                 "toi_method",
+                                 "toi_tolerance",
+                                 "sleep",
+                                 "escalation",
+                                 "relax_iterations",
+                                 "mesh_tree",
+                                 "effects",
+                                 "effects_error",
+                                 "partial_rest",
+                                 "rest_force"};
     for (const char* name : names) EXPECT_NE(find_dial(name), nullptr) << name;
     EXPECT_EQ(find_dial("speed"), nullptr);
 

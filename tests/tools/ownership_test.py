@@ -45,7 +45,7 @@ SCENES = [
     ("knots:2", STEPS, ["nonconvex=depth_image"]), ("spring:2", STEPS, []),
     ("bouncing:4", STEPS, []), ("rolling:4", STEPS, []), ("bullet_plate:3", STEPS, []),
     ("cradle:3", STEPS, []), ("spheres:4", STEPS, ["overlap=back_up"]),
-    ("spheres:4", STEPS, ["overlap=subdivide"]), ("pile:8", STEPS, ["sleep=off"]),
+    ("spheres:4", STEPS, ["overlap=subdivide"]), ("pile:8", STEPS, ["sleep=off"]), ("pile:8", STEPS, ["partial_rest=on"]),
     ("pile:8", STEPS, ["gyroscopic=off"]), ("pile:8", STEPS, ["precision=double"]),
     (forced(), STEPS, []),
     (forced(force=[0.1, 0, 0]), STEPS, []),

@@ -128,7 +128,8 @@ INSTANTIATE_TEST_SUITE_P(
                               s.nonconvex = NonConvex::spheres;
                               s.sphere_levels = 2;
                           }},
-                      How{"pgs", [](Settings& s) { s.solver = Solver::pgs; }}),
+                      How{"pgs", [](Settings& s) { s.solver = Solver::pgs; }},
+                      How{"partial_rest", [](Settings& s) { s.partial_rest = true; }}),
     ::testing::PrintToStringParamName());
 
 }  // namespace
