@@ -24,6 +24,8 @@ constexpr double kPush = 1;                 // m/s
 // Of the overlap without; of the bodies, that are awake in the end; J a kg.
 constexpr double kDeeper = 1.1, kUp = 0.05, kMoves = 1e-5;
 constexpr double kSteps = 1;  // earlier or later
+// Of the weight: each body of a column hides some, and forty plates do more than the box.
+constexpr double kColumn = 0.25;
 
 struct Way {
     const char* name;
@@ -209,10 +211,12 @@ void case_partial_rest(CaseBench& bench)
             compare_falls(bench, way,
                           "house of " + std::to_string(levels) + " levels, a card pulled",
                           card_house(bench, levels, 0.7), {2, 0.05, pull});
-        Settings settings = bench.settings();
-        way.set(settings);
-        bench.report(std::string(way.name) + ", plates put on a box", "load that is not noticed",
-                     hidden_load(bench, way), 2 * settings.rest_force, "1");
+        const std::string plates = std::string(way.name) + ", plates put on a box";
+        constexpr const char* kHidden = "load that is not noticed";
+        if (way.heaps)
+            bench.report(plates, kHidden, hidden_load(bench, way), kColumn, "1");
+        else
+            bench.show(plates, kHidden, hidden_load(bench, way), "1");
     }
 }
 

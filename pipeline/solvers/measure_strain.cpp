@@ -165,8 +165,9 @@ private:
         const double strain = most * height_of(island);
         const double square = mean_square_speed(island);
         const bool rests = square < resting_ * resting_;
+        if (touches_resting(island))
+            return before > 1 ? std::copysign(before, is_solved_exactly(island) ? -1 : 1) : 0;
         if (!(before > 1)) {
-            if (touches_resting(island)) return 0;
             if (!rests) return is_crushed(island) ? -kCrushed : 0;
             return begun(strain, before, exactly, square > kTrembling * kTrembling);
         }

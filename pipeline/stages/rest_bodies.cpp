@@ -49,24 +49,16 @@ public:
         resting_.scratch.touched.clear();
     }
 
-    // Whose bodies have been counted already. What a pivot bears nobody asks; and who is in need of
-    // more substeps would be solved by fewer as part of it wakes.
-    void find_candidates(std::span<const std::uint32_t> island,
-                         const Forces& forces,
-                         const OverloadedIslands& overloaded)
+    // Whose bodies have been counted already. What a pivot bears nobody asks.
+    void find_candidates(std::span<const std::uint32_t> island, const Forces& forces)
     {
         const auto waited = [&](std::uint32_t body) {
             return states_.sleep_time[body] >= parameters_.time;
         };
-        const auto may_alone = [&](std::uint32_t body) {
-            return !forces.on_pivot(body) && !is_overloaded(overloaded.of(body));
-        };
         const bool all = parameters_.islands && std::all_of(island.begin(), island.end(), waited);
-        const bool together = all && !std::all_of(island.begin(), island.end(), may_alone);
-        if (together) together_.push_back(island);
         for (const std::uint32_t body : island) {
-            if (waited(body) && (all || may_alone(body))) {
-                may(body) = together ? May::together : all ? May::yes : May::if_steady;
+            if (waited(body) && (all || !forces.on_pivot(body))) {
+                may(body) = all ? May::yes : May::if_steady;
                 resting_.scratch.candidates.push_back(body);
             } else {
                 resting_.borne[body].load = -1;
@@ -82,8 +74,6 @@ public:
             add_up();
         wake_changed();
         for (const std::uint32_t body : candidates) rest(body);
-        for (const auto& island : together_)
-            fall_asleep(island, states_, sleeping_islands_, velocities_, sleep_events_);
         for (const std::uint32_t body : candidates) may(body) = May::no;
         for (const std::uint32_t body : resting_.scratch.touched) now(body) = {};
     }
@@ -173,8 +163,9 @@ private:
             && change(body, is, was) <= kSteady * parameters_.rest_force;
         const bool comes = may(body) == May::yes || (may(body) == May::if_steady && steady);
         was = is;
-        if (comes) sleep(body);
-        if (comes || may(body) == May::together) resting_.border.push_back(body);
+        if (!comes) return;
+        sleep(body);
+        resting_.border.push_back(body);
     }
 
     const SleepParameters& parameters_;
@@ -188,7 +179,6 @@ private:
     Velocities& velocities_;
     RestingBodies& resting_;
     SleepEvents& sleep_events_;
-    std::vector<std::span<const std::uint32_t>> together_;
 };
 
 }  // namespace
@@ -200,7 +190,6 @@ void rest_bodies(const StepContext& context,
                  const Forces& forces,
                  const Islands& islands,
                  const SplitImpulse& split_impulse,
-                 const OverloadedIslands& overloaded,
                  const Colliders& colliders,
                  const Pairs& pairs,
                  const ConvexContacts<Real>& convex,
@@ -219,7 +208,7 @@ void rest_bodies(const StepContext& context,
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const auto bodies = islands.bodies_of(island);
         for (const std::uint32_t body : bodies) quiet.count(body, states);
-        resting.find_candidates(bodies, forces, overloaded);
+        resting.find_candidates(bodies, forces);
     }
     resting.run();
     // What nothing holds is at rest only where it stands: a slow one drifts, or turns back to fall.
@@ -236,10 +225,9 @@ void rest_bodies(const StepContext& context,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void rest_bodies<Real>(                                                               \
         const StepContext&, const SleepParameters&, const PrescribedVelocities&, const Forces&,    \
-        const Islands&, const SplitImpulse&, const OverloadedIslands&, const Colliders&,           \
-        const Pairs&, const ConvexContacts<Real>&, const MeshContacts<Real>&,                      \
-        const SolidContacts<Real>&, BodyStates&, SleepingIslands&, Velocities&, RestingBodies&,    \
-        SleepEvents&);
+        const Islands&, const SplitImpulse&, const Colliders&, const Pairs&,                       \
+        const ConvexContacts<Real>&, const MeshContacts<Real>&, const SolidContacts<Real>&,        \
+        BodyStates&, SleepingIslands&, Velocities&, RestingBodies&, SleepEvents&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -117,31 +117,30 @@ private:
             std::vector<std::uint32_t>& bodies = within_[contacts];
             keep_each_once(bodies);
             std::erase_if(bodies, [&](std::uint32_t body) { return !rests(body); });
-            if (contacts > 0) reach_neighbors(bodies, within_[contacts - 1]);
+            if (contacts > 0) add_neighbors(bodies, within_[contacts - 1]);
             for (const std::uint32_t body : bodies)
-                if (rests(body))  // and not woken with others of its own
-                    wake_island(states_.sleeping_island[body], sleeping_islands_, states_,
-                                sleeping_, sleep_events_.woke);
+                wake_island(states_.sleeping_island[body], sleeping_islands_, states_, sleeping_,
+                            sleep_events_.woke);
         }
         std::sort(sleep_events_.woke.begin(), sleep_events_.woke.end());
     }
 
-    void reach_neighbors(const std::vector<std::uint32_t>& bodies,
-                         std::vector<std::uint32_t>& neighbors) const
+    void add_neighbors(const std::vector<std::uint32_t>& bodies,
+                       std::vector<std::uint32_t>& neighbors) const
     {
-        const auto reach = [&](std::uint32_t body) {
+        const auto add = [&](std::uint32_t body) {
             if (rests(body)) neighbors.push_back(body);
         };
         for (const std::uint32_t body : bodies)
             for_each_touching_pair_of(states_.sleeping_island[body], sleeping_, sleeping_contacts_,
                                       [&](PairKey key) {
-                                          for (const std::uint32_t one : bodies_of(key)) reach(one);
+                                          for (const std::uint32_t one : bodies_of(key)) add(one);
                                       });
         // All pairs were called, and those of who rests are among the others.
         if (!sleeping_.mixed) return;
         for_each_touching([&](std::uint32_t a, std::uint32_t b) {
-            if (std::binary_search(bodies.begin(), bodies.end(), a)) reach(b);
-            if (std::binary_search(bodies.begin(), bodies.end(), b)) reach(a);
+            if (std::binary_search(bodies.begin(), bodies.end(), a)) add(b);
+            if (std::binary_search(bodies.begin(), bodies.end(), b)) add(a);
         });
     }
 

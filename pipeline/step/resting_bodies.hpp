@@ -60,6 +60,7 @@ double load_of(const Contact<Real>& contact)
 
 ///   borne   [bodies] of who rests; of who may soon, as of the last step; may be shorter
 ///   border     who rests and was touched by what a step goes through, ascending
+///   strained  who rests and needed more substeps, and how much: see OverloadedIslands::strain
 ///   waking  whom the last step's impulses wake, or an edit woke, each with who rests within so
 ///   many
 ///           contacts of it
@@ -75,11 +76,16 @@ struct RestingBodies {
     std::vector<Borne> borne;
     std::vector<std::uint32_t> border;
     std::vector<Waking> waking;
+    struct Strained {
+        std::uint32_t body = 0;
+        float strain = 0;
+    };
+    std::vector<Strained> strained;
     /// now      [bodies] what is borne in this step; nothing between stages
     /// may      [bodies] whether it may come to rest: with all of its island; no between stages
     /// touched  bodies that now has something of
     struct Scratch {
-        enum class May : std::uint8_t { no, if_steady, yes, together };
+        enum class May : std::uint8_t { no, if_steady, yes };
         std::vector<Borne> now;
         std::vector<May> may;
         std::vector<std::uint32_t> touched, candidates;

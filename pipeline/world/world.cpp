@@ -125,6 +125,20 @@ bool WorldState::nothing_to_do() const
         && context.last_substep == context.substep();
 }
 
+void WorldState::hold_strain()
+{
+    auto& overloaded = get<OverloadedIslands>();
+    auto& held = get<RestingBodies>().strained;
+    for (const std::uint32_t body : get<SleepEvents>().fell_asleep)
+        if (is_overloaded(overloaded.of(body))) held.push_back({body, overloaded.of(body)});
+    std::erase_if(held, [&](const auto& one) { return !get<BodyStates>().rests(one.body); });
+    for (const auto& [body, strain] : held) {
+        if (overloaded.strain.size() <= body) overloaded.strain.resize(body + std::size_t{1}, 0);
+        overloaded.strain[body] = strain;
+        overloaded.strained.push_back(body);
+    }
+}
+
 void WorldState::follow_stubborn()
 {
     auto& overloaded = get<OverloadedIslands>();
@@ -132,7 +146,10 @@ void WorldState::follow_stubborn()
     report.escalation_missed += overloaded.missed;
     report.escalation_work += overloaded.work;
     overloaded.escalated = overloaded.missed = overloaded.work = 0;
-    for (const std::uint32_t body : get<SleepEvents>().fell_asleep) overloaded.forget(body);
+    if (rests_by_force(settings))
+        hold_strain();
+    else
+        for (const std::uint32_t body : get<SleepEvents>().fell_asleep) overloaded.forget(body);
     std::uint32_t first = kNoBody;
     for (const std::uint32_t body : overloaded.strained)
         if (is_overloaded(overloaded.of(body))) first = std::min(first, body);

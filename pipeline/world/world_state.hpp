@@ -158,6 +158,8 @@ struct WorldState {
     void follow_step();
     /// Whether anybody awake is stubborn, and so calls for escalation.
     void follow_stubborn();
+    /// Who rests by himself stays as stubborn as he was: he wakes to be solved as before.
+    void hold_strain();
     /// The report on the state that the last step left.
     void report_state();
     /// Empties what no stage writes any more, and wakes all where nobody may sleep.
