@@ -58,12 +58,11 @@ double load_of(const Contact<Real>& contact)
     return double{sum};
 }
 
-///   borne   [bodies] of who rests; of who may soon, as of the last step; may be shorter
-///   border     who rests and was touched by what a step goes through, ascending
+///   borne     [bodies] of who rests; of who may soon, as of the last step; may be shorter
+///   border    who rests and was touched by what a step goes through, ascending
 ///   strained  who rests and needed more substeps, and how much: see OverloadedIslands::strain
-///   waking  whom the last step's impulses wake, or an edit woke, each with who rests within so
-///   many
-///           contacts of it
+///   waking    whom the last step's impulses wake, or an edit woke, with who rests within some
+///             contacts of it
 struct RestingBodies {
     struct Borne {
         BorneImpulse impulse;
