@@ -37,7 +37,9 @@ Pose RigidTrajectory::at(double time) const
 
 Vec3 RigidTrajectory::angular_velocity(double time) const
 {
-    return spin.isZero(0) ? turn : Vec3(turn + at(time).orientation * spin);
+    // A spin leaves its own axis where it is.
+    return spin.isZero(0) ? turn
+                          : Vec3(turn + exponential(time * turn) * (begin.orientation * spin));
 }
 
 RigidTrajectory

@@ -90,7 +90,7 @@ void QueryScene::refresh()
         left_.start(blocks);
         for_each_block(touched_.size(), kTouched, [&](auto begin, auto end, std::size_t block) {
             for (std::size_t i = begin; i < end; ++i)
-                if (!stays(touched_[i])) left_[block].push_back(touched_[i]);
+                if (moved.all || !stays(touched_[i])) left_[block].push_back(touched_[i]);
         });
         for (std::size_t block = 0; block < blocks; ++block)
             for (const std::uint32_t collider : left_[block]) put(collider);

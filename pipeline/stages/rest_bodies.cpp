@@ -87,7 +87,6 @@ public:
 private:
     Borne& now(std::uint32_t body) { return resting_.scratch.now[body]; }
     May& may(std::uint32_t body) { return resting_.scratch.may[body]; }
-    bool rests(std::uint32_t body) const { return states_.sleeping_island[body] != kNoBody; }
 
     void sleep(std::uint32_t body)
     {
@@ -108,7 +107,7 @@ private:
 
     void add(const Contact<Real>& contact, std::uint32_t body, std::uint32_t other, bool is_b)
     {
-        if (contact.count == 0 || (may(body) == May::no && !rests(body))) return;
+        if (contact.count == 0 || (may(body) == May::no && !states_.rests(body))) return;
         // What carries it, or may at any time, does not press it the more for it.
         if (may(body) == May::if_steady && carries(other)) may(body) = May::no;
         Borne& sum = now(body);
@@ -140,19 +139,19 @@ private:
     {
         std::vector<std::uint32_t>& border = resting_.border;
         for (const std::uint32_t body : resting_.scratch.touched)
-            if (rests(body)) border.push_back(body);
+            if (states_.rests(body)) border.push_back(body);
         keep_each_once(border);
         resting_.waking.clear();
         const double most = parameters_.rest_force;
         for (const std::uint32_t body : border) {
-            if (!rests(body)) continue;
+            if (!states_.rests(body)) continue;
             const double by = change(body, resting_.borne[body], now(body));
             if (by > most)
                 resting_.waking.push_back(
                     {body, by > kGreat * most ? RestingBodies::kFarthest : kNear});
         }
-        std::erase_if(border,
-                      [&](std::uint32_t body) { return !rests(body) || now(body).load < 0; });
+        std::erase_if(
+            border, [&](std::uint32_t body) { return !states_.rests(body) || now(body).load < 0; });
     }
 
     void rest(std::uint32_t body)

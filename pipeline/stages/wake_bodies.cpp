@@ -44,23 +44,21 @@ public:
         }
         resting_.waking.clear();
         keep_each_once(woken_);
-        for_each_touching([&](std::uint32_t a, std::uint32_t b) {
+        const auto disturb_each_other = [&](std::uint32_t a, std::uint32_t b) {
             if (disturbs(a, b)) wake(b, kFarthest);
             if (disturbs(b, a)) wake(a, kFarthest);
-        });
+        };
+        for_each_touching(disturb_each_other);
         // A mesh that moves wakes whoever is near: contacts with it are not known yet.
         for (const std::uint32_t i : pairs_.on_mesh) {
             const auto [a, b] = bodies_of(pairs_.keys[i]);
-            if (disturbs(a, b)) wake(b, kFarthest);
-            if (disturbs(b, a)) wake(a, kFarthest);
+            disturb_each_other(a, b);
         }
         wake_where_somebody_was_put();
         spread();
     }
 
 private:
-    bool rests(std::uint32_t body) const { return states_.sleeping_island[body] != kNoBody; }
-
     std::array<std::uint32_t, 2> bodies_of(PairKey key) const
     {
         return {colliders_.body[first_of(key)], colliders_.body[second_of(key)]};
@@ -69,7 +67,7 @@ private:
     // To be woken, once all are known, with who rests within so many contacts.
     void wake(std::uint32_t body, std::uint32_t contacts)
     {
-        if (rests(body)) within_[contacts].push_back(body);
+        if (states_.rests(body)) within_[contacts].push_back(body);
     }
 
     // Convex and solid ones, of pairs that a step goes through.
@@ -89,7 +87,7 @@ private:
 
     bool disturbs(std::uint32_t a, std::uint32_t b) const
     {
-        if (!rests(b) || !states_.moves(a)) return false;
+        if (!states_.rests(b) || !states_.moves(a)) return false;
         if (std::binary_search(woken_.begin(), woken_.end(), a)) return true;
         if (!states_.dynamic(a))
             return !velocities_.linear[a].isZero(0) || !velocities_.angular[a].isZero(0);
@@ -116,7 +114,7 @@ private:
         for (std::size_t contacts = kFarthest + 1; contacts-- > 0;) {
             std::vector<std::uint32_t>& bodies = within_[contacts];
             keep_each_once(bodies);
-            std::erase_if(bodies, [&](std::uint32_t body) { return !rests(body); });
+            std::erase_if(bodies, [&](std::uint32_t body) { return !states_.rests(body); });
             if (contacts > 0) add_neighbors(bodies, within_[contacts - 1]);
             for (const std::uint32_t body : bodies)
                 wake_island(states_.sleeping_island[body], sleeping_islands_, states_, sleeping_,
@@ -129,7 +127,7 @@ private:
                        std::vector<std::uint32_t>& neighbors) const
     {
         const auto add = [&](std::uint32_t body) {
-            if (rests(body)) neighbors.push_back(body);
+            if (states_.rests(body)) neighbors.push_back(body);
         };
         for (const std::uint32_t body : bodies)
             for_each_touching_pair_of(states_.sleeping_island[body], sleeping_, sleeping_contacts_,

@@ -148,9 +148,9 @@ Scene make_mixed(int size, std::uint64_t seed)
                 corner + Vec3(own + quarter, own + quarter, std::sqrt(3.0) * half + extent / 4);
             const Vec3 velocity = random_drift(random) * std::sqrt(9.81 * extent);
             const Quat orientation = random_turn(random, std::numbers::pi);
-            const Vec3 half_extents = kind == 0
-                ? Vec3(half, 0, 0)
-                : Vec3(half, half * random.uniform(0.4, 1), half * random.uniform(0.4, 1));
+            Vec3 half_extents(half, 0, 0);
+            for (int axis = 1; kind == 1 && axis < 3; ++axis)
+                half_extents[axis] = half * random.uniform(0.4, 1);
             add_record(group, {position, orientation}, velocity, Vec3::Zero(), half_extents);
         }
     }

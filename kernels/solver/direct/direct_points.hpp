@@ -107,22 +107,6 @@ inline double work_of(std::span<const DirectPoint> points,
     return work;
 }
 
-/// Leaves so much of what the impulses of points did to the bodies.
-inline void leave_share(double share,
-                        std::span<const DirectBody> before,
-                        std::span<DirectPoint> points,
-                        std::span<DirectBody> after)
-{
-    for (std::size_t i = 0; i < after.size(); ++i) {
-        after[i].velocity = before[i].velocity + share * (after[i].velocity - before[i].velocity);
-        after[i].spin = before[i].spin + share * (after[i].spin - before[i].spin);
-    }
-    for (DirectPoint& point : points) {
-        point.impulse *= share;
-        point.torque *= share;
-    }
-}
-
 /// Friction of an impact at a point, and what resists rolling, up to what they bear of the impulse
 /// that threw it back, N s. Adds to the point's impulse and torque, and never to the energy.
 inline void apply_impact_friction(double load, DirectPoint& point, std::span<DirectBody> bodies)
@@ -174,6 +158,19 @@ inline void mirror(std::span<const DirectBody> stopped, double times, std::span<
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         bodies[i].velocity += (stopped[i].velocity - bodies[i].velocity) * times;
         bodies[i].spin += (stopped[i].spin - bodies[i].spin) * times;
+    }
+}
+
+/// Leaves so much of what the impulses of points did to the bodies.
+inline void leave_share(double share,
+                        std::span<const DirectBody> before,
+                        std::span<DirectPoint> points,
+                        std::span<DirectBody> after)
+{
+    mirror(before, 1 - share, after);
+    for (DirectPoint& point : points) {
+        point.impulse *= share;
+        point.torque *= share;
     }
 }
 

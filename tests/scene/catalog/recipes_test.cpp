@@ -245,6 +245,32 @@ TEST(Recipes, BallsOnSpringsBeginAboutWhereTheyHangStill)
     }
 }
 
+TEST(Recipes, MixedHasBallsAndBoxesOfAllSizesFromOneToAThousand)
+{
+    const Scene scene = make_scene("mixed", 1000);
+    ASSERT_EQ(scene.instances.size(), 2u);
+    std::array<int, 10> of_size = {};
+    for (const Instances& group : scene.instances) {
+        EXPECT_EQ(group.count(), 500u);
+        for (std::size_t i = 0; i < group.count(); ++i) {
+            const double half = group.records.at(i * group.stride() + 13);
+            const double halvings = std::log2(2.5 / half);
+            ++of_size.at(static_cast<std::size_t>(halvings));
+        }
+    }
+    for (const int count : of_size) EXPECT_EQ(count, 100);
+}
+
+TEST(Recipes, HillsHasAHundredTrianglesForEach)
+{
+    const Scene scene = make_scene("hills", 1000);
+    const auto& terrain = std::get<MeshShape>(scene.shapes[scene.bodies.at(0).shape].shape);
+    EXPECT_EQ(scene.bodies[0].motion, Motion::static_);
+    EXPECT_GE(terrain.triangles.size(), 100'000u);
+    EXPECT_LE(terrain.triangles.size(), 125'000u);
+    EXPECT_EQ(scene.instances.size(), 5u);
+}
+
 TEST(Recipes, MeshesMixesSixKindsOnATerrain)
 {
     const Scene scene = make_scene("meshes", 100);
