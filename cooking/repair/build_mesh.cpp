@@ -272,6 +272,7 @@ MeshResult build_mesh(const std::vector<Vec3>& vertices, std::vector<Triangle> t
     mark_convex_edges(result.mesh);
     mark_open_pieces(result.mesh);
     TreeBuilder(result.mesh).build();
+    add_small_boxes(result.mesh);
     return result;
 }
 

@@ -188,6 +188,8 @@ constexpr HardCase kCases[] = {
      case_orders, Fault::friction},
     {"H127", "who rests by itself while others of its heap go on does as if it did not",
      case_partial_rest, Fault::sink},
+    {"H128", "on a large slope it is the same in its middle and kilometers away",
+     case_far_on_ground, Fault::float_poses},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -143,7 +143,8 @@ struct ConvexContacts {
     }
 };
 
-/// Contacts of pairs that may have any number of them, in order of pair and part.
+/// Contacts of pairs that may have any number of them, in order of pair and part; and what was
+/// found of those pairs that are recycled (as CachedManifold).
 ///
 ///   part  tells the contacts of a pair apart, from step to step
 template <class Real>
@@ -153,12 +154,27 @@ struct ManyContacts {
         std::uint32_t part = 0;
         Contact<Real> contact;
     };
+    /// What was found of a pair, and where its two were then.
+    struct Found {
+        std::uint32_t pair = 0;
+        std::uint32_t first = 0, count = 0;  // among the manifolds
+        Pose b_in_a;                         // of the other in the mesh's or solid's frame
+        double speculative_margin = 0;       // m
+        double apart = 0;                    // m, where nothing was found: see SolidAnswer
+        std::size_t left_out = 0;            // touches found in this step that no manifold holds
+    };
+    struct Finds {
+        std::vector<Found> pairs;  // ascending
+        std::vector<PartManifold> manifolds;
+    };
     struct Scratch {
         BlockLists<Entry> of_block;
+        BlockLists<Found> found_of_block;
+        BlockLists<PartManifold> manifolds_of_block;
         BlockLists<std::uint32_t> followed_of_block;
     };
-    std::vector<Entry> entries;
-    std::vector<Entry> before;
+    std::vector<Entry> entries, before;
+    Finds found, found_before;
     Scratch scratch;
 };
 
@@ -172,25 +188,7 @@ struct MeshContacts : ManyContacts<Real> {
 /// Contacts of solids with whatever there is; a part is a patch of the two surfaces.
 template <class Real>
 struct SolidContacts : ManyContacts<Real> {
-    /// What was found of a pair, and where its two were then.
-    struct Found {
-        std::uint32_t pair = 0;
-        std::uint32_t first = 0, count = 0;  // among the manifolds
-        PoseT<double> b_in_a;                // of the other in the solid's frame
-        double speculative_margin = 0;       // m
-        double apart = 0;                    // m, where nothing was found: see SolidAnswer
-        std::size_t left_out = 0;            // touches found in this step that no manifold holds
-    };
-    struct Finds {
-        std::vector<Found> pairs;  // ascending
-        std::vector<PatchManifold> patches;
-    };
-    Finds found, found_before;
     std::uint64_t left_out = 0;  // of all pairs
-    struct FindsScratch {
-        BlockLists<Found> found_of_block;
-        BlockLists<PatchManifold> patches_of_block;
-    } finds_scratch;
 };
 
 /// Which list a contact is kept in.

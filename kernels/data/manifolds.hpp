@@ -46,13 +46,14 @@ struct LocalManifold {
     }
 };
 
-/// One of the manifolds of a pair of which at least one is a solid.
+/// One of the manifolds of a pair that may have many.
 ///
-///   patch  the same from step to step while the same part of the surfaces touches: where the
-///          normal looks in a's frame, so other patches that come and go leave it as it is, and
-///          which end of the patch it is where the normal is that end's alone
-struct PatchManifold {
-    std::uint32_t patch = 0;
+///   part  the same from step to step while the same part of the surfaces touches. Of a mesh: its
+///         triangle. Of solids: where the normal looks in a's frame, so other patches that come and
+///         go leave it as it is, and which end of the patch it is where the normal is that end's
+///         alone
+struct PartManifold {
+    std::uint32_t part = 0;
     LocalManifold<double> manifold;
 };
 

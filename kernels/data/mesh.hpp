@@ -19,6 +19,15 @@ struct Mesh {
         std::uint32_t first = 0;  // leaf: first in `order`; inner: left child; right is left + 1
         std::uint32_t count = 0;  // leaf: triangles; inner: 0
     };
+    /// A box in single precision, rounded outward, in half a line of memory.
+    ///
+    ///   first, count  of a node as above; of a triangle its number, and 1
+    struct SmallBox {
+        std::array<float, 3> lower{};
+        std::uint32_t first = 0;
+        std::array<float, 3> upper{};
+        std::uint32_t count = 0;
+    };
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> normals;         // [triangles] unit
@@ -27,6 +36,8 @@ struct Mesh {
     std::vector<std::uint8_t> convex_edges;             // bit e set: edge e sticks out, or is a rim
     std::vector<Node> tree;                             // [0] is the root
     std::vector<std::uint32_t> order;
+    std::vector<SmallBox> small_tree;   // [tree] the same
+    std::vector<SmallBox> small_boxes;  // [order] of the triangles
     std::vector<KDop> k_dops;  // [tree] round the nodes, with `sides` each; empty: boxes alone
     int sides = 6;
 };

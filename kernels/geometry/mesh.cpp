@@ -4,6 +4,8 @@
 #include "kernels/geometry/k_dop.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace throng {
 
@@ -13,6 +15,74 @@ void add_triangle(const Mesh& mesh, std::uint32_t triangle, Slabs slabs, KDop& t
 {
     for (const std::uint32_t corner : mesh.triangles[triangle])
         add(mesh.vertices[corner], slabs, to);
+}
+
+Mesh::SmallBox small_box(const Box3& box, std::uint32_t first, std::uint32_t count)
+{
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    Mesh::SmallBox small{.first = first, .count = count};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double lower = box.lower[static_cast<int>(k)], upper = box.upper[static_cast<int>(k)];
+        small.lower[k] = static_cast<float>(lower);
+        small.upper[k] = static_cast<float>(upper);
+        if (double{small.lower[k]} > lower) small.lower[k] = std::nextafter(small.lower[k], -kFar);
+        if (double{small.upper[k]} < upper) small.upper[k] = std::nextafter(small.upper[k], kFar);
+    }
+    return small;
+}
+
+// All six asked at once: which of them parts two boxes nobody can foresee.
+bool may_overlap(const Mesh::SmallBox& a, const Mesh::SmallBox& b)
+{
+    bool together = true;
+    for (std::size_t k = 0; k < 3; ++k)
+        together &= (a.lower[k] <= b.upper[k]) & (b.lower[k] <= a.upper[k]);
+    return together;
+}
+
+void begin(TriangleSearch& search)
+{
+    search.small = small_box(search.box, 0, 0);
+    search.found.clear();
+    search.count = 0;
+    const Mesh& mesh = *search.mesh;
+    if (!mesh.small_tree.empty() && may_overlap(search.small, mesh.small_tree[0]))
+        search.waiting[search.count++] = 0;
+}
+
+// Looks at one node; false where none is left. What is needed next is asked for of memory.
+bool go_on(TriangleSearch& search)
+{
+    if (search.count == 0) return false;
+    const Mesh& mesh = *search.mesh;
+    const Mesh::SmallBox& node = mesh.small_tree[search.waiting[--search.count]];
+    if (node.count == 0) {
+        for (const std::uint32_t place : {node.first + 1, node.first}) {
+            const Mesh::SmallBox& child = mesh.small_tree[place];
+            if (!may_overlap(search.small, child)) continue;
+            search.waiting[search.count++] = place;
+            const auto& ahead = child.count == 0 ? mesh.small_tree : mesh.small_boxes;
+            __builtin_prefetch(&ahead[child.first]);
+            __builtin_prefetch(&ahead[child.first + std::max(child.count, 2U) - 1]);
+        }
+        return true;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const Mesh::SmallBox& small = mesh.small_boxes[i];
+        if (!may_overlap(search.small, small)) continue;
+        search.found.push_back(small.first);
+        __builtin_prefetch(&mesh.triangles[small.first]);
+        __builtin_prefetch(&mesh.normals[small.first]);
+    }
+    return true;
+}
+
+void ask_for_corners(const Mesh& mesh, std::uint32_t triangle)
+{
+    for (const std::uint32_t corner : mesh.triangles[triangle])
+        __builtin_prefetch(&mesh.vertices[corner]);
+    __builtin_prefetch(&mesh.adjacent[triangle]);
+    __builtin_prefetch(&mesh.convex_edges[triangle]);
 }
 
 }  // namespace
@@ -47,11 +117,41 @@ double longest_side(const Mesh& mesh)
     return (box.upper - box.lower).maxCoeff();
 }
 
+void add_small_boxes(Mesh& mesh)
+{
+    mesh.small_tree.clear();
+    for (const Mesh::Node& node : mesh.tree)
+        mesh.small_tree.push_back(small_box({node.lower, node.upper}, node.first, node.count));
+    mesh.small_boxes.clear();
+    for (const std::uint32_t triangle : mesh.order)
+        mesh.small_boxes.push_back(small_box(triangle_box(mesh, triangle), triangle, 1));
+}
+
 void find_triangles(const Mesh& mesh, const Box3& box, std::vector<std::uint32_t>& found)
 {
-    const auto begin = static_cast<std::ptrdiff_t>(found.size());
-    visit_triangles(mesh, box, [&](std::uint32_t triangle) { found.push_back(triangle); });
-    std::sort(found.begin() + begin, found.end());
+    static thread_local TriangleSearch search;
+    search.mesh = &mesh;
+    search.box = box;
+    find_triangles({&search, 1});
+    found.insert(found.end(), search.found.begin(), search.found.end());
+}
+
+// Small boxes tell nearly all that are apart; those that are left are asked exactly.
+void find_triangles(std::span<TriangleSearch> searches)
+{
+    for (TriangleSearch& search : searches) begin(search);
+    for (bool on = true; on;) {
+        on = false;
+        for (TriangleSearch& search : searches) on |= go_on(search);
+    }
+    for (TriangleSearch& search : searches)
+        for (const std::uint32_t triangle : search.found) ask_for_corners(*search.mesh, triangle);
+    for (TriangleSearch& search : searches) {
+        std::erase_if(search.found, [&](std::uint32_t triangle) {
+            return !search.box.overlaps(triangle_box(*search.mesh, triangle));
+        });
+        std::sort(search.found.begin(), search.found.end());
+    }
 }
 
 void bound_by_k_dops(Mesh& mesh, int k)

@@ -5,6 +5,9 @@
 #include "kernels/data/k_dop.hpp"
 #include "kernels/data/shapes.hpp"
 
+#include <array>
+#include <span>
+
 namespace throng {
 
 /// In convex_edges, of a triangle from which a rim can be reached: it has two sides. What has none
@@ -23,13 +26,16 @@ double longest_side(const Mesh& mesh);
 /// The triangles of a mesh or a solid; null for other kinds.
 const Mesh* mesh_of(const Shapes& shapes, ShapeRef shape);
 
+/// Nodes that wait while a tree is walked. A child holds at most three quarters of its parent's
+/// triangles: 64 levels are 2^26 triangles.
+inline constexpr std::size_t kMostWaiting = 96;
+
 /// Visits all triangles of those nodes of the tree that are reached, as are all above them. The
 /// order is that of the tree: sort where it matters.
 template <class Reached, class Visitor>
 void visit_nodes(const Mesh& mesh, Reached reached, Visitor visit)
 {
-    // A child holds at most three quarters of its parent's triangles: 64 levels are 2^26 triangles.
-    std::array<std::uint32_t, 96> waiting;
+    std::array<std::uint32_t, kMostWaiting> waiting;
     std::size_t count = 0;
     if (!mesh.tree.empty()) waiting[count++] = 0;
     while (count > 0) {
@@ -57,8 +63,29 @@ void visit_triangles(const Mesh& mesh, const Box3& box, Visitor visit)
         });
 }
 
+/// Makes the small boxes of a mesh that has its tree.
+void add_small_boxes(Mesh& mesh);
+
 /// Appends the triangles whose boxes overlap the given one, in mesh axes, in ascending order.
 void find_triangles(const Mesh& mesh, const Box3& box, std::vector<std::uint32_t>& found);
+
+/// One of several searches.
+///
+///   mesh, box  as of find_triangles()
+///   found      what it answers
+///   waiting    nodes yet to look at, while it runs
+struct TriangleSearch {
+    const Mesh* mesh = nullptr;
+    Box3 box;
+    std::vector<std::uint32_t> found;
+    Mesh::SmallBox small;
+    std::array<std::uint32_t, kMostWaiting> waiting{};
+    std::size_t count = 0;
+};
+
+/// Answers each as find_triangles() does, step by step in turn: while one waits for memory the
+/// others go on.
+void find_triangles(std::span<TriangleSearch> searches);
 
 /// Puts k-DOPs round the nodes of the tree, besides their boxes. k of 14, 18 or 26.
 void bound_by_k_dops(Mesh& mesh, int k);

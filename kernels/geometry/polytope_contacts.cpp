@@ -259,13 +259,21 @@ EdgeAxis best_edge_axis(const PolytopePair& pair, double to_beat)
 {
     thread_local Scratch scratch;
     const double noise = pair.noise();
-    const Vec3 center_b = pair.offset + pair.a.center;
-    collect_arcs(pair.a, center_b, to_beat + pair.b.inner_radius - noise, scratch.beyond,
-                 scratch.arcs_a);
-    if (scratch.arcs_a.empty()) return {};
-    const Vec3 center_a = pair.turn.transpose() * (pair.a.center - pair.shift);
-    collect_arcs(pair.b, center_a, to_beat + pair.a.inner_radius - noise, scratch.beyond,
-                 scratch.arcs_b);
+    const auto collect_a = [&] {
+        const Vec3 center_b = pair.offset + pair.a.center;
+        collect_arcs(pair.a, center_b, to_beat + pair.b.inner_radius - noise, scratch.beyond,
+                     scratch.arcs_a);
+        return !scratch.arcs_a.empty();
+    };
+    const auto collect_b = [&] {
+        const Vec3 center_a = pair.turn.transpose() * (pair.a.center - pair.shift);
+        collect_arcs(pair.b, center_a, to_beat + pair.a.inner_radius - noise, scratch.beyond,
+                     scratch.arcs_b);
+        return !scratch.arcs_b.empty();
+    };
+    // Where the few are none, the many need not be looked at.
+    const bool few_in_b = pair.b.edges.size() < pair.a.edges.size();
+    if (few_in_b ? !collect_b() || !collect_a() : !collect_a() || !collect_b()) return {};
     turn_arcs(pair, scratch.arcs_b);
     return best_crossing(pair, scratch, to_beat);
 }

@@ -65,11 +65,10 @@ std::uint32_t cell_of(const Vec3& direction)
 }
 
 // Names the group that looks along `normal`; should others be named so, the next that is free.
-std::uint32_t
-free_name(const Vec3& normal, const std::vector<PatchManifold>& out, std::size_t first)
+std::uint32_t free_name(const Vec3& normal, const std::vector<PartManifold>& out, std::size_t first)
 {
     std::uint32_t name = cell_of(normal);
-    const auto taken = [&](const PatchManifold& other) { return other.patch % kNames == name; };
+    const auto taken = [&](const PartManifold& other) { return other.part % kNames == name; };
     while (std::any_of(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), taken)) ++name;
     return name;
 }
@@ -197,7 +196,7 @@ public:
                double speculative_margin,
                double size,
                double deep,
-               std::vector<PatchManifold>& out)
+               std::vector<PartManifold>& out)
         : candidates_(candidates), groups_(candidates, speculative_margin, size),
           speculative_margin_(speculative_margin), size_(size), deep_(deep),
           fills_(speculative_margin > kShortReach * size && groups_.oppose()), out_(out),
@@ -209,7 +208,7 @@ public:
     {
         groups_.visit([&](const Vec3& normal, std::uint8_t group) { add(normal, group); });
         std::sort(out_.begin() + static_cast<std::ptrdiff_t>(first_), out_.end(),
-                  [](const PatchManifold& a, const PatchManifold& b) { return a.patch < b.patch; });
+                  [](const PartManifold& a, const PartManifold& b) { return a.part < b.part; });
         return groups_.left_out();
     }
 
@@ -220,7 +219,7 @@ private:
         const std::vector<LocalManifold<double>::Point>& places = places_of(normal, group);
         const Spread spread(places, normal, weight_of_depth(speculative_margin_, size_), deep_);
         const std::uint32_t name = free_name(normal, out_, first_);
-        PatchManifold together{name, {}};
+        PartManifold together{name, {}};
         together.manifold.normal = normal;
         spread.visit([&](const auto& chosen, std::uint32_t end) {
             const ContactCandidate& candidate = candidates_[chosen.feature];
@@ -247,7 +246,7 @@ private:
                    std::uint32_t name,
                    std::uint32_t end)
     {
-        PatchManifold& alone = out_.emplace_back(PatchManifold{kNames * (end + 1) + name, {}});
+        PartManifold& alone = out_.emplace_back(PartManifold{kNames * (end + 1) + name, {}});
         alone.manifold.normal = normal;
         put(candidate, alone.manifold);
     }
@@ -296,7 +295,7 @@ private:
     const PatchGroups groups_;
     double speculative_margin_, size_, deep_;
     bool fills_;  // patches that bend
-    std::vector<PatchManifold>& out_;
+    std::vector<PartManifold>& out_;
     std::size_t first_;  // of this set in `out`
 };
 
@@ -306,7 +305,7 @@ std::size_t make_patches(std::vector<ContactCandidate>& candidates,
                          double speculative_margin,
                          double size,
                          double deep,
-                         std::vector<PatchManifold>& out)
+                         std::vector<PartManifold>& out)
 {
     std::erase_if(candidates, [&](const ContactCandidate& candidate) {
         const bool finite = candidate.position.allFinite() && candidate.normal.allFinite()

@@ -62,6 +62,6 @@ std::size_t make_patches(std::vector<ContactCandidate>& candidates,
                          double speculative_margin,
                          double size,
                          double deep,
-                         std::vector<PatchManifold>& out);
+                         std::vector<PartManifold>& out);
 
 }  // namespace throng

@@ -23,7 +23,9 @@ std::size_t edge_towards(const MeshTriangle& triangle, const Vec3& point)
     for (std::size_t e = 0; e < 3; ++e) {
         const Vec3& corner = triangle.corners[e];
         const Vec3 along = triangle.corners[(e + 1) % 3] - corner;
-        const double outside = along.cross(triangle.normal).dot(point - corner) / along.norm();
+        double outside = along.cross(triangle.normal).dot(point - corner);
+        if (!(outside > 0)) continue;
+        outside /= along.norm();
         if (!(outside > furthest)) continue;
         furthest = outside;
         edge = e;

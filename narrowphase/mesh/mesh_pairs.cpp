@@ -1,21 +1,22 @@
 // Mesh pairs: a convex shape against the triangles of a mesh that are near it.
 //
-// The arithmetic is double for either number type, as for hulls. A cylinder is seen as a prism of
-// sixteen sides that keeps one of its edges turned to the triangle: what lies flat, stands or rolls
-// is exact, and only an edge of the mesh under the curved side sees the prism's sides, two
-// hundredths of the radius inside the cylinder.
+// A cylinder is seen as a prism of sixteen sides that keeps one of its edges turned to the
+// triangle: what lies flat, stands or rolls is exact, and only an edge of the mesh under the curved
+// side sees the prism's sides, two hundredths of the radius inside the cylinder.
 #include "narrowphase/mesh/mesh_pairs.hpp"
 
 #include "kernels/check.hpp"
-#include "kernels/geometry/k_dop.hpp"
+#include "kernels/geometry/closest_points.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "narrowphase/mesh/concave_edges.hpp"
 #include "narrowphase/mesh/mesh_sides.hpp"
+#include "narrowphase/mesh/near_triangles.hpp"
 #include "narrowphase/mesh/triangle_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace throng {
 namespace {
@@ -24,6 +25,13 @@ constexpr std::size_t kSides = 16;
 
 // Corners this part of the inner radius above the lowest are as low.
 constexpr double kAsLow = 1e-3;
+
+// Standing upright to within this sine, the way to turn a cylinder would be noise: it stays with
+// the body then. A hundredth keeps the rim's depth to 2e-4 of the radius.
+constexpr double kUpright = 0.01;
+
+// What is left out beforehand is so by more than this share of its reach: rounding.
+constexpr double kRounding = 1e-9;
 
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
@@ -90,10 +98,8 @@ struct Prism {
           outer_radius(length(cylinder.radius, cylinder.half_length))
     {
         static const std::array<Eigen::Vector2d, 2 * kSides> points = circle();
-        // Standing upright, the way to turn would be noise: stay with the body then. A hundredth
-        // keeps the rim's depth to 2e-4 of the radius.
         const double across = length(towards.x(), towards.y());
-        const bool upright = across < 0.01;
+        const bool upright = across < kUpright;
         const double c = upright ? 1 : towards.x() / across, s = upright ? 0 : towards.y() / across;
         for (std::size_t i = 0; i < kSides; ++i) {
             const auto turned = [&](const Eigen::Vector2d& p) {
@@ -118,95 +124,202 @@ struct Prism {
     }
 };
 
-void collide(const Shapes& shapes,
-             ShapeRef shape,
-             const MeshTriangle& triangle,
-             const Pose& pose,
-             double speculative_margin,
-             bool through,
-             LocalManifold<double>& out)
-{
-    out.count = 0;
-    switch (shape.kind) {
-    case ShapeKind::sphere:
-        collide_triangle_ball(triangle, pose.position, shapes.spheres[shape.index].radius,
-                              speculative_margin, out, through);
-        return;
-    case ShapeKind::capsule: {
-        const Capsule& capsule = shapes.capsules[shape.index];
-        const Vec3 half(0, 0, capsule.half_length);
-        collide_triangle_capsule(triangle, pose * Vec3(-half), pose * half, capsule.radius,
-                                 speculative_margin, out, through);
-        return;
+// A convex shape as it is held against one triangle after another.
+class Guest {
+public:
+    // center: what its side of a triangle is told by, in the mesh's frame.
+    Guest(const PairInput<double>& in, const Vec3& center)
+        : shapes_(in.shapes), shape_(in.b), pose_(in.b_in_a), margin_(in.speculative_margin),
+          center_(center), to_own_(pose_.orientation.toRotationMatrix().transpose())
+    {
+        switch (shape_.kind) {
+        case ShapeKind::sphere:
+            radius_ = shapes_.spheres[shape_.index].radius;
+            extents_ = Vec3::Constant(radius_);
+            break;
+        case ShapeKind::capsule:
+            radius_ = shapes_.capsules[shape_.index].radius;
+            half_length_ = shapes_.capsules[shape_.index].half_length;
+            extents_ = {radius_, radius_, radius_ + half_length_};
+            break;
+        case ShapeKind::cylinder:
+            radius_ = shapes_.cylinders[shape_.index].radius;
+            half_length_ = shapes_.cylinders[shape_.index].half_length;
+            extents_ = {radius_, radius_, half_length_};
+            break;
+        case ShapeKind::box:
+            extents_ = shapes_.boxes[shape_.index].half_extents;
+            polytope_.emplace(shapes_, shape_);
+            break;
+        case ShapeKind::hull:
+            extents_ = Vec3::Constant(shapes_.hulls[shape_.index].outer_radius);
+            polytope_.emplace(shapes_, shape_);
+            break;
+        default:
+            THRONG_CHECK(false, "a mesh collides with convex shapes of some volume");
+        }
     }
-    case ShapeKind::cylinder: {
-        const Vec3 towards = pose.orientation.conjugate() * -triangle.normal;
-        const Prism prism(shapes.cylinders[shape.index], towards);
-        collide_triangle_polytope(triangle, prism.view(), pose, speculative_margin, out, through);
-        return;
-    }
-    case ShapeKind::box:
-    case ShapeKind::hull:
-        collide_triangle_polytope(triangle, PolytopeShape(shapes, shape).view(), pose,
-                                  speculative_margin, out, through);
-        return;
-    default:
-        THRONG_CHECK(false, "a mesh collides with convex shapes of some volume");
-    }
-}
 
-// The corners that are lowest over the triangle, four at most.
-std::size_t lowest_corners(const PolytopeView& shape,
-                           const MeshTriangle& triangle,
-                           const Pose& pose,
-                           std::array<Vec3, 4>& lowest)
-{
-    const Vec3 down = pose.orientation.conjugate() * -triangle.normal;
-    double furthest = -std::numeric_limits<double>::infinity();
-    for (const Vec3& vertex : shape.vertices) furthest = std::max(furthest, down.dot(vertex));
-    std::size_t count = 0;
-    for (const Vec3& vertex : shape.vertices)
-        if (count < 4 && down.dot(vertex) > furthest - kAsLow * shape.inner_radius)
-            lowest[count++] = pose * vertex;
-    return count;
-}
+    // Where it touches, or soon will.
+    void collide(const MeshTriangle& triangle, bool through, LocalManifold<double>& out) const
+    {
+        out.count = 0;
+        // Nothing pushes from behind.
+        if (!through && triangle.height(center_) < 0) return;
+        if (through || !is_beside(triangle)) touch(triangle, through, out);
+        if (out.count == 0 && !through) meet_ahead(triangle, out);
+    }
 
-// Of a shape that has nothing over the triangle.
-void collide_ahead(const Shapes& shapes,
-                   ShapeRef shape,
-                   const MeshTriangle& triangle,
-                   const Pose& pose,
-                   double speculative_margin,
-                   LocalManifold<double>& out)
-{
-    if (!triangle.has_concave_edge()) return;
-    std::array<Vec3, 4> points;
-    std::size_t count = 0;
-    double radius = 0;
-    switch (shape.kind) {
-    case ShapeKind::sphere:
-        radius = shapes.spheres[shape.index].radius;
-        points[count++] = pose.position;
-        break;
-    case ShapeKind::capsule: {
-        const Capsule& capsule = shapes.capsules[shape.index];
-        const Vec3 half(0, 0, capsule.half_length);
-        radius = capsule.radius;
-        points[count++] = pose * Vec3(-half);
-        points[count++] = pose * half;
-        break;
+private:
+    bool is_too_far(double distance, double extent) const
+    {
+        return distance - extent > margin_ + kRounding * extent;
     }
-    case ShapeKind::cylinder: {
-        const Vec3 towards = pose.orientation.conjugate() * -triangle.normal;
-        const Prism prism(shapes.cylinders[shape.index], towards);
-        count = lowest_corners(prism.view(), triangle, pose, points);
-        break;
+
+    // The corners of a triangle in its own axes, from its center.
+    using SeenCorners = std::array<Vec3, 3>;
+
+    // Whether it is plain to see that the triangle is out of reach: by the box about its axes, by
+    // the plane across the way to the nearest point, by a face of a hull.
+    bool is_beside(const MeshTriangle& triangle) const
+    {
+        SeenCorners seen;
+        for (std::size_t k = 0; k < 3; ++k) seen[k] = to_own_ * (triangle.corners[k] - center_);
+        const Vec3 least = seen[0].cwiseMin(seen[1]).cwiseMin(seen[2]);
+        const Vec3 most = seen[0].cwiseMax(seen[1]).cwiseMax(seen[2]);
+        const Vec3 apart = least.cwiseMax(-most);
+        for (int axis = 0; axis < 3; ++axis)
+            if (is_too_far(apart[axis], extents_[axis])) return true;
+        // Of others little is left, or it is found out soon.
+        if (shape_.kind != ShapeKind::cylinder && shape_.kind != ShapeKind::hull) return false;
+        const Vec3 nearest =
+            closest_on_triangle<double>(Vec3::Zero(), seen[0], seen[1], seen[2]).point;
+        return is_parted_along(nearest, seen)
+            || (shape_.kind == ShapeKind::hull && is_beyond_face(seen));
     }
-    default:
-        count = lowest_corners(PolytopeShape(shapes, shape).view(), triangle, pose, points);
+
+    bool is_parted_along(const Vec3& way, const SeenCorners& seen) const
+    {
+        const Vec3 direction = way.normalized();
+        const double least =
+            std::min({direction.dot(seen[0]), direction.dot(seen[1]), direction.dot(seen[2])});
+        return is_too_far(least, extent_along(direction));
     }
-    add_points_ahead(triangle, {points.data(), count}, radius, speculative_margin, out);
-}
+
+    // How far a cylinder or a hull reaches from its center, m.
+    double extent_along(const Vec3& direction) const
+    {
+        if (shape_.kind == ShapeKind::cylinder)
+            return radius_ * length(direction.x(), direction.y())
+                + half_length_ * std::abs(direction.z());
+        const Hull& hull = shapes_.hulls[shape_.index];
+        double most = 0;
+        for (const Vec3& vertex : hull.vertices)
+            most = std::max(most, direction.dot(vertex - hull.center));
+        return most;
+    }
+
+    bool is_beyond_face(const SeenCorners& seen) const
+    {
+        const Hull& hull = shapes_.hulls[shape_.index];
+        for (std::size_t i = 0; i < hull.normals.size(); ++i) {
+            const Vec3& normal = hull.normals[i];
+            const double least =
+                std::min({normal.dot(seen[0]), normal.dot(seen[1]), normal.dot(seen[2])});
+            if (is_too_far(least, hull.offsets[i] - normal.dot(hull.center))) return true;
+        }
+        return false;
+    }
+
+    void touch(const MeshTriangle& triangle, bool through, LocalManifold<double>& out) const
+    {
+        switch (shape_.kind) {
+        case ShapeKind::sphere:
+            collide_triangle_ball(triangle, pose_.position, radius_, margin_, out, through);
+            return;
+        case ShapeKind::capsule:
+            collide_triangle_capsule(triangle, end(-1), end(1), radius_, margin_, out, through);
+            return;
+        case ShapeKind::cylinder: {
+            const Prism prism(shapes_.cylinders[shape_.index], to_own_ * -triangle.normal);
+            collide_triangle_polytope(triangle, prism.view(), pose_, margin_, out, through);
+            return;
+        }
+        default:
+            collide_triangle_polytope(triangle, polytope_->view(), pose_, margin_, out, through);
+        }
+    }
+
+    // Of a shape that has nothing over the triangle.
+    void meet_ahead(const MeshTriangle& triangle, LocalManifold<double>& out) const
+    {
+        if (!triangle.has_concave_edge()) return;
+        std::array<Vec3, 4> points;
+        std::size_t count = 0;
+        switch (shape_.kind) {
+        case ShapeKind::sphere:
+            points[count++] = pose_.position;
+            break;
+        case ShapeKind::capsule:
+            points[count++] = end(-1);
+            points[count++] = end(1);
+            break;
+        case ShapeKind::cylinder:
+            count = lowest_of_cylinder(triangle, points);
+            break;
+        default: {
+            const PolytopeView shape = polytope_->view();
+            count = lowest_of(shape.vertices, shape.inner_radius, triangle, points);
+        }
+        }
+        const bool is_core = shape_.kind == ShapeKind::sphere || shape_.kind == ShapeKind::capsule;
+        add_points_ahead(triangle, {points.data(), count}, is_core ? radius_ : 0, margin_, out);
+    }
+
+    Vec3 end(double side) const { return pose_ * Vec3(0, 0, side * half_length_); }
+
+    // Of some corners those that are lowest over the triangle, four at most.
+    std::size_t lowest_of(std::span<const Vec3> corners,
+                          double inner_radius,
+                          const MeshTriangle& triangle,
+                          std::array<Vec3, 4>& lowest) const
+    {
+        const Vec3 down = to_own_ * -triangle.normal;
+        double furthest = -std::numeric_limits<double>::infinity();
+        for (const Vec3& corner : corners) furthest = std::max(furthest, down.dot(corner));
+        std::size_t count = 0;
+        for (const Vec3& corner : corners)
+            if (count < 4 && down.dot(corner) > furthest - kAsLow * inner_radius)
+                lowest[count++] = pose_ * corner;
+        return count;
+    }
+
+    // Of its rims four places each, one of them turned to the triangle.
+    std::size_t lowest_of_cylinder(const MeshTriangle& triangle, std::array<Vec3, 4>& lowest) const
+    {
+        const Vec3 down = to_own_ * -triangle.normal;
+        const double across = length(down.x(), down.y());
+        const bool upright = across < kUpright;
+        const double x = upright ? 1 : down.x() / across, y = upright ? 0 : down.y() / across;
+        std::array<Vec3, 8> corners;
+        std::size_t count = 0;
+        for (const double side : {-1.0, 1.0})
+            for (const Eigen::Vector2d& at : {Eigen::Vector2d(x, y), {-y, x}, {-x, -y}, {y, -x}})
+                corners[count++] = {radius_ * at.x(), radius_ * at.y(), side * half_length_};
+        return lowest_of(corners, std::min(radius_, half_length_), triangle, lowest);
+    }
+
+    const Shapes& shapes_;
+    ShapeRef shape_;
+    const Pose& pose_;
+    double margin_;
+    Vec3 center_;
+    Mat3 to_own_;                  // turns the mesh's axes into the shape's
+    Vec3 extents_ = Vec3::Zero();  // half extents of a box about its center in its own axes
+    double radius_ = 0;            // of what is round
+    double half_length_ = 0;       // of capsules and cylinders
+    std::optional<PolytopeShape> polytope_;
+};
 
 // What the side of a shape is told by.
 Vec3 center_of(const Shapes& shapes, ShapeRef shape, const Pose& pose)
@@ -229,23 +342,24 @@ Vec3 nearest_of(const LocalManifold<double>& found)
 void collide_triangles(const PairInput<double>& in,
                        std::span<const std::uint32_t> near,
                        std::span<const std::uint32_t> held,
-                       const auto& take)
+                       std::vector<PartManifold>& out)
 {
     const auto& [shapes, mesh, b, pose, speculative_margin] = in;
     const Mesh& surface = *mesh_of(shapes, mesh);
-    const MeshSides sides(surface, near, held, center_of(shapes, b, pose), inner_extent(shapes, b));
+    const Vec3 center = center_of(shapes, b, pose);
+    const MeshSides sides(surface, near, held, center, inner_extent(shapes, b));
     const bool sided = mesh.kind == ShapeKind::mesh;
-    LocalManifold<double> found;
+    const Guest guest(in, center);
     for (const std::uint32_t index : near) {
         const MeshSides::Approach from = sided ? sides.approach(index) : MeshSides::Approach{};
         if (!from.any) continue;
-        const MeshTriangle triangle(surface, index, from.behind);
-        collide(shapes, b, triangle, pose, speculative_margin, from.through, found);
-        if (found.count == 0 && !from.through)
-            collide_ahead(shapes, b, triangle, pose, speculative_margin, found);
-        if (found.count == 0) continue;
-        if (from.behind && !from.known && sides.is_hidden(nearest_of(found), index)) continue;
-        take(from.behind ? index | kBehind : index, found);
+        PartManifold& found = out.emplace_back();
+        found.part = from.behind ? index | kBehind : index;
+        guest.collide({surface, index, from.behind}, from.through, found.manifold);
+        const auto is_hidden = [&] {
+            return from.behind && !from.known && sides.is_hidden(nearest_of(found.manifold), index);
+        };
+        if (found.manifold.count == 0 || is_hidden()) out.pop_back();
     }
 }
 
@@ -261,47 +375,22 @@ void keep_held(std::span<const std::uint32_t> held, std::vector<std::uint32_t>& 
 
 }  // namespace
 
-template <class Real>
-void collide_mesh(const PairInput<Real>& in,
+void collide_mesh(const PairInput<double>& in,
                   std::span<const std::uint32_t> held,
-                  TriangleManifolds<Real>& out)
+                  std::vector<std::uint32_t>& near,
+                  std::vector<PartManifold>& out)
 {
-    const auto& [shapes, mesh, b, b_in_a, speculative_margin] = in;
-    thread_local std::vector<std::uint32_t> near;
-    const Pose pose{b_in_a.position.template cast<double>(),
-                    b_in_a.orientation.template cast<double>().normalized()};
-    Box3 box = shape_bounds(shapes, b, pose);
-    box.lower.array() -= double{speculative_margin};
-    box.upper.array() += double{speculative_margin};
-    near.clear();
-    const Mesh& surface = *mesh_of(shapes, mesh);
-    if (surface.k_dops.empty()) {
-        find_triangles(surface, box, near);
-    } else {
-        const KDop k_dop =
-            k_dop_of(convex_core_of<double>(shapes, b), pose.orientation.toRotationMatrix(),
-                     pose.position, surface.sides);
-        find_triangles(surface, box, k_dop, double{speculative_margin}, near);
-    }
     keep_held(held, near);
-    collide_triangles({shapes, mesh, b, pose, double{speculative_margin}}, near, held,
-                      [&](std::uint32_t triangle, const LocalManifold<double>& found) {
-                          out.push_back({triangle, found.cast<Real>()});
-                      });
+    collide_triangles(in, near, held, out);
 }
 
-template <class Real>
-void collide_mesh(const PairInput<Real>& in, TriangleManifolds<Real>& out)
+void collide_mesh(const PairInput<double>& in, std::vector<PartManifold>& out)
 {
-    collide_mesh(in, {}, out);
+    thread_local NearTriangles near;
+    near.clear();
+    near.add(in);
+    near.find();
+    collide_mesh(in, {}, near.of(0), out);
 }
-
-#define THRONG_INSTANTIATE(Real)                                                                   \
-    template void collide_mesh<Real>(const PairInput<Real>&, TriangleManifolds<Real>&);            \
-    template void collide_mesh<Real>(const PairInput<Real>&, std::span<const std::uint32_t>,       \
-                                     TriangleManifolds<Real>&);
-THRONG_INSTANTIATE(float)
-THRONG_INSTANTIATE(double)
-#undef THRONG_INSTANTIATE
 
 }  // namespace throng

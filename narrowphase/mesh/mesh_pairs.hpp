@@ -9,21 +9,12 @@
 
 namespace throng {
 
-/// One triangle of a mesh that a convex shape touches.
-template <class Real>
-struct TriangleManifold {
-    std::uint32_t triangle = 0;
-    LocalManifold<Real> manifold;  // in the mesh's frame, normal from the mesh to the shape
-};
-template <class Real>
-using TriangleManifolds = std::vector<TriangleManifold<Real>>;
-
 /// Where a convex shape touches a static triangle mesh: one manifold a triangle, in order of
 /// triangle, contacts on internal edges turned to the surface so that sliding meets no bumps.
+/// Double alone: a landscape reaches further from its origin than single tells places apart.
 ///
 ///   in   a: mesh, or a solid, which is its triangles here; b: the convex shape
-///   out  appended to
-template <class Real>
-void collide_mesh(const PairInput<Real>& in, TriangleManifolds<Real>& out);
+///   out  appended to: in the mesh's frame, normals from the mesh to the shape
+void collide_mesh(const PairInput<double>& in, std::vector<PartManifold>& out);
 
 }  // namespace throng

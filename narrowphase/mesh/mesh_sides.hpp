@@ -54,11 +54,13 @@ private:
     bool came_ = false;  // through one of those that it touched
 };
 
-/// The same as collide_mesh() of mesh_pairs.hpp for a shape that touched these triangles in the
-/// last step; those that are touched from behind have kBehind in their number.
-template <class Real>
-void collide_mesh(const PairInput<Real>& in,
+/// The same as collide_mesh() of mesh_pairs.hpp for a shape that touched the triangles `held` in
+/// the last step; those that are touched from behind have kBehind in their number.
+///
+///   near  what NearTriangles found of the pair; those held are added to it
+void collide_mesh(const PairInput<double>& in,
                   std::span<const std::uint32_t> held,
-                  TriangleManifolds<Real>& out);
+                  std::vector<std::uint32_t>& near,
+                  std::vector<PartManifold>& out);
 
 }  // namespace throng

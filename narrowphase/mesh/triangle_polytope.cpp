@@ -31,15 +31,39 @@ struct TriangleAxis {
     FaceAxis face;
 };
 
+// The corners of a triangle as a polytope sees them.
+using SeenCorners = std::array<Vec3, 3>;
+
+SeenCorners seen_corners(const PolytopePair& turned)
+{
+    SeenCorners seen;
+    for (std::size_t k = 0; k < 3; ++k) seen[k] = turned.turn * turned.b.vertices[k] + turned.shift;
+    return seen;
+}
+
+// As face_axis(), of a polytope and three corners.
+FaceAxis axis_of(const PolytopeView& shape, const SeenCorners& seen, std::size_t face)
+{
+    const Vec3& normal = shape.normals[face];
+    FaceAxis axis{normal.dot(seen[0]), static_cast<std::uint16_t>(face), 0};
+    for (std::uint16_t k = 1; k < 3; ++k) {
+        const double height = normal.dot(seen[k]);
+        if (height < axis.separation) axis = {height, axis.face, k};
+    }
+    axis.separation -= shape.offsets[face];
+    return axis;
+}
+
 // b's faces: any may show that the two are apart; only those the mesh sticks out to may push.
 void try_faces(const MeshTriangle& triangle,
                const PolytopePair& turned,
+               const SeenCorners& seen,
                double speculative_margin,
                double bias,
                TriangleAxis& best)
 {
     for (std::size_t i = 0; i < turned.a.normals.size(); ++i) {
-        const FaceAxis axis = face_axis(turned, static_cast<std::uint16_t>(i));
+        const FaceAxis axis = axis_of(turned.a, seen, i);
         if (axis.separation > speculative_margin) {
             best.kind = TriangleAxis::Kind::apart;
             return;
@@ -57,21 +81,37 @@ void try_faces(const MeshTriangle& triangle,
     }
 }
 
+// A triangle and a polytope, as both of them see it, and the triangle's front between them.
+struct FrontedPair {
+    const MeshTriangle& triangle;
+    const PolytopePair &pair, &turned;
+    SeenCorners seen;
+    const FaceAxis& front;
+    double speculative_margin, bias;
+};
+
+// Whether the shape's lowest corner is over the triangle, or below it: then no axis parts the two
+// by more than that is high or deep.
+bool is_lowest_over(const PolytopePair& pair, const FaceAxis& front)
+{
+    const Vec3 lowest = pair.turn * pair.b.vertices[front.vertex] + pair.shift;
+    for (std::size_t rim = 2; rim < 5; ++rim)
+        if (pair.a.normals[rim].dot(lowest) > pair.a.offsets[rim]) return false;
+    return true;
+}
+
 // Whether no axis parts the two by more than the speculative margin: b's faces and any two edges
 // may; the front is known.
-bool within_margin(const MeshTriangle& triangle,
-                   const PolytopePair& pair,
-                   const PolytopePair& turned,
-                   double speculative_margin,
-                   double bias,
-                   TriangleAxis& best)
+bool within_margin(const FrontedPair& fronted, TriangleAxis& best)
 {
-    try_faces(triangle, turned, speculative_margin, bias, best);
+    const auto& [triangle, pair, turned, seen, front, speculative_margin, bias] = fronted;
+    try_faces(triangle, turned, seen, speculative_margin, bias, best);
     if (best.kind == TriangleAxis::Kind::apart) return false;
     // By how much the two are apart does not matter once they are.
     const double floor =
         best.apart > bias ? speculative_margin : std::min(bias, speculative_margin);
-    const EdgeAxis any = best_edge_axis(pair, floor);
+    if (std::abs(front.separation) <= floor && is_lowest_over(pair, front)) return true;
+    const EdgeAxis any = best_edge_axis(turned, floor);
     if (!any.normal.isZero(0)) best.apart = any.separation;
     return best.apart <= speculative_margin;
 }
@@ -119,18 +159,10 @@ void keep_line(const PolytopePair& pair, const Vec3& normal, PolytopePoints& fou
     found.count = kept;
 }
 
-// A triangle and a polytope, as both of them see it, and the triangle's front between them.
-struct FrontedPair {
-    const MeshTriangle& triangle;
-    const PolytopePair &pair, &turned;
-    const FaceAxis& front;
-    double speculative_margin, bias;
-};
-
 // Points along the face that leads, of the triangle or of the polytope.
 void lay_face(const FrontedPair& fronted, const TriangleAxis& best, LocalManifold<double>& out)
 {
-    const auto& [triangle, pair, turned, front, speculative_margin, bias] = fronted;
+    const auto& [triangle, pair, turned, seen, front, speculative_margin, bias] = fronted;
     const bool by_front = best.kind == TriangleAxis::Kind::front;
     PolytopePoints found;
     clip_faces(by_front ? pair : turned, by_front ? front : best.face, speculative_margin, bias,
@@ -172,14 +204,14 @@ bool yields_over_edges(const MeshTriangle& triangle, const PolytopePair& pair, d
 // Whether one of the shape's faces that look at the triangle is hardly beyond it, or not at all,
 // and may not push: then another triangle sticks out further that way and pushes, as where a face
 // lies on a peak or on a ridge. By an edge of this one the same shape would be deep inside.
-bool yields_to_faces(const MeshTriangle& triangle, const PolytopePair& turned, double most)
+bool yields_to_faces(const FrontedPair& fronted, double most)
 {
-    for (std::size_t i = 0; i < turned.a.normals.size(); ++i) {
-        const Vec3 direction = -(turned.turn.transpose() * turned.a.normals[i]);
-        if (direction.dot(triangle.normal) > kLooksAt
-            && face_axis(turned, static_cast<std::uint16_t>(i)).separation > most)
+    const PolytopeView& shape = fronted.turned.a;
+    const Vec3 against = -(fronted.turned.turn * fronted.triangle.normal);
+    for (std::size_t i = 0; i < shape.normals.size(); ++i)
+        if (against.dot(shape.normals[i]) > kLooksAt
+            && axis_of(shape, fronted.seen, i).separation > most)
             return true;
-    }
     return false;
 }
 
@@ -197,7 +229,6 @@ struct OutwardEdges {
     OutwardEdges(const MeshTriangle& triangle, const TrianglePolytope& flat, const PolytopePair& of)
         : normals(flat.normals), offsets(flat.offsets), pair(of)
     {
-        std::size_t count = 0;
         for (std::size_t e = 0; e < 3; ++e) {
             if (!triangle.is_convex(e)) continue;
             normals[2 + e] = far_normal(triangle, e, flat.normals[2 + e]);
@@ -208,12 +239,24 @@ struct OutwardEdges {
         pair.a.offsets = offsets;
         pair.a.edges = {edges.data(), count};
     }
+    /// The best of them and the shape's, as best_edge_axis(); it is the few that are turned.
+    EdgeAxis best_axis(const PolytopePair& turned, double to_beat) const
+    {
+        if (count == 0) return {};
+        PolytopePair seen = turned;
+        seen.b = pair.a;
+        EdgeAxis best = best_edge_axis(seen, to_beat);
+        best.normal = -(pair.turn * best.normal);
+        std::swap(best.edge_a, best.edge_b);
+        return best;
+    }
     OutwardEdges(const OutwardEdges&) = delete;  // the pair looks at the arrays
     OutwardEdges& operator=(const OutwardEdges&) = delete;
 
     std::array<Vec3, 5> normals;
     std::array<double, 5> offsets;
     std::array<Hull::Edge, 3> edges{};
+    std::size_t count = 0;
     PolytopePair pair;
 };
 
@@ -258,20 +301,20 @@ void collide_along_best(const FrontedPair& fronted,
                         const TrianglePolytope& flat,
                         LocalManifold<double>& out)
 {
-    const auto& [triangle, pair, turned, front, speculative_margin, bias] = fronted;
+    const auto& [triangle, pair, turned, seen, front, speculative_margin, bias] = fronted;
     TriangleAxis best;
     best.separation = best.apart = front.separation;
-    if (!within_margin(triangle, pair, turned, speculative_margin, bias, best)) return;
+    if (!within_margin(fronted, best)) return;
     const bool parted = best.apart > bias;
 
     const OutwardEdges outward(triangle, flat, pair);
     const double to_beat = best.separation + bias;
-    const EdgeAxis edge = best_edge_axis(outward.pair, parted ? std::max(to_beat, 0.0) : to_beat);
+    const EdgeAxis edge = outward.best_axis(turned, parted ? std::max(to_beat, 0.0) : to_beat);
     const double told = edge.normal.isZero(0) ? best.separation : edge.separation;
     if (!parted && told < -bias) {
         const double most = kShorter * told;
         if (yields_over_edges(triangle, pair, most)) return;
-        if (!edge.normal.isZero(0) && yields_to_faces(triangle, turned, most)) return;
+        if (!edge.normal.isZero(0) && yields_to_faces(fronted, most)) return;
     }
     if (!edge.normal.isZero(0)) {
         if (edge.separation > speculative_margin) return;
@@ -282,7 +325,7 @@ void collide_along_best(const FrontedPair& fronted,
     lay_face(fronted, best, out);
     // What leads by its bias alone may have nothing over it.
     if (out.count > 0 || best.separation >= 0 || parted) return;
-    const EdgeAxis better = best_edge_axis(outward.pair, best.separation);
+    const EdgeAxis better = outward.best_axis(turned, best.separation);
     if (!better.normal.isZero(0)) push_by_edges(fronted, outward, better, out);
 }
 
@@ -304,7 +347,8 @@ void collide_triangle_polytope(const MeshTriangle& triangle,
     if (front.separation > speculative_margin) return;
     const double bias = 1e-3 * shape.inner_radius;
     const PolytopePair turned = pair.mirrored();
-    const FrontedPair fronted{triangle, pair, turned, front, speculative_margin, bias};
+    const FrontedPair fronted{triangle,           pair, turned, seen_corners(turned), front,
+                              speculative_margin, bias};
     collide_along_best(fronted, flat, out);
     if (!through || out.count > 0) return;
     // Pressed all but out of the triangle on its other side it goes back the way it came; by its

@@ -64,7 +64,7 @@ double shape_error(const Shapes& shapes, ShapeRef shape)
 }
 
 SolidAnswer
-collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out, double pressed_in)
+collide_solid(const PairInput<double>& in, std::vector<PartManifold>& out, double pressed_in)
 {
     const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
     SolidAnswer answer;

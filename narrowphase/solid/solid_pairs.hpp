@@ -32,6 +32,6 @@ double shape_error(const Shapes& shapes, ShapeRef shape);
 /// Two solids go by depth images where either asks for them, else by the spheres of those that are
 /// spheres, else by voxels both ways. Never throws.
 SolidAnswer
-collide_solid(const PairInput<double>& in, std::vector<PatchManifold>& out, double pressed_in = 0);
+collide_solid(const PairInput<double>& in, std::vector<PartManifold>& out, double pressed_in = 0);
 
 }  // namespace throng

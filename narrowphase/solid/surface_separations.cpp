@@ -315,11 +315,11 @@ double depth_by_corners(const PairInput<double>& in, double enough)
 bool append_deep(const PairInput<double>& in, double most, std::vector<Manifold>& out)
 {
     const auto& [shapes, solid, other, other_in_solid, speculative_margin] = in;
-    std::vector<PatchManifold> patches;
+    std::vector<PartManifold> patches;
     collide_solid({shapes, solid, other, other_in_solid, speculative_margin}, patches);
     std::vector<Manifold> found;
     found.reserve(patches.size());
-    for (const PatchManifold& patch : patches) found.push_back(patch.manifold);
+    for (const PartManifold& patch : patches) found.push_back(patch.manifold);
     if (!(least_of(found) < -most)) return false;
     out.insert(out.end(), found.begin(), found.end());
     return true;

@@ -92,7 +92,7 @@ std::vector<Pose> make_poses(bool apart)
     const Lumps& lumps = lumps_by("voxels");
     Random random(1);
     std::vector<Pose> poses(kPairs);
-    std::vector<PatchManifold> patches;
+    std::vector<PartManifold> patches;
     for (Pose& pose : poses) {
         const Vec3 from = random_direction(random);
         pose.orientation =
@@ -127,7 +127,7 @@ void find_touches(benchmark::State& state, const std::string& way, bool apart)
 {
     const Lumps& lumps = lumps_by(way);
     const std::vector<Pose>& poses = poses_of(apart);
-    std::vector<PatchManifold> patches;
+    std::vector<PartManifold> patches;
     for ([[maybe_unused]] auto iteration : state) {
         patches.clear();
         for (const Pose& pose : poses)
@@ -135,7 +135,7 @@ void find_touches(benchmark::State& state, const std::string& way, bool apart)
         benchmark::DoNotOptimize(patches.data());
     }
     std::size_t points = 0;
-    for (const PatchManifold& patch : patches)
+    for (const PartManifold& patch : patches)
         points += static_cast<std::size_t>(patch.manifold.count);
     tell(state, patches.size(), points);
 }
@@ -143,7 +143,7 @@ void find_touches(benchmark::State& state, const std::string& way, bool apart)
 // What was found of a pair, and where it is a moment later.
 struct Known {
     Pose then, now;
-    std::vector<PatchManifold> patches;
+    std::vector<PartManifold> patches;
 };
 
 std::vector<Known> make_known(const Lumps& lumps, bool apart)
@@ -173,7 +173,7 @@ void move_touches(benchmark::State& state, const std::string& way, bool apart)
                 furthest_moved_near(pair.then, pair.now, radius_a + kReach, radius_b));
             CachedManifold<double> found{{}, pair.then, kReach};
             LocalManifold<double> moved;
-            for (const PatchManifold& patch : pair.patches) {
+            for (const PartManifold& patch : pair.patches) {
                 found.manifold = patch.manifold;
                 move_manifold(found, pair.now, kReach, moved);
                 manifolds += moved.count > 0 ? 1 : 0;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kOrderGrain = 8192;  // pairs a block
 constexpr std::size_t kStrays = 8;         // one contact in so many may be out of order
+constexpr std::size_t kMostKept = 4;       // room is kept for one in so many
 
 // What there is of contacts in a block of pairs, or before it.
 struct Count {
@@ -88,6 +89,11 @@ void reorder(ConvexContacts<Real>& contacts, const std::vector<Count>& counts, s
             [&](std::size_t n) { return contacts.scratch.found_gathered[n]; },
             [](const CachedManifold<Real>&) {});
     contacts.free.clear();
+    // Where most began at once, as in a first step, so much will not be needed again.
+    if (counts.back().strays * kMostKept > used) {
+        contacts.scratch.gathered = {};
+        contacts.scratch.found_gathered = {};
+    }
 }
 
 }  // namespace

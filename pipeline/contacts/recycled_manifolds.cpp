@@ -7,15 +7,6 @@
 
 namespace throng {
 
-namespace {
-
-// A manifold is recycled until a point has moved by this share of the smaller shape's smallest half
-// extent, a sixth of the reach of bodies at rest. A third more overlaps no deeper, but saves
-// little.
-constexpr double kRecycled = 12e-3;
-
-}  // namespace
-
 template <class Real>
 bool find_or_recycle(const Shapes& shapes,
                      const Colliders& colliders,

@@ -123,6 +123,7 @@ protected:
             renumber(moves_.to, *list);
         renumber(moves_.to, meshes_.entries);
         renumber(moves_.to, solids_.entries);
+        renumber(moves_.to, meshes_.found.pairs);
         renumber(moves_.to, solids_.found.pairs);
     }
 
@@ -212,6 +213,7 @@ private:
             to[from] = i;
         }
         renumber(to, meshes_.entries);
+        renumber(to, meshes_.found.pairs);
         pairs_.changed = false;
     }
 

@@ -222,7 +222,7 @@ private:
     std::vector<std::pair<std::uint32_t, Box3>> boxes_;  // of colliders, of the way just ahead
     std::vector<PairKey> pairs_;                         // that may meet on it
     PairManifolds manifolds_;                            // by the last call of separation_of()
-    std::vector<TriangleManifold<double>> triangles_;    // scratch
+    std::vector<PartManifold> triangles_;                // scratch
     std::vector<GroupContact> contacts_;
     std::vector<GroupContact> foreseen_;        // of ways from here that ended too near
     std::vector<std::size_t> resting_;          // touches that may press, of this span

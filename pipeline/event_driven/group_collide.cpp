@@ -77,7 +77,7 @@ void EventDrivenGroup::collide_pair(PairKey key,
     }
     if (mesh_of(shapes, shape_a)) {
         triangles_.clear();
-        collide_mesh<double>({shapes, shape_a, shape_b, seen, speculative_margin}, triangles_);
+        collide_mesh({shapes, shape_a, shape_b, seen, speculative_margin}, triangles_);
         for (const auto& touched : triangles_) manifolds_.manifolds.push_back(touched.manifold);
         return;
     }

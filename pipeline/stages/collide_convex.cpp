@@ -23,6 +23,18 @@ namespace {
 constexpr std::size_t kGrain = 512;         // pairs a block: some 20 microseconds of work
 constexpr std::size_t kFar = 6, kNext = 4;  // pairs: how early memory is asked for
 
+// m; single precision tells places that far from an origin apart by 8e-6 m.
+constexpr double kFarInSingle = 128;
+
+// What no later pose is near enough to.
+template <class Real>
+CachedManifold<Real> nothing_found()
+{
+    CachedManifold<Real> nothing;
+    nothing.b_in_a.position.setConstant(std::numeric_limits<Real>::quiet_NaN());
+    return nothing;
+}
+
 // The pairs of boxes of a block, until there are enough of them to be collided side by side.
 struct BoxBatch {
     std::vector<std::uint32_t> places;  // among the pairs
@@ -120,8 +132,10 @@ private:
             if (chosen_.has_method() && collide_chosen(i, pair, block)) return;
         }
         if (a == sphere && b == sphere) return collide_spheres(i, pair, block);
-        if constexpr (std::is_same_v<Real, float>)
+        if constexpr (std::is_same_v<Real, float>) {
+            if (a != plane && b != plane && is_far(pair)) return collide_in_double(i, pair, block);
             if (a == box && b == box) return put_aside(i, pair, boxes);
+        }
         if (contacts_.recycles && is_recycled(a, b)) return collide_or_recycle(i, pair, block);
         collide_pair(i, pair, block);
     }
@@ -156,6 +170,34 @@ private:
         contact.round_a = static_cast<Real>(radius_a);
         contact.round_b = static_cast<Real>(radius_b);
         keep(i, contact);
+    }
+
+    // Whether single precision tells places of the one no better apart than by 8e-6 m, seen from
+    // the other: it is on a large floor, far from its middle.
+    bool is_far(const PairPlace& pair) const
+    {
+        const Vec3& a = bounds_.placed[pair.a].position;
+        return (bounds_.placed[pair.b].position - a).squaredNorm() > kFarInSingle * kFarInSingle;
+    }
+
+    void collide_in_double(std::size_t i, const PairPlace& pair, std::size_t block)
+    {
+        PairState& state = contacts_.of_pair[i];
+        LocalManifold<double> manifold;
+        PairCache cache = state.cache;
+        collide({shapes_, colliders_.shape[pair.a], colliders_.shape[pair.b],
+                 seen_from_first(pair.a, pair.b, shapes_, colliders_, bounds_),
+                 pair.speculative_margin},
+                cache, manifold);
+        state.cache = cache;
+        chosen_.note_fallback(cache, block);
+        const bool touched = state.contact != PairState::kApart;
+        take(i, pair, false, manifold, block);
+        if (!contacts_.recycles || manifold.count == 0) return;
+        if (touched)
+            contacts_.found[state.contact] = nothing_found<Real>();
+        else
+            begun_.found.push_back({static_cast<std::uint32_t>(i), nothing_found<Real>()});
     }
 
     // Turning, in float: only where b is has to be told in double.
@@ -237,10 +279,11 @@ private:
             begun_.found.push_back({static_cast<std::uint32_t>(i), found});
     }
 
+    template <class From>
     void take(std::size_t i,
               const PairPlace& pair,
               bool turned,
-              const LocalManifold<Real>& manifold,
+              const LocalManifold<From>& manifold,
               std::size_t block)
     {
         if (manifold.count == 0) return part(i, block);
@@ -284,9 +327,7 @@ private:
 template <class Real>
 void forget_found(ConvexContacts<Real>& contacts)
 {
-    CachedManifold<Real> nothing;
-    nothing.b_in_a.position.setConstant(std::numeric_limits<Real>::quiet_NaN());
-    contacts.found.assign(contacts.contacts.size(), nothing);
+    contacts.found.assign(contacts.contacts.size(), nothing_found<Real>());
     contacts.apart_until.assign(contacts.apart_until.size(), 0.0F);
 }
 

@@ -4,7 +4,6 @@
 // What was found of a pair is told from where its points are now for as long as the two have hardly
 // moved against one another: most of a heap at rest.
 #include "narrowphase/dispatch.hpp"
-#include "narrowphase/manifold/recycling.hpp"
 #include "narrowphase/solid/solid_pairs.hpp"
 #include "pipeline/contacts/many_contacts.hpp"
 
@@ -13,9 +12,6 @@ namespace throng {
 namespace {
 
 constexpr std::size_t kGrain = 4;  // pairs a block: each costs microseconds at least
-// A pair is found anew once a point has moved by this share of the smaller shape's smallest half
-// extent: as with hulls, a sixth of the reach of bodies at rest.
-constexpr double kRecycled = 12e-3;
 
 // One call of the stage.
 template <class Real>
@@ -40,14 +36,11 @@ public:
 
     void run()
     {
-        std::swap(contacts_.found, contacts_.found_before);
-        const std::size_t blocks = block_count(pairs_.on_solid.size(), kGrain);
-        contacts_.finds_scratch.found_of_block.start(blocks);
-        contacts_.finds_scratch.patches_of_block.start(blocks);
-        const auto find = [&](auto&&... all) { process(all...); };
-        refresh_contacts<Real>(context_, pairs_, pairs_.on_solid, colliders_, bounds_, states_,
-                               kGrain, contacts_, find);
-        join_finds();
+        refresh_contacts<Real>(
+            context_, pairs_, pairs_.on_solid, colliders_, bounds_, states_, kGrain, contacts_,
+            [](std::span<const PairOfBlock<Real>>) {}, [&](auto&&... all) { process(all...); });
+        contacts_.left_out = 0;
+        for (const Found& found : contacts_.found.pairs) contacts_.left_out += found.left_out;
     }
 
 private:
@@ -63,26 +56,25 @@ private:
         return {pair.b, pair.a, true};
     }
 
-    void process(std::uint32_t i,
-                 const PairPlace& pair,
-                 std::span<const Entry> old,
-                 std::size_t block,
-                 ContactEntries<Real>& out)
+    void process(const PairOfBlock<Real>& at, ContactEntries<Real>& out)
     {
-        const Sides sides = sides_of(pair);
-        const Pose pose =
-            pose_seen_from_a(shapes_, colliders_.shape[sides.other], bounds_.placed[sides.solid],
-                             bounds_.placed[sides.other]);
-        const std::span kept = items_of(contacts_.found_before.pairs, old_place(pairs_, i));
-        const double margin = margin_of(pair);
+        const Sides sides = sides_of(at.place);
+        const PairSight sight{pose_seen_from_a(shapes_, colliders_.shape[sides.other],
+                                               bounds_.placed[sides.solid],
+                                               bounds_.placed[sides.other]),
+                              colliders_.outer_radius[sides.solid],
+                              colliders_.outer_radius[sides.other], margin_of(at.place)};
+        const std::span kept = items_of(contacts_.found_before.pairs, old_place(pairs_, at.pair));
         const std::size_t first = out.size();
-        Found found;
-        if (kept.empty() || !recycle_all(kept.front(), sides, pose, margin, block, found, out))
-            find_anew(sides, pose, margin, pressed_in(kept, sides, pose), block, found, out);
-        found.pair = i;
-        contacts_.finds_scratch.found_of_block[block].push_back(found);
+        const auto take = [&](std::uint32_t part, const LocalManifold<double>& manifold) {
+            add(sides, part, manifold, out);
+        };
+        if (!kept.empty() && may_recycle(kept.front(), sight, most_moved(kept.front(), sides)))
+            recycle_finds(contacts_, kept.front(), sight, at, take);
+        else
+            find_anew(sides, sight, pressed_in(kept, sides, sight.pose), at, take);
         for (std::size_t n = first; n < out.size(); ++n)
-            carry_over(old, out[n].contact, out[n].part);
+            carry_over(at.old, out[n].contact, out[n].part);
     }
 
     // How far a pair is looked at, m. Who is fast has been held where his triangles met something,
@@ -98,26 +90,22 @@ private:
     }
 
     void find_anew(const Sides& sides,
-                   const Pose& pose,
-                   double speculative_margin,
+                   const PairSight& sight,
                    double pressed_in,
-                   std::size_t block,
-                   Found& found,
-                   ContactEntries<Real>& out)
+                   const PairOfBlock<Real>& at,
+                   const auto& take)
     {
-        std::vector<PatchManifold>& patches = contacts_.finds_scratch.patches_of_block[block];
+        std::vector<PartManifold>& patches = contacts_.scratch.manifolds_of_block[at.block];
         const std::size_t first = patches.size();
         const SolidAnswer answer =
             collide_solid({shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
-                           pose, speculative_margin},
+                           sight.pose, sight.speculative_margin},
                           patches, pressed_in);
         for (std::size_t k = first; k < patches.size(); ++k)
-            add(sides, patches[k].patch, patches[k].manifold, out);
-        found.count = static_cast<std::uint32_t>(patches.size() - first);
-        found.b_in_a = pose;
-        found.speculative_margin = speculative_margin;
-        found.apart = answer.apart;
-        found.left_out = answer.left_out;
+            take(patches[k].part, patches[k].manifold);
+        contacts_.scratch.found_of_block[at.block].push_back(
+            {at.pair, 0, static_cast<std::uint32_t>(patches.size() - first), sight.pose,
+             sight.speculative_margin, answer.apart, answer.left_out});
     }
 
     // How deep what was found before is by now, m.
@@ -127,7 +115,7 @@ private:
         const Found& then = kept.front();
         double least = 0;
         LocalManifold<double> now;
-        for (const PatchManifold& patch : patches_of(then)) {
+        for (const PartManifold& patch : manifolds_of(contacts_, then)) {
             move_manifold({patch.manifold, then.b_in_a, then.speculative_margin}, pose, 0.0, now);
             for (int i = 0; i < now.count; ++i)
                 least = std::min(least, now.points[static_cast<std::size_t>(i)].separation);
@@ -135,40 +123,12 @@ private:
         return -least;
     }
 
-    std::span<const PatchManifold> patches_of(const Found& kept) const
+    // How far the two may move before they are looked at anew, m.
+    double most_moved(const Found& kept, const Sides& sides) const
     {
-        return std::span(contacts_.found_before.patches).subspan(kept.first, kept.count);
-    }
-
-    // False where the two have moved too much.
-    bool recycle_all(const Found& kept,
-                     const Sides& sides,
-                     const Pose& pose,
-                     double speculative_margin,
-                     std::size_t block,
-                     Found& found,
-                     ContactEntries<Real>& out)
-    {
-        const double near = colliders_.outer_radius[sides.solid]
-            + std::max(speculative_margin, kept.speculative_margin);
-        const double moved =
-            furthest_moved_near(kept.b_in_a, pose, near, colliders_.outer_radius[sides.other]);
-        double most = kRecycled * least_extent(sides);
-        if (kept.count == 0) most = std::max(most, kept.apart - kept.speculative_margin);
-        // What was beyond the margin then may be within a greater margin now.
-        if (!(moved + std::max(0.0, speculative_margin - kept.speculative_margin) <= most))
-            return false;
-        CachedManifold<double> then{{}, kept.b_in_a, kept.speculative_margin};
-        LocalManifold<double> now;
-        for (const PatchManifold& patch : patches_of(kept)) {
-            then.manifold = patch.manifold;
-            move_manifold(then, pose, speculative_margin, now);
-            contacts_.finds_scratch.patches_of_block[block].push_back(patch);
-            if (now.count > 0) add(sides, patch.patch, now, out);
-        }
-        found = kept;
-        found.left_out = 0;
-        return true;
+        const double most = kRecycled * least_extent(sides);
+        if (kept.count > 0) return most;
+        return std::max(most, kept.apart - kept.speculative_margin);
     }
 
     // A mesh is as thick as whatever lies behind it.
@@ -188,7 +148,7 @@ private:
         const std::uint32_t other = colliders_.body[sides.other];
         Entry& entry = out.emplace_back();
         entry.part = part;
-        make_contact(manifold.template cast<Real>(), bounds_.placed[sides.solid],
+        make_contact(manifold, bounds_.placed[sides.solid],
                      anchor_origin(solid, other, states_, poses_),
                      anchor_origin(other, solid, states_, poses_), entry.contact);
         note_round_sides(shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
@@ -223,23 +183,6 @@ private:
                     ? 1
                     : 0;
         return shared;
-    }
-
-    // Blocks in order, so that the list is in order of pair, and patches in that of their pairs.
-    void join_finds()
-    {
-        auto& [pairs, patches] = contacts_.found;
-        pairs.clear();
-        patches.clear();
-        contacts_.finds_scratch.found_of_block.append_to(pairs);
-        contacts_.finds_scratch.patches_of_block.append_to(patches);
-        contacts_.left_out = 0;
-        std::uint32_t first = 0;
-        for (Found& found : pairs) {
-            found.first = first;
-            first += found.count;
-            contacts_.left_out += found.left_out;
-        }
     }
 
     const StepContext& context_;

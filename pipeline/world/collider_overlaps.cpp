@@ -21,8 +21,8 @@ int comes_first(ShapeKind kind)
 
 double mesh_depth(const Shapes& shapes, ShapeRef mesh, ShapeRef other, const Pose& other_in_mesh)
 {
-    std::vector<TriangleManifold<double>> found;
-    collide_mesh<double>({shapes, mesh, other, other_in_mesh, 0.0}, found);
+    std::vector<PartManifold> found;
+    collide_mesh({shapes, mesh, other, other_in_mesh, 0.0}, found);
     double depth = 0;
     for (const auto& on_triangle : found)
         for (int k = 0; k < on_triangle.manifold.count; ++k)
@@ -33,10 +33,10 @@ double mesh_depth(const Shapes& shapes, ShapeRef mesh, ShapeRef other, const Pos
 
 double solid_depth(const Shapes& shapes, ShapeRef solid, ShapeRef other, const Pose& other_in_solid)
 {
-    std::vector<PatchManifold> found;
+    std::vector<PartManifold> found;
     collide_solid({shapes, solid, other, other_in_solid, 0.0}, found);
     double depth = 0;
-    for (const PatchManifold& patch : found)
+    for (const PartManifold& patch : found)
         for (int k = 0; k < patch.manifold.count; ++k)
             depth = std::max(depth, -patch.manifold.points[static_cast<std::size_t>(k)].separation);
     return depth;

@@ -191,7 +191,7 @@ private:
             return bytes_of(std::get<GhostMarks>(data).touches);
         case Effect::mesh_contact: {
             const auto& meshes = std::get<MeshContacts<Real>>(data);
-            return bytes_of(meshes.entries, meshes.before);
+            return bytes_of(meshes.entries, meshes.before, meshes.found.manifolds);
         }
         case Effect::voxel_contact:
         case Effect::sphere_contact:
@@ -199,7 +199,7 @@ private:
             // They share their lists.
             if (!on_.has(effect) && on_.meets(kSolidContact)) return 0;
             const auto& solids = std::get<SolidContacts<Real>>(data);
-            return bytes_of(solids.entries, solids.before, solids.found.patches);
+            return bytes_of(solids.entries, solids.before, solids.found.manifolds);
         }
         case Effect::springs:
             return bytes_of(forces.springs, forces.spring_of, forces.first_spring, forces.group_of);

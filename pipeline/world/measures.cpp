@@ -127,14 +127,13 @@ private:
                 hash_.add(std::uint64_t{entry.part});
                 add_contact(pairs.keys[entry.pair], entry.contact);
             }
+            for (const auto& found : many.found.pairs)
+                for (std::uint32_t k = 0; k < found.count; ++k)
+                    add_found(CachedManifold<double>{many.found.manifolds[found.first + k].manifold,
+                                                     found.b_in_a, found.speculative_margin});
         };
         add_many(std::get<MeshContacts<Real>>(data));
-        const auto& solids = std::get<SolidContacts<Real>>(data);
-        add_many(solids);
-        for (const auto& found : solids.found.pairs)
-            for (std::uint32_t k = 0; k < found.count; ++k)
-                add_found(CachedManifold<double>{solids.found.patches[found.first + k].manifold,
-                                                 found.b_in_a, found.speculative_margin});
+        add_many(std::get<SolidContacts<Real>>(data));
     }
 
     template <class Contact>
@@ -225,6 +224,12 @@ std::size_t World::memory_bytes() const
             const auto& constraints = std::get<ContactConstraints<Real>>(chosen.data);
             const auto& methods = std::get<MethodPairs>(chosen.data);
             const auto& joined = std::get<JoinedContacts<Real>>(chosen.data);
+            const auto add_many = [&](const ManyContacts<Real>& many) {
+                sum += bytes(many.entries, many.before, many.found.pairs, many.found.manifolds,
+                             many.found_before.pairs, many.found_before.manifolds);
+            };
+            add_many(std::get<MeshContacts<Real>>(chosen.data));
+            add_many(std::get<SolidContacts<Real>>(chosen.data));
             const auto& sleeping = std::get<SleepingPairs>(chosen.data);
             const auto& asleep = std::get<SleepingContacts<Real>>(chosen.data);
             const auto& resting = std::get<RestingBodies>(chosen.data);

@@ -260,6 +260,42 @@ TEST(FindTriangles, MatchesLookingAtEveryTriangle)
     std::vector<std::uint32_t> found;
     find_triangles({}, {Vec3::Zero(), Vec3::Ones()}, found);
     EXPECT_TRUE(found.empty());
+
+    // Many at once, of two meshes and of none.
+    const Mesh other = built(cube()), nothing;
+    std::vector<TriangleSearch> searches(50);
+    for (std::size_t i = 0; i < searches.size(); ++i) {
+        const Vec3 middle = 3 * in_box(), half = 2 * in_box().cwiseAbs();
+        searches[i].mesh = i % 7 == 0 ? &nothing : i % 3 == 0 ? &other : &mesh;
+        searches[i].box = {middle - half, middle + half};
+        searches[i].found = {7};
+    }
+    find_triangles(searches);
+    for (const TriangleSearch& search : searches) {
+        std::vector<std::uint32_t> wanted;
+        find_triangles(*search.mesh, search.box, wanted);
+        EXPECT_EQ(search.found, wanted);
+    }
+}
+
+// Small boxes hold what they stand for, where that is a number that single precision has not.
+TEST(FindTriangles, SmallBoxesAreRoundedOutward)
+{
+    Soup soup = cube();
+    for (Vec3& vertex : soup.vertices) vertex = 0.1 * vertex + Vec3(1e5 / 3, -1e-9 / 3, 1e3 / 7);
+    const Mesh mesh = built(soup);
+    ASSERT_EQ(mesh.small_tree.size(), mesh.tree.size());
+    ASSERT_EQ(mesh.small_boxes.size(), mesh.triangles.size());
+    for (const Mesh::SmallBox& small : mesh.small_boxes) {
+        const Box3 box = triangle_box(mesh, small.first);
+        for (int k = 0; k < 3; ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            EXPECT_LE(double{small.lower[at]}, box.lower[k]);
+            EXPECT_GE(double{small.upper[at]}, box.upper[k]);
+            EXPECT_GT(double{std::nextafter(small.lower[at], 1e9F)}, box.lower[k]);
+            EXPECT_LT(double{std::nextafter(small.upper[at], -1e9F)}, box.upper[k]);
+        }
+    }
 }
 
 // Vertices and faces of an OBJ file; polygons become fans, texture and normal indices are skipped.

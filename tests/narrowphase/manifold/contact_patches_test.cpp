@@ -53,10 +53,10 @@ std::vector<ContactCandidate> clusters(Dice& dice)
     return candidates;
 }
 
-std::vector<PatchManifold> patches(std::vector<ContactCandidate> candidates,
-                                   double speculative_margin = kReach)
+std::vector<PartManifold> patches(std::vector<ContactCandidate> candidates,
+                                  double speculative_margin = kReach)
 {
-    std::vector<PatchManifold> out;
+    std::vector<PartManifold> out;
     EXPECT_EQ(make_patches(candidates, speculative_margin, 1.0, kDeep, out), 0U);
     return out;
 }
@@ -70,10 +70,10 @@ std::vector<std::uint32_t> features(const LocalManifold<double>& manifold)
 }
 
 // Every bit of it.
-bool same(const std::vector<PatchManifold>& a, const std::vector<PatchManifold>& b)
+bool same(const std::vector<PartManifold>& a, const std::vector<PartManifold>& b)
 {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-        bool alike = x.patch == y.patch && x.manifold.normal == y.manifold.normal
+        bool alike = x.part == y.part && x.manifold.normal == y.manifold.normal
             && x.manifold.count == y.manifold.count;
         for (std::size_t k = 0; alike && k < static_cast<std::size_t>(x.manifold.count); ++k) {
             const auto &p = x.manifold.points[k], &q = y.manifold.points[k];
@@ -84,10 +84,10 @@ bool same(const std::vector<PatchManifold>& a, const std::vector<PatchManifold>&
     });
 }
 
-bool same_points(const std::vector<PatchManifold>& a, const std::vector<PatchManifold>& b)
+bool same_points(const std::vector<PartManifold>& a, const std::vector<PartManifold>& b)
 {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-        return x.patch == y.patch && features(x.manifold) == features(y.manifold);
+        return x.part == y.part && features(x.manifold) == features(y.manifold);
     });
 }
 
@@ -168,7 +168,7 @@ TEST(ContactPatches, NormalsOfAPatchAreWithin8DegreesOfItsOwn)
             const Vec3 normal = (dice.point(1).normalized() + 1.2 * Vec3::UnitZ()).normalized();
             candidates.push_back({dice.point(1), normal, dice.between(-0.01, kReach), k});
         }
-        for (const PatchManifold& patch : patches(candidates))
+        for (const PartManifold& patch : patches(candidates))
             for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k) {
                 const auto& point = patch.manifold.points[k];
                 const ContactCandidate& candidate = candidates[point.feature];
@@ -192,7 +192,7 @@ TEST(ContactPatches, AnEndThatLeansMoreAndMoreTakesItsOwnNormalSmoothly)
         std::vector<ContactCandidate> candidates = grid(30, Vec3::UnitZ(), 1);
         const Vec3 normal(std::sin(lean), 0, std::cos(lean));
         candidates.push_back({Vec3(5, 0, 1), normal, -1e-3, 0});
-        for (const PatchManifold& patch : patches(candidates)) {
+        for (const PartManifold& patch : patches(candidates)) {
             const std::vector<std::uint32_t> held = features(patch.manifold);
             if (std::find(held.begin(), held.end(), 0U) == held.end()) continue;
             // A step leans by 0.001; in four degrees the normal makes up for twelve.
@@ -218,7 +218,7 @@ TEST(ContactPatches, AFlankAllRoundDoesNotStopAScrew)
         candidates.push_back({out + kLead * angle * Vec3::UnitZ(), normal, 0, i});
     }
     std::size_t points = 0, exact = 0;
-    for (const PatchManifold& patch : patches(candidates))
+    for (const PartManifold& patch : patches(candidates))
         for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k) {
             const Vec3 moves =
                 Vec3::UnitZ().cross(patch.manifold.points[k].position) + kLead * Vec3::UnitZ();
@@ -238,7 +238,7 @@ TEST(ContactPatches, TheDeepestOfEachGroupIsKept)
         const std::vector<ContactCandidate> candidates = clusters(dice);
         const auto found = patches(candidates);
         ASSERT_EQ(found.size(), 4U);
-        for (const PatchManifold& patch : found) {
+        for (const PartManifold& patch : found) {
             const Vec3& normal = patch.manifold.normal;
             double deepest = kReach, kept = kReach;
             for (const ContactCandidate& candidate : candidates)
@@ -259,9 +259,9 @@ TEST(ContactPatches, AGreatReachKeepsWhatIsFarApartYet)
     std::vector<ContactCandidate> candidates = grid(9, Vec3::UnitZ(), 0);
     for (ContactCandidate& candidate : candidates)
         candidate.separation = 0.1 * (candidate.position.x() + 1);
-    const auto furthest = [](const std::vector<PatchManifold>& found) {
+    const auto furthest = [](const std::vector<PartManifold>& found) {
         double most = 0;
-        for (const PatchManifold& patch : found)
+        for (const PartManifold& patch : found)
             for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k)
                 most = std::max(most, patch.manifold.points[k].separation);
         return most;
@@ -278,15 +278,14 @@ TEST(ContactPatches, TheOrderOfTouchesDoesNotMatter)
         for (int k = 0; k < 40; ++k)
             candidates.push_back({dice.point(1), dice.point(1).normalized(),
                                   dice.between(-0.01, kReach), dice.below(60)});
-        std::vector<PatchManifold> first, second;
+        std::vector<PartManifold> first, second;
         std::vector<ContactCandidate> shuffled = candidates;
         dice.shuffle(shuffled);
         const std::size_t left_out = make_patches(candidates, kReach, 1, kDeep, first);
         ASSERT_EQ(make_patches(shuffled, kReach, 1, kDeep, second), left_out);
         ASSERT_TRUE(same(first, second)) << "seed 63, set " << i;
         ASSERT_LE(first.size(), kMostManifolds);
-        for (std::size_t k = 1; k < first.size(); ++k)
-            ASSERT_LT(first[k - 1].patch, first[k].patch);
+        for (std::size_t k = 1; k < first.size(); ++k) ASSERT_LT(first[k - 1].part, first[k].part);
     }
 }
 
@@ -304,10 +303,10 @@ TEST(ContactPatches, AFrameTurnedByRightAnglesTurnsTheGroups)
         }
         const auto before = patches(candidates), after = patches(turned);
         ASSERT_EQ(before.size(), after.size());
-        for (const PatchManifold& patch : before)
+        for (const PartManifold& patch : before)
             ASSERT_TRUE(std::any_of(
                 after.begin(), after.end(),
-                [&](const PatchManifold& other) {
+                [&](const PartManifold& other) {
                     return (turn * patch.manifold.normal - other.manifold.normal).norm() < 1e-14;
                 }))
                 << "seed 64, set " << i;
@@ -352,8 +351,8 @@ TEST(ContactPatches, ANewPatchLeavesTheOthersTheirNames)
             candidates.push_back(candidate);
     const auto after = patches(candidates);
     ASSERT_EQ(after.size(), 5U);
-    EXPECT_TRUE(std::any_of(after.begin(), after.end(), [&](const PatchManifold& patch) {
-        return patch.patch == before[0].patch
+    EXPECT_TRUE(std::any_of(after.begin(), after.end(), [&](const PartManifold& patch) {
+        return patch.part == before[0].part
             && features(patch.manifold) == features(before[0].manifold);
     }));
 }
@@ -375,13 +374,13 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
                 overlapping += separation < 0 ? 1 : 0;
                 candidates.push_back({normal, normal, separation, feature});
             }
-    std::vector<PatchManifold> out;
+    std::vector<PartManifold> out;
     const std::size_t left_out = make_patches(candidates, kReach, 1, kDeep, out);
     // One that joins others may keep its normal to itself.
     ASSERT_GE(out.size(), kMostPatches);
     ASSERT_LE(out.size(), candidates.size());
     std::set<std::uint32_t> held;
-    for (const PatchManifold& patch : out)
+    for (const PartManifold& patch : out)
         for (const std::uint32_t feature : features(patch.manifold)) held.insert(feature);
     // Of those left out only what overlaps counts; a shallow one that joined others may be behind
     // them.
@@ -394,12 +393,12 @@ TEST(ContactPatches, WhatIsTooManyJoinsOrIsLeftOutAndCounted)
 
 // How far the touch furthest from any point that is kept is from the nearest of them.
 double least_covered(const std::vector<ContactCandidate>& candidates,
-                     const std::vector<PatchManifold>& found)
+                     const std::vector<PartManifold>& found)
 {
     double furthest = 0;
     for (const ContactCandidate& candidate : candidates) {
         double nearest = 10;
-        for (const PatchManifold& patch : found)
+        for (const PartManifold& patch : found)
             for (std::size_t k = 0; k < static_cast<std::size_t>(patch.manifold.count); ++k)
                 nearest = std::min(nearest,
                                    (patch.manifold.points[k].position - candidate.position).norm());
@@ -414,8 +413,8 @@ TEST(ContactPatches, OfAFastBodyHeldAllRoundPlacesBetweenTheEndsAreKeptToo)
     const std::vector<ContactCandidate> shaft = ring(400, std::numbers::pi / 2);
     // Three hundredths of size, and what places are told apart by.
     EXPECT_LE(least_covered(shaft, patches(shaft, 0.2)), 0.035);
-    const std::vector<PatchManifold> fast = patches(shaft, 0.2);
-    for (std::size_t k = 1; k < fast.size(); ++k) EXPECT_LT(fast[k - 1].patch, fast[k].patch);
+    const std::vector<PartManifold> fast = patches(shaft, 0.2);
+    for (std::size_t k = 1; k < fast.size(); ++k) EXPECT_LT(fast[k - 1].part, fast[k].part);
     EXPECT_LE(fast.size(), kMostManifolds);
     // Slow, four of each group are enough.
     EXPECT_GT(least_covered(shaft, patches(shaft)), 0.05);

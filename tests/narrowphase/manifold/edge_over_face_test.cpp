@@ -68,9 +68,8 @@ Seen seen_on_mesh(const Pose& plate)
     Shapes shapes;
     shapes.meshes = {ridge_mesh()};
     shapes.boxes = {{kPlate}};
-    std::vector<TriangleManifold<double>> found;
-    collide_mesh<double>({shapes, {ShapeKind::mesh, 0}, {ShapeKind::box, 0}, plate, kMargin},
-                         found);
+    std::vector<PartManifold> found;
+    collide_mesh({shapes, {ShapeKind::mesh, 0}, {ShapeKind::box, 0}, plate, kMargin}, found);
     Seen all{"mesh", {}};
     for (const auto& one : found) {
         const Seen here = seen("mesh", one.manifold, Pose{});

@@ -113,8 +113,8 @@ TEST(ConcaveEdges, MeetEveryPlaneInTime)
             const Vec3& corner = mesh.vertices[mesh.triangles[t][0]];
             exact = std::min(exact, reached(inward, inward.dot(center - corner) - 0.1));
         }
-        std::vector<TriangleManifold<double>> found;
-        collide_mesh<double>({shapes, kMesh, kBall, {center, Quat::Identity()}, margin}, found);
+        std::vector<PartManifold> found;
+        collide_mesh({shapes, kMesh, kBall, {center, Quat::Identity()}, margin}, found);
         for (const auto& one : found)
             told = std::min(told, reached(one.manifold.normal, one.manifold.points[0].separation));
         if (exact > 1) {

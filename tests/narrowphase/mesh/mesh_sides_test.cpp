@@ -4,6 +4,7 @@
 #include "cooking/hulls/hull.hpp"
 #include "cooking/repair/build_mesh.hpp"
 #include "cooking/repair/mesh_health.hpp"
+#include "narrowphase/mesh/near_triangles.hpp"
 #include "scene/catalog/sheets.hpp"
 #include "tests/support/dice.hpp"
 #include "throng/rotation.hpp"
@@ -67,17 +68,21 @@ struct Stage {
                   {"hull", {ShapeKind::hull, 0}, 0.4}};
     }
 
-    using Found = std::vector<TriangleManifold<double>>;
+    using Found = std::vector<PartManifold>;
     Found collide(const Guest& guest,
                   const Vec3& at,
                   const Found& before = {},
                   const Quat& turn = Quat::Identity()) const
     {
         std::vector<std::uint32_t> held;
-        for (const auto& one : before) held.push_back(one.triangle);
+        for (const auto& one : before) held.push_back(one.part);
         Found found;
-        collide_mesh<double>({shapes, {ShapeKind::mesh, 0}, guest.shape, {at, turn}, 0.01}, held,
-                             found);
+        const Pose pose{at, turn};
+        const PairInput<double> in{shapes, {ShapeKind::mesh, 0}, guest.shape, pose, 0.01};
+        NearTriangles near;
+        near.add(in);
+        near.find();
+        collide_mesh(in, held, near.of(0), found);
         return found;
     }
 };
@@ -106,7 +111,7 @@ TEST(MeshSides, AnOpenMeshPushesFromBothSides)
             SCOPED_TRACE(std::string(guest.name) + (side > 0 ? " in front" : " behind"));
             const auto found = stage.collide(guest, Vec3(0.3, 0.2, side * (guest.height - 0.05)));
             expect_push(found, side * Vec3::UnitZ(), 0.05);
-            for (const auto& one : found) EXPECT_EQ((one.triangle & kBehind) != 0, side < 0);
+            for (const auto& one : found) EXPECT_EQ((one.part & kBehind) != 0, side < 0);
         }
 }
 

@@ -38,19 +38,19 @@ deepest(const Shapes& shapes, ShapeRef other, const Pose& pose, double speculati
     return most;
 }
 
-std::vector<PatchManifold>
+std::vector<PartManifold>
 patches(const Shapes& shapes, ShapeRef other, const Pose& pose, double speculative_margin)
 {
-    std::vector<PatchManifold> out;
+    std::vector<PartManifold> out;
     EXPECT_EQ(collide_solid({shapes, kFirst, other, pose, speculative_margin}, out).left_out, 0U);
     return out;
 }
 
-const PatchManifold& deepest(const std::vector<PatchManifold>& all, double& separation)
+const PartManifold& deepest(const std::vector<PartManifold>& all, double& separation)
 {
     separation = 1e300;
-    const PatchManifold* most = nullptr;
-    for (const PatchManifold& patch : all)
+    const PartManifold* most = nullptr;
+    for (const PartManifold& patch : all)
         for (int k = 0; k < patch.manifold.count; ++k) {
             const double now = patch.manifold.points[static_cast<std::size_t>(k)].separation;
             if (now < separation) most = &patch;
@@ -150,7 +150,7 @@ TEST(VoxelPairs, BoxOnBoxIsExactWhereACornerOrAnEdgeMeetsAFace)
              {kSecond, ShapeRef{ShapeKind::box, 0}, ShapeRef{ShapeKind::hull, 0}}) {
             const auto found = patches(shapes, other, pose, voxel);
             double depth = 0;
-            const PatchManifold& patch = deepest(found, depth);
+            const PartManifold& patch = deepest(found, depth);
             // A step of depth: which of the deepest is told. What is still apart may be told by
             // what is round a rim, seen from 20 degrees aside; what is deep by a normal a tenth
             // aslant.
@@ -161,7 +161,7 @@ TEST(VoxelPairs, BoxOnBoxIsExactWhereACornerOrAnEdgeMeetsAFace)
             // Nothing is pushed sideways: what leans is round a rim, by its 20 degrees and the
             // grid's share. A flat face is held by its four corners.
             int points = 0;
-            for (const PatchManifold& one : found) {
+            for (const PartManifold& one : found) {
                 ASSERT_GT(one.manifold.normal.z(), 0.92) << "seed 93, box " << i;
                 points += one.manifold.count;
             }
@@ -238,7 +238,7 @@ TEST(VoxelPairs, ATorusTightRoundAPegTouchesAllRoundIt)
         EXPECT_NEAR(depth, separation, 0.1 * voxel);
         ASSERT_GE(found.size(), 6U);
         Vec3 sum = Vec3::Zero();
-        for (const PatchManifold& patch : found) {
+        for (const PartManifold& patch : found) {
             // Towards the axis, hardly along it.
             EXPECT_LT(std::abs(patch.manifold.normal.z()), 0.1);
             around += 1;
@@ -251,7 +251,7 @@ TEST(VoxelPairs, ATorusTightRoundAPegTouchesAllRoundIt)
     const auto found = patches(shapes, {ShapeKind::cylinder, 0},
                                {Vec3(0.15 + 0.4 * voxel, 0, 0), Quat::Identity()}, 0.5 * voxel);
     double depth = 0;
-    const PatchManifold& patch = deepest(found, depth);
+    const PartManifold& patch = deepest(found, depth);
     EXPECT_NEAR(depth, -0.4 * voxel, 0.1 * voxel);
     EXPECT_LT((patch.manifold.normal + Vec3::UnitX()).norm(), 0.1);
 }
@@ -348,7 +348,7 @@ TEST(VoxelPairs, WhatIsToldApartTouchesNothingUntilItHasComeSoMuchCloser)
         const ShapeRef kinds[] = {kSecond, {ShapeKind::capsule, 0}, {ShapeKind::box, 0}};
         const ShapeRef other = kinds[i % 3];
         const Pose pose{dice.point(2), dice.turn()};
-        std::vector<PatchManifold> out;
+        std::vector<PartManifold> out;
         const SolidAnswer answer =
             collide_solid({shapes, kFirst, other, pose, speculative_margin}, out);
         const double free = answer.apart - speculative_margin;
@@ -436,7 +436,7 @@ TEST(VoxelPairs, BodiesThatTrembleKeepTheirPoints)
             const auto now = patches(shapes, other, moved, 0.3 * voxel);
             bool same = now.size() == still.size();
             for (std::size_t p = 0; same && p < now.size(); ++p) {
-                same = now[p].patch == still[p].patch
+                same = now[p].part == still[p].part
                     && now[p].manifold.count == still[p].manifold.count;
                 for (std::size_t k = 0; same && k < std::size_t(now[p].manifold.count); ++k)
                     same = now[p].manifold.points[k].feature == still[p].manifold.points[k].feature;
@@ -472,7 +472,7 @@ TEST(VoxelPairs, AStaticMeshIsTouchedInFrontAlone)
         const Pose behind{-down * (1 + separation) + aside, turn};
         ASSERT_TRUE(patches(shapes, {ShapeKind::mesh, 0}, behind, voxel).empty());
 
-        std::vector<PatchManifold> stung;
+        std::vector<PartManifold> stung;
         const Pose tip{Vec3(dice.between(-0.3, 0.3), dice.between(-0.3, 0.3), -0.5 - separation),
                        Quat::Identity()};
         collide_solid({shapes, kSecond, {ShapeKind::mesh, 1}, tip, voxel}, stung);
@@ -490,7 +490,7 @@ TEST(VoxelPairs, WhatWasPressedIntoAStaticMeshIsStillInIt)
     const std::vector<Vec3> square = {{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}};
     shapes.meshes = {build_mesh(square, {{0, 1, 2}, {0, 2, 3}}).mesh};
     const auto found = [&](const Vec3& mesh_at, double pressed_in) {
-        std::vector<PatchManifold> all;
+        std::vector<PartManifold> all;
         collide_solid(
             {shapes, kFirst, {ShapeKind::mesh, 0}, Pose{mesh_at, Quat::Identity()}, voxel / 2}, all,
             pressed_in);
@@ -515,7 +515,7 @@ TEST(VoxelPairs, WhatWasPressedIntoAStaticMeshIsStillInIt)
         // What hangs over the rim went round it: no push but of what has the mesh over it.
         const auto half_over = found(up + Vec3(4.8, 0, 0), depth);
         ASSERT_FALSE(half_over.empty()) << depth;
-        for (const PatchManifold& patch : half_over)
+        for (const PartManifold& patch : half_over)
             EXPECT_LT((patch.manifold.normal - Vec3(0, 0, -1)).norm(), 1e-6) << depth;
     }
 }
