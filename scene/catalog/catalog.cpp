@@ -46,6 +46,12 @@ constexpr CatalogEntry kCatalog[] = {
     {"ball_cube",        216,  1, kMost, "SIZE balls in a cube that comes apart (SimBenchmark's 666)",    make_ball_cube},
     {"elastic_ball_cube", 216, 1, kMost, "SIZE balls in a cube from 1 m up that lose nothing (elastic 666)", make_elastic_ball_cube},
     {"kapla",            102,  1, kMost, "a tower of SIZE planks, 17 to a floor (SimBenchmark's Kapla)",  make_kapla},
+    {"washer",          8000,  1, kMost, "SIZE cubes in a ring with paddles that turns (Box3D)",          make_washer},
+    {"large_pyramid",   5050,  1, kMost, "up to SIZE cubes in one pyramid, one cube thick (Box3D)",       make_large_pyramid},
+    {"many_pyramids",  10780, 55, kMost, "up to SIZE cubes in pyramids of 55, one cube thick (Box3D)",    make_many_pyramids},
+    {"junkyard",       10584,  1, kMost, "SIZE stones in a yard in which a pillar goes round (Box3D)",    make_junkyard},
+    {"trees",             50,  1,  1000, "SIZE trees of 22 hulls that fall on waves of triangles (Box3D)", make_trees},
+    {"large_world",  1000000,  1, kMost, "SIZE static slabs, and a hundred balls that fall on them (Box3D)", make_large_world},
 };
 // clang-format on
 

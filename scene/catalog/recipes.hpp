@@ -54,6 +54,14 @@ Scene make_ball_cube(int size, std::uint64_t seed);
 Scene make_elastic_ball_cube(int size, std::uint64_t seed);
 Scene make_kapla(int size, std::uint64_t seed);
 
+// box3d_benchmarks.cpp
+Scene make_washer(int size, std::uint64_t seed);
+Scene make_large_pyramid(int size, std::uint64_t seed);
+Scene make_many_pyramids(int size, std::uint64_t seed);
+Scene make_junkyard(int size, std::uint64_t seed);
+Scene make_trees(int size, std::uint64_t seed);
+Scene make_large_world(int size, std::uint64_t seed);
+
 // crowds.cpp
 Scene make_crowd(int size, std::uint64_t seed);
 

@@ -39,6 +39,16 @@ std::size_t wanted_count(std::string_view name, int size)
     if (name == "stacks") return n / 10 * 10;
     if (name == "card_house") return (3 * n * n + n) / 2;
     if (name == "rolling") return n + 1;  // and the box
+    if (name == "many_pyramids") return std::max<std::size_t>(1, n / 55) * 55;
+    if (name == "large_world") {
+        const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(size)));
+        return std::min<std::size_t>(10, side) * std::min<std::size_t>(10, side);
+    }
+    if (name == "large_pyramid") {
+        std::size_t base = 1;
+        while ((base + 1) * (base + 2) / 2 <= n) ++base;
+        return base * (base + 1) / 2;
+    }
     if (name != "pyramid") return n;
     std::size_t total = 0;
     for (std::size_t m = 1; 20 * (total + m * m) <= 21 * n; ++m) total += m * m;  // 5% above
