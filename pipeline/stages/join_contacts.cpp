@@ -253,10 +253,7 @@ void join_contacts(const StepContext& context,
     joined.sources.clear();
     // Where nothing has a rim, and nobody has several shapes, no two meet twice.
     if (!context.has(Effect::seams) && !context.has(Effect::mesh_contact)) return;
-    const auto& parts = colliders.count;
-    if (!context.has(Effect::restitution)
-        && std::none_of(parts.begin(), parts.end(), [](std::uint32_t count) { return count > 1; }))
-        return;
+    if (!context.has(Effect::restitution) && !colliders.compounds) return;
     Joining<Real>(states, colliders, convex, meshes, solids, active, joined).run();
 }
 
