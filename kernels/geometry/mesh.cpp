@@ -61,9 +61,10 @@ bool go_on(TriangleSearch& search)
             const Mesh::SmallBox& child = mesh.small_tree[place];
             if (!may_overlap(search.small, child)) continue;
             search.waiting[search.count++] = place;
-            const auto& ahead = child.count == 0 ? mesh.small_tree : mesh.small_boxes;
+            const bool inner = child.count == 0;
+            const auto& ahead = inner ? mesh.small_tree : mesh.small_boxes;
             __builtin_prefetch(&ahead[child.first]);
-            __builtin_prefetch(&ahead[child.first + std::max(child.count, 2U) - 1]);
+            __builtin_prefetch(&ahead[child.first + (inner ? 1 : child.count - 1)]);
         }
         return true;
     }

@@ -4,6 +4,7 @@
 #include "kernels/math/turn_between.hpp"
 #include "narrowphase/dispatch.hpp"
 #include "narrowphase/mesh/mesh_sides.hpp"
+#include "narrowphase/mesh/triangle_contacts.hpp"
 #include "scene/catalog/closed_meshes.hpp"
 #include "scene/catalog/sheets.hpp"
 #include "tests/support/dice.hpp"
@@ -165,6 +166,49 @@ TEST(MeshPairs, SlidingOverSeamsMeetsNoBumps)
             }
         }
     }
+}
+
+// Every triangle that its shape touches is asked, whatever is told of it beforehand.
+TEST(MeshPairs, LeavesNoTriangleOutThatWouldTouch)
+{
+    constexpr double kMargin = 0.05;
+    Shapes shapes;
+    const std::vector<Slider> all = sliders(shapes);
+    RandomShapes random(43);
+    shapes.meshes = {grid_of(20, [&](int i, int j) {
+        return Vec3(0.4 * (i - 10), 0.4 * (j - 10), random.number(0, 0.3));
+    })};
+    const Mesh& mesh = shapes.meshes[0];
+    int touching = 0;
+    for (int round = 0; round < 400; ++round) {
+        const ShapeRef shape = all[static_cast<std::size_t>(round) % all.size()].shape;
+        const bool prism = shape.kind == ShapeKind::cylinder;  // its own, and another's each time
+        const Vec3 at = Vec3(0, 0, 0.55) + random.vector(-1, 1).cwiseProduct(Vec3(3, 3, 0.25));
+        const Pose pose{at, random.turn()};
+        const std::vector<PartManifold> found = touch_mesh(shapes, shape, pose, kMargin);
+        for (std::uint32_t t = 0; t < mesh.triangles.size() && !prism; ++t) {
+            const MeshTriangle triangle(mesh, t);
+            LocalManifold<double> alone;
+            if (shape.kind == ShapeKind::sphere) {
+                collide_triangle_ball(triangle, at, shapes.spheres[0].radius, kMargin, alone);
+            } else if (shape.kind == ShapeKind::capsule) {
+                const Vec3 half(0, 0, shapes.capsules[0].half_length);
+                collide_triangle_capsule(triangle, pose * Vec3(-half), pose * half,
+                                         shapes.capsules[0].radius, kMargin, alone);
+            } else {
+                collide_triangle_polytope(triangle, PolytopeShape(shapes, shape).view(), pose,
+                                          kMargin, alone);
+            }
+            if (alone.count == 0 || triangle.height(at) < 0) continue;
+            ++touching;
+            const auto same = std::find_if(found.begin(), found.end(),
+                                           [&](const PartManifold& one) { return one.part == t; });
+            ASSERT_NE(same, found.end()) << "seed 43, round " << round << ", triangle " << t;
+            EXPECT_EQ(same->manifold.count, alone.count);
+            EXPECT_EQ(same->manifold.normal, alone.normal);
+        }
+    }
+    EXPECT_GT(touching, 500);
 }
 
 TEST(MeshPairs, TiltedShapesStillGetTheFloorsNormal)
