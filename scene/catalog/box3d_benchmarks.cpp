@@ -37,8 +37,8 @@ HullShape prism(int sides, double radius, double height, const Vec3& foot)
     for (int i = 0; i < sides; ++i) {
         const Vec3 corner =
             turn(Vec3::UnitZ(), 2 * std::numbers::pi * i / sides) * Vec3(radius, 0, 0);
-        hull.points.push_back(foot + corner);
-        hull.points.push_back(foot + corner + Vec3(0, 0, height));
+        hull.points.emplace_back(foot + corner);
+        hull.points.emplace_back(foot + corner + Vec3(0, 0, height));
     }
     return hull;
 }
@@ -62,8 +62,8 @@ HullShape rock(double radius)
     for (int i = 0; i < kCorners; ++i) {
         const double z = 1 - (2 * i + 1.0) / kCorners;
         const double angle = 2 * std::numbers::pi * i / std::numbers::phi;
-        hull.points.push_back(radius
-                              * (turn(Vec3::UnitZ(), angle) * Vec3(std::sqrt(1 - z * z), 0, z)));
+        hull.points.emplace_back(radius
+                                 * (turn(Vec3::UnitZ(), angle) * Vec3(std::sqrt(1 - z * z), 0, z)));
     }
     return hull;
 }
