@@ -29,6 +29,18 @@ double extent_of(const ConvexCore<double>& core)
     return std::sqrt(most);
 }
 
+// A ball with all of a core in it, in its body's frame. A hull may be far from its frame's origin.
+struct BodyBall {
+    Vec3 center;
+    double radius;
+};
+
+BodyBall ball_of(const ConvexCore<double>& core, const Pose& local)
+{
+    if (core.hull == nullptr) return {local.position, extent_of(core)};
+    return {local * core.hull->center, core.hull->outer_radius};
+}
+
 // The same from a line through a point, along a unit direction.
 double extent_from_line(const ConvexCore<double>& core, const Vec3& on_line, const Vec3& along)
 {
@@ -96,6 +108,8 @@ MovingCore::MovingCore(const ConvexCore<double>& core, const MovingShape& moving
     : core_(core), trajectory_(moving.trajectory), local_(moving.local),
       outer_radius_(moving.local.position.norm() + extent_of(core))
 {
+    const BodyBall ball = ball_of(core, moving.local);
+    outer_radius_ = std::min(outer_radius_, ball.center.norm() + ball.radius);
     trajectory_.begin.position -= from;
     if (trajectory_.spin.isZero(0)) return;
     const Quat back = local_.orientation.conjugate();
@@ -229,14 +243,23 @@ void visit_triangles_in_way(const Mesh& mesh,
                             const Approach& approach,
                             const std::function<void(std::uint32_t)>& visit)
 {
+    const BodyBall ball = ball_of(core, other.local);
+    // Of a mesh that turns, what turns about is looked at as if it were all round its body.
+    const bool turns = on.trajectory.turns();
+    const Vec3 middle = turns ? Vec3(Vec3::Zero()) : ball.center;
     const auto seen_at = [&](double time) {
-        return (on.trajectory.at(time) * on.local).to_local(other.trajectory.at(time).position);
+        return (on.trajectory.at(time) * on.local).to_local(other.trajectory.at(time) * middle);
     };
-    double radius =
-        other.local.position.norm() + extent_of(core) + core.convex_radius + approach.margin;
+    const double arm = ball.center.norm(), time = approach.end - approach.begin;
+    // No curve leaves its chord by more than an eighth of what it bends by in the square of its
+    // time; and this one keeps to the body's middle, which goes straight.
+    const double bend = other.trajectory.angle() * other.trajectory.angle()
+        + other.trajectory.angular_acceleration();
+    const double beside = turns ? arm : std::min(2.0, bend * time * time / 8) * arm;
+    double radius = ball.radius + beside + core.convex_radius + approach.margin;
     const Vec3 from = seen_at(approach.begin);
     Vec3 way = seen_at(approach.end) - from;
-    if (on.trajectory.turns()) {
+    if (turns) {
         // As far as the mesh may turn under it, it may be anywhere.
         const double most = (other.trajectory.begin.position - on.trajectory.begin.position).norm()
             + other.trajectory.shift.norm() + on.trajectory.shift.norm();

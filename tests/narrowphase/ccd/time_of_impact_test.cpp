@@ -1,6 +1,9 @@
 #include "narrowphase/ccd/time_of_impact.hpp"
 
+#include "cooking/hulls/hull.hpp"
 #include "cooking/repair/build_mesh.hpp"
+#include "narrowphase/ccd/moving_cores.hpp"
+#include "scene/catalog/sheets.hpp"
 #include "tests/support/moving_pairs.hpp"
 
 #include <gtest/gtest.h>
@@ -236,6 +239,51 @@ TEST(TimeOfImpact, StopsBeforeASheetOfTriangles)
             bullet.trajectory.begin.position.y() = 1.01;
             EXPECT_EQ(time_of_impact(shapes, bullet, sheet, 0, 1, rule).state, ToiState::separated);
         }
+}
+
+// Of what is far from its body's middle, and from its own frame's origin, as the parts of a tree
+// that falls: no triangle is missed that would be met.
+TEST(TimeOfImpact, OfAPartFarOutIsThatOfAllTriangles)
+{
+    Dice dice(9);
+    const auto in_box = [&](double half) {
+        return Vec3(dice.between(-half, half), dice.between(-half, half),
+                    dice.between(-half, half));
+    };
+    int met = 0;
+    for (int i = 0; i < 300; ++i) {
+        MovingPair pair;
+        const TriangleSoup soup =
+            sheet_mesh(12, [&](int x, int y) { return Vec3(x - 6, y - 6, dice.between(0, 0.5)); });
+        pair.shapes.meshes = {build_mesh(soup.vertices, soup.triangles).mesh};
+        std::vector<Vec3> points;
+        const Vec3 off = in_box(3);
+        for (int k = 0; k < 12; ++k) points.push_back(off + in_box(0.3));
+        pair.shapes.hulls = {build_hull(points).hull};
+        pair.a.shape = {ShapeKind::mesh, 0};
+        pair.b.shape = {ShapeKind::hull, 0};
+        pair.b.local = {in_box(2), exponential(in_box(2))};
+        RigidTrajectory& way = pair.b.trajectory;
+        way = {{in_box(2) + Vec3(0, 0, 4), exponential(in_box(3))}, in_box(3), in_box(1.5)};
+        if (i % 3 == 0) way.spin = in_box(2);
+        const ImpactRule rule = impact_rule(ToiMethod::newton, 1e-4);
+        const Impact found = time_of_impact(pair.shapes, pair.a, pair.b, 0, 1, rule);
+
+        const ConvexCore<double> core = moving_core(pair.shapes, pair.b);
+        double least = 1;
+        for (const auto& [u, v, w] : pair.shapes.meshes[0].triangles) {
+            const auto& vertices = pair.shapes.meshes[0].vertices;
+            const Vec3 corners[] = {vertices[u], vertices[v], vertices[w]};
+            const MovingCores cores(convex_core_of_points(std::span<const Vec3>(corners)), pair.a,
+                                    core, pair.b);
+            const Impact alone = impact_of_cores(cores, 0, 1, rule);
+            if (alone.state != ToiState::separated) least = std::min(least, alone.time);
+        }
+        EXPECT_EQ(found.state == ToiState::separated, least == 1) << "seed 9, round " << i;
+        EXPECT_NEAR(found.time, least, 1e-3) << "seed 9, round " << i;
+        met += found.state == ToiState::hit ? 1 : 0;
+    }
+    EXPECT_GT(met, 40);
 }
 
 TEST(TimeOfImpact, FollowsAPlaneThatTurns)
