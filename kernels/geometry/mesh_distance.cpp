@@ -70,8 +70,7 @@ MeshPoint nearest_on_mesh(const Mesh& mesh, const Vec3& point, double limit, std
         std::uint32_t node;
         double distance2;
     };
-    // As deep as visit_triangles() in mesh.hpp, which says why.
-    std::array<OpenNode, 96> waiting;
+    std::array<OpenNode, kMostWaiting> waiting;
     std::size_t count = 0;
     if (!mesh.tree.empty()) waiting[count++] = {0, distance2_to(mesh.tree.front(), point)};
     MeshPoint nearest;
@@ -103,7 +102,7 @@ bool comes_within(const Mesh& mesh, const Vec3& point, double distance)
 {
     const double distance2 = distance * distance;
     if (!(distance >= 0)) return false;
-    std::array<std::uint32_t, 96> waiting;
+    std::array<std::uint32_t, kMostWaiting> waiting;
     std::size_t count = 0;
     if (!mesh.tree.empty()) waiting[count++] = 0;
     while (count > 0) {

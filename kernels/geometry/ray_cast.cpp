@@ -1,5 +1,6 @@
 #include "kernels/geometry/ray_cast.hpp"
 
+#include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/mesh_distance.hpp"
 #include "kernels/geometry/ray_passage.hpp"
 #include "kernels/geometry/support.hpp"
@@ -99,8 +100,7 @@ Nearest nearest_triangle(const Mesh& mesh, const LocalRay& ray, double earliest)
         double enter;
     };
     const MeshRay mesh_ray(mesh, ray);
-    // As deep as visit_triangles() in mesh.hpp, which says why.
-    std::array<OpenNode, 96> waiting;
+    std::array<OpenNode, kMostWaiting> waiting;
     std::size_t count = 0;
     waiting[count++] = {0, mesh_ray.enter(mesh.tree.front())};
     Nearest nearest{kInfinity, 0};

@@ -26,14 +26,22 @@ constexpr std::size_t kSides = 16;
 // Corners this part of the inner radius above the lowest are as low.
 constexpr double kAsLow = 1e-3;
 
-// Standing upright to within this sine, the way to turn a cylinder would be noise: it stays with
-// the body then. A hundredth keeps the rim's depth to 2e-4 of the radius.
+// Sine to within which a cylinder is upright: it keeps the rim's depth to 2e-4 of the radius.
 constexpr double kUpright = 0.01;
 
 // What is left out beforehand is so by more than this share of its reach: rounding.
 constexpr double kRounding = 1e-9;
 
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
+
+// Of the way round a cylinder, as cosine and sine, where it is turned to a direction in its frame.
+// Standing upright that would be noise: it stays with the body then.
+Eigen::Vector2d way_round(const Vec3& towards)
+{
+    const double across = length(towards.x(), towards.y());
+    if (across < kUpright) return {1, 0};
+    return {towards.x() / across, towards.y() / across};
+}
 
 // Cosine and sine of the angles of a circle cut in 2 * kSides, by halving and adding angles.
 std::array<Eigen::Vector2d, 2 * kSides> circle()
@@ -98,9 +106,8 @@ struct Prism {
           outer_radius(length(cylinder.radius, cylinder.half_length))
     {
         static const std::array<Eigen::Vector2d, 2 * kSides> points = circle();
-        const double across = length(towards.x(), towards.y());
-        const bool upright = across < kUpright;
-        const double c = upright ? 1 : towards.x() / across, s = upright ? 0 : towards.y() / across;
+        const Eigen::Vector2d way = way_round(towards);
+        const double c = way.x(), s = way.y();
         for (std::size_t i = 0; i < kSides; ++i) {
             const auto turned = [&](const Eigen::Vector2d& p) {
                 return Vec3(c * p.x() - s * p.y(), s * p.x() + c * p.y(), 0);
@@ -298,9 +305,8 @@ private:
     std::size_t lowest_of_cylinder(const MeshTriangle& triangle, std::array<Vec3, 4>& lowest) const
     {
         const Vec3 down = to_own_ * -triangle.normal;
-        const double across = length(down.x(), down.y());
-        const bool upright = across < kUpright;
-        const double x = upright ? 1 : down.x() / across, y = upright ? 0 : down.y() / across;
+        const Eigen::Vector2d way = way_round(down);
+        const double x = way.x(), y = way.y();
         std::array<Vec3, 8> corners;
         std::size_t count = 0;
         for (const double side : {-1.0, 1.0})

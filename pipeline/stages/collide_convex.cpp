@@ -137,7 +137,7 @@ private:
             if (a == box && b == box) return put_aside(i, pair, boxes);
         }
         if (contacts_.recycles && is_recycled(a, b)) return collide_or_recycle(i, pair, block);
-        collide_pair(i, pair, block);
+        collide_pair<Real>(i, pair, block);
     }
 
     bool collide_chosen(std::size_t i, const PairPlace& pair, std::size_t block)
@@ -182,22 +182,17 @@ private:
 
     void collide_in_double(std::size_t i, const PairPlace& pair, std::size_t block)
     {
-        PairState& state = contacts_.of_pair[i];
-        LocalManifold<double> manifold;
-        PairCache cache = state.cache;
-        collide({shapes_, colliders_.shape[pair.a], colliders_.shape[pair.b],
-                 seen_from_first(pair.a, pair.b, shapes_, colliders_, bounds_),
-                 pair.speculative_margin},
-                cache, manifold);
-        state.cache = cache;
-        chosen_.note_fallback(cache, block);
-        const bool touched = state.contact != PairState::kApart;
-        take(i, pair, false, manifold, block);
-        if (!contacts_.recycles || manifold.count == 0) return;
-        if (touched)
-            contacts_.found[state.contact] = nothing_found<Real>();
+        if (collide_pair<double>(i, pair, block) && contacts_.recycles)
+            keep_found(i, nothing_found<Real>());
+    }
+
+    void keep_found(std::size_t i, const CachedManifold<Real>& found)
+    {
+        const std::uint32_t contact = contacts_.of_pair[i].contact;
+        if (contact != PairState::kApart)
+            contacts_.found[contact] = found;
         else
-            begun_.found.push_back({static_cast<std::uint32_t>(i), nothing_found<Real>()});
+            begun_.found.push_back({static_cast<std::uint32_t>(i), found});
     }
 
     // Turning, in float: only where b is has to be told in double.
@@ -241,20 +236,23 @@ private:
             __builtin_prefetch(contact + byte, 1);
     }
 
-    void collide_pair(std::size_t i, const PairPlace& pair, std::size_t block)
+    // Whether they touch.
+    template <class From>
+    bool collide_pair(std::size_t i, const PairPlace& pair, std::size_t block)
     {
         // A plane goes second: it is seen from the other shape, so that numbers stay small.
         const bool turned = colliders_.shape[pair.a].kind == ShapeKind::plane;
         const std::uint32_t first = turned ? pair.b : pair.a, second = turned ? pair.a : pair.b;
         const Pose seen = seen_from_first(first, second, shapes_, colliders_, bounds_);
-        LocalManifold<Real> manifold;
+        LocalManifold<From> manifold;
         PairCache cache = contacts_.of_pair[i].cache;
-        collide({shapes_, colliders_.shape[first], colliders_.shape[second], rounded<Real>(seen),
-                 static_cast<Real>(pair.speculative_margin)},
+        collide({shapes_, colliders_.shape[first], colliders_.shape[second], rounded<From>(seen),
+                 static_cast<From>(pair.speculative_margin)},
                 cache, manifold);
         contacts_.of_pair[i].cache = cache;
         chosen_.note_fallback(cache, block);
         take(i, pair, turned, manifold, block);
+        return manifold.count > 0;
     }
 
     void collide_or_recycle(std::size_t i, const PairPlace& pair, std::size_t block)
@@ -273,10 +271,8 @@ private:
         if (found.manifold.count == 0)
             note_apart(pairs_.keys[i], double{cache.apart} - pair.speculative_margin,
                        contacts_.travels, contacts_.apart_until[i]);
-        else if (touched)
-            contacts_.found[state.contact] = found;
         else
-            begun_.found.push_back({static_cast<std::uint32_t>(i), found});
+            keep_found(i, found);
     }
 
     template <class From>

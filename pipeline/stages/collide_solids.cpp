@@ -15,62 +15,37 @@ constexpr std::size_t kGrain = 4;  // pairs a block: each costs microseconds at 
 
 // One call of the stage.
 template <class Real>
-class SolidCollision {
-public:
-    using Contacts = SolidContacts<Real>;
-    using Found = typename Contacts::Found;
-    using Entry = typename Contacts::Entry;
+class SolidCollision : ManyCollision<Real, SolidContacts<Real>> {
+    using Many = ManyCollision<Real, SolidContacts<Real>>;
 
-    SolidCollision(const StepContext& context,
-                   const Pairs& pairs,
-                   const Shapes& shapes,
-                   const Colliders& colliders,
-                   const Bounds& bounds,
-                   const Poses& poses,
-                   const BodyStates& states,
-                   Contacts& contacts)
-        : context_(context), pairs_(pairs), shapes_(shapes), colliders_(colliders), bounds_(bounds),
-          poses_(poses), states_(states), contacts_(contacts),
-          scale_(static_cast<Real>(impulse_scale(context)))
-    { }
+public:
+    using Many::Many;
 
     void run()
     {
-        refresh_contacts<Real>(
-            context_, pairs_, pairs_.on_solid, colliders_, bounds_, states_, kGrain, contacts_,
-            [](std::span<const PairOfBlock<Real>>) {}, [&](auto&&... all) { process(all...); });
+        this->refresh(
+            pairs_.on_solid, kGrain, [](std::span<const PairOfBlock>) {},
+            [&](const PairOfBlock& at, ContactEntries<Real>& out) { process(at, out); });
         contacts_.left_out = 0;
         for (const Found& found : contacts_.found.pairs) contacts_.left_out += found.left_out;
     }
 
 private:
-    // The two of a pair as they are collided: the solid first.
-    struct Sides {
-        std::uint32_t solid = 0, other = 0;
-        bool swapped = false;
-    };
+    using Many::bounds_, Many::colliders_, Many::contacts_, Many::pairs_, Many::shapes_;
+    using typename Many::Entry, typename Many::Found, typename Many::PairOfBlock,
+        typename Many::Sides;
 
-    Sides sides_of(const PairPlace& pair) const
+    void process(const PairOfBlock& at, ContactEntries<Real>& out)
     {
-        if (colliders_.shape[pair.a].kind == ShapeKind::solid) return {pair.a, pair.b, false};
-        return {pair.b, pair.a, true};
-    }
-
-    void process(const PairOfBlock<Real>& at, ContactEntries<Real>& out)
-    {
-        const Sides sides = sides_of(at.place);
-        const PairSight sight{pose_seen_from_a(shapes_, colliders_.shape[sides.other],
-                                               bounds_.placed[sides.solid],
-                                               bounds_.placed[sides.other]),
-                              colliders_.outer_radius[sides.solid],
-                              colliders_.outer_radius[sides.other], margin_of(at.place)};
-        const std::span kept = items_of(contacts_.found_before.pairs, old_place(pairs_, at.pair));
+        const Sides sides = this->sides_of(at.place, ShapeKind::solid);
+        const PairSight sight = this->sight_of(sides, margin_of(at.place));
+        const Found* const kept = this->kept_of(at);
         const std::size_t first = out.size();
         const auto take = [&](std::uint32_t part, const LocalManifold<double>& manifold) {
-            add(sides, part, manifold, out);
+            this->add(sides, part, manifold, out);
         };
-        if (!kept.empty() && may_recycle(kept.front(), sight, most_moved(kept.front(), sides)))
-            recycle_finds(contacts_, kept.front(), sight, at, take);
+        if (kept && this->may_recycle(*kept, sight, most_moved(*kept, sides)))
+            this->recycle(*kept, sight, at, take);
         else
             find_anew(sides, sight, pressed_in(kept, sides, sight.pose), at, take);
         for (std::size_t n = first; n < out.size(); ++n)
@@ -92,15 +67,12 @@ private:
     void find_anew(const Sides& sides,
                    const PairSight& sight,
                    double pressed_in,
-                   const PairOfBlock<Real>& at,
+                   const PairOfBlock& at,
                    const auto& take)
     {
         std::vector<PartManifold>& patches = contacts_.scratch.manifolds_of_block[at.block];
         const std::size_t first = patches.size();
-        const SolidAnswer answer =
-            collide_solid({shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
-                           sight.pose, sight.speculative_margin},
-                          patches, pressed_in);
+        const SolidAnswer answer = collide_solid(this->input_of(sides, sight), patches, pressed_in);
         for (std::size_t k = first; k < patches.size(); ++k)
             take(patches[k].part, patches[k].manifold);
         contacts_.scratch.found_of_block[at.block].push_back(
@@ -109,14 +81,13 @@ private:
     }
 
     // How deep what was found before is by now, m.
-    double pressed_in(std::span<const Found> kept, const Sides& sides, const Pose& pose) const
+    double pressed_in(const Found* kept, const Sides& sides, const Pose& pose) const
     {
-        if (kept.empty() || colliders_.shape[sides.other].kind != ShapeKind::mesh) return 0;
-        const Found& then = kept.front();
+        if (!kept || colliders_.shape[sides.other].kind != ShapeKind::mesh) return 0;
         double least = 0;
         LocalManifold<double> now;
-        for (const PartManifold& patch : manifolds_of(contacts_, then)) {
-            move_manifold({patch.manifold, then.b_in_a, then.speculative_margin}, pose, 0.0, now);
+        for (const PartManifold& patch : this->manifolds_of(*kept)) {
+            move_manifold({patch.manifold, kept->b_in_a, kept->speculative_margin}, pose, 0.0, now);
             for (int i = 0; i < now.count; ++i)
                 least = std::min(least, now.points[static_cast<std::size_t>(i)].separation);
         }
@@ -134,27 +105,9 @@ private:
     // A mesh is as thick as whatever lies behind it.
     double least_extent(const Sides& sides) const
     {
-        const double own = colliders_.inner_extent[sides.solid];
+        const double own = colliders_.inner_extent[sides.first];
         if (colliders_.shape[sides.other].kind == ShapeKind::mesh) return own;
         return std::min(own, colliders_.inner_extent[sides.other]);
-    }
-
-    void add(const Sides& sides,
-             std::uint32_t part,
-             const LocalManifold<double>& manifold,
-             ContactEntries<Real>& out) const
-    {
-        const std::uint32_t solid = colliders_.body[sides.solid];
-        const std::uint32_t other = colliders_.body[sides.other];
-        Entry& entry = out.emplace_back();
-        entry.part = part;
-        make_contact(manifold, bounds_.placed[sides.solid],
-                     anchor_origin(solid, other, states_, poses_),
-                     anchor_origin(other, solid, states_, poses_), entry.contact);
-        note_round_sides(shapes_, colliders_.shape[sides.solid], colliders_.shape[sides.other],
-                         bounds_.placed[sides.solid], bounds_.placed[sides.other], entry.contact);
-        // The answer is in the solid's frame, solid first; the pair may have it second.
-        if (sides.swapped) turn_round(entry.contact);
     }
 
     // From the contact of the same patch, or else from that which shares the most points.
@@ -170,7 +123,7 @@ private:
                 best = &before;
             }
         }
-        if (best != nullptr) carry_impulses(best->contact, scale_, contact);
+        if (best != nullptr) carry_impulses(best->contact, this->scale_, contact);
     }
 
     static int shared_points(const Contact<Real>& x, const Contact<Real>& y)
@@ -184,16 +137,6 @@ private:
                     : 0;
         return shared;
     }
-
-    const StepContext& context_;
-    const Pairs& pairs_;
-    const Shapes& shapes_;
-    const Colliders& colliders_;
-    const Bounds& bounds_;
-    const Poses& poses_;
-    const BodyStates& states_;
-    Contacts& contacts_;
-    Real scale_;
 };
 
 }  // namespace

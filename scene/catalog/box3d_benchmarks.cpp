@@ -4,6 +4,7 @@
 // Source: Catto, Box3D (2026), shared/benchmarks.c.
 #include "scene/catalog/parts.hpp"
 #include "scene/catalog/recipes.hpp"
+#include "scene/catalog/sheets.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -198,18 +199,9 @@ Scene make_trees(int size, std::uint64_t /*seed*/)
     const auto wave = [](double cycles) {
         return (turn(Vec3::UnitZ(), 2 * std::numbers::pi * cycles) * Vec3::UnitX()).y();
     };
-    TriangleSoup ground;
-    for (int x = 0; x <= kAcross; ++x)
-        for (int y = 0; y <= along; ++y)
-            ground.vertices.emplace_back(x - kAcross / 2.0, y - along / 2.0,
-                                         0.4 * wave(0.1 * x) * wave(0.05 * y));
-    for (int x = 0; x < kAcross; ++x)
-        for (int y = 0; y < along; ++y) {
-            const auto here = static_cast<std::uint32_t>(x * (along + 1) + y);
-            const auto beside = here + static_cast<std::uint32_t>(along + 1);
-            ground.triangles.push_back({here, beside, beside + 1});
-            ground.triangles.push_back({here, beside + 1, here + 1});
-        }
+    TriangleSoup ground = sheet_mesh(kAcross, along, [&](int x, int y) {
+        return Vec3(x - kAcross / 2.0, y - along / 2.0, 0.4 * wave(0.1 * x) * wave(0.05 * y));
+    });
     BodyDescription waves;
     waves.name = "waves";
     waves.shape = add_shape(scene, "waves", mesh_shape(std::move(ground)));
