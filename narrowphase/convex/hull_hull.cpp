@@ -4,7 +4,6 @@
 // plain arithmetic of double, and so do pairs in double. Where the vertices are many, GJK and EPA
 // tell which corners meet, and the axes of these are looked at alone.
 #include "kernels/geometry/polytope_contacts.hpp"
-#include "kernels/geometry/shape_bounds.hpp"
 #include "narrowphase/convex/pair_functions.hpp"
 #include "narrowphase/convex/query_gjk.hpp"
 #include "narrowphase/convex/wide/hull_kernels.hpp"
@@ -316,14 +315,15 @@ constexpr float kUnlike = 2e-3F;
 // False where float will not do.
 //
 //   over_face  whether it is two edges that cross, one of them all but along a face of the other
-bool meet_wide(const PairInput<float>& in,
+bool meet_wide(const WideShape& wide_a,
+               const WideShape& wide_b,
+               const PairInput<float>& in,
                PairCache& cache,
                LocalManifold<float>& out,
                bool& over_face)
 {
-    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
-    const WideShape wide_a(shapes, a), wide_b(shapes, b);
     if (!wide_a.suited() || !wide_b.suited()) return false;
+    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
     HullPair pair;
     pair.a = wide_a.view();
     pair.b = wide_b.view();
@@ -360,39 +360,82 @@ bool meet_wide(const PairInput<float>& in,
 }
 
 // Whether what is small to the other has to stand on its feet, for the step that is taken.
-bool may_spread(const PairInput<float>& in, const LocalManifold<float>& found)
+bool may_spread(const WidePolytope& a,
+                const WidePolytope& b,
+                float speculative_margin,
+                const LocalManifold<float>& found)
 {
-    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
-    const double outer_a = outer_radius(shapes, a), outer_b = outer_radius(shapes, b);
-    if (outer_a <= kFloor * outer_b && outer_b <= kFloor * outer_a) return false;
+    constexpr auto kMuch = static_cast<float>(kFloor);
+    if (a.outer <= kMuch * b.outer && b.outer <= kMuch * a.outer) return false;
     float deepest = 0;
     for (int i = 0; i < found.count; ++i)
         deepest = std::min(deepest, found.points[static_cast<std::size_t>(i)].separation);
-    const double inner = inner_extent(shapes, outer_a > outer_b ? b : a);
-    return is_long_step(double{speculative_margin}, double{deepest}, inner);
+    const float inner = a.outer > b.outer ? b.inner : a.inner;
+    return is_long_step(double{speculative_margin}, double{deepest}, double{inner});
+}
+
+// A little below the cosine that the plain way asks for, which has the last word.
+constexpr auto kAlongInFloat = static_cast<float>(kEdgesAlong - 1e-5);
+
+bool has_edge_along(const WidePolytope& shape, const Vec3T<float>& direction)
+{
+    return std::any_of(shape.edges, shape.edges + shape.edge_count, [&](const WideEdge& edge) {
+        const float cosine = edge.along[0] * direction.x() + edge.along[1] * direction.y()
+            + edge.along[2] * direction.z();
+        return std::abs(cosine) >= kAlongInFloat;
+    });
+}
+
+// Whether an edge of a face is along any of another polytope.
+//
+//   turn  from the axes of whose face it is to the other's
+bool has_edge_along(const WidePolytope& other,
+                    const WidePolytope& self,
+                    std::uint32_t face,
+                    const QuatT<float>& turn)
+{
+    const auto begin = self.sides() + self.face_begin()[face];
+    const auto end = self.sides() + self.face_begin()[face + 1];
+    return std::any_of(begin, end, [&](std::uint16_t side) {
+        const float* const along = self.edges[side].along;
+        return has_edge_along(other, turn * Vec3T<float>(along[0], along[1], along[2]));
+    });
 }
 
 // Whether it may be two edges that meet, side by side.
-bool may_be_edges(const PairInput<float>& in,
+bool may_be_edges(const WidePolytope& a,
+                  const WidePolytope& b,
+                  const QuatT<float>& b_in_a,
+                  float speculative_margin,
                   const PairCache& cache,
                   const LocalManifold<float>& found)
 {
-    const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
-    if (found.count == 0) return cache.apart <= speculative_margin;
-    const double inner = std::min(inner_extent(shapes, a), inner_extent(shapes, b));
+    const QuatT<float> a_in_b = b_in_a.conjugate();
+    if (found.count == 0) {
+        const LeadingFace leading = leading_face(cache);
+        if (cache.apart > speculative_margin || leading.face == LeadingFace{}.face) return false;
+        return leading.of_b ? has_edge_along(a, b, leading.face, b_in_a)
+                            : has_edge_along(b, a, leading.face, a_in_b);
+    }
+    const float radius = static_cast<float>(kRounded) * std::min(a.inner, b.inner);
     Vec3T<float> middle, along;
-    return is_strip(found, static_cast<float>(kRounded * inner), middle, along);
+    return is_strip(found, radius, middle, along) && has_edge_along(a, along)
+        && has_edge_along(b, a_in_b * along);
 }
 
 // As above, for what the wide kernels found.
-void finish_wide(const PairInput<float>& in,
+void finish_wide(const WidePolytope& wide_a,
+                 const WidePolytope& wide_b,
+                 const PairInput<float>& in,
                  const PairCache& cache,
                  bool over_face,
                  LocalManifold<float>& out)
 {
     const auto& [shapes, a, b, b_in_a, speculative_margin] = in;
-    const bool spreads = may_spread(in, out);
-    if (!spreads && !over_face && !may_be_edges(in, cache, out)) return;
+    const bool spreads = may_spread(wide_a, wide_b, speculative_margin, out);
+    if (!spreads && !over_face
+        && !may_be_edges(wide_a, wide_b, b_in_a.orientation, speculative_margin, cache, out))
+        return;
     const PolytopeShape shape_a(shapes, a), shape_b(shapes, b);
     const PolytopePair pair(shape_a.view(), shape_b.view(),
                             {b_in_a.position.cast<double>(), b_in_a.orientation.cast<double>()});
@@ -437,10 +480,11 @@ template <>
 void hull_hull<float>(const PairInput<float>& in, PairCache& cache, LocalManifold<float>& out)
 {
     bool over_face = false;
-    if (!meet_wide(in, cache, out, over_face))
+    const WideShape a(in.shapes, in.a), b(in.shapes, in.b);
+    if (!meet_wide(a, b, in, cache, out, over_face))
         meet_plain(in, true, cache, out);
     else
-        finish_wide(in, cache, over_face, out);
+        finish_wide(a.view(), b.view(), in, cache, over_face, out);
 }
 
 template <>

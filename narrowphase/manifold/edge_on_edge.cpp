@@ -8,8 +8,6 @@ namespace throng {
 
 namespace {
 
-// Cosine from which edges are along one another: a fortieth of a radian.
-constexpr double kAlong = 0.9997;
 // Of two faces, the cosine below which an edge is too sharp for a ball to fit in beside it.
 constexpr double kSharp = -0.9;
 // Cosine from which two faces lie on one another: a degree.
@@ -111,7 +109,7 @@ bool is_along(const PolytopeView& shape, std::size_t index, const Vec3& directio
     const Hull::Edge& edge = shape.edges[index];
     const Vec3 span = shape.vertices[edge.to] - shape.vertices[edge.from];
     const double part = span.dot(direction);
-    return part * part > kAlong * kAlong * span.squaredNorm();
+    return part * part > kEdgesAlong * kEdgesAlong * span.squaredNorm();
 }
 
 // The one nearest to a place, of those along a direction; kNone where there is none.
@@ -212,13 +210,13 @@ void meet_edge_on_edge(const Vec3T<Real>& half_a,
     if (manifold.count > 1) {
         Vec3T<Real> middle, along;
         if (!is_strip(manifold, radius, middle, along)) return;
-        if (!(along.cwiseAbs().maxCoeff(&axis_a) > Real(kAlong))) return;
-        if (!((turn.transpose() * along).cwiseAbs().maxCoeff(&axis_b) > Real(kAlong))) return;
+        if (!(along.cwiseAbs().maxCoeff(&axis_a) > Real(kEdgesAlong))) return;
+        if (!((turn.transpose() * along).cwiseAbs().maxCoeff(&axis_b) > Real(kEdgesAlong))) return;
         edges.keep_nearer(box_edge_near(half_a, axis_a, middle),
                           box_edge_near<Real>(half_b, axis_b, turn.transpose() * (middle - shift))
                               .moved(turn, shift));
     } else {
-        if (!(turn.cwiseAbs().maxCoeff(&axis_a, &axis_b) > Real(kAlong))) return;
+        if (!(turn.cwiseAbs().maxCoeff(&axis_a, &axis_b) > Real(kEdgesAlong))) return;
         for (int of_b = 0; of_b < 4; ++of_b) {
             const auto b = box_edge(half_b, axis_b, of_b > 1, of_b % 2 > 0).moved(turn, shift);
             edges.keep_nearer(box_edge_near(half_a, axis_a, b.middle), b);

@@ -15,6 +15,9 @@ namespace throng {
 /// Of the least half extent, or the ball inside: how far the edges of both are rounded.
 inline constexpr double kRounded = 0.05;
 
+/// Cosine from which edges are along one another: a fortieth of a radian.
+inline constexpr double kEdgesAlong = 0.9997;
+
 /// Whether a manifold is no wider than a width, m, across some line: then its middle, and the line.
 template <class Real>
 bool is_strip(const LocalManifold<Real>& manifold,

@@ -52,6 +52,11 @@ std::vector<EngineKind> engines_of(Plan& plan, TraceOption* trace)
         plan.peers.push_back(peer.name);
         kinds.push_back(std::move(peer));
     }
+    for (const bench::PeerAt& at : plan.peers_at) {
+        plan.peers.push_back(at.name);
+        for (EngineKind& peer : bench::engines_at(at, plan.threads))
+            kinds.push_back(std::move(peer));
+    }
     return kinds;
 }
 

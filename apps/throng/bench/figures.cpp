@@ -94,6 +94,16 @@ Comparison compare(const std::vector<const Run*>& ours, const std::vector<const 
     return made;
 }
 
+// Whether an engine has been run on so many threads.
+bool runs_on(const std::vector<std::vector<const Run*>>& engines,
+             const std::string& engine,
+             int threads)
+{
+    return std::any_of(engines.begin(), engines.end(), [&](const std::vector<const Run*>& runs) {
+        return runs.front()->engine == engine && runs.front()->threads == threads;
+    });
+}
+
 Spread efficiency_of(const std::vector<const Run*>& ours, const std::vector<const Run*>& alone)
 {
     const std::size_t steps = std::min(common_steps(ours), common_steps(alone));
@@ -270,7 +280,10 @@ std::vector<Figure> figures_of(const Case& made)
             const Run& run = *runs.front();
             const bool serial = other.engine == "throng" && other.threads == 1
                 && other.setting == run.setting && run.threads > 1;
-            if (other.engine != "throng" || (serial && other.beside == 0))
+            const bool peer = other.engine != "throng"
+                && (other.threads == run.threads
+                    || (other.threads == 1 && !runs_on(engines, other.engine, run.threads)));
+            if (peer || (serial && other.beside == 0))
                 figures.back().against.push_back(compare(runs, others));
             else if (serial && other.beside + 1 == run.threads)
                 figures.back().efficiency = efficiency_of(runs, others);

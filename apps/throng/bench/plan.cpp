@@ -48,6 +48,12 @@ constexpr Option kPlanOptions[] = {
     {"--peers", "A,B",
      "other engines to run in turn: bullet, ode, or none (default: those that were found when "
      "throng was built)"},
+    {"--peer-at", "NAME=DIR",
+     "another engine, built by yourself: box3d, jolt or physx, and the folder where it is "
+     "installed, "
+     "or of its source with a build in it; on each of --threads. Its adapter is built first, which "
+     "takes cmake and a compiler. May be given again",
+     true},
     {"--vary", "DIAL=A,B",
      "throng with each of these values of a dial, side by side; all ends are then judged with the "
      "scene's own value"},
@@ -101,6 +107,19 @@ std::vector<std::string> peers_of(std::string_view text)
             throw BadInput("--peers: wanted " + either_of(kKnownPeers)
                            + ", some of them with commas between, or none; not " + in_quotes(part));
         if (std::find(peers.begin(), peers.end(), part) == peers.end()) peers.emplace_back(part);
+    }
+    return peers;
+}
+
+std::vector<PeerAt> peers_at(const Options& options)
+{
+    std::vector<PeerAt> peers;
+    for (const std::string_view text : options.all("--peer-at")) {
+        PeerAt peer = peer_at(text);
+        const auto same = [&](const PeerAt& other) { return other.name == peer.name; };
+        if (std::any_of(peers.begin(), peers.end(), same))
+            throw BadInput("--peer-at: " + peer.name + " is given twice");
+        peers.push_back(std::move(peer));
     }
     return peers;
 }
@@ -219,6 +238,7 @@ Plan read_plan(const Options& options)
         throw BadInput("--efficiency: is of more threads than one; give --threads some");
     plan.peers_asked_for = options.has("--peers");
     plan.peers = peers_of(text_or(options, "--peers", "bullet,ode"));
+    plan.peers_at = peers_at(options);
     plan.varied = variation_of(options.text("--vary"));
     plan.lanes = lanes_of(options.text("--lanes"));
     if (!plan.errors || options.has("--steps"))

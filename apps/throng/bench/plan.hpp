@@ -1,6 +1,7 @@
 // Plan: what a benchmark is to run, as its options say.
 #pragma once
 
+#include "apps/throng/bench/peer_at.hpp"
 #include "apps/throng/options.hpp"
 #include "throng/catalog.hpp"
 
@@ -29,6 +30,7 @@ struct Plan {
     std::vector<int> threads;  // likewise
     std::vector<double> dts;   // s, in the order given; none: the scenes' own
     std::vector<std::string> peers;
+    std::vector<PeerAt> peers_at;  // built by the user, beside those
     Variation varied;
     std::vector<std::string> lanes;  // widths, each a run of its own; none: that of the process
     bool peers_asked_for = false;    // by name; else those that are there

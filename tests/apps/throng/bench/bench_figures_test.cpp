@@ -68,6 +68,22 @@ TEST(BenchFigures, SpeedUpIsOverOneThread)
     EXPECT_DOUBLE_EQ(figures[1].against[0].times.median, 2);
 }
 
+TEST(BenchFigures, PeersAreComparedOnAsManyThreads)
+{
+    const Case made = case_of(100,
+                              {run_of("throng", 1, 0, {2, 2}), run_of("throng", 2, 0, {1, 1}),
+                               run_of("bullet", 1, 0, {8, 8}), run_of("box3d", 1, 0, {6, 6}),
+                               run_of("box3d", 2, 0, {4, 4})});
+    const std::vector<Figure> figures = figures_of(made);
+    ASSERT_EQ(figures[0].against.size(), 2u);
+    EXPECT_DOUBLE_EQ(figures[0].against[0].times.median, 4);
+    EXPECT_DOUBLE_EQ(figures[0].against[1].times.median, 3);
+    ASSERT_EQ(figures[1].against.size(), 3u);  // itself on one, bullet on one, box3d on two
+    EXPECT_DOUBLE_EQ(figures[1].against[1].times.median, 8);
+    EXPECT_EQ(figures[1].against[2].threads, 2);
+    EXPECT_DOUBLE_EQ(figures[1].against[2].times.median, 4);
+}
+
 TEST(BenchFigures, RunsWithoutAStepAreLeftOut)
 {
     EXPECT_TRUE(figures_of(case_of(100, {run_of("throng", 1, 0, {})})).empty());

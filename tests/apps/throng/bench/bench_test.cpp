@@ -7,6 +7,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <sstream>
 #include <thread>
 
 namespace throng {
@@ -90,31 +92,72 @@ TEST(Bench, OneRunEndsAsTheCommandRunsIt)
     EXPECT_NE(bench.find(hash), std::string::npos) << bench;
 }
 
-// Every peer that this build has falls as throng does, and no overlap of it goes unseen.
-TEST(Bench, PeersFallAsThrongDoes)
+// Runs peers beside throng, who have to fall as it does, and no overlap of theirs goes unseen; how
+// many there were.
+std::size_t peers_that_fall(const std::string& scenes, std::vector<std::string> more)
 {
     const TestFolder folder;
-    const Outcome done = run_throng({"bench", "--scenes",
-                                     "pile,spheres,hulls,wall,pyramid,stacks,tumbler,crowd,sparse",
-                                     "--sizes", "30", "--threads", "1", "--steps", "15", "--repeat",
-                                     "1", "--json", folder / "b.json"});
-    ASSERT_EQ(done.code, 0) << done.err;
+    std::vector<std::string> words = {"bench",          "--scenes", scenes,     "--sizes", "30",
+                                      "--steps",        "15",       "--repeat", "1",       "--json",
+                                      folder / "b.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome done = run_throng(words);
+    EXPECT_EQ(done.code, 0) << done.err;
+    if (done.code != 0) return 0;
     const Json json(folder.read("b.json"));
     std::size_t peers = 0;
     for (const Node one : json.items(json.at("cases"))) {
         const std::vector<Node> figures = json.items(json.at(one, "figures"));
         const double height = json.number(json.at(figures[0], "quality"), "mean_height_m");
-        for (std::size_t i = 1; i < figures.size(); ++i) {
+        for (const Node figure : figures) {
+            if (json.text(figure, "engine") == "throng") continue;
             ++peers;
-            const Node quality = json.at(figures[i], "quality");
+            const Node quality = json.at(figure, "quality");
             EXPECT_NEAR(json.number(quality, "mean_height_m"), height, 0.03)
-                << json.text(one, "scene") << ' ' << json.text(figures[i], "engine");
+                << json.text(one, "scene") << ' ' << json.text(figure, "engine");
             EXPECT_LT(json.number(quality, "max_overlap_m"), 0.2);
-            EXPECT_EQ(json.number(figures[i], "steps"), 15);
-            EXPECT_FALSE(json.text(figures[i], "settings").empty());
+            EXPECT_EQ(json.number(figure, "steps"), 15);
+            EXPECT_FALSE(json.text(figure, "settings").empty());
         }
     }
-    if (peers == 0) GTEST_SKIP() << "no other engine was there when this was built";
+    return peers;
+}
+
+constexpr const char* kPeerScenes = "pile,spheres,hulls,wall,pyramid,stacks,tumbler,crowd,sparse";
+
+TEST(Bench, PeersFallAsThrongDoes)
+{
+    if (peers_that_fall(kPeerScenes, {"--threads", "1"}) == 0)
+        GTEST_SKIP() << "no other engine was there when this was built";
+}
+
+TEST(Bench, PeersThatUsersBuildAreSoughtWhereTheyAre)
+{
+    const TestFolder folder;
+    const auto trouble = [](const std::string& at) {
+        const Outcome done = run_throng({"bench", "--scenes", "pile", "--sizes", "20", "--threads",
+                                         "1", "--steps", "1", "--peer-at", at});
+        EXPECT_EQ(done.code, 2) << at;
+        return done.err;
+    };
+    EXPECT_NE(trouble("bullet=" + folder / "").find("wanted NAME=DIR"), std::string::npos);
+    EXPECT_NE(trouble("box3d=" + folder / "none").find("there is no folder"), std::string::npos);
+    EXPECT_NE(trouble("box3d=" + folder / "").find("no box3d/box3d.h in "), std::string::npos);
+    EXPECT_NE(trouble("jolt=" + folder / "").find("no JoltConfig.cmake in "), std::string::npos);
+    EXPECT_NE(trouble("physx=" + folder / "").find("no PxPhysicsAPI.h in "), std::string::npos);
+}
+
+// Where THRONG_TEST_PEERS has some, as `box3d=DIR jolt=DIR`.
+TEST(Bench, PeersThatUsersBuildFallAsThrongDoes)
+{
+    const char* const given = std::getenv("THRONG_TEST_PEERS");  // NOLINT(concurrency-mt-unsafe)
+    if (given == nullptr) GTEST_SKIP() << "THRONG_TEST_PEERS names no engine and its folder";
+    std::istringstream engines(given);
+    for (std::string engine; engines >> engine;)
+        EXPECT_EQ(peers_that_fall(kPeerScenes,
+                                  {"--threads", "1,2", "--peers", "none", "--peer-at", engine}),
+                  18u)
+            << engine;
 }
 
 TEST(Bench, ErrorsAreToldBesideTimes)
