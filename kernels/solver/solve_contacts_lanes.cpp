@@ -192,16 +192,39 @@ struct Flag {
     static constexpr bool kValue = value;
 };
 
-// Calls body(turns, place, first lane) for each group of lanes of the blocks.
-template <class Real, class Body>
-void for_lanes(std::size_t begin, std::size_t end, bool turns, Body body)
+// Calls body(numbers, turns, place, first lane) for the lanes of a block from `at` on, where one of
+// them changes a body.
+template <class L, class Real, class Body>
+void for_group(
+    const ContactConstraintWide<Real>& block, bool turns, std::size_t place, int at, Body body)
 {
-    for (std::size_t place = begin; place < end; ++place)
-        for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
-            if (turns)
-                body(Flag<true>{}, place, at);
-            else
-                body(Flag<false>{}, place, at);
+    const unsigned changes = (unsigned{block.writes_a} | block.writes_b) >> at;
+    if ((changes & ((1u << L::kWidth) - 1)) == 0) return;
+    if (turns)
+        body(L{}, Flag<true>{}, place, at);
+    else
+        body(L{}, Flag<false>{}, place, at);
+}
+
+// The same for all lanes of the blocks. Where a body meets very many, blocks have hardly a lane
+// each: these are done by themselves.
+template <class Real, class Body>
+void for_lanes(const ContactConstraintsView<Real>& constraints,
+               std::size_t begin,
+               std::size_t end,
+               bool turns,
+               Body body)
+{
+    constexpr int kFew = 2;
+    for (std::size_t place = begin; place < end; ++place) {
+        const ContactConstraintWide<Real>& block = constraints.blocks[place];
+        if (__builtin_popcount(unsigned{block.writes_a} | block.writes_b) <= kFew)
+            for (int at = 0; at < kBlock; ++at)
+                for_group<Wide<Real, 1>>(block, turns, place, at, body);
+        else
+            for (int at = 0; at < kBlock; at += Lanes<Real>::kWidth)
+                for_group<Lanes<Real>>(block, turns, place, at, body);
+    }
 }
 
 template <class Real>
@@ -210,9 +233,10 @@ void warm_start(const ContactConstraintsView<Real>& constraints,
                 std::size_t end,
                 const SolverIteration<Real>& iteration)
 {
-    for_lanes<Real>(begin, end, iteration.turns, [&](auto turns, std::size_t place, int at) {
-        warm_start_lanes<Lanes<Real>, turns.kValue>(constraints, place, at, iteration);
-    });
+    const auto start = [&](auto numbers, auto turns, std::size_t place, int at) {
+        warm_start_lanes<decltype(numbers), turns.kValue>(constraints, place, at, iteration);
+    };
+    for_lanes(constraints, begin, end, iteration.turns, start);
 }
 
 // Asks for the bodies of a block before it is its turn: they lie anywhere, so the machine cannot
@@ -234,13 +258,15 @@ void solve(const ContactConstraintsView<Real>& constraints,
            std::size_t end,
            const SolverIteration<Real>& iteration)
 {
-    for_lanes<Real>(begin, end, iteration.turns, [&](auto turns, std::size_t place, int at) {
+    const auto iterate = [&](auto numbers, auto turns, std::size_t place, int at) {
+        using L = decltype(numbers);
         if (at == 0 && place + 1 < end) fetch_bodies(constraints, place + 1);
         if (constraints.blocks[place].points == 1 && !iteration.has_rolling_friction)
-            solve_lanes<Lanes<Real>, turns.kValue, 1>(constraints, place, at, iteration);
+            solve_lanes<L, turns.kValue, 1>(constraints, place, at, iteration);
         else
-            solve_lanes<Lanes<Real>, turns.kValue, 4>(constraints, place, at, iteration);
-    });
+            solve_lanes<L, turns.kValue, 4>(constraints, place, at, iteration);
+    };
+    for_lanes(constraints, begin, end, iteration.turns, iterate);
 }
 
 template <class Real>
@@ -250,10 +276,11 @@ bool apply_restitution(const ContactConstraintsView<Real>& constraints,
                        const SolverIteration<Real>& iteration)
 {
     bool any = false;
-    for_lanes<Real>(begin, end, iteration.turns, [&](auto turns, std::size_t place, int at) {
-        any |=
-            apply_restitution_lanes<Lanes<Real>, turns.kValue>(constraints, place, at, iteration);
-    });
+    const auto bounce = [&](auto numbers, auto turns, std::size_t place, int at) {
+        using L = decltype(numbers);
+        any |= apply_restitution_lanes<L, turns.kValue>(constraints, place, at, iteration);
+    };
+    for_lanes(constraints, begin, end, iteration.turns, bounce);
     return any;
 }
 

@@ -46,6 +46,13 @@ void for_widths(Check check)
     }
 }
 
+// Lanes that nobody uses hold 0, of whichever sign: who skips them leaves it as it was.
+template <class Real>
+void drop_signs_of_unused(BlockCase<Real>& of, int lanes)
+{
+    for (int lane = lanes; lane < kBlock; ++lane) of.block().torsional_impulse.at[lane] += Real(0);
+}
+
 template <class Real>
 void check_contacts(const SolveKernels<Real>& scalar,
                     const SolveKernels<Real>& wide,
@@ -69,6 +76,8 @@ void check_contacts(const SolveKernels<Real>& scalar,
                 BlockCase<Real> broad = narrow;
                 const SolverIteration<Real> iteration = given::random_iteration<Real>(random, wish);
                 const auto expect_same = [&](const char* after) {
+                    drop_signs_of_unused(narrow, lanes);
+                    drop_signs_of_unused(broad, lanes);
                     ASSERT_TRUE(same_bits(narrow.constraints, broad.constraints))
                         << after << " of " << wide.name << ", seed " << seed << ", " << lanes
                         << " lanes, " << points << " points";
