@@ -338,8 +338,10 @@ struct ContactConstraints {
     std::vector<SolverAcceleration<Real>> accelerations;
     enum class Settled : std::uint8_t { no, yes, lost };
     std::vector<Settled> settled;
+    /// roomy_steps  in a row, with far more room than constraints
     struct Scratch {
         Wavefront wave;
+        int roomy_steps = 0;
     } scratch;
 };
 

@@ -2,6 +2,7 @@
 // contacts.
 #include "kernels/math/rotation.hpp"
 #include "kernels/parallel/blocks.hpp"
+#include "kernels/parallel/capacity.hpp"
 #include "kernels/solver/solver_bodies.hpp"
 #include "pipeline/forces/velocity_lag.hpp"
 #include "pipeline/step/stages.hpp"
@@ -184,6 +185,25 @@ std::uint32_t place_points(const Layout& layout, ContactConstraints<Real>& const
     return points;
 }
 
+// A crowd that lands has half as many blocks again as when it lies. Room that has been idle for a
+// second is given back; not at once, as heaps are torn by what comes and goes.
+template <class Real>
+void give_back_room(std::size_t blocks, std::size_t points, ContactConstraints<Real>& constraints)
+{
+    constexpr int kPatience = 60;
+    constexpr std::size_t kFew = 16;
+    int& roomy = constraints.scratch.roomy_steps;
+    roomy = constraints.blocks.capacity() > blocks + blocks / 3 + kFew ? roomy + 1 : 0;
+    if (roomy < kPatience) return;
+    roomy = 0;
+    const auto drop = [](auto&... lists) { (std::decay_t<decltype(lists)>().swap(lists), ...); };
+    drop(constraints.blocks, constraints.points, constraints.restitutions,
+         constraints.surface_velocities, constraints.turning_arms, constraints.point_frictions,
+         constraints.rolling_frictions);
+    reserve_closely(constraints.blocks, blocks);
+    reserve_closely(constraints.points, points);
+}
+
 // Lists that tell of what is called for.
 template <class Real>
 void make_room(const SolverParameters& parameters,
@@ -194,6 +214,7 @@ void make_room(const SolverParameters& parameters,
     const std::size_t blocks = layout.points.size();
     const auto when = [](bool asked, std::size_t count) { return asked ? count : 0; };
     const std::uint32_t points = place_points(layout, constraints);
+    give_back_room(blocks, points, constraints);
     constraints.blocks.resize(blocks);
     constraints.points.resize(points);
     constraints.restitutions.resize(when(calls.effects.has(Effect::restitution), blocks));
@@ -226,7 +247,7 @@ void prepare_constraints(const StepContext& context,
     lag_velocities(context, forces, masses, layout, flights, velocities);
     const IslandCalls calls = called_for(layout);
     const std::size_t bodies = layout.body_of_solver_index.size();
-    constraints.bodies.resize(bodies);
+    resize_closely(constraints.bodies, bodies);
     const auto fill = [&](std::uint32_t body, std::size_t solver_index, std::size_t = 0) {
         fill_body(body, poses, velocities, masses, states, constraints.bodies[solver_index]);
     };
@@ -236,7 +257,7 @@ void prepare_constraints(const StepContext& context,
         fill(layout.body_of_solver_index[at], at);
 
     const bool gyroscopic = calls.effects.has(Effect::gyroscopic);
-    constraints.inertias.resize(gyroscopic ? bodies : 0);
+    resize_closely(constraints.inertias, gyroscopic ? bodies : 0);
     constraints.precesses.assign(gyroscopic ? bodies : 0, 0);
     const auto fill_inertia_of = [&](std::uint32_t body, std::size_t solver_index) {
         auto& inertia = constraints.inertias[solver_index];

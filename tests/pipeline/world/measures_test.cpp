@@ -96,5 +96,18 @@ TEST(Measures, MemoryGrowsWithTheBodies)
     EXPECT_GT(large.memory_bytes(), small.memory_bytes());
 }
 
+TEST(Measures, RoomThatIsIdleForLongIsGivenBack)
+{
+    World world(find_scene("stacks")->make(500, kDefaultSeed), 1);
+    for (int i = 0; i < 10; ++i) world.step();
+    const std::size_t standing = world.memory_bytes();
+    world.set_gravity(Vec3::Zero());
+    for (const BodyId body : world.bodies())
+        world.set_velocity(body, Vec3(0, 0, world.pose(body).position.z()), Vec3::Zero());
+    for (int i = 0; i < 90; ++i) world.step();
+    ASSERT_EQ(world.report().contacts, 0u);
+    EXPECT_LT(world.memory_bytes() + 500 * 200, standing);  // B
+}
+
 }  // namespace
 }  // namespace throng
