@@ -75,6 +75,7 @@ void case_attracted_heaps(CaseBench& bench)
         {.setting = "default"},
         {.setting = "default, dt 1/240", .choose = [](Settings& s) { s.dt = 1.0 / 240; }},
         {.setting = "default, 16 substeps", .choose = [](Settings& s) { s.substeps = 16; }},
+        {.setting = "default, 32 substeps", .choose = [](Settings& s) { s.substeps = 32; }},
         {.setting = "default, far off", .off = Vec3(3e4, -1e4, 2e4)},
         {.setting = "escalation=off",
          .choose = [](Settings& s) { s.escalation = Escalation::off; }},

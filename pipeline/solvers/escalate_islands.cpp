@@ -16,6 +16,10 @@ namespace {
 constexpr double kByTwo = 4 * kStrained, kByFour = 16 * kStrained;
 constexpr double kFinestSubstep = 5e-5;  // s
 
+// Contacts are those of the step's beginning: of bodies that go far in it, finer substeps hold on
+// to what is no longer so, and give energy.
+constexpr int kMostSubsteps = 64;  // in a step
+
 // Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 32 ms
 // of one core. An exact solve is counted as so many substeps.
 constexpr std::size_t kBudget = 1 << 17, kExactCost = 256;
@@ -67,7 +71,9 @@ Effort that_fits(Effort effort, std::size_t left, const StepContext& context, co
 {
     while (effort.times > 1
            && (cost(effort) > left
-               || (!effort.direct && context.substep() / effort.times < kFinestSubstep))) {
+               || (!effort.direct
+                   && (context.substep() / effort.times < kFinestSubstep
+                       || context.substeps * effort.times > kMostSubsteps)))) {
         effort.times = fewer(effort.times);
         effort.direct = false;
     }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace throng {
 namespace {
@@ -40,6 +41,29 @@ TEST(Escalation, HoldsAHeavyBoxOnALightOneThatFallsWithoutIt)
     EXPECT_LT(height_of_top(left), 1);
     EXPECT_GT(held.report().islands_escalated, 100u);
     EXPECT_EQ(left.report().islands_escalated, 0u);
+}
+
+TEST(Escalation, CutsNoStepIntoMoreThanSixtyFour)
+{
+    constexpr std::uint64_t kExact = 256;  // what an exact solve counts as
+    std::set<std::uint64_t> cuts;          // substeps of islands that were cut finer
+    for (const int substeps : {1, 4, 5, 16, 32, 64, 100})
+        for (const double ratio : {100, 1000, 10'000, 100'000}) {
+            Scene scene = heavy_on_light(ratio);
+            scene.settings.substeps = substeps;
+            World world(scene);
+            std::uint64_t before = 0;
+            for (int i = 0; i < 60; ++i) {
+                world.step();
+                const std::uint64_t work = world.report().escalation_work - before;
+                before += work;
+                if (work == 0 || world.report().manifolds == 0) continue;
+                const std::uint64_t more = work / world.report().manifolds;
+                if (more != kExact) cuts.insert(more + static_cast<std::uint64_t>(substeps));
+            }
+        }
+    EXPECT_TRUE(cuts.contains(64));
+    EXPECT_EQ(*cuts.rbegin(), 64u);
 }
 
 TEST(Escalation, IsCalledForByWhoIsStubbornAndByNobodyElse)
