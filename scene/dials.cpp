@@ -310,7 +310,7 @@ std::vector<Dial> make_dials()
             "a shorter step is more exact in everything and costs a whole step each; in float down to substeps of 1e-5 s"),
         number_dial("substeps", "a whole number from 1 to 1000", "", set_substeps, get_substeps,
             "more substeps make contacts stiffer and motion finer, and cost a solve each"),
-        whole_dial<&S::iterations, 1, 100000>("iterations", "auto, or a whole number: solver iterations a substep (soft_step 1, and 16 in a world's first step; pgs 20, factorisations of direct at most 200)",
+        whole_dial<&S::iterations, 1, 100000>("iterations", "auto, or a whole number: solver iterations a substep (soft_step 1, and 16 in a world's first step; pgs 20, factorisations of direct at most 400)",
             "", "more iterations leave less error in the velocities, and cost a sweep of all constraints each"),
         whole_dial<&S::relax_iterations, 1, 100>("relax_iterations", "auto (2 where most contacts have three points or four, as in towers and walls, and from 17 substeps on, else 1; up to 8 in escalated islands, one for twelve contacts), or a whole number: iterations a substep after bodies have moved",
             "", "a second iteration leaves towers a hundredth of their energy, and heaps no less; each is a sweep of all constraints"),

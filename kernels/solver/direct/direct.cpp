@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace throng {
 
@@ -56,6 +57,7 @@ struct DirectSolver::Work {
     DirectAnswer answer;
     DirectEffort effort;
     int left = 0;          // steps
+    int kept = 0;          // of them, for polish()
     bool solvable = true;  // for certain, as no point is asked to part
 
     double done() const { return kDone * effort.enough; }
@@ -69,6 +71,7 @@ struct DirectSolver::Work {
     bool pivot_and_hold();
     bool take_springs(int most);
     void find();
+    void polish();
     void sweep_what_throws();
 };
 
@@ -197,6 +200,17 @@ void DirectSolver::Work::find()
     take_springs(left);
 }
 
+// Where the steps have run out beside the answer some more lead there, from the best so far.
+void DirectSolver::Work::polish()
+{
+    if (!(answer.residual > kDirectResidual)) return;
+    left += std::exchange(kept, 0);
+    go_back_to_best();
+    if (sweep_and_hold()) return;
+    go_back_to_best();
+    take_springs(left);
+}
+
 // Where steps run out along the path, its impulses are nobody's answer, and may give energy. What
 // they only take too much of is left: sweeps come nearer to the law and let more sink in.
 void DirectSolver::Work::sweep_what_throws()
@@ -228,15 +242,17 @@ DirectAnswer DirectSolver::solve(std::span<DirectBody> bodies,
     work.best.assign(work.island.cones.size(), ConeVector{});
     work.answer.residual = kInfinite;
     work.effort = effort;
-    work.left = effort.steps;
+    work.kept = effort.pivots ? effort.steps / 2 : 0;
+    work.left = effort.steps - work.kept;
     work.solvable = std::all_of(points.begin(), points.end(),
                                 [](const DirectPoint& point) { return !(point.least > 0); });
     work.find();
+    if (work.kept > 0) work.polish();
     work.sweep_what_throws();
     work.go_back_to_best();
     work.island.give(bodies, points);
     if (!is_finite(bodies, points)) work.answer.residual = kInfinite;
-    work.answer.steps = effort.steps - work.left;
+    work.answer.steps = effort.steps - work.left - work.kept;
     return work.answer;
 }
 
