@@ -5,6 +5,7 @@
 // of mass.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +32,8 @@ struct Shape {
     /// It is where its body is, turned as its body is.
     bool is_centered() const
     {
-        const double extent = std::abs(size[0]) > 0 ? std::abs(size[0]) : 1;
+        const double most = std::max({std::abs(size[0]), std::abs(size[1]), std::abs(size[2])});
+        const double extent = most > 0 ? most : 1;
         bool centered = true;
         for (int k = 0; k < 3; ++k)
             centered = centered && std::abs(local.position[k]) <= 1e-9 * extent

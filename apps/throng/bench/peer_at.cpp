@@ -55,9 +55,9 @@ private:
 // Runs a program with what it says appended to a file. False where it fails or is not there.
 bool run(std::vector<std::string> words, const fs::path& log)
 {
-    std::vector<char*> passed;
-    for (std::string& word : words) passed.push_back(word.data());
-    passed.push_back(nullptr);
+    std::vector<char*> passed(words.size() + 1, nullptr);
+    std::transform(words.begin(), words.end(), passed.begin(),
+                   [](std::string& word) { return word.data(); });
     posix_spawn_file_actions_t actions;
     if (::posix_spawn_file_actions_init(&actions) != 0) return false;
     ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
@@ -127,7 +127,7 @@ const adapters::Door& build(const PeerAt& peer)
     void* const door = module == nullptr ? nullptr : ::dlsym(module, adapters::kAdapterSymbol);
     if (door == nullptr)
         throw BadInput("--peer-at: the adapter for " + peer.name
-                       + " cannot be loaded: " + ::dlerror());
+                       + " cannot be loaded: " + ::dlerror());  // NOLINT(concurrency-mt-unsafe)
     return *reinterpret_cast<adapters::AdapterFunction>(door)();
 }
 
@@ -318,6 +318,7 @@ std::vector<EngineKind> engines_at(const PeerAt& peer, const std::vector<int>& t
 {
     const adapters::Door& door = build(peer);
     std::vector<EngineKind> kinds;
+    kinds.reserve(threads.size());
     for (const int count : threads)
         kinds.push_back(
             {peer.name, "", count, [&door, name = peer.name, count](const Scene& scene) {
