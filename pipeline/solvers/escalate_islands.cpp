@@ -16,8 +16,8 @@ namespace {
 constexpr double kByTwo = 4 * kStrained, kByFour = 16 * kStrained;
 constexpr double kFinestSubstep = 5e-5;  // s
 
-// Contacts are those of the step's beginning: of bodies that go far in it, finer substeps hold on
-// to what is no longer so, and give energy.
+// Contacts are those of the step's beginning: of bodies that go by many times their size in it, as
+// they do round an attractor, finer substeps hold on to what is no longer so, and give energy.
 constexpr int kMostSubsteps = 64;  // in a step
 
 // Contacts times substeps that all stubborn islands of a step may cost beyond the usual: some 32 ms
@@ -73,7 +73,8 @@ Effort that_fits(Effort effort, std::size_t left, const StepContext& context, co
            && (cost(effort) > left
                || (!effort.direct
                    && (context.substep() / effort.times < kFinestSubstep
-                       || context.substeps * effort.times > kMostSubsteps)))) {
+                       || (context.has(Effect::attractors)
+                           && context.substeps * effort.times > kMostSubsteps))))) {
         effort.times = fewer(effort.times);
         effort.direct = false;
     }
