@@ -5,7 +5,6 @@
 // of mass.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -28,18 +27,7 @@ struct Shape {
     std::uint32_t index;  // of a hull among the hulls, of a mesh among the meshes
     double size[3];       // half extents of a box, normal of a plane; else radius, half length
     Pose local;
-
-    /// It is where its body is, turned as its body is.
-    bool is_centered() const
-    {
-        const double most = std::max({std::abs(size[0]), std::abs(size[1]), std::abs(size[2])});
-        const double extent = most > 0 ? most : 1;
-        bool centered = true;
-        for (int k = 0; k < 3; ++k)
-            centered = centered && std::abs(local.position[k]) <= 1e-9 * extent
-                && std::abs(local.orientation[k]) <= 1e-12;
-        return centered;
-    }
+    bool centered;  // it is where its body is, turned as its body is
 };
 
 struct Triangles {

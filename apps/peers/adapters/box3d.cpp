@@ -205,14 +205,14 @@ private:
             return;
         }
         case ShapeKind::hull:
-            if (shape.is_centered())
+            if (shape.centered)
                 b3CreateHullShape(body, &material, hulls_[shape.index]);
             else
                 b3CreateTransformedHullShape(body, &material, hulls_[shape.index], local,
                                              {1, 1, 1});
             return;
         case ShapeKind::mesh:
-            if (!shape.is_centered()) refuse_shape(shape.kind);
+            if (!shape.centered) refuse_shape(shape.kind);
             b3CreateMeshShape(body, &material, meshes_[shape.index], {1, 1, 1});
             return;
         case ShapeKind::cylinder:

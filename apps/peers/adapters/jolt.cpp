@@ -163,7 +163,7 @@ private:
     {
         // A body that is one capsule is turned as a whole.
         const Shape& first = scene_.shapes[stated.first_shape];
-        const bool alone = stated.shapes == 1 && first.is_centered();
+        const bool alone = stated.shapes == 1 && first.centered;
         const bool turned = alone && lies_along_y(first.kind);
         turned_.push_back(turned);
         JPH::Quat turn = turn_of(stated.pose.orientation);

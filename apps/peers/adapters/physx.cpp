@@ -163,7 +163,7 @@ private:
     // Bodies of equal shape share one, where it is not moved within its body.
     void attach(PxRigidActor& actor, const Shape& shape, const PxMaterial& material)
     {
-        if (!shape.is_centered()) {
+        if (!shape.centered) {
             PxShape* const own = make(shape, material, true);
             actor.attachShape(*own);
             own->release();

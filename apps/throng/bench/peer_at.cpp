@@ -1,22 +1,18 @@
 #include "apps/throng/bench/peer_at.hpp"
 
 #include "apps/peers/adapters/adapter.hpp"
-#include "apps/throng/bench/peer_quality.hpp"
+#include "apps/throng/bench/peers.hpp"
 #include "apps/throng/options.hpp"
+#include "apps/throng/run_program.hpp"
 #include "scene/names.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <limits>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace throng::bench {
 namespace {
@@ -51,28 +47,6 @@ public:
 private:
     fs::path path_;
 };
-
-// Runs a program with what it says appended to a file. False where it fails or is not there.
-bool run(std::vector<std::string> words, const fs::path& log)
-{
-    std::vector<char*> passed(words.size() + 1, nullptr);
-    std::transform(words.begin(), words.end(), passed.begin(),
-                   [](std::string& word) { return word.data(); });
-    posix_spawn_file_actions_t actions;
-    if (::posix_spawn_file_actions_init(&actions) != 0) return false;
-    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
-                                       O_WRONLY | O_CREAT | O_APPEND, 0600);
-    ::posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    ::pid_t child = 0;
-    const int trouble =
-        ::posix_spawnp(&child, passed[0], &actions, nullptr, passed.data(), environ);
-    ::posix_spawn_file_actions_destroy(&actions);
-    if (trouble != 0) return false;
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0)
-        if (errno != EINTR) return false;
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
 
 // The lines of a log that tell of trouble, else its last.
 std::string trouble_of(const fs::path& log)
@@ -116,10 +90,11 @@ const adapters::Door& build(const PeerAt& peer)
     const std::string into = (folder.path() / "build").string();
     std::cerr << "note: building the adapter for " << peer.name << " in " << peer.directory
               << std::endl;
-    const bool built = run({"cmake", "-S", sources.string(), "-B", into,
-                            "-DTHRONG_PEER=" + peer.name, "-DTHRONG_PEER_AT=" + peer.directory},
-                           log)
-        && run({"cmake", "--build", into, "--parallel"}, log);
+    const bool built =
+        run_program({"cmake", "-S", sources.string(), "-B", into, "-DTHRONG_PEER=" + peer.name,
+                     "-DTHRONG_PEER_AT=" + peer.directory},
+                    log)
+        && run_program({"cmake", "--build", into, "--parallel"}, log);
     if (!built)
         throw BadInput("--peer-at: the adapter for " + peer.name
                        + " cannot be built:" + trouble_of(log));
@@ -161,7 +136,7 @@ adapters::ShapeKind plain(ShapeKind kind, const std::string& name)
     case ShapeKind::solid:
         break;
     }
-    throw EngineRefuses(name + ": is not given such a shape here");
+    throw std::invalid_argument(name + ": is not given such a shape here");
 }
 
 adapters::Body plain(const PeerBody& body)
@@ -195,7 +170,8 @@ public:
     {
         copy(scene.gravity, plain_.gravity);
         for (const PeerShape& shape : scene.shapes) {
-            adapters::Shape to = {plain(shape.kind, name), shape.index, {}, plain(shape.local)};
+            adapters::Shape to = {
+                plain(shape.kind, name), shape.index, {}, plain(shape.local), shape.is_centered()};
             copy(shape.size, to.size);
             shapes_.push_back(to);
         }
@@ -238,40 +214,31 @@ private:
     std::vector<std::vector<std::uint32_t>> corners_;
 };
 
-PeerScene taken_by_peers(const Scene& scene, double& dt)
-{
-    const Scene taken = scene_of_peers(scene);
-    const World world(taken);
-    dt = world.settings().dt;
-    return peer_scene(world, taken);
-}
-
-class AdaptedEngine final : public Engine {
+class AdaptedPeer final : public perf::Peer {
 public:
-    AdaptedEngine(const adapters::Door& door,
-                  const std::string& name,
-                  const Scene& scene,
-                  int threads)
-        : door_(door), scene_(scene), plain_(taken_by_peers(scene, dt_), name), threads_(threads)
+    AdaptedPeer(const adapters::Door& door,
+                const std::string& name,
+                int threads,
+                const PeerScene& scene)
+        : door_(door), plain_(scene, name)
     {
         std::array<char, kWords> why = {};
         engine_ = door_.make(&plain_.view(), threads, why.data(), why.size());
-        if (engine_ == nullptr) throw EngineRefuses(name + ": " + why.data());
+        if (engine_ == nullptr) throw std::invalid_argument(name + ": " + why.data());
     }
-    ~AdaptedEngine() override { door_.destroy(engine_); }
-    AdaptedEngine(const AdaptedEngine&) = delete;
-    AdaptedEngine& operator=(const AdaptedEngine&) = delete;
+    ~AdaptedPeer() override { door_.destroy(engine_); }
+    AdaptedPeer(const AdaptedPeer&) = delete;
+    AdaptedPeer& operator=(const AdaptedPeer&) = delete;
 
-    void step() override { door_.step(engine_, dt_); }
+    void step(double dt) override { door_.step(engine_, dt); }
     std::size_t contacts() const override { return door_.contacts(engine_); }
-    Quality judge() override { return quality_of(scene_, states()); }
-    int threads_met() const override { return threads_; }
 
     std::vector<PeerState> states() const override
     {
         std::vector<adapters::State> plain(plain_.view().body_count);
         door_.read(engine_, plain.data());
         std::vector<PeerState> states;
+        states.reserve(plain.size());
         for (const adapters::State& state : plain) {
             const double* const q = state.pose.orientation;
             states.push_back({{Vec3(state.pose.position), Quat(q[3], q[0], q[1], q[2])},
@@ -290,10 +257,7 @@ public:
 
 private:
     const adapters::Door& door_;
-    const Scene& scene_;
-    double dt_ = 0;
     PlainScene plain_;
-    int threads_;
     adapters::Engine* engine_ = nullptr;
 };
 
@@ -321,9 +285,9 @@ std::vector<EngineKind> engines_at(const PeerAt& peer, const std::vector<int>& t
     kinds.reserve(threads.size());
     for (const int count : threads)
         kinds.push_back(
-            {peer.name, "", count, [&door, name = peer.name, count](const Scene& scene) {
-                 return std::make_unique<AdaptedEngine>(door, name, scene, count);
-             }});
+            peer_kind(peer.name, count, [&door, name = peer.name, count](const PeerScene& scene) {
+                return std::make_unique<AdaptedPeer>(door, name, count, scene);
+            }));
     return kinds;
 }
 

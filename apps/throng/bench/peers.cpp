@@ -1,7 +1,6 @@
 // Peers: other engines, from the module beside the command.
 #include "apps/throng/bench/peers.hpp"
 
-#include "apps/peers/peer.hpp"
 #include "apps/throng/bench/peer_quality.hpp"
 #include "apps/throng/options.hpp"
 
@@ -15,13 +14,14 @@ namespace {
 
 class PeerEngine final : public Engine {
 public:
-    PeerEngine(const perf::PeerEntry& entry, const Scene& scene) : scene_(scene)
+    PeerEngine(const MakePeer& make, int threads, const Scene& scene)
+        : scene_(scene), threads_(threads)
     {
         const Scene taken = scene_of_peers(scene);
         const World world(taken);
         dt_ = world.settings().dt;
         try {
-            peer_ = entry.make(peer_scene(world, taken));
+            peer_ = make(peer_scene(world, taken));
         } catch (const std::invalid_argument& why) {
             throw EngineRefuses(why.what());
         }
@@ -30,10 +30,12 @@ public:
     std::size_t contacts() const override { return peer_->contacts(); }
     Quality judge() override { return quality_of(scene_, peer_->states()); }
     std::vector<PeerState> states() const override { return peer_->states(); }
+    int threads_met() const override { return threads_; }
     std::string settings() const override { return peer_->settings(); }
 
 private:
     const Scene& scene_;
+    int threads_;
     double dt_ = 0;
     std::unique_ptr<perf::Peer> peer_;
 };
@@ -53,6 +55,13 @@ const perf::PeerEntry* load_peers()
 
 }  // namespace
 
+EngineKind peer_kind(const std::string& name, int threads, const MakePeer& make)
+{
+    return {name, "", threads, [make, threads](const Scene& scene) {
+                return std::make_unique<PeerEngine>(make, threads, scene);
+            }};
+}
+
 std::vector<EngineKind> peer_engines(const std::vector<std::string>& names, bool asked_for)
 {
     std::vector<EngineKind> kinds;
@@ -71,9 +80,7 @@ std::vector<EngineKind> peer_engines(const std::vector<std::string>& names, bool
                            + ", whose Debian package was not there; install it and build throng "
                              "again, or leave it out");
         }
-        kinds.push_back({name, "", 1, [entry](const Scene& scene) {
-                             return std::make_unique<PeerEngine>(*entry, scene);
-                         }});
+        kinds.push_back(peer_kind(name, 1, entry->make));
     }
     return kinds;
 }

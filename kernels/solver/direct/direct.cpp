@@ -203,7 +203,7 @@ void DirectSolver::Work::find()
 // Where the steps have run out beside the answer some more lead there, from the best so far.
 void DirectSolver::Work::polish()
 {
-    if (!(answer.residual > kDirectResidual)) return;
+    if (kept == 0 || !(answer.residual > kDirectResidual)) return;
     left += std::exchange(kept, 0);
     go_back_to_best();
     if (sweep_and_hold()) return;
@@ -247,7 +247,7 @@ DirectAnswer DirectSolver::solve(std::span<DirectBody> bodies,
     work.solvable = std::all_of(points.begin(), points.end(),
                                 [](const DirectPoint& point) { return !(point.least > 0); });
     work.find();
-    if (work.kept > 0) work.polish();
+    work.polish();
     work.sweep_what_throws();
     work.go_back_to_best();
     work.island.give(bodies, points);
