@@ -1,5 +1,6 @@
 // Run: simulates a scene and writes what came of it.
 #include "apps/throng/commands.hpp"
+#include "apps/throng/events_option.hpp"
 #include "apps/throng/interrupt.hpp"
 #include "apps/throng/output_file.hpp"
 #include "apps/throng/progress.hpp"
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <iostream>
 #include <optional>
+#include <utility>
 
 namespace throng {
 namespace {
@@ -35,6 +37,8 @@ constexpr Option kOptions[] = {
     {"--every", "K",
      "steps from one frame of --out to the next (default: what keeps 600 frames or "
      "256 MB before compression)"},
+    kEventsOption,
+    kHitSpeedOption,
     kTraceOption,
     kTraceStepsOption,
     {"--quiet", "", "no progress, warnings or summary; --stats has the warnings all the same"},
@@ -64,35 +68,40 @@ void warn(const SceneArgument& argument, const World& world)
 struct Outputs {
     explicit Outputs(const Options& options)
         : stats("--stats", options.text("--stats")), final("--final", options.text("--final")),
-          frames("--out", options.text("--out")), trace(options)
+          frames("--out", options.text("--out")), events(options), trace(options)
     { }
 
     void refuse_same_files(const SceneArgument& argument) const
     {
-        for (const OutputFile* file : {&stats, &final, &frames, &trace.file()}) {
-            refuse_same_file(*file, argument.file, "the scene");
-            refuse_same_file(*file, argument.mesh, "--mesh");
+        const std::pair<const OutputFile*, const char*> files[] = {{&stats, "--stats"},
+                                                                   {&final, "--final"},
+                                                                   {&frames, "--out"},
+                                                                   {&events.file(), "--events"},
+                                                                   {&trace.file(), "--trace"}};
+        for (std::size_t i = 0; i < std::size(files); ++i) {
+            const OutputFile& file = *files[i].first;
+            refuse_same_file(file, argument.file, "the scene");
+            refuse_same_file(file, argument.mesh, "--mesh");
+            for (std::size_t k = 0; k < i; ++k)
+                refuse_same_file(file, files[k].first->path(), files[k].second);
         }
-        refuse_same_file(final, stats.path(), "--stats");
-        refuse_same_file(frames, stats.path(), "--stats");
-        refuse_same_file(frames, final.path(), "--final");
-        refuse_same_file(trace.file(), stats.path(), "--stats");
-        refuse_same_file(trace.file(), final.path(), "--final");
-        refuse_same_file(trace.file(), frames.path(), "--out");
     }
     // Whoever has a file sent to the standard output reads it from there.
     bool leave_stdout_free() const
     {
-        return !stats.is_stdout() && !final.is_stdout() && !trace.file().is_stdout();
+        return !stats.is_stdout() && !final.is_stdout() && !events.file().is_stdout()
+            && !trace.file().is_stdout();
     }
 
     void discard()
     {
         for (OutputFile* file : {&stats, &final, &frames}) file->discard();
+        events.discard();
         trace.discard();
     }
 
     OutputFile stats, final, frames;
+    EventsOption events;
     TraceOption trace;
 };
 
@@ -141,6 +150,7 @@ StepTimes run_steps(World& world,
         guard.end_step();
         trace.end_step();
         onlookers.after_step(world);
+        outputs.events.after_step(world);
         times.add(taken.count(), world.stages());
         frames.step_done(++done, onlookers.last_error(), false);
         progress.show(done, world.report().bodies_awake);
@@ -191,6 +201,7 @@ write_outputs(World& world, RunStats& stats, RunFrames& frames, Outputs& outputs
     note(frames.close());
     if (outputs.final.asked_for()) write_final_csv(world, outputs.final.stream());
     note(outputs.final.try_keep());
+    note(outputs.events.try_keep());
     note(outputs.trace.write(world, stats.scene));
     stats.warnings.insert(stats.warnings.end(), troubles.begin(), troubles.end());
     if (outputs.stats.asked_for()) write_stats_json(stats, outputs.stats.stream());
@@ -221,6 +232,7 @@ int run(const Options& options)
     Outputs outputs(options);
     outputs.refuse_same_files(argument);
     outputs.trace.watch(world);
+    outputs.events.listen(world);
     if (!quiet) warn(argument, world);
 
     const std::int64_t every =

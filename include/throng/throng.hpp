@@ -4,6 +4,7 @@
 #include "throng/box3.hpp"
 #include "throng/catalog.hpp"
 #include "throng/contact_check.hpp"
+#include "throng/contact_events.hpp"
 #include "throng/convex_query.hpp"
 #include "throng/dials.hpp"
 #include "throng/effect_ledger.hpp"

@@ -5,6 +5,7 @@
 // the world's own threads, and its result is the same bits for any number of them.
 #pragma once
 
+#include "throng/contact_events.hpp"
 #include "throng/effects.hpp"
 #include "throng/force_field.hpp"
 #include "throng/report.hpp"
@@ -16,13 +17,6 @@
 #include <vector>
 
 namespace throng {
-
-/// Names a body: its place, and how many held that place before it.
-struct BodyId {
-    std::uint32_t index = 0;
-    std::uint32_t generation = 0;
-    bool operator==(const BodyId&) const = default;
-};
 
 class World {
 public:
@@ -86,6 +80,16 @@ public:
     /// of the step as if they had been in it; by overlap back_up and subdivide the mean over the
     /// last step, impacts included.
     Vec3 contact_force(BodyId body) const;
+
+    /// The contacts of the last step, those of sleepers as they were left, in order of bodies and
+    /// parts. Made when it is asked for; good until it is asked for again. Impacts are left out
+    /// once something was changed since the step. Empty where a step is cut at touches (overlap
+    /// back_up and subdivide), which keeps no list of contacts.
+    std::span<const ContactReport> contacts() const;
+    /// Says what events are wanted; nothing is made of others. Whoever touches as it begins is told
+    /// of in the next step, sleepers as they wake. None are known where a step is cut at touches.
+    void listen(const Listening& to);
+    const ContactEvents& events() const;
 
     const StepReport& report() const;
     /// What was found wrong with shapes that were added and what was done about it, a sentence

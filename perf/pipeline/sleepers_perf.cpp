@@ -160,7 +160,7 @@ constexpr Timed kTimed[] = {
     {"step, one awake", step_one_awake, 300},
     {"set_velocity and step, one awake", step_one_driven, 300},
     {"set_pose of a sleeper and step", set_pose_and_step, 300},
-    {"add, step, remove, step", add_remove_and_step, 300},
+    {"add, step, remove, step", add_remove_and_step, 3000},
     {"first ray after a step, a tenth awake", first_ray, 110},
     {"further ray", further_ray, 10'000},
 };

@@ -182,6 +182,9 @@ public:
                        [&](std::size_t n) { return memory_of(called[n]); });
         if (!contacts_.many.empty()) wake_many();
         for (const std::uint32_t at : called) contacts_.of_kept[at] = {};
+        if (sleeping_.told)
+            for (const std::uint32_t at : called)
+                sleeping_.changes.push_back({sleeping_.kept[at].key, false});
         sleeping_.free.insert(sleeping_.free.end(), called.begin(), called.end());
         called.clear();
     }
@@ -369,6 +372,7 @@ private:
         SleepingPairs::Kept& kept = sleeping_.kept[place];
         kept.key = pairs_.keys[pair];
         hold(place, kept);
+        if (sleeping_.told) sleeping_.changes.push_back({kept.key, true});
         auto& of_kept = contacts_.of_kept[place] = {};
         of_kept.state = convex_.of_pair[pair];
         if (of_kept.state.contact != PairState::kApart) put_by_contact(of_kept.state.contact);

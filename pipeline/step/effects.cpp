@@ -38,6 +38,7 @@ constexpr std::string_view kNames[] = {
     "pivot",
     "sleeping",
     "escalation",
+    "events",
 };
 static_assert(std::size(kNames) == kEffects);
 

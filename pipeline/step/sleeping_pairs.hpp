@@ -20,6 +20,8 @@ namespace throng {
 ///   mixed   pairs that may sleep are among those that a step goes through: all were called, for a
 ///           step in which what they know is to follow new settings
 ///   seen    that step was begun
+///   told    changes are noted, for who keeps a list of his own
+///   changes pairs that fell asleep or came back since he looked, in the order of that
 struct SleepingPairs {
     struct Holder {
         std::uint32_t place = kNoBody;  // of a sleeping island, or a body; kNoBody: nobody
@@ -34,6 +36,10 @@ struct SleepingPairs {
     struct Ref {
         std::uint32_t at = 0, generation = 0;
     };
+    struct Change {
+        PairKey key = 0;
+        bool sleeps = false;
+    };
     struct Held {
         std::vector<Ref> refs;
         std::size_t stale = 0;  // of those, called by their other holder
@@ -44,6 +50,8 @@ struct SleepingPairs {
     std::unordered_map<std::uint32_t, Held> of_still;  // by body
     std::vector<std::uint32_t> called;
     bool mixed = false, seen = false;
+    bool told = false;
+    std::vector<Change> changes;
 
     bool holds(const Ref& ref) const { return kept[ref.at].generation == ref.generation; }
     /// Of pairs that sleep.

@@ -119,6 +119,18 @@ void remove_pivot_contacts(const Pairs&,
                            MeshContacts<Real>&,
                            SolidContacts<Real>&);
 
+/// Pairs that near each other faster than a program wants to be told of.
+template <class Real>
+void measure_approaches(const Pairs&,
+                        const Colliders&,
+                        const Poses&,
+                        const Velocities&,
+                        const BodyStates&,
+                        const ConvexContacts<Real>&,
+                        const MeshContacts<Real>&,
+                        const SolidContacts<Real>&,
+                        TouchingPairs&);
+
 /// All kinds of contact into one order: those that this step has to solve.
 template <class Real>
 void gather_contacts(const Pairs&,
@@ -381,5 +393,18 @@ void rest_bodies(const StepContext&,
                  Velocities&,
                  RestingBodies&,
                  SleepEvents&);
+
+/// Who touches whom, for a program that listens: what of it began, ended, or was a hit.
+template <class Real>
+void find_touching_pairs(const Pairs&,
+                         const ConvexContacts<Real>&,
+                         const MeshContacts<Real>&,
+                         const SolidContacts<Real>&,
+                         const JoinedContacts<Real>&,
+                         const ActiveContacts&,
+                         const Layout&,
+                         const ContactConstraints<Real>&,
+                         SleepingPairs&,
+                         TouchingPairs&);
 
 }  // namespace throng

@@ -18,6 +18,7 @@
 #include "pipeline/step/resting_bodies.hpp"
 #include "pipeline/step/sleeping_pairs.hpp"
 #include "pipeline/step/step_context.hpp"
+#include "pipeline/step/touching_pairs.hpp"
 
 #include <tuple>
 
@@ -240,6 +241,7 @@ using StepData = std::tuple<StepContext,
                             NeglectedEffects,
                             EventDrivenContacts,
                             StepDiagnostics,
+                            TouchingPairs,
                             SleepEvents,
                             FastBodies>;
 

@@ -40,6 +40,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, neglect_effects>             ({gyroscopic}, by_auto),
     stage<Real, remove_ghost_contacts<Real>> ({seams}),
     stage<Real, remove_pivot_contacts<Real>> ({pivot}),
+    stage<Real, measure_approaches<Real>>    ({events}),
     stage<Real, gather_contacts<Real>>       ({contact}),
     stage<Real, join_contacts<Real>>         ({restitution, seams}),
     stage<Real, split_islands>               ({contact}),
@@ -62,6 +63,7 @@ constexpr Stage<Real> kStep[] = {
     stage<Real, continuous_collision<Real>>  ({fast_motion}),
     stage<Real, sleep_islands>               ({sleeping}, by_islands),
     stage<Real, rest_bodies<Real>>           ({sleeping}, rests_by_force),
+    stage<Real, find_touching_pairs<Real>>   ({events}),
 };
 // clang-format on
 

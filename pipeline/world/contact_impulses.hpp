@@ -1,8 +1,8 @@
 // Contact impulses: what the contacts of the last step did to bodies, whichever list they are in.
 #pragma once
 
-#include "kernels/solver/contact_packing.hpp"
 #include "pipeline/contacts/contact_lists.hpp"
+#include "pipeline/contacts/impacts.hpp"
 #include "pipeline/contacts/wake_pairs.hpp"
 #include "pipeline/world/world_state.hpp"
 
@@ -32,24 +32,13 @@ void for_each_contact_impulse(const StepData<Real>& data, bool may_bounce, const
     for_each_sleeping_contact(std::get<SleepingPairs>(data), std::get<SleepingContacts<Real>>(data),
                               add);
 
-    const auto& constraints = std::get<ContactConstraints<Real>>(data);
-    if (!may_bounce || constraints.restitutions.empty()) return;
-    const auto& layout = std::get<Layout>(data);
-    const auto& active = std::get<ActiveContacts>(data);
-    for (const Batch& batch : layout.batches) {
-        if (batch.direct || !batch.calls.effects.has(Effect::restitution)) continue;
-        const Slice &first = layout.slices[batch.first_slice],
-                    &last = layout.slices[batch.first_slice + batch.slices - 1];
-        for (std::size_t i = first.first_contact; i < last.first_contact + last.contacts; ++i) {
-            const auto& entry = active.entries[layout.contacts[i]];
-            const std::size_t lane = layout.lane[i];
-            const auto on_b = [&]() -> Vec3 {
-                return impact_impulse(constraints, lane / kBlock, static_cast<int>(lane % kBlock))
-                    .template cast<double>();
-            };
-            each(entry.body_a, entry.body_b, on_b);
-        }
-    }
+    if (!may_bounce) return;
+    for_each_impact(std::get<ActiveContacts>(data), std::get<Layout>(data),
+                    std::get<ContactConstraints<Real>>(data),
+                    [&](const ActiveContacts::Entry& entry, const Vec3T<Real>& on_b) {
+                        each(entry.body_a, entry.body_b,
+                             [&]() -> Vec3 { return on_b.template cast<double>(); });
+                    });
 }
 
 /// The same of a world.

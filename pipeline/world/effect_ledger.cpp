@@ -127,6 +127,8 @@ private:
             return census.count(Call::pivot);
         case Effect::escalation:
             return state_.get<OverloadedIslands>().strained.size();
+        case Effect::events:
+            return 1;
         }
         return 0;
     }
@@ -222,6 +224,10 @@ private:
         }
         case Effect::escalation:
             return bytes_of(std::get<OverloadedIslands>(data).efforts);
+        case Effect::events: {
+            const auto& touching = std::get<TouchingPairs>(data);
+            return bytes_of(touching.keys, touching.scratch.before, touching.approaches);
+        }
         default:
             return 0;
         }

@@ -393,6 +393,7 @@ void World::step(int steps)
 {
     WorldState& state = *state_;
     using Clock = std::chrono::steady_clock;
+    state.events = {};
     for (int i = 0; i < steps; ++i) {
         const auto begin = Clock::now();
         if (state.nothing_to_do()) {
@@ -415,6 +416,7 @@ void World::step(int steps)
             });
             auto& context = state.get<StepContext>();
             context.last_substep = context.substep();
+            state.contacts_as_stepped = true;
             state.report.contacts_dropped += std::visit(
                 [](const auto& chosen) {
                     using Real = typename std::decay_t<decltype(chosen)>::Number;
@@ -430,6 +432,7 @@ void World::step(int steps)
             state.report.direct_residual =
                 std::max(state.report.direct_residual, diagnostics.direct_residual);
             state.follow_step();
+            state.follow_touching_pairs();
         }
         state.get<StepContext>().time += settings().dt;
         ++state.report.step;

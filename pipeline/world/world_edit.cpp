@@ -70,6 +70,7 @@ void WorldState::disturb(std::uint32_t body, bool goes)
 
 void WorldState::wake_pairs()
 {
+    contacts_as_stepped = false;
     get<Pairs>().changed = false;  // whatever follows the list has followed it by now
     std::visit(
         [](auto& chosen) {
@@ -101,6 +102,7 @@ void WorldState::settle()
         if (edit_b != 0 && colliders.body[a] != kNoBody) wake_beside(colliders.body[a]);
     }
     wake_pairs();
+    if (gone && listens()) end_touches_of_gone();
     if (gone) forget_pairs();
     for (const std::uint32_t collider : edited) edits[collider] = 0;
     edited.clear();
@@ -108,6 +110,7 @@ void WorldState::settle()
 
 void WorldState::forget_pairs()
 {
+    contacts_as_stepped = false;
     const auto goes = [&](PairKey key) {
         return ((edits[first_of(key)] | edits[second_of(key)]) & kGone) != 0;
     };
@@ -205,6 +208,8 @@ void World::remove(std::span<const BodyId> bodies)
         state.get<EffectCensus>().recount(body, facts.bodies);
         const std::uint32_t first = colliders.begin[body], count = colliders.count[body];
         for (std::uint32_t i = 0; i < count; ++i) {
+            // Of those who held a place since the last step, the first touched somebody.
+            if (state.listens()) state.gone.emplace(first + i, state.owner_of(first + i));
             colliders.body[first + i] = kNoBody;
             state.get<PairFilter>().mask[first + i] = 0;
         }

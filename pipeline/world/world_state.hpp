@@ -8,6 +8,7 @@
 #include "throng/world.hpp"
 
 #include <map>
+#include <unordered_map>
 #include <variant>
 
 namespace throng {
@@ -36,6 +37,12 @@ struct PlacedShape {
 };
 
 class QueryScene;
+
+/// Whose a collider is, and which part of it.
+struct ColliderOwner {
+    BodyId body;
+    std::uint32_t part = 0;
+};
 
 /// Colliders that may be elsewhere than when questions were asked last; kept for that alone.
 struct MovedColliders {
@@ -83,6 +90,14 @@ struct WorldState {
     static constexpr std::uint8_t kDisturbed = 1, kGone = 2;
     std::vector<std::uint8_t> edits;    // [colliders] may be shorter
     std::vector<std::uint32_t> edited;  // colliders
+
+    // For a program that listens.
+    Listening listening;
+    ContactEvents events;
+    std::unordered_map<std::uint32_t, ColliderOwner> gone;  // of colliders, until settled
+    std::vector<TouchingParts> ended_with_gone;             // since the last step
+    std::vector<ContactReport> contacts;                    // as they were asked for last
+    bool contacts_as_stepped = true;  // nothing has changed their lists since the last step
 
     std::shared_ptr<QueryScene> queries;  // once any were asked
     MovedColliders moved;
@@ -140,6 +155,13 @@ struct WorldState {
     void call_all_pairs();
     /// Drops the pairs of colliders that are gone with all they remember.
     void forget_pairs();
+    ColliderOwner owner_of(std::uint32_t collider) const;
+    TouchingParts parts_of(PairKey key) const;
+    bool listens() const;
+    /// Who is gone touches nobody any more.
+    void end_touches_of_gone();
+    /// What the last step found.
+    void follow_touching_pairs();
     /// Sets velocities as far as the body is free to have them, and wakes it. Beyond what a step
     /// can hold it is quarantined.
     void set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular);

@@ -29,6 +29,10 @@ FORCED = {
 }
 
 
+# What `run` is asked for besides, by which a program's effects are on.
+LISTENS = "--events"
+
+
 def forced(**of_body):
     scene = json.loads(json.dumps(FORCED))
     top = {key: of_body.pop(key) for key in ("springs", "attractors", "wind") if key in of_body}
@@ -54,7 +58,7 @@ SCENES = [
     (forced(attractors=[{"position": [0, 0, 9], "strength": 1}]), STEPS, []),
     (forced(springs=[{"a": "top", "b": None, "at_b": [0, 0, 1], "stiffness": 1e6,
                       "length": 0.5}]), STEPS, []),
-    ("stacks:30", 90, ["substeps=1"]),
+    ("stacks:30", 90, ["substeps=1"]), ("bouncing:4", 40, [LISTENS]),
 ]
 
 
@@ -83,13 +87,14 @@ class Run:
             name = str(folder / "scene.json")
             pathlib.Path(name).write_text(json.dumps(scene))
         self.name = " ".join([name if isinstance(scene, str) else json.dumps(scene)] + dials)
-        sets = [word for dial in dials for word in ("--set", dial)]
+        listens = ["--events", str(folder / "events.csv")] if LISTENS in dials else []
+        sets = [word for dial in dials if dial != LISTENS for word in ("--set", dial)]
         told, stats, counts = folder / "explain", folder / "stats", folder / "callgrind"
         subprocess.run([throng, "explain", name, "--json", told] + sets, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={counts}", throng,
                         "run", name, "--steps", str(steps), "--threads", "1", "--quiet", "--stats",
-                        stats] + sets,
+                        stats] + listens + sets,
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                        env=dict(os.environ, THRONG_LANES="avx2"))
         self.on = set()

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <csignal>
@@ -454,6 +455,46 @@ TEST(Run, ProgressIsForTerminalsAlone)
     EXPECT_NE(shown.err.find("/1500 steps"), std::string::npos);
     EXPECT_EQ(shown.out.substr(shown.out.find("state_hash")),
               piped.out.substr(piped.out.find("state_hash")));
+}
+
+TEST(RunEvents, AreALineEach)
+{
+    const TestFolder folder;
+    const Outcome done = run_throng({"run", "bouncing:4", "--steps", "120", "--quiet", "--events",
+                                     folder / "e.csv", "--hit-speed", "5"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    std::istringstream lines(folder.read("e.csv"));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "step,event,a,b,part_a,part_b,speed,px,py,pz,nx,ny,nz");
+    int begun = 0, ended = 0, hits = 0;
+    while (std::getline(lines, line)) {
+        EXPECT_EQ(std::count(line.begin(), line.end(), ','), 12) << line;
+        begun += line.find(",begin,") != std::string::npos ? 1 : 0;
+        ended += line.find(",end,") != std::string::npos ? 1 : 0;
+        hits += line.find(",hit,") != std::string::npos ? 1 : 0;
+    }
+    // Each of four balls bounces once in two seconds.
+    EXPECT_EQ(begun, 4);
+    EXPECT_EQ(ended, 4);
+    EXPECT_EQ(hits, 4);
+}
+
+TEST(RunEvents, ASpeedThatNobodyAskedForOrThatIsNoneIsRefused)
+{
+    const TestFolder folder;
+    const Outcome alone = run_throng({"run", "bouncing:4", "--hit-speed", "5"});
+    EXPECT_EQ(alone.code, 2);
+    EXPECT_NE(alone.err.find("give --events as well"), std::string::npos) << alone.err;
+    for (const char* speed : {"0", "-1", "fast", "inf"}) {
+        const Outcome done =
+            run_throng({"run", "bouncing:4", "--events", folder / "e.csv", "--hit-speed", speed});
+        EXPECT_EQ(done.code, 2) << speed;
+        EXPECT_NE(done.err.find("--hit-speed: wanted a speed above 0"), std::string::npos);
+    }
+    const Outcome same = run_throng(
+        {"run", "bouncing:4", "--events", folder / "e.csv", "--final", folder / "e.csv"});
+    EXPECT_EQ(same.code, 2);
 }
 
 }  // namespace
