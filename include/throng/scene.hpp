@@ -125,6 +125,8 @@ struct BodyDescription {
     bool lock_rotation = false;
     bool lock_position = false;
     bool fast = false;
+    double gravity_scale = 1;     // gravity on it, of that of the scene
+    std::uint64_t user_data = 0;  // a program's own; at most 2^53 in a file
 };
 
 /// Many bodies that share all but pose, velocity and perhaps size.

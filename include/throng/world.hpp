@@ -11,7 +11,9 @@
 #include "throng/report.hpp"
 #include "throng/scene.hpp"
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -69,8 +71,51 @@ public:
     /// These wake the body and what it rests with.
     void set_pose(BodyId body, const Pose& pose);
     void set_velocity(BodyId body, const Vec3& linear, const Vec3& angular);
-    /// N s, at the center of mass: what turns about a pivot gets its torque.
+    /// N s, at the center of mass: what turns about a pivot gets its torque. Of a dynamic body, as
+    /// all impulses and forces.
     void add_impulse(BodyId body, const Vec3& impulse);
+    void add_impulse(BodyId body, const Vec3& impulse, const Vec3& point);  // m, world
+    void add_angular_impulse(BodyId body, const Vec3& impulse);             // N m s, world axes
+    /// N and N m through the next step alone, world axes, besides the constant ones.
+    void add_force(BodyId body, const Vec3& force);
+    void add_force(BodyId body, const Vec3& force, const Vec3& point);  // m, world
+    void add_torque(BodyId body, const Vec3& torque);
+    /// Gives a kinematic body the velocities that take it to a pose in a time, s, from now.
+    void move_to(BodyId body, const Pose& pose, double seconds);
+    void wake(BodyId body);
+    /// Puts a dynamic body to sleep as it is, in the air as well, with all that it touches and that
+    /// touch those. Throws where nobody may sleep. By partial_rest it comes to rest once it is
+    /// borne.
+    void sleep(BodyId body);
+
+    /// What a scene states of a body, changed. These wake the body and what it rests with, too, and
+    /// throw std::invalid_argument for what a scene could not have.
+    ///
+    /// A body that becomes dynamic has the mass and inertia that it had when it last was, or was
+    /// given by set_mass(), or else those of its shape and material; it has to have a volume, and
+    /// must not be a plane, or a mesh, of which what stands still has triangles alone. What is no
+    /// longer dynamic turns about its own frame. Bodies on a pivot stay as they are.
+    void set_motion(BodyId body, Motion motion);
+    /// kg, and kg m2 about the center of mass, body axes; without, the inertia goes with the mass.
+    void set_mass(BodyId body, double mass, const std::optional<Sym3>& inertia = {});
+    Sym3 inertia(BodyId body) const;  // about the center of mass; 0 when it is not dynamic
+    void set_locks(BodyId body, bool position, bool rotation);
+    /// Two bodies may touch when each one's group has a bit in the other's mask.
+    void set_filter(BodyId body, std::uint32_t group, std::uint32_t mask);
+    std::uint32_t group(BodyId body) const;  // 0 for a body without a shape
+    std::uint32_t mask(BodyId body) const;
+    /// m/s, set before every step where they are given; of a static body those of its surface.
+    void set_drive_velocity(BodyId body, const std::array<std::optional<double>, 3>& velocity);
+    void set_fast(BodyId body, bool fast);
+    /// N and N m, constant, world axes.
+    void set_force(BodyId body, const Vec3& force, const Vec3& torque);
+    /// Gravity on the body is this many times that of the world.
+    void set_gravity_scale(BodyId body, double scale);
+    double gravity_scale(BodyId body) const;
+
+    /// Whatever a program wants to remember of a body; 0 until it is set.
+    void set_user_data(BodyId body, std::uint64_t data);
+    std::uint64_t user_data(BodyId body) const;
 
     /// What turns body axes into world axes as the `rotation` that is chosen holds it: with the
     /// textbook's forms no rotation after a while.

@@ -184,6 +184,13 @@ void EffectCensus::recount(std::uint32_t body, const BodyFacts& facts)
     count(body, true, facts);
 }
 
+void EffectCensus::forget(std::uint32_t body, const BodyFacts& facts)
+{
+    if (calls_.size() <= body) return;
+    count(body, false, facts);
+    calls_[body] = 0;
+}
+
 void EffectCensus::count_all(const BodyFacts& facts)
 {
     const std::size_t changes = changes_ + 1;

@@ -68,6 +68,8 @@ public:
     /// A body is new or has changed; or it is removed, and its colliders are as they were.
     void recount(std::uint32_t body, const BodyFacts& facts);
     void count_all(const BodyFacts& facts);
+    /// A body is about to be another one; to be recounted once it is.
+    void forget(std::uint32_t body, const BodyFacts& facts);
 
     /// Those of a body, as bits.
     std::uint32_t calls_of(std::uint32_t body) const { return calls_[body]; }

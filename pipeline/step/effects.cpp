@@ -58,6 +58,8 @@ public:
         find_motion();
         if (found_.on.has(Effect::motion)) find_forces();
         find_contact();
+        // Nobody is held at what he may not touch, nor who is carried from touch to touch.
+        if (!found_.on.has(Effect::contact)) found_.on.remove(Effect::fast_motion);
         if (meets()) find_materials();
         find_rotation();
         const Settings& settings = facts_.bodies.settings;
@@ -124,11 +126,7 @@ private:
                 if (a.dynamic == 0 || b.bodies < (x == y ? 2u : 1u)) continue;
                 const Effect how = contact_effect();
                 call(how, [&, &one = x, &other = y] { return names_of(one, other); });
-                // Nobody is swept who is carried from touch to touch.
-                if (how != Effect::contact)
-                    found_.on.remove(Effect::fast_motion);
-                else
-                    find_surfaces();
+                if (how == Effect::contact) find_surfaces();
                 return;
             }
     }

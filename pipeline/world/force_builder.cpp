@@ -30,8 +30,22 @@ void grow_lists(std::uint32_t body, std::vector<double>& a, std::vector<double>&
         if (list->size() <= body) list->resize(body + std::size_t{1}, 0.0);
 }
 
-// Which springs each body has, and who has to be carried on together: what stands still or goes by
-// itself passes nothing on.
+std::string spring_warning(std::size_t i, double limit, const Settings& settings)
+{
+    const std::string_view integrator = chosen(settings.integrator, true).name;
+    const std::string who = "spring " + std::to_string(i) + ": ";
+    if (limit <= 0)
+        return who + std::string(integrator)
+            + " makes it swing wider at any dt; take integrator=auto";
+    const double span = settings.dt / settings.substeps;
+    return who + "a substep of " + number_text(span) + " s is beyond " + number_text(limit)
+        + " s, the longest at which " + std::string(integrator)
+        + " keeps it from swinging wider; take substeps="
+        + std::to_string(static_cast<int>(std::ceil(settings.dt / limit))) + " or more";
+}
+
+}  // namespace
+
 void sort_springs(const BodyStates& states, Forces& forces)
 {
     const std::size_t bodies = states.kind.size();
@@ -73,22 +87,6 @@ void sort_springs(const BodyStates& states, Forces& forces)
         forces.groups[forces.group_of[body]].push_back(body);
     }
 }
-
-std::string spring_warning(std::size_t i, double limit, const Settings& settings)
-{
-    const std::string_view integrator = chosen(settings.integrator, true).name;
-    const std::string who = "spring " + std::to_string(i) + ": ";
-    if (limit <= 0)
-        return who + std::string(integrator)
-            + " makes it swing wider at any dt; take integrator=auto";
-    const double span = settings.dt / settings.substeps;
-    return who + "a substep of " + number_text(span) + " s is beyond " + number_text(limit)
-        + " s, the longest at which " + std::string(integrator)
-        + " keeps it from swinging wider; take substeps="
-        + std::to_string(static_cast<int>(std::ceil(settings.dt / limit))) + " or more";
-}
-
-}  // namespace
 
 void state_forces(std::uint32_t body,
                   const BodyDescription& stated,

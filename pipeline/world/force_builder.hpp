@@ -29,6 +29,10 @@ void join_springs(std::span<const Spring> springs,
                   const BodyStates& states,
                   Forces& forces);
 
+/// Which springs each body has, and who has to be carried on together: what stands still or goes by
+/// itself passes nothing on. To be asked anew where springs or kinds of bodies change.
+void sort_springs(const BodyStates& states, Forces& forces);
+
 /// Forgets all that acts on some bodies, which are removed, the springs that hold them included.
 void drop_forces(std::span<const std::uint32_t> going, const BodyStates& states, Forces& forces);
 

@@ -2,14 +2,13 @@
 #include "cooking/repair/mesh_health.hpp"
 #include "kernels/geometry/mesh.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
+#include "pipeline/world/body_mass.hpp"
 #include "pipeline/world/force_builder.hpp"
 #include "pipeline/world/world_state.hpp"
 #include "scene/rules/scene_check.hpp"
 #include "scene/rules/scene_rules.hpp"
 #include "scene/shapes/solid_maker.hpp"
 #include "scene/shapes/stated_hull.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -39,76 +38,6 @@ int sides_of(MeshTree tree)
     return kSides[static_cast<std::size_t>(tree)];
 }
 
-// Whether a cylinder may be followed as it runs round its rim. Of a needle the digits of float do
-// not tell how it turns about its length beside how it tips over, and nothing of it runs far.
-bool may_run_round(const Cylinder& cylinder)
-{
-    constexpr double kThinnest = 1e-2;
-    return cylinder.radius >= kThinnest * cylinder.half_length;
-}
-
-// Principal moments that differ by more than rounding.
-bool uneven(const Sym3& inertia)
-{
-    const double size = inertia.xx + inertia.yy + inertia.zz;
-    const double spread =
-        std::max({std::abs(inertia.xx - inertia.yy), std::abs(inertia.yy - inertia.zz),
-                  std::abs(inertia.xy), std::abs(inertia.xz), std::abs(inertia.yz)});
-    return spread > 1e-9 * size;
-}
-
-// The axis about which an inertia is all but symmetric, or zero. What is taken for symmetric has
-// its energy off by as much as its moments across differ: by a ten thousandth at most. Those of a
-// needle of 1:100, of which rounding leaves the least moment few digits, never differ by more,
-// whatever its profile.
-Vec3 symmetry_axis_of(const PrincipalInertia& principal)
-{
-    constexpr double kAlike = 1.0 / 16384;  // the difference, of their sum
-    const int axis = principal.axis_of_symmetry();
-    if (principal.asymmetry(axis) > kAlike) return Vec3::Zero();
-    return principal.axes.col(axis);
-}
-
-// See Masses. Of Euler's equations the greatest factor counts; no three products of two components
-// of a vector come to more than its square over the root of 3.
-float gyroscopic_rate(const Vec3& moments)
-{
-    double greatest = 0;
-    for (int k = 0; k < 3; ++k)
-        greatest =
-            std::max(greatest, std::abs(moments[(k + 1) % 3] - moments[(k + 2) % 3]) / moments[k]);
-    const double rate = greatest / std::sqrt(3.0);
-    return std::nextafter(static_cast<float>(rate), std::numeric_limits<float>::infinity());
-}
-
-Sym3 scaled(const Sym3& m, double by)
-{
-    return {m.xx * by, m.yy * by, m.zz * by, m.xy * by, m.xz * by, m.yz * by};
-}
-
-// What an impulse turns. Of a needle, the ease of turning about its length is cut to `most` times
-// that of turning across: in world axes the two stand side by side in numbers of one precision, and
-// what rounding takes from the greater must not drown the lesser.
-Sym3 turning_inverse_mass(const Sym3& inertia, double most)
-{
-    const Mat3 inverse = inertia.matrix().inverse();
-    if (inverse.trace() * inertia.matrix().trace() < most) return Sym3::from(inverse);
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia.matrix());
-    const Vec3 moments = solver.eigenvalues();  // ascending
-    const Vec3 inverse_mass = moments.cwiseMax(moments[2] / most).cwiseInverse();
-    return Sym3::from(solver.eigenvectors() * inverse_mass.asDiagonal()
-                      * solver.eigenvectors().transpose());
-}
-
-// Moments about a point that lies off the center.
-Sym3 shifted(const Sym3& inertia, double mass, const Vec3& off)
-{
-    const double x = off.x(), y = off.y(), z = off.z();
-    return {inertia.xx + mass * (y * y + z * z), inertia.yy + mass * (x * x + z * z),
-            inertia.zz + mass * (x * x + y * y), inertia.xy - mass * x * y,
-            inertia.xz - mass * x * z,           inertia.yz - mass * y * z};
-}
-
 template <class Array, class Value>
 void put(Array& array, std::size_t at, Value value)
 {
@@ -127,6 +56,7 @@ void SceneBuilder::add_materials(const Scene& scene)
         surfaces.rolling_friction.push_back(material.rolling_friction);
         state_.material_names.push_back(name);
         density_.push_back(material.density);
+        state_.material_density.push_back(material.density);
     };
     first_material_ = static_cast<std::uint32_t>(surfaces.friction.size());
     for (const Material& material : scene.materials) add_one(material, material.name);
@@ -291,40 +221,26 @@ void SceneBuilder::place_colliders(std::uint32_t body,
     const std::uint32_t first = take_colliders(count);
     put(colliders.begin, body, first);
     put(colliders.count, body, count);
-    double radius = 0;
-    std::uint8_t bits = count > 1 ? Colliders::kMayHang : 0;
     colliders.compounds = colliders.compounds || count > 1;
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t at = first + i;
-        const ShapeRef part = shape->parts[i];
         Pose local = shape->poses[i];
         local.position -= state_.center[body];
-        const double outer = local.position.norm() + outer_radius(shapes, part);
-        // By what is not convex, or round about another point.
-        if (part.kind == ShapeKind::solid || !local.position.isZero(0)) bits |= Colliders::kMayHang;
-        if (part.kind == ShapeKind::cylinder && count == 1 && local.position.isZero(0)
-            && may_run_round(shapes.cylinders[part.index]))
-            bits |= Colliders::kRim;
-        if (part.kind == ShapeKind::box || part.kind == ShapeKind::hull) bits |= Colliders::kFlat;
-        if (part.kind == ShapeKind::capsule || part.kind == ShapeKind::cylinder)
-            bits |= Colliders::kRound;
-        if (part.kind != ShapeKind::sphere || !local.position.isZero(0))
-            bits |= Colliders::kOffCenter;
         put(colliders.body, at, body);
-        put(colliders.shape, at, part);
+        put(colliders.shape, at, shape->parts[i]);
         put(colliders.local, at, local);
         put(colliders.material, at,
             stated.material == kNone ? default_material_ : first_material_ + stated.material);
-        put(colliders.inner_extent, at, inner_extent(shapes, part));
-        put(colliders.outer_radius, at, outer);
+        put(colliders.inner_extent, at, inner_extent(shapes, shape->parts[i]));
+        put(colliders.outer_radius, at, 0.0);
         filter.resize(colliders.size());
         filter.body[at] = body;
         filter.group[at] = stated.group;
         filter.mask[at] = stated.mask;
-        if (std::isfinite(outer)) radius = std::max(radius, outer);
     }
-    put(colliders.shape_bits, body, bits);
-    put(state_.get<BodyStates>().radius, body, radius);
+    put(colliders.shape_bits, body, std::uint8_t{0});
+    put(state_.get<BodyStates>().radius, body, 0.0);
+    state_.measure_colliders(body);
 }
 
 void SceneBuilder::weigh(std::uint32_t body,
@@ -332,14 +248,7 @@ void SceneBuilder::weigh(std::uint32_t body,
                          const PlacedShape* shape)
 {
     auto& masses = state_.get<Masses>();
-    put(masses.mass, body, 0.0);
-    put(masses.inverse_mass, body, 0.0);
-    put(masses.inertia, body, Sym3{});
-    put(masses.inverse_inertia, body, Sym3{});
-    put(masses.inertia_kind, body, std::uint8_t{0});
-    put(masses.gyroscopic_kind, body, std::uint8_t{0});
-    put(masses.gyroscopic_rate, body, 0.0f);
-    put(masses.symmetry_axis, body, Vec3(Vec3::Zero()));
+    give_no_mass(body, masses);
     const Vec3 natural = shape == nullptr ? Vec3(Vec3::Zero()) : shape->mass.center;
     put(state_.center, body, stated.center.value_or(natural));
     if (stated.motion != Motion::dynamic) {
@@ -351,8 +260,6 @@ void SceneBuilder::weigh(std::uint32_t body,
     const double density =
         density_[stated.material == kNone ? default_material_ - first_material_ : stated.material];
     const double mass = stated.mass.value_or(density * volume);
-    masses.mass[body] = mass;
-    if (!stated.lock_position) masses.inverse_mass[body] = 1 / mass;
     if (stated.inertia) {
         masses.inertia[body] = *stated.inertia;
     } else if (volume > 0) {
@@ -363,20 +270,11 @@ void SceneBuilder::weigh(std::uint32_t body,
     if (stated.pivot) {
         // The pivot takes the place of the center: it never moves, and all turning is about it.
         const Vec3 off = state_.center[body] - *stated.pivot;
-        masses.inverse_mass[body] = 0;
         masses.inertia[body] = shifted(masses.inertia[body], mass, off);
         state_.center[body] = *stated.pivot;
     }
-    const Sym3& inertia = masses.inertia[body];
-    if (inertia.has_products()) put(masses.principal, body, principal_inertia(inertia));
-    if (stated.lock_rotation || inertia == Sym3{}) return;
-    const bool in_double = state_.settings.precision == Precision::double_;
-    masses.inverse_inertia[body] = turning_inverse_mass(inertia, in_double ? 1e14 : 1e6);
-    if (!uneven(inertia)) return;
-    const PrincipalInertia principal = masses.principal_of(body);
-    masses.inertia_kind[body] = masses.gyroscopic_kind[body] = inertia.has_products() ? 2 : 1;
-    masses.gyroscopic_rate[body] = gyroscopic_rate(principal.moments);
-    masses.symmetry_axis[body] = symmetry_axis_of(principal);
+    give_mass(body, mass, masses.inertia[body], stated.lock_position || stated.pivot.has_value(),
+              stated.lock_rotation, state_.settings.precision == Precision::double_, masses);
 }
 
 void SceneBuilder::note_requests(std::uint32_t body, const BodyDescription& stated)
@@ -414,6 +312,11 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     put(states.sleeping_island, body, kNoBody);
     put(state_.motion, body, stated.motion);
     if (!stated.name.empty()) put(state_.names, body, stated.name);
+    if (stated.gravity_scale != 1 && stated.motion == Motion::dynamic) {
+        state_.scaled_gravity[body] = {stated.gravity_scale, stated.force};
+        state_.update_scaled_gravity(body);
+    }
+    if (stated.user_data != 0) put(state_.user_data, body, stated.user_data);
 
     const auto& drive = stated.drive_velocity;
     const Vec3 surface(drive[0].value_or(0), drive[1].value_or(0), drive[2].value_or(0));

@@ -30,6 +30,16 @@ void check_settings(const Settings& settings, const char* caller)
         throw std::invalid_argument(std::string(caller) + ": " + trouble);
 }
 
+int sane_threads(int threads)
+{
+    constexpr int kMost = 4096;
+    if (threads < 0 || threads > kMost)
+        throw std::invalid_argument("world: threads: wanted 1 to " + std::to_string(kMost)
+                                    + ", or 0 for as many as there are cores, not "
+                                    + std::to_string(threads));
+    return threads;
+}
+
 }  // namespace
 
 template <class Real>
@@ -39,7 +49,7 @@ Step<Real>::~Step() = default;
 template struct Step<float>;
 template struct Step<double>;
 
-WorldState::WorldState(const Settings& all, int thread_count) : pool(thread_count)
+WorldState::WorldState(const Settings& all, int thread_count) : pool(sane_threads(thread_count))
 {
     check_settings(all, "world");
     // Throws here and not in a step where the environment asks for lanes that cannot be had.
@@ -391,6 +401,7 @@ std::vector<BodyId> World::add(const Scene& scene)
 
 void World::step(int steps)
 {
+    if (steps < 0) throw std::invalid_argument("step: give a number of steps from 0");
     WorldState& state = *state_;
     using Clock = std::chrono::steady_clock;
     state.events = {};
@@ -431,6 +442,7 @@ void World::step(int steps)
             state.warn_of_cuts(diagnostics.penalty_cuts);
             state.report.direct_residual =
                 std::max(state.report.direct_residual, diagnostics.direct_residual);
+            state.end_pushes();
             state.follow_step();
             state.follow_touching_pairs();
         }
@@ -465,6 +477,7 @@ void World::set_gravity(const Vec3& gravity)
 {
     if (!gravity.allFinite()) throw std::invalid_argument("set_gravity: give finite numbers, m/s2");
     state_->get<StepContext>().gravity = gravity;
+    for (const auto& [body, scaled] : state_->scaled_gravity) state_->update_scaled_gravity(body);
     state_->effects_stale = state_->census_stale = true;
     state_->wake_all();
 }

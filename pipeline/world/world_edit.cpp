@@ -138,7 +138,7 @@ void WorldState::quarantine(std::uint32_t body)
     active_bodies_stopped = true;
 }
 
-void WorldState::set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular)
+void WorldState::set_velocities(std::uint32_t body, const Vec3& linear, const Vec3& angular)
 {
     const auto& states = get<BodyStates>();
     const auto& masses = get<Masses>();
@@ -216,6 +216,10 @@ void World::remove(std::span<const BodyId> bodies)
         if (count > 0) state.free_colliders[count].push_back(first);
         state.get<PrescribedVelocities>().erase(body);
         if (body < state.names.size()) state.names[body].clear();
+        state.scaled_gravity.erase(body);
+        if (body < state.user_data.size()) state.user_data[body] = 0;
+        state.kept_masses.erase(body);
+        std::erase_if(state.pushes, [&](const Push& push) { return push.body == body; });
         ++state.generation[body];
         state.free_bodies.push_back(body);
         std::push_heap(state.free_bodies.begin(), state.free_bodies.end(), std::greater<>());
@@ -256,22 +260,7 @@ void World::set_velocity(BodyId body, const Vec3& linear, const Vec3& angular)
     const std::uint32_t at = state_->place_of(body, "set_velocity");
     if (!linear.allFinite() || !angular.allFinite())
         throw std::invalid_argument("set_velocity: give finite numbers, m/s and rad/s");
-    state_->set_motion(at, linear, angular);
-}
-
-void World::add_impulse(BodyId body, const Vec3& impulse)
-{
-    const std::uint32_t at = state_->place_of(body, "add_impulse");
-    if (!impulse.allFinite()) throw std::invalid_argument("add_impulse: give finite numbers, N s");
-    const auto& velocities = state_->get<Velocities>();
-    const auto& masses = state_->get<Masses>();
-    Vec3 angular = velocities.angular[at];
-    // What hangs on a pivot, about which its inertia is, turns by what reaches its center of mass.
-    if (const Vec3 arm = state_->arm(at); !arm.isZero(0))
-        angular +=
-            in_world_axes(masses.inverse_inertia[at], state_->get<Poses>().orientation[at]).matrix()
-            * arm.cross(impulse);
-    state_->set_motion(at, velocities.linear[at] + impulse * masses.inverse_mass[at], angular);
+    state_->set_velocities(at, linear, angular);
 }
 
 }  // namespace throng

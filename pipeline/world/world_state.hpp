@@ -44,6 +44,26 @@ struct ColliderOwner {
     std::uint32_t part = 0;
 };
 
+/// What a body weighs that is not dynamic, for when it is: about its center, body axes.
+struct KeptMass {
+    double mass = 0;
+    Sym3 inertia;
+    Vec3 center = Vec3::Zero();
+    bool lock_position = false, lock_rotation = false;
+};
+
+/// Gravity on a body, of that of the world; and its constant force without what that adds, N.
+struct ScaledGravity {
+    double scale = 1;
+    Vec3 force = Vec3::Zero();
+};
+
+/// The constant force and torque of a body that is pushed for a step, to be put back after it.
+struct Push {
+    std::uint32_t body = 0;
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+};
+
 /// Colliders that may be elsewhere than when questions were asked last; kept for that alone.
 struct MovedColliders {
     bool all = false;
@@ -82,7 +102,11 @@ struct WorldState {
     std::vector<std::string> names;  // may be shorter: the rest have none
     std::vector<Vec3> center;        // of mass, in the body's own frame
     std::vector<Motion> motion;
-    std::vector<std::uint32_t> free_bodies;  // a heap, so the least goes first
+    std::unordered_map<std::uint32_t, ScaledGravity> scaled_gravity;  // the rest have 1
+    std::vector<std::uint64_t> user_data;                     // may be shorter: the rest have 0
+    std::unordered_map<std::uint32_t, KeptMass> kept_masses;  // of who is not dynamic
+    std::vector<Push> pushes;                                 // of the next step
+    std::vector<std::uint32_t> free_bodies;                   // a heap, so the least goes first
     std::map<std::uint32_t, std::vector<std::uint32_t>> free_colliders;  // by how many in a row
     std::size_t alive = 0;
 
@@ -105,6 +129,7 @@ struct WorldState {
     SceneFields fields;
 
     std::vector<std::string> material_names;
+    std::vector<double> material_density;       // kg/m3
     std::vector<std::string> warnings, solids;  // see World
     int most_cuts = 1;                          // that were remarked on
 
@@ -162,9 +187,17 @@ struct WorldState {
     void end_touches_of_gone();
     /// What the last step found.
     void follow_touching_pairs();
+    /// Something is about to change that the census knows of a body; who rests with it wakes.
+    void begin_change(std::uint32_t body);
+    /// What follows from where the shapes of a body are about its center of mass.
+    void measure_colliders(std::uint32_t body);
+    /// Has the constant force of a body, if its gravity is scaled, follow mass and gravity.
+    void update_scaled_gravity(std::uint32_t body);
+    /// Takes what a body had for one step away again.
+    void end_pushes();
     /// Sets velocities as far as the body is free to have them, and wakes it. Beyond what a step
     /// can hold it is quarantined.
-    void set_motion(std::uint32_t body, const Vec3& linear, const Vec3& angular);
+    void set_velocities(std::uint32_t body, const Vec3& linear, const Vec3& angular);
     void quarantine(std::uint32_t body);
     /// Effects, graph and the list of active bodies, brought up to date.
     void refresh();

@@ -24,6 +24,7 @@ std::string
 json_text(const std::array<std::optional<double>, 3>& axes);  // null where there is none
 std::string json_text(const std::string& text);
 std::string json_text(Motion motion);
+std::string json_text(std::same_as<std::uint64_t> auto number) { return std::to_string(number); }
 std::string json_text(std::same_as<bool> auto value) { return value ? "true" : "false"; }
 /// A dial's value as scene files have it: a number, or text for a fraction or a word.
 std::string json_dial_value(const std::string& value);

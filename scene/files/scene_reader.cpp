@@ -180,6 +180,10 @@ private:
     void read_value(Node at, Quat& value) const { value = quaternion(at); }
     void read_value(Node at, Sym3& value) const { value = symmetric(at); }
     void read_value(Node at, bool& value) const { value = boolean(at); }
+    void read_value(Node at, std::uint64_t& value) const
+    {
+        value = static_cast<std::uint64_t>(whole(at, kGreatestWhole));
+    }
     void read_value(Node at, std::string& value) const { value = text(at); }
     template <class Value>
     void read_value(Node at, std::optional<Value>& value) const

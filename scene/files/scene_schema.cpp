@@ -71,6 +71,10 @@ struct TypeOf {
     std::string operator()(const std::optional<Sym3>*) const { return list_of(type("number"), 6); }
     std::string operator()(const Quat*) const { return reference("quaternion"); }
     std::string operator()(const bool*) const { return type("boolean"); }
+    std::string operator()(const std::uint64_t*) const
+    {
+        return type("integer") + ", \"minimum\": 0, \"maximum\": 9007199254740992";
+    }
     std::string operator()(const std::string*) const
     {
         return type("string") + (words.required.empty() ? "" : ", \"minLength\": 1");

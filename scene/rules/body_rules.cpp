@@ -39,6 +39,7 @@ void check_contradictions(const BodyDescription& body, const SceneChecker& check
     const char* const only_dynamic = "wanted a body of motion dynamic for this";
     checker.at("force").need(dynamic || body.force.isZero(0), only_dynamic);
     checker.at("torque").need(dynamic || body.torque.isZero(0), only_dynamic);
+    checker.at("gravity_scale").need(dynamic || body.gravity_scale == 1, only_dynamic);
     checker.at("pivot").need(dynamic || !body.pivot, only_dynamic);
     checker.at("pivot").need(!body.pivot || !body.lock_position,
                              "wanted either pivot or lock_position, not both");

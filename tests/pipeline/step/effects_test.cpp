@@ -92,6 +92,7 @@ TEST(Effects, MasksThatNeverMeetCallForNoContact)
     for (BodyDescription& body : made.scene.bodies) {
         body.group = 1;
         body.mask = 2;
+        body.fast = true;  // and is held nowhere
     }
     World world(made.scene);
     EXPECT_FALSE(world.effects().on.has(Effect::contact));

@@ -1,0 +1,627 @@
+// Body changes: what a scene states of a body, and a program says otherwise between steps; and what
+// pushes a body for once.
+#include "kernels/geometry/mass.hpp"
+#include "kernels/geometry/shape_bounds.hpp"
+#include "kernels/math/rotation.hpp"
+#include "pipeline/contacts/fall_asleep.hpp"
+#include "pipeline/world/body_mass.hpp"
+#include "pipeline/world/force_builder.hpp"
+#include "pipeline/world/world_state.hpp"
+#include "scene/limits.hpp"
+#include "scene/names.hpp"
+#include "scene/rules/scene_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace throng {
+
+namespace {
+
+[[noreturn]] void
+refuse(const char* caller, const WorldState& state, std::uint32_t body, const std::string& why)
+{
+    throw std::invalid_argument(std::string(caller) + ": " + state.called(body) + ": " + why);
+}
+
+template <class Value>
+void put(std::vector<Value>& list, std::size_t at, const Value& value, const Value& rest)
+{
+    if (list.size() <= at) {
+        if (value == rest) return;
+        list.resize(at + 1, rest);
+    }
+    list[at] = value;
+}
+
+// Whether a cylinder may be followed as it runs round its rim. Of a needle the digits of float do
+// not tell how it turns about its length beside how it tips over, and nothing of it runs far.
+bool may_run_round(const Cylinder& cylinder)
+{
+    constexpr double kThinnest = 1e-2;
+    return cylinder.radius >= kThinnest * cylinder.half_length;
+}
+
+// What changes of a body as its shapes move about its center of mass, and its frame stays.
+void recenter(WorldState& state, std::uint32_t body, const Vec3& center)
+{
+    const Vec3 moved = center - state.center[body];
+    if (moved.isZero(0)) return;
+    auto& poses = state.get<Poses>();
+    auto& colliders = state.get<Colliders>();
+    auto& velocities = state.get<Velocities>();
+    const Vec3 arm = poses.orientation[body] * moved;
+    poses.position[body] += arm;
+    velocities.linear[body] += velocities.angular[body].cross(arm);
+    for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
+        colliders.local[colliders.begin[body] + i].position -= moved;
+    for (SpringForce& spring : state.get<Forces>().springs) {
+        if (spring.a == body) spring.at_a -= moved;
+        if (spring.b == body) spring.at_b -= moved;
+    }
+    state.center[body] = center;
+    state.measure_colliders(body);
+}
+
+// Of its shape and material, in its own frame. Throws where it has none.
+KeptMass natural_mass(const WorldState& state, std::uint32_t body)
+{
+    const auto& colliders = state.get<Colliders>();
+    std::vector<PlacedMass> parts;
+    for (std::uint32_t i = 0; i < colliders.count[body]; ++i) {
+        const std::uint32_t at = colliders.begin[body] + i;
+        const ShapeKind kind = colliders.shape[at].kind;
+        if (kind == ShapeKind::plane || kind == ShapeKind::mesh)
+            refuse("set_motion", state, body,
+                   kind == ShapeKind::plane
+                       ? "wanted static or kinematic for a plane"
+                       : "wanted static or kinematic for triangles; add a dynamic body with the "
+                         "mesh, which is made into what may move");
+        Pose pose = colliders.local[at];
+        pose.position += state.center[body];
+        parts.push_back({mass_of(state.get<Shapes>(), colliders.shape[at]), pose});
+    }
+    if (parts.empty())
+        refuse("set_motion", state, body,
+               "wanted a mass for a body without a shape; give set_mass() one, and an inertia");
+    const MassProperties whole = combine(parts);
+    const double density = state.material_density[colliders.material[colliders.begin[body]]];
+    KeptMass kept;
+    kept.mass = density * whole.volume;
+    kept.inertia = scaled(whole.inertia, density);
+    kept.center = whole.center;
+    if (!(kept.mass >= kLeastMass && kept.mass <= kGreatestMass))
+        refuse("set_motion", state, body,
+               "wanted a mass that a step can hold; density and shape give "
+                   + number_text(kept.mass) + " kg");
+    return kept;
+}
+
+bool locks_position(const WorldState& state, std::uint32_t body)
+{
+    return state.get<Masses>().inverse_mass[body] == 0;
+}
+bool locks_rotation(const WorldState& state, std::uint32_t body)
+{
+    return state.get<Masses>().inverse_inertia[body] == Sym3{};
+}
+
+void give(WorldState& state, std::uint32_t body, const KeptMass& kept)
+{
+    give_mass(body, kept.mass, kept.inertia, kept.lock_position, kept.lock_rotation,
+              state.settings.precision == Precision::double_, state.get<Masses>());
+    auto& velocities = state.get<Velocities>();
+    if (kept.lock_position) velocities.linear[body].setZero();
+    if (kept.lock_rotation || kept.inertia == Sym3{}) velocities.angular[body].setZero();
+}
+
+// Moments about the center, of ones about the pivot.
+Sym3 about_center(const WorldState& state, std::uint32_t body)
+{
+    const auto& masses = state.get<Masses>();
+    const Vec3 off = state.get<Forces>().pivot_to_center_of(body);
+    return shifted(masses.inertia[body], -masses.mass[body], off);
+}
+
+KeptMass mass_now(const WorldState& state, std::uint32_t body)
+{
+    return {state.get<Masses>().mass[body], about_center(state, body), state.center[body],
+            locks_position(state, body), locks_rotation(state, body)};
+}
+
+std::uint32_t dynamic_at(const WorldState& state, BodyId id, const char* caller)
+{
+    const std::uint32_t body = state.place_of(id, caller);
+    if (!state.get<BodyStates>().dynamic(body))
+        refuse(caller, state, body, "wanted a dynamic body; nothing pushes what is not");
+    return body;
+}
+
+void need_finite(const Vec3& v, const char* caller, const char* unit)
+{
+    if (!v.allFinite())
+        throw std::invalid_argument(std::string(caller) + ": give finite numbers, " + unit);
+}
+
+void set_constant_force(WorldState& state,
+                        std::uint32_t body,
+                        const Vec3& force,
+                        const Vec3& torque)
+{
+    auto& forces = state.get<Forces>();
+    for (auto* const list : {&forces.force, &forces.torque})
+        if (list->size() <= body) list->resize(body + std::size_t{1}, Vec3(Vec3::Zero()));
+    forces.force[body] = force;
+    forces.torque[body] = torque;
+}
+
+void push(WorldState& state, std::uint32_t body, const Vec3& force, const Vec3& torque)
+{
+    const Forces& forces = state.get<Forces>();
+    const bool pushed = body < forces.force.size();
+    const Vec3 before_force = pushed ? forces.force[body] : Vec3(Vec3::Zero());
+    const Vec3 before_torque = pushed ? forces.torque[body] : Vec3(Vec3::Zero());
+    const auto same = [&](const Push& one) { return one.body == body; };
+    if (std::none_of(state.pushes.begin(), state.pushes.end(), same))
+        state.pushes.push_back({body, before_force, before_torque});
+    set_constant_force(state, body, before_force + force, before_torque + torque);
+    state.wake_beside(body);
+    state.changed.push_back(body);
+}
+
+Vec3 inverse_inertia_times(const WorldState& state, std::uint32_t body, const Vec3& v)
+{
+    return in_world_axes(state.get<Masses>().inverse_inertia[body],
+                         state.get<Poses>().orientation[body])
+               .matrix()
+        * v;
+}
+
+}  // namespace
+
+void WorldState::begin_change(std::uint32_t body)
+{
+    follow_changes();
+    get<EffectCensus>().forget(body, effect_facts().bodies);
+    changed.push_back(body);
+    effects_stale = true;
+    disturb(body, false);
+    wake(body);
+}
+
+void WorldState::measure_colliders(std::uint32_t body)
+{
+    auto& colliders = get<Colliders>();
+    const auto& shapes = get<Shapes>();
+    const std::uint32_t count = colliders.count[body];
+    double radius = 0;
+    std::uint8_t bits = count > 1 ? Colliders::kMayHang : 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t at = colliders.begin[body] + i;
+        const ShapeRef part = colliders.shape[at];
+        const Vec3& local = colliders.local[at].position;
+        const double outer = local.norm() + outer_radius(shapes, part);
+        // By what is not convex, or round about another point.
+        if (part.kind == ShapeKind::solid || !local.isZero(0)) bits |= Colliders::kMayHang;
+        if (part.kind == ShapeKind::cylinder && count == 1 && local.isZero(0)
+            && may_run_round(shapes.cylinders[part.index]))
+            bits |= Colliders::kRim;
+        if (part.kind == ShapeKind::box || part.kind == ShapeKind::hull) bits |= Colliders::kFlat;
+        if (part.kind == ShapeKind::capsule || part.kind == ShapeKind::cylinder)
+            bits |= Colliders::kRound;
+        if (part.kind != ShapeKind::sphere || !local.isZero(0)) bits |= Colliders::kOffCenter;
+        colliders.outer_radius[at] = outer;
+        if (std::isfinite(outer)) radius = std::max(radius, outer);
+    }
+    colliders.shape_bits[body] = bits;
+    get<BodyStates>().radius[body] = radius;
+}
+
+void WorldState::update_scaled_gravity(std::uint32_t body)
+{
+    const auto found = scaled_gravity.find(body);
+    if (found == scaled_gravity.end() || !get<BodyStates>().dynamic(body)) return;
+    const auto& torques = get<Forces>().torque;
+    const Vec3 torque = body < torques.size() ? torques[body] : Vec3(Vec3::Zero());
+    const auto& [scale, force] = found->second;
+    set_constant_force(
+        *this, body,
+        scale == 1
+            ? force
+            : Vec3(force + (scale - 1) * get<Masses>().mass[body] * get<StepContext>().gravity),
+        torque);
+}
+
+void WorldState::end_pushes()
+{
+    if (pushes.empty()) return;
+    auto& forces = get<Forces>();
+    for (const Push& push : pushes) {
+        forces.force[push.body] = push.force;
+        forces.torque[push.body] = push.torque;
+        changed.push_back(push.body);
+    }
+    pushes.clear();
+}
+
+void World::set_motion(BodyId id, Motion motion)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = state.place_of(id, "set_motion");
+    const Motion before = state.motion[body];
+    if (motion == before) return;
+    if (motion != Motion::static_ && motion != Motion::kinematic && motion != Motion::dynamic)
+        refuse("set_motion", state, body, "wanted static_, kinematic or dynamic");
+    if (state.get<Forces>().on_pivot(body))
+        refuse("set_motion", state, body, "wanted a body that is on no pivot");
+    auto& states = state.get<BodyStates>();
+    KeptMass next;
+    if (motion == Motion::dynamic) {
+        const auto kept = state.kept_masses.find(body);
+        next = kept != state.kept_masses.end() ? kept->second : natural_mass(state, body);
+    }
+    // To the broad phase and to whoever touches it, it is somebody else from now on.
+    state.begin_change(body);
+    state.disturb(body, true);
+    auto& velocities = state.get<Velocities>();
+    if (before == Motion::dynamic) {
+        state.kept_masses[body] = mass_now(state, body);
+        give_no_mass(body, state.get<Masses>());
+        recenter(state, body, Vec3::Zero());
+    }
+    if (motion == Motion::static_) {
+        velocities.linear[body].setZero();
+        velocities.angular[body].setZero();
+    }
+    if (states.carries(body)) velocities.linear[body].setZero();
+    if (body < states.is_conveyor.size()) states.is_conveyor[body] = 0;
+    states.kind[body] = motion == Motion::static_ ? BodyKind::static_
+        : motion == Motion::kinematic             ? BodyKind::kinematic
+                                                  : BodyKind::dynamic;
+    states.awake[body] = motion != Motion::static_ && states.quarantined[body] == 0 ? 1 : 0;
+    states.sleep_time[body] = 0;
+    state.motion[body] = motion;
+    if (motion == Motion::dynamic) {
+        recenter(state, body, next.center);
+        give(state, body, next);
+        state.kept_masses.erase(body);
+        state.woken.push_back(body);
+    }
+    if (motion == Motion::kinematic || before == Motion::kinematic)
+        state.active_bodies_stale = true;
+    state.active_bodies_stopped = true;
+    state.mark_changed(body);
+    state.update_scaled_gravity(body);
+    if (!state.get<Forces>().springs.empty()) {
+        sort_springs(states, state.get<Forces>());
+        state.census_stale = true;
+        state.warn_of_substeps();
+    }
+}
+
+void World::set_mass(BodyId id, double mass, const std::optional<Sym3>& inertia)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = state.place_of(id, "set_mass");
+    if (!(mass >= kLeastMass && mass <= kGreatestMass))
+        refuse("set_mass", state, body, "wanted a mass above 0 kg");
+    const bool dynamic = state.get<BodyStates>().dynamic(body);
+    KeptMass kept;
+    if (dynamic)
+        kept = mass_now(state, body);
+    else if (const auto found = state.kept_masses.find(body); found != state.kept_masses.end())
+        kept = found->second;
+    else if (!inertia)
+        kept = natural_mass(state, body);
+    if (inertia) {
+        Scene asked;
+        BodyDescription stated;
+        stated.mass = mass;
+        stated.inertia = inertia;
+        asked.bodies.push_back(stated);
+        if (const std::string trouble = check_scene(asked); !trouble.empty())
+            refuse("set_mass", state, body, "wanted an inertia that a body can have; " + trouble);
+        kept.inertia = *inertia;
+    } else {
+        kept.inertia = scaled(kept.inertia, mass / kept.mass);
+    }
+    kept.mass = mass;
+    if (!dynamic) {
+        state.kept_masses[body] = kept;
+        return;
+    }
+    const bool turns = !locks_rotation(state, body);
+    state.begin_change(body);
+    const Vec3 off = state.get<Forces>().pivot_to_center_of(body);
+    kept.inertia = shifted(kept.inertia, mass, off);
+    kept.lock_rotation = !turns;
+    give(state, body, kept);
+    state.mark_changed(body);
+    state.update_scaled_gravity(body);
+    state.warn_of_substeps();
+}
+
+Sym3 World::inertia(BodyId id) const
+{
+    const std::uint32_t body = state_->place_of(id, "inertia");
+    return state_->get<BodyStates>().dynamic(body) ? about_center(*state_, body) : Sym3{};
+}
+
+void World::set_locks(BodyId id, bool position, bool rotation)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = state.place_of(id, "set_locks");
+    if (!state.get<BodyStates>().dynamic(body)) {
+        if (const auto found = state.kept_masses.find(body); found != state.kept_masses.end()) {
+            found->second.lock_position = position;
+            found->second.lock_rotation = rotation;
+            return;
+        }
+        refuse("set_locks", state, body, "wanted a dynamic body, or one that was");
+    }
+    const bool pivot = state.get<Forces>().on_pivot(body);
+    if (pivot && position) refuse("set_locks", state, body, "wanted a body that is on no pivot");
+    const Masses& masses = state.get<Masses>();
+    if (!rotation && masses.inertia[body] == Sym3{})
+        refuse("set_locks", state, body,
+               "wanted an inertia for a body that is to turn; give "
+               "set_mass() one");
+    state.begin_change(body);
+    give(
+        state, body,
+        {masses.mass[body], masses.inertia[body], state.center[body], position || pivot, rotation});
+    state.mark_changed(body);
+}
+
+void World::set_filter(BodyId id, std::uint32_t group, std::uint32_t mask)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = state.place_of(id, "set_filter");
+    state.begin_change(body);
+    const auto& colliders = state.get<Colliders>();
+    auto& filter = state.get<PairFilter>();
+    for (std::uint32_t i = 0; i < colliders.count[body]; ++i) {
+        filter.group[colliders.begin[body] + i] = group;
+        filter.mask[colliders.begin[body] + i] = mask;
+    }
+    state.mark_changed(body);
+}
+
+std::uint32_t World::group(BodyId id) const
+{
+    const std::uint32_t body = state_->place_of(id, "group");
+    const auto& colliders = state_->get<Colliders>();
+    return colliders.count[body] == 0 ? 0 : state_->get<PairFilter>().group[colliders.begin[body]];
+}
+
+std::uint32_t World::mask(BodyId id) const
+{
+    const std::uint32_t body = state_->place_of(id, "mask");
+    const auto& colliders = state_->get<Colliders>();
+    return colliders.count[body] == 0 ? 0 : state_->get<PairFilter>().mask[colliders.begin[body]];
+}
+
+void World::set_drive_velocity(BodyId id, const std::array<std::optional<double>, 3>& velocity)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = state.place_of(id, "set_drive_velocity");
+    for (const auto& component : velocity)
+        if (component && !(std::abs(*component) <= kGreatestLength))
+            refuse("set_drive_velocity", state, body, "wanted a velocity in m/s");
+    state.begin_change(body);
+    auto& prescribed = state.get<PrescribedVelocities>();
+    prescribed.erase(body);
+    const double free = std::nan("");
+    if (velocity[0] || velocity[1] || velocity[2])
+        prescribed.put(
+            body,
+            {velocity[0].value_or(free), velocity[1].value_or(free), velocity[2].value_or(free)});
+    auto& states = state.get<BodyStates>();
+    if (states.kind[body] == BodyKind::static_) {
+        const Vec3 surface(velocity[0].value_or(0), velocity[1].value_or(0),
+                           velocity[2].value_or(0));
+        const bool carries = !surface.isZero(0);
+        put(states.is_conveyor, body, std::uint8_t{carries}, std::uint8_t{0});
+        states.conveyors = states.conveyors || carries;
+        state.get<Velocities>().linear[body] = surface;
+    }
+    // Whoever drives it anew wants those that lie on it to feel it.
+    state.mark_changed(body);
+}
+
+void World::set_fast(BodyId id, bool fast)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = state.place_of(id, "set_fast");
+    auto& states = state.get<BodyStates>();
+    put(states.fast, body, std::uint8_t{fast && states.kind[body] != BodyKind::static_},
+        std::uint8_t{0});
+    state.wake(body);
+    if (fast) {
+        state.requests.ask(Effect::fast_motion, state.called(body));
+        state.effects_stale = true;
+    }
+}
+
+void World::set_force(BodyId id, const Vec3& force, const Vec3& torque)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = dynamic_at(state, id, "set_force");
+    need_finite(force, "set_force", "N");
+    need_finite(torque, "set_force", "N m");
+    for (const Push& one : state.pushes)
+        if (one.body == body)
+            refuse("set_force", state, body, "wanted before add_force(), or after the next step");
+    state.wake_beside(body);
+    const auto scaled = state.scaled_gravity.find(body);
+    if (scaled != state.scaled_gravity.end()) scaled->second.force = force;
+    set_constant_force(state, body, force, torque);
+    state.update_scaled_gravity(body);
+    state.changed.push_back(body);
+}
+
+void World::set_gravity_scale(BodyId id, double scale)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = state.place_of(id, "set_gravity_scale");
+    if (!(std::abs(scale) <= kGreatestNumber))
+        refuse("set_gravity_scale", state, body, "wanted a finite factor");
+    for (const Push& one : state.pushes)
+        if (one.body == body)
+            refuse("set_gravity_scale", state, body,
+                   "wanted before add_force(), or after the next step");
+    state.wake_beside(body);
+    const auto& forces = state.get<Forces>();
+    const Vec3 stated = body < forces.force.size() ? forces.force[body] : Vec3(Vec3::Zero());
+    const auto [entry, first] = state.scaled_gravity.try_emplace(body, ScaledGravity{1, stated});
+    entry->second.scale = scale;
+    state.update_scaled_gravity(body);
+    if (scale == 1) state.scaled_gravity.erase(body);
+    state.changed.push_back(body);
+}
+
+double World::gravity_scale(BodyId id) const
+{
+    const std::uint32_t body = state_->place_of(id, "gravity_scale");
+    const auto scaled = state_->scaled_gravity.find(body);
+    return scaled == state_->scaled_gravity.end() ? 1 : scaled->second.scale;
+}
+
+void World::set_user_data(BodyId id, std::uint64_t data)
+{
+    put(state_->user_data, state_->place_of(id, "set_user_data"), data, std::uint64_t{0});
+}
+
+std::uint64_t World::user_data(BodyId id) const
+{
+    const std::uint32_t body = state_->place_of(id, "user_data");
+    return body < state_->user_data.size() ? state_->user_data[body] : 0;
+}
+
+void World::add_impulse(BodyId id, const Vec3& impulse)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = dynamic_at(state, id, "add_impulse");
+    need_finite(impulse, "add_impulse", "N s");
+    const auto& velocities = state.get<Velocities>();
+    Vec3 angular = velocities.angular[body];
+    // What hangs on a pivot, about which its inertia is, turns by what reaches its center of mass.
+    if (const Vec3 arm = state.arm(body); !arm.isZero(0))
+        angular += inverse_inertia_times(state, body, arm.cross(impulse));
+    state.set_velocities(
+        body, velocities.linear[body] + impulse * state.get<Masses>().inverse_mass[body], angular);
+}
+
+void World::add_impulse(BodyId id, const Vec3& impulse, const Vec3& point)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = dynamic_at(state, id, "add_impulse");
+    need_finite(impulse, "add_impulse", "N s");
+    need_finite(point, "add_impulse", "m");
+    const auto& velocities = state.get<Velocities>();
+    const Vec3 arm = point - state.get<Poses>().position[body];
+    state.set_velocities(
+        body, velocities.linear[body] + impulse * state.get<Masses>().inverse_mass[body],
+        velocities.angular[body] + inverse_inertia_times(state, body, arm.cross(impulse)));
+}
+
+void World::add_angular_impulse(BodyId id, const Vec3& impulse)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = dynamic_at(state, id, "add_angular_impulse");
+    need_finite(impulse, "add_angular_impulse", "N m s");
+    const auto& velocities = state.get<Velocities>();
+    state.set_velocities(body, velocities.linear[body],
+                         velocities.angular[body] + inverse_inertia_times(state, body, impulse));
+}
+
+void World::add_force(BodyId id, const Vec3& force)
+{
+    const std::uint32_t body = dynamic_at(*state_, id, "add_force");
+    need_finite(force, "add_force", "N");
+    push(*state_, body, force, Vec3::Zero());
+}
+
+void World::add_force(BodyId id, const Vec3& force, const Vec3& point)
+{
+    const std::uint32_t body = dynamic_at(*state_, id, "add_force");
+    need_finite(force, "add_force", "N");
+    need_finite(point, "add_force", "m");
+    push(*state_, body, force, Vec3(point - state_->center_of_mass(body)).cross(force));
+}
+
+void World::add_torque(BodyId id, const Vec3& torque)
+{
+    const std::uint32_t body = dynamic_at(*state_, id, "add_torque");
+    need_finite(torque, "add_torque", "N m");
+    push(*state_, body, Vec3::Zero(), torque);
+}
+
+void World::move_to(BodyId id, const Pose& pose, double seconds)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = state.place_of(id, "move_to");
+    if (state.get<BodyStates>().kind[body] != BodyKind::kinematic)
+        refuse("move_to", state, body, "wanted a kinematic body; set_pose() puts any where it is");
+    const double length = std::sqrt(pose.orientation.squaredNorm());
+    if (!holdable(pose.position) || !(std::abs(length - 1) < 1e-6))
+        refuse("move_to", state, body, "wanted a finite position and a unit quaternion");
+    if (!(seconds > 0) || !std::isfinite(seconds))
+        refuse("move_to", state, body, "wanted a time above 0 s");
+    const Quat to(pose.orientation.coeffs() / length);
+    const Vec3 place = to * state.center[body] + pose.position;
+    const auto& poses = state.get<Poses>();
+    Quat turn = to * poses.orientation[body].conjugate();
+    if (turn.w() < 0) turn.coeffs() *= -1;  // the shorter way
+    const double sine = turn.vec().norm();
+    const double angle = 2 * std::atan2(sine, turn.w());
+    const Vec3 spin = sine > 0 ? Vec3(turn.vec() * (angle / (sine * seconds))) : Vec3(Vec3::Zero());
+    state.set_velocities(body, (place - poses.position[body]) / seconds, spin);
+}
+
+void World::wake(BodyId id)
+{
+    const std::uint32_t body = state_->place_of(id, "wake");
+    if (state_->get<BodyStates>().dynamic(body)) state_->wake_beside(body);
+}
+
+void World::sleep(BodyId id)
+{
+    WorldState& state = *state_;
+    const std::uint32_t body = dynamic_at(state, id, "sleep");
+    auto& states = state.get<BodyStates>();
+    if (!state.settings.sleep && !rests_by_force(state.settings))
+        refuse("sleep", state, body, "wanted the setting sleep=on: nobody may sleep");
+    if (!states.moves(body)) return;
+    auto& velocities = state.get<Velocities>();
+    std::vector<std::uint32_t> together = {body};
+    const auto& islands = state.get<Islands>();
+    for (std::size_t island = 0; island < islands.size(); ++island) {
+        const auto bodies = islands.bodies_of(island);
+        if (!std::binary_search(bodies.begin(), bodies.end(), body)) continue;
+        together.assign(bodies.begin(), bodies.end());
+        std::erase_if(together, [&](std::uint32_t one) { return !states.movable(one); });
+    }
+    if (rests_by_force(state.settings)) {
+        for (const std::uint32_t one : together) {
+            velocities.linear[one].setZero();
+            velocities.angular[one].setZero();
+            states.sleep_time[one] = state.get<SleepParameters>().time;
+            state.changed.push_back(one);
+        }
+        return;
+    }
+    auto& events = state.get<SleepEvents>();
+    fall_asleep(together, states, state.get<SleepingIslands>(), velocities, events);
+    keep_each_once(events.fell_asleep);
+    std::erase_if(state.woken, [&](std::uint32_t one) { return !states.moves(one); });
+    for (const std::uint32_t one : together) {
+        state.get<OverloadedIslands>().forget(one);
+        state.note_moved(one);
+        state.changed.push_back(one);
+    }
+    state.active_bodies_stopped = true;
+}
+
+}  // namespace throng
