@@ -169,6 +169,8 @@ inline constexpr Field<BodyDescription> kBodyFields[] = {
         Bits<BodyDescription>{&BodyDescription::mask}},
     {"fast", "", "Continuous collision at any speed: it is held where it first meets something. Others are watched once they may go half of their smallest half extent in a step.",
         &BodyDescription::fast},
+    {"sensor", "", "It touches nothing, and tells a program that listens who overlaps it. Of convex shapes, or a compound of them.",
+        &BodyDescription::sensor},
     {"gravity_scale", "1", "Gravity on it, of that of the scene.",
         &BodyDescription::gravity_scale, {-kGreatestNumber, kGreatestNumber, "a factor"}},
     {"user_data", "", "A whole number that a program keeps with it, from 0 to 2^53.",

@@ -56,7 +56,7 @@ INSIDE = {
     "narrowphase": ["manifold", "convex", "mesh", "solid", "ccd", "alternatives", "."],
     "narrowphase/convex": ["wide", "."],
     "scene": [".", "shapes", "rules", "files", "catalog"],
-    "pipeline": ["step", "forces", "contacts", "stages", "solvers", "event_driven", "world", "queries",
+    "pipeline": ["step", "forces", "contacts", "stages", "solvers", "event_driven", "world", "queries", "events",
                  "records", "."],
     "cost": [".", "answers", "windows", "sweep", "report", "hard_cases"],
     "apps": ["peers", "throng", "."],

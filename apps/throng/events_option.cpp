@@ -40,16 +40,18 @@ EventsOption::EventsOption(const Options& options) : file_("--events", options.t
 
 void EventsOption::listen(World& world)
 {
-    if (asked_for()) world.listen({.touches = true, .hit_speed = hit_speed_});
+    if (asked_for()) world.listen({.touches = true, .hit_speed = hit_speed_, .sensors = true});
 }
 
 void EventsOption::after_step(const World& world)
 {
     if (!asked_for()) return;
-    const ContactEvents& events = world.events();
+    const Events& events = world.events();
     std::ostream& out = file_.stream();
     for (const TouchEvent& event : events.begun) out << line_of("begin", event) << ",,,,,,,\n";
     for (const TouchEvent& event : events.ended) out << line_of("end", event) << ",,,,,,,\n";
+    for (const TouchEvent& event : events.sensed) out << line_of("sense", event) << ",,,,,,,\n";
+    for (const TouchEvent& event : events.left) out << line_of("leave", event) << ",,,,,,,\n";
     for (const HitEvent& hit : events.hits)
         out << line_of("hit", hit) << ',' << number_text(hit.speed) << columns(hit.point)
             << columns(hit.normal) << '\n';

@@ -14,8 +14,8 @@ inline constexpr Option kHitSpeedOption = {
 
 /// The events that were asked for, if any: a line each, of
 ///
-///   step, event (begin, end or hit), a, b (indices of bodies), part_a, part_b; of hits the speed,
-///   m/s, the point and the normal, unit, from a to b
+///   step, event (begin, end, hit; sense, leave of sensors), a, b (indices of bodies), part_a,
+///   part_b; of hits the speed, m/s, the point and the normal, unit, from a to b
 class EventsOption {
 public:
     /// Throws BadInput when they cannot be written.

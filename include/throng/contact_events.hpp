@@ -59,9 +59,11 @@ struct ContactReport : TouchingParts {
 ///
 ///   touches    who begins and who ceases to touch
 ///   hit_speed  m/s, above 0: hits at this speed or faster; infinite for none
+///   sensors    who comes into a sensor and who leaves it, however fast
 struct Listening {
     bool touches = false;
     double hit_speed = std::numeric_limits<double>::infinity();
+    bool sensors = false;
 };
 
 /// That two parts begin or cease to touch. Parts touch in a step when a contact of theirs overlaps
@@ -84,9 +86,14 @@ struct HitEvent : TouchEvent {
 /// Of all steps of the last call of World::step(), in order of step, then of parts; the same for
 /// any number of threads. Every begin has its end: who is removed ceases to touch in the next step,
 /// and whoever falls asleep goes on touching.
-struct ContactEvents {
+///
+///   sensed, left  who came to overlap a sensor, which is a, and who no longer does. Who went
+///                 through one within a step is told of in both. Neither tells of other sensors,
+///                 nor of what is static where the sensor is
+struct Events {
     std::vector<TouchEvent> begun, ended;
     std::vector<HitEvent> hits;
+    std::vector<TouchEvent> sensed, left;
 };
 
 }  // namespace throng

@@ -63,7 +63,8 @@ enum class Effect : std::uint8_t {
     pivot,
     sleeping,
     escalation,
-    events,  // a program listens
+    events,   // a program listens
+    sensors,  // and somebody is one
 };
 /// What calls for contacts of solids, each by its way.
 inline constexpr Set<Effect> kSolidContact = {Effect::voxel_contact, Effect::sphere_contact,
@@ -84,7 +85,7 @@ inline constexpr Set<Effect> kOfIslands =
 inline constexpr Set<Effect> kLeftOutByWorld =
     kSolidContact | Set<Effect>{Effect::gyroscopic, Effect::fast_motion, Effect::mesh_contact,
                                 Effect::seams,      Effect::sleeping,    Effect::escalation};
-inline constexpr int kEffects = static_cast<int>(Effect::events) + 1;
+inline constexpr int kEffects = static_cast<int>(Effect::sensors) + 1;
 
 std::string_view name_of(Effect effect);
 

@@ -126,6 +126,7 @@ struct BodyDescription {
     bool lock_position = false;
     bool fast = false;
     double gravity_scale = 1;     // gravity on it, of that of the scene
+    bool sensor = false;          // reports who overlaps it, and touches nothing
     std::uint64_t user_data = 0;  // a program's own; at most 2^53 in a file
 };
 

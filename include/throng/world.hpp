@@ -107,6 +107,9 @@ public:
     /// m/s, set before every step where they are given; of a static body those of its surface.
     void set_drive_velocity(BodyId body, const std::array<std::optional<double>, 3>& velocity);
     void set_fast(BodyId body, bool fast);
+    /// A sensor touches nobody; see Listening. Its shapes have to be convex and of finite size.
+    void set_sensor(BodyId body, bool sensor);
+    bool sensor(BodyId body) const;
     /// N and N m, constant, world axes.
     void set_force(BodyId body, const Vec3& force, const Vec3& torque);
     /// Gravity on the body is this many times that of the world.
@@ -134,7 +137,10 @@ public:
     /// Says what events are wanted; nothing is made of others. Whoever touches as it begins is told
     /// of in the next step, sleepers as they wake. None are known where a step is cut at touches.
     void listen(const Listening& to);
-    const ContactEvents& events() const;
+    const Events& events() const;
+    /// The bodies that overlap a sensor, as of the last step, by index. Throws where nobody listens
+    /// to sensors.
+    std::vector<BodyId> sensed(BodyId sensor) const;
 
     const StepReport& report() const;
     /// What was found wrong with shapes that were added and what was done about it, a sentence

@@ -21,6 +21,14 @@ public:
     /// Looks at who moved, came and went since the last time. Before each question.
     void refresh();
 
+    /// Colliders whose boxes meet regions, planes apart; on the threads of the pool that the caller
+    /// runs in.
+    void find_near(std::span<const Box3> regions, Candidates& candidates)
+    {
+        boxes_.meet_boxes(regions, candidates);
+    }
+    std::span<const std::uint32_t> planes() const { return planes_; }
+
     void cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits);
     void find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_t> blocked);
     void find_overlaps(std::span<const ShapeQuery> queries, std::span<std::vector<BodyId>> found);

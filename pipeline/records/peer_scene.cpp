@@ -82,7 +82,7 @@ PeerScene peer_scene(const World& world, const Scene& scene)
         body.velocity = world.velocity(id);
         body.angular_velocity = world.angular_velocity(id);
         body.first_shape = static_cast<std::uint32_t>(made.shapes.size());
-        body.shapes = colliders.count[at];
+        body.shapes = world.sensor(id) ? 0 : colliders.count[at];  // which touches nobody
         for (std::uint32_t k = 0; k < body.shapes; ++k) {
             const std::uint32_t collider = colliders.begin[at] + k;
             made.shapes.push_back(
@@ -95,7 +95,7 @@ PeerScene peer_scene(const World& world, const Scene& scene)
     for_each_stated(scene, [&](const BodyDescription& stated) {
         PeerBody& body = made.bodies[at++];
         body.lock_rotation = stated.lock_rotation;
-        body.force = stated.force;
+        body.force = stated.force + (stated.gravity_scale - 1) * body.mass * made.gravity;
         body.drive = stated.drive_velocity;
     });
     return made;

@@ -39,6 +39,7 @@ constexpr std::string_view kNames[] = {
     "sleeping",
     "escalation",
     "events",
+    "sensors",
 };
 static_assert(std::size(kNames) == kEffects);
 

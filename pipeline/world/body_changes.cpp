@@ -130,6 +130,17 @@ KeptMass mass_now(const WorldState& state, std::uint32_t body)
             locks_position(state, body), locks_rotation(state, body)};
 }
 
+SensorFilter filter_of(const WorldState& state, std::uint32_t body)
+{
+    if (const auto sensor = state.sensors.find(body); sensor != state.sensors.end())
+        return sensor->second;
+    const auto& colliders = state.get<Colliders>();
+    const auto& filter = state.get<PairFilter>();
+    const std::uint32_t first = colliders.begin[body];
+    return colliders.count[body] == 0 ? SensorFilter{0, 0}
+                                      : SensorFilter{filter.group[first], filter.mask[first]};
+}
+
 std::uint32_t dynamic_at(const WorldState& state, BodyId id, const char* caller)
 {
     const std::uint32_t body = state.place_of(id, caller);
@@ -188,6 +199,22 @@ void WorldState::begin_change(std::uint32_t body)
     effects_stale = true;
     disturb(body, false);
     wake(body);
+}
+
+void WorldState::set_filter(std::uint32_t body, const SensorFilter& to)
+{
+    const auto& colliders = get<Colliders>();
+    auto& filter = get<PairFilter>();
+    for (std::uint32_t i = 0; i < colliders.count[body]; ++i) {
+        filter.group[colliders.begin[body] + i] = to.group;
+        filter.mask[colliders.begin[body] + i] = to.mask;
+    }
+}
+
+void WorldState::make_sensor(std::uint32_t body)
+{
+    sensors[body] = filter_of(*this, body);
+    set_filter(body, {0, 0});
 }
 
 void WorldState::measure_colliders(std::uint32_t body)
@@ -378,28 +405,26 @@ void World::set_filter(BodyId id, std::uint32_t group, std::uint32_t mask)
 {
     WorldState& state = *state_;
     const std::uint32_t body = state.place_of(id, "set_filter");
-    state.begin_change(body);
-    const auto& colliders = state.get<Colliders>();
-    auto& filter = state.get<PairFilter>();
-    for (std::uint32_t i = 0; i < colliders.count[body]; ++i) {
-        filter.group[colliders.begin[body] + i] = group;
-        filter.mask[colliders.begin[body] + i] = mask;
+    if (const auto sensor = state.sensors.find(body); sensor != state.sensors.end()) {
+        sensor->second = {group, mask};
+        state.changed.push_back(body);
+        return;
     }
+    state.begin_change(body);
+    state.set_filter(body, {group, mask});
     state.mark_changed(body);
 }
 
 std::uint32_t World::group(BodyId id) const
 {
     const std::uint32_t body = state_->place_of(id, "group");
-    const auto& colliders = state_->get<Colliders>();
-    return colliders.count[body] == 0 ? 0 : state_->get<PairFilter>().group[colliders.begin[body]];
+    return filter_of(*state_, body).group;
 }
 
 std::uint32_t World::mask(BodyId id) const
 {
     const std::uint32_t body = state_->place_of(id, "mask");
-    const auto& colliders = state_->get<Colliders>();
-    return colliders.count[body] == 0 ? 0 : state_->get<PairFilter>().mask[colliders.begin[body]];
+    return filter_of(*state_, body).mask;
 }
 
 void World::set_drive_velocity(BodyId id, const std::array<std::optional<double>, 3>& velocity)

@@ -129,6 +129,8 @@ private:
             return state_.get<OverloadedIslands>().strained.size();
         case Effect::events:
             return 1;
+        case Effect::sensors:
+            return state_.sensors.size();
         }
         return 0;
     }

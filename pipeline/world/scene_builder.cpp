@@ -316,6 +316,7 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
         state_.scaled_gravity[body] = {stated.gravity_scale, stated.force};
         state_.update_scaled_gravity(body);
     }
+    if (stated.sensor) state_.make_sensor(body);
     if (stated.user_data != 0) put(state_.user_data, body, stated.user_data);
 
     const auto& drive = stated.drive_velocity;
@@ -447,6 +448,7 @@ std::vector<BodyId> SceneBuilder::add(const Scene& scene)
         }
     }
     add_forces(scene, ids);
+    if (!state_.sensors.empty()) state_.call_sensors();
     state_.effects_stale = true;
     // Springs turn bodies that were there before, or not as they came.
     if (!scene.springs.empty()) state_.census_stale = true;

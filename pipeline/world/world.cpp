@@ -413,6 +413,7 @@ void World::step(int steps)
             state.refresh();
             state.idle = state.get<BodyStates>().active_bodies.none()
                 && state.get<Bounds>().touched.empty() && state.get<RestingBodies>().waking.empty();
+            if (state.sensing != nullptr) state.sensing->before_step();
             state.pool.run([&](std::size_t, std::size_t, std::size_t) {
                 std::visit(
                     [&](auto& chosen) {
@@ -445,6 +446,7 @@ void World::step(int steps)
             state.end_pushes();
             state.follow_step();
             state.follow_touching_pairs();
+            if (state.sensing != nullptr) state.sensing->after_step();
         }
         state.get<StepContext>().time += settings().dt;
         ++state.report.step;

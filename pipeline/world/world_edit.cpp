@@ -195,6 +195,7 @@ void World::remove(std::span<const BodyId> bodies)
     auto& colliders = state.get<Colliders>();
     const EffectFacts facts = state.effect_facts();
     std::vector<std::uint32_t> going;
+    bool sensor_goes = false;
     // What rested on them has to notice; and whoever takes their places next is somebody else.
     for (const BodyId id : bodies) {
         const std::uint32_t body = id.index;
@@ -219,12 +220,14 @@ void World::remove(std::span<const BodyId> bodies)
         state.scaled_gravity.erase(body);
         if (body < state.user_data.size()) state.user_data[body] = 0;
         state.kept_masses.erase(body);
+        sensor_goes = state.sensors.erase(body) > 0 || sensor_goes;
         std::erase_if(state.pushes, [&](const Push& push) { return push.body == body; });
         ++state.generation[body];
         state.free_bodies.push_back(body);
         std::push_heap(state.free_bodies.begin(), state.free_bodies.end(), std::greater<>());
         --state.alive;
     }
+    if (sensor_goes) state.call_sensors();
     if (!state.get<Forces>().springs.empty()) state.census_stale = true;
     drop_forces(going, states, state.get<Forces>());
     if (state.fields.remove(going, state.get<Forces>())) state.wake_all();

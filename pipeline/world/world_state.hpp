@@ -64,6 +64,22 @@ struct Push {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
 
+/// Group and mask of a sensor; to the pair filter it has none, and so touches nobody.
+struct SensorFilter {
+    std::uint32_t group = 1, mask = ~0u;
+};
+
+/// Looks after sensors round each step; there while a program listens to any.
+class SensorWatch {
+public:
+    virtual ~SensorWatch() = default;
+    virtual void before_step() = 0;
+    /// Tells who came and who left.
+    virtual void after_step() = 0;
+    /// Who overlaps a sensor, as of the last step; ascending, each once.
+    virtual std::vector<BodyId> inside(BodyId sensor) const = 0;
+};
+
 /// Colliders that may be elsewhere than when questions were asked last; kept for that alone.
 struct MovedColliders {
     bool all = false;
@@ -117,11 +133,13 @@ struct WorldState {
 
     // For a program that listens.
     Listening listening;
-    ContactEvents events;
+    Events events;
     std::unordered_map<std::uint32_t, ColliderOwner> gone;  // of colliders, until settled
     std::vector<TouchingParts> ended_with_gone;             // since the last step
-    std::vector<ContactReport> contacts;                    // as they were asked for last
-    bool contacts_as_stepped = true;  // nothing has changed their lists since the last step
+    std::map<std::uint32_t, SensorFilter> sensors;          // by body
+    std::unique_ptr<SensorWatch> sensing;
+    std::vector<ContactReport> contacts;  // as they were asked for last
+    bool contacts_as_stepped = true;      // nothing has changed their lists since the last step
 
     std::shared_ptr<QueryScene> queries;  // once any were asked
     MovedColliders moved;
@@ -187,6 +205,11 @@ struct WorldState {
     void end_touches_of_gone();
     /// What the last step found.
     void follow_touching_pairs();
+    /// Takes a body out of all contact, to be a sensor.
+    void make_sensor(std::uint32_t body);
+    void set_filter(std::uint32_t body, const SensorFilter& filter);
+    /// Whether sensors are called for, as bodies or listeners come and go.
+    void call_sensors();
     /// Something is about to change that the census knows of a body; who rests with it wakes.
     void begin_change(std::uint32_t body);
     /// What follows from where the shapes of a body are about its center of mass.

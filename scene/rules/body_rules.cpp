@@ -87,6 +87,16 @@ void check_shape_and_mass(const Scene& scene,
     checker.at("material")
         .need(body.material == kNone || body.material < scene.materials.size(),
               "wanted a material of the scene");
+    if (body.sensor) {
+        const bool stands_for_something = body.shape != kNone
+            && !std::holds_alternative<PlaneShape>(scene.shapes[body.shape].shape)
+            && !std::holds_alternative<MeshShape>(scene.shapes[body.shape].shape)
+            && !std::holds_alternative<VoxelsShape>(scene.shapes[body.shape].shape);
+        checker.at("sensor").need(
+            stands_for_something,
+            "wanted a convex shape of finite size, or a compound of such, for "
+            "a sensor");
+    }
     if (body.inertia) check_inertia(*body.inertia, checker.at("inertia"));
     if (body.motion != Motion::dynamic) return;
 

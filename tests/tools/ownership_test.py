@@ -41,6 +41,12 @@ def forced(**of_body):
     return scene
 
 
+def sensed():
+    scene = forced()
+    scene["bodies"].append({"shape": "box", "motion": "static", "sensor": True, "position": [0, 0, 0.3]})
+    return scene
+
+
 # A scene of the catalogue or of our own, its steps, and dials.
 SCENES = [
     ("pile:8", STEPS, []), ("spheres:8", STEPS, []), ("sparse:8", STEPS, []),
@@ -59,6 +65,7 @@ SCENES = [
     (forced(springs=[{"a": "top", "b": None, "at_b": [0, 0, 1], "stiffness": 1e6,
                       "length": 0.5}]), STEPS, []),
     ("stacks:30", 90, ["substeps=1"]), ("bouncing:4", 40, [LISTENS]),
+    (sensed(), STEPS, [LISTENS]),
 ]
 
 

@@ -186,12 +186,13 @@ void World::listen(const Listening& to)
         state.gone.clear();
         state.ended_with_gone.clear();
     }
+    state.call_sensors();
     state.get<SleepingPairs>().told = any;
     state.get<SleepingPairs>().changes.clear();
     state.effects_stale = true;
 }
 
-const ContactEvents& World::events() const { return state_->events; }
+const Events& World::events() const { return state_->events; }
 
 std::span<const ContactReport> World::contacts() const
 {

@@ -43,7 +43,7 @@ std::set<Parts> touching(const World& world)
 }
 
 // Follows a set through events: each begin is new, and each end was there.
-void follow(const ContactEvents& events, std::set<Parts>& told)
+void follow(const Events& events, std::set<Parts>& told)
 {
     for (const TouchEvent& event : events.ended) EXPECT_EQ(told.erase(key_of(event)), 1u);
     for (const TouchEvent& event : events.begun) EXPECT_TRUE(told.insert(key_of(event)).second);
@@ -145,7 +145,7 @@ TEST_P(EventScenes, AreWhatTheContactsSay)
         unheard.step();
         follow(world.events(), told);
         ASSERT_EQ(told, touching(world)) << "step " << i;
-        const ContactEvents &one = world.events(), &other = threads.events();
+        const Events &one = world.events(), &other = threads.events();
         const auto same = [](const auto& a, const auto& b) {
             return key_of(a) == key_of(b) && a.step == b.step;
         };
