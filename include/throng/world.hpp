@@ -5,6 +5,7 @@
 // the world's own threads, and its result is the same bits for any number of them.
 #pragma once
 
+#include "throng/body_state.hpp"
 #include "throng/contact_events.hpp"
 #include "throng/effects.hpp"
 #include "throng/force_field.hpp"
@@ -67,6 +68,14 @@ public:
     Vec3 angular_velocity(BodyId body) const;  // world axes
     /// m: no point of its shapes is further from the center of mass; 0 without any, planes apart.
     double radius(BodyId body) const;
+
+    /// The state of all bodies, as it is kept.
+    StateSpans stored_state() const;
+    /// That of some, in their order, where a program wants it; on the world's threads.
+    void read_state(std::span<const BodyId> bodies, const StateColumns<double>& to) const;
+    /// As set_pose() and set_velocity() of each; what is left out stays as it is. Nothing is
+    /// written where anything is refused.
+    void write_state(std::span<const BodyId> bodies, const StateColumns<const double>& from);
 
     /// These wake the body and what it rests with.
     void set_pose(BodyId body, const Pose& pose);

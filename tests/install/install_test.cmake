@@ -25,6 +25,10 @@ run(${WORK}/build/hello)
 if(NOT printed MATCHES "rests at 9\\.[45][0-9] m")
   message(FATAL_ERROR "ten crates of 1 m stand on the ground, but: ${printed}")
 endif()
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/../../examples -B ${WORK}/examples -G Ninja
+  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+run(${CMAKE_COMMAND} --build ${WORK}/examples)
+run(${WORK}/examples/level)
 file(MAKE_DIRECTORY ${WORK}/tour)
 run(${WORK}/build/tour ${WORK}/tour)
 
