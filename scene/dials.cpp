@@ -81,7 +81,9 @@ std::string set_choice(Settings& settings, std::string_view text)
 template <auto Member, const auto& choices>
 std::string get_choice(const Settings& settings)
 {
-    return std::string(choices[static_cast<std::size_t>(settings.*Member)].text);
+    // A program may have put there what names nothing; whoever reads the text refuses it.
+    const auto place = static_cast<std::size_t>(settings.*Member);
+    return place < std::size(choices) ? std::string(choices[place].text) : std::to_string(place);
 }
 
 /// A whole number in a range, or 0 where it is none.

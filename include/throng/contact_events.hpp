@@ -11,9 +11,10 @@
 
 namespace throng {
 
-/// Names a body: its place, and how many held that place before it.
+/// Names a body: its place, and how many held that place before it. One that was given to nobody
+/// names none.
 struct BodyId {
-    std::uint32_t index = 0;
+    std::uint32_t index = 0xffffffffu;
     std::uint32_t generation = 0;
     bool operator==(const BodyId&) const = default;
 };

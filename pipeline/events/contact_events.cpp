@@ -5,6 +5,7 @@
 #include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/world/contact_impulses.hpp"
 #include "pipeline/world/world_state.hpp"
+#include "throng/dials.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,12 @@ namespace {
 auto order_of(const TouchingParts& parts)
 {
     return std::tuple(parts.a.index, parts.b.index, parts.part_a, parts.part_b);
+}
+
+void warn_once(std::vector<std::string>& warnings, std::string warning)
+{
+    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
+        warnings.push_back(std::move(warning));
 }
 
 template <class Real>
@@ -187,6 +194,11 @@ void World::listen(const Listening& to)
         state.ended_with_gone.clear();
     }
     state.call_sensors();
+    if (any && state.settings.overlap != Overlap::allow)
+        warn_once(state.warnings,
+                  "listen: overlap=" + dial_value(state.settings, "overlap")
+                      + " keeps no list of contacts: nobody is told of touches and hits; take "
+                        "overlap=allow, or ask overlapping_pairs()");
     state.get<SleepingPairs>().told = any;
     state.get<SleepingPairs>().changes.clear();
     state.effects_stale = true;

@@ -9,6 +9,7 @@
 #include "pipeline/world/contact_impulses.hpp"
 #include "pipeline/world/force_builder.hpp"
 #include "pipeline/world/world_state.hpp"
+#include "scene/limits.hpp"
 #include "scene/names.hpp"
 #include "scene/rules/scene_check.hpp"
 #include "throng/dials.hpp"
@@ -76,6 +77,10 @@ std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
     if (body.index < generation.size() && generation[body.index] == body.generation
         && get<BodyStates>().kind[body.index] != BodyKind::removed)
         return body.index;
+    if (body == BodyId{})
+        throw std::invalid_argument(std::string(caller)
+                                    + ": this id names no body; give one that "
+                                      "add() or bodies() gave");
     throw std::invalid_argument(std::string(caller) + ": body " + std::to_string(body.index)
                                 + " was removed or never was; give one that is alive");
 }
@@ -477,7 +482,8 @@ Vec3 World::gravity() const { return state_->get<StepContext>().gravity; }
 
 void World::set_gravity(const Vec3& gravity)
 {
-    if (!gravity.allFinite()) throw std::invalid_argument("set_gravity: give finite numbers, m/s2");
+    if (!(gravity.array().abs() <= kGreatestLength).all())
+        throw std::invalid_argument("set_gravity: wanted an acceleration in m/s2, of 1e15 at most");
     state_->get<StepContext>().gravity = gravity;
     for (const auto& [body, scaled] : state_->scaled_gravity) state_->update_scaled_gravity(body);
     state_->effects_stale = state_->census_stale = true;

@@ -97,6 +97,8 @@ void check_shape_and_mass(const Scene& scene,
             "wanted a convex shape of finite size, or a compound of such, for "
             "a sensor");
     }
+    checker.at("motion").need(static_cast<std::size_t>(body.motion) < std::size(kMotions),
+                              "wanted static, kinematic or dynamic");
     if (body.inertia) check_inertia(*body.inertia, checker.at("inertia"));
     if (body.motion != Motion::dynamic) return;
 

@@ -287,6 +287,21 @@ TEST(ContactEvents, NobodyWhoDoesNotListenHasThemInHisStep)
     EXPECT_TRUE(world.events().begun.empty());
 }
 
+TEST(ContactEvents, WhereNoContactsAreKeptThatIsSaid)
+{
+    Scene scene = dropped_box(0);
+    scene.settings.overlap = Overlap::back_up;
+    World world(scene);
+    EXPECT_TRUE(world.warnings().empty());
+    world.listen({.touches = true});
+    world.listen({.touches = true});
+    ASSERT_EQ(world.warnings().size(), 1u);
+    EXPECT_EQ(world.warnings()[0].rfind("listen: overlap=back_up keeps no list of contacts", 0),
+              0u);
+    world.step();
+    EXPECT_TRUE(world.events().begun.empty());
+}
+
 TEST(ContactEvents, ASpeedThatIsNoneIsRefused)
 {
     World world(dropped_box(0));

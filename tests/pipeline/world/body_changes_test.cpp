@@ -344,6 +344,17 @@ TEST(BodyChanges, WhatCannotBeIsRefusedAndChangesNothing)
     refused([&] { world.wake(gone); }, "wake");
     refused([&] { world.user_data(gone); }, "user_data");
     refused([&] { world.step(-1); }, "step");
+    refused([&] { world.set_gravity(Vec3(0, 0, -1e300)); }, "set_gravity");
+    refused([&] { world.pose(BodyId{}); }, "pose: this id names no body");
+    Settings odd;
+    odd.solver = static_cast<Solver>(99);
+    refused([&] { World world_of_none(odd); }, "world: settings.solver: wanted");
+    odd = {};
+    odd.precision = static_cast<Precision>(9);
+    refused([&] { World world_of_none(odd); }, "world: settings.precision: wanted");
+    Scene moved = made.scene;
+    moved.bodies[1].motion = static_cast<Motion>(9);
+    refused([&] { World world_of_none(moved); }, "scene: bodies[1].motion: wanted");
     refused([&] { World(Settings{}, -1); }, "world: threads");
     refused([&] { World(Settings{}, 1000000); }, "world: threads");
     EXPECT_EQ(world.state_hash(), before);
