@@ -3,6 +3,7 @@
 // A pair touches when a contact of it overlaps as the step begins, bears anything at its end, or
 // threw the two apart in between. Pairs that fall asleep go on touching, and are not looked at.
 #include "kernels/parallel/blocks.hpp"
+#include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/contacts/impacts.hpp"
 #include "pipeline/step/stages.hpp"
 
@@ -32,8 +33,6 @@ void TouchingPairs::follow(std::vector<SleepingPairs::Change>& changes)
 }
 
 namespace {
-
-constexpr std::size_t kPairs = 2048;  // a block
 
 template <class Real>
 bool touches(const Contact<Real>& contact)
@@ -113,15 +112,13 @@ void find_touching_pairs(const Pairs& pairs,
     std::swap(touching.keys, scratch.before);
     touching.keys.clear();
     const std::size_t count = convex.of_pair.size();
-    scratch.keys_of_block.start(block_count(count, kPairs));
-    for_each_block(count, kPairs, [&](auto begin, auto end, auto block) {
+    scratch.keys_of_block.start(block_count(count, kPairsAtOnce));
+    for_each_block(count, kPairsAtOnce, [&](auto begin, auto end, auto block) {
         std::vector<PairKey>& found = scratch.keys_of_block[block];
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t at = convex.of_pair[i].contact;
-            if (at != PairState::kApart
-                && (touches(convex.contacts[at]) || thrown(scratch.convex, at)))
+        for_each_contact_of_block(convex, begin, end, [&](std::uint32_t i, std::uint32_t at) {
+            if (touches(convex.contacts[at]) || thrown(scratch.convex, at))
                 found.push_back(pairs.keys[i]);
-        }
+        });
     });
     scratch.keys_of_block.append_to(touching.keys);
     const auto add_many = [&](const ManyContacts<Real>& many, const auto& list) {

@@ -1,6 +1,7 @@
 // Measure approaches: who nears whom fast enough to be told of, before contacts stop them.
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/contacts/collide.hpp"
+#include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/step/stages.hpp"
 
 #include <cmath>
@@ -9,7 +10,6 @@ namespace throng {
 
 namespace {
 
-constexpr std::size_t kPairs = 2048;    // a block
 constexpr std::size_t kEntries = 1024;  // of meshes and solids, a block
 
 template <class Real>
@@ -24,23 +24,30 @@ public:
           hit_speed_(hit_speed)
     { }
 
-    // Before any contact is looked at: how fast its two may near each other at most.
-    void bound_speeds(std::vector<float>& greatest)
+    // Before any contact is looked at: whether its two may near each other so fast.
+    void note_motions(std::vector<TouchingPairs::Motion>& motions)
     {
-        greatest.resize(states_.kind.size(), 0);
-        const auto bound = [&](std::uint32_t body) {
-            const double arm = states_.radius[body];
-            greatest[body] = static_cast<float>(
-                kMore * (velocities_.linear[body].norm() + arm * velocities_.angular[body].norm()));
-        };
-        for (const std::uint32_t body : states_.active_bodies.dynamic) bound(body);
-        for (const std::uint32_t body : states_.active_bodies.kinematic) bound(body);
+        motions.resize(states_.kind.size());
+        for_active([&](std::uint32_t body) {
+            const Vec3& linear = velocities_.linear[body];
+            const double spin = velocities_.angular[body].norm();
+            motions[body] = {static_cast<float>(linear.x()), static_cast<float>(linear.y()),
+                             static_cast<float>(linear.z()),
+                             static_cast<float>(spin * states_.radius[body])};
+        });
     }
-    bool may_hit(PairKey key, const std::vector<float>& greatest) const
+    // Who is not active has none.
+    void forget_motions(std::vector<TouchingPairs::Motion>& motions)
     {
-        return double{greatest[colliders_.body[first_of(key)]]}
-            + double{greatest[colliders_.body[second_of(key)]]}
-        >= hit_speed_;
+        for_active([&](std::uint32_t body) { motions[body] = {}; });
+    }
+    bool may_hit(PairKey key, const std::vector<TouchingPairs::Motion>& motions) const
+    {
+        const auto& a = motions[colliders_.body[first_of(key)]];
+        const auto& b = motions[colliders_.body[second_of(key)]];
+        const float x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
+        const float left = static_cast<float>(hit_speed_) / kMore - a.turning - b.turning;
+        return left <= 0 || x * x + y * y + z * z >= left * left;
     }
 
     // Adds a contact's fastest point, where that is fast enough; of a pair's contacts the fastest.
@@ -81,7 +88,15 @@ public:
 
 private:
     // Anchors may lie a little outside of what they are on, and numbers are rounded.
-    static constexpr double kMore = 1.01;
+    static constexpr float kMore = 1.01f;
+
+    template <class Each>
+    void for_active(const Each& each) const
+    {
+        for (const std::uint32_t body : states_.active_bodies.dynamic) each(body);
+        for (const std::uint32_t body : states_.active_bodies.kinematic) each(body);
+    }
+
     const Colliders& colliders_;
     const Poses& poses_;
     const Velocities& velocities_;
@@ -105,29 +120,33 @@ void measure_approaches(const Pairs& pairs,
     touching.approaches.clear();
     if (std::isinf(touching.hit_speed)) return;
     Approaches<Real> approaches(colliders, poses, velocities, states, touching.hit_speed);
-    std::vector<float>& greatest = touching.scratch.greatest_speed;
-    approaches.bound_speeds(greatest);
+    std::vector<TouchingPairs::Motion>& motions = touching.scratch.motions;
+    approaches.note_motions(motions);
     auto& of_block = touching.scratch.approaches_of_block;
     const auto measure_all = [&](std::size_t count, std::size_t grain, const auto& measure) {
         of_block.start(block_count(count, grain));
         for_each_block(count, grain, [&](auto begin, auto end, auto block) {
-            for (std::size_t i = begin; i < end; ++i) measure(i, of_block[block]);
+            measure(begin, end, of_block[block]);
         });
         of_block.append_to(touching.approaches);
     };
-    measure_all(convex.of_pair.size(), kPairs, [&](std::size_t i, auto& found) {
-        if (const Contact<Real>* contact = convex.at(i))
-            if (approaches.may_hit(pairs.keys[i], greatest))
-                approaches.measure(pairs.keys[i], *contact, found);
+    const auto measure_one = [&](std::uint32_t pair, const Contact<Real>& contact, auto& found) {
+        const PairKey key = pairs.keys[pair];
+        if (approaches.may_hit(key, motions)) approaches.measure(key, contact, found);
+    };
+    measure_all(convex.of_pair.size(), kPairsAtOnce, [&](auto begin, auto end, auto& found) {
+        for_each_contact_of_block(convex, begin, end, [&](std::uint32_t pair, std::uint32_t at) {
+            measure_one(pair, convex.contacts[at], found);
+        });
     });
     const std::size_t of_convex = touching.approaches.size();
     for (const ManyContacts<Real>* many : {static_cast<const ManyContacts<Real>*>(&meshes),
                                            static_cast<const ManyContacts<Real>*>(&solids)})
-        measure_all(many->entries.size(), kEntries, [&](std::size_t i, auto& found) {
-            const auto& entry = many->entries[i];
-            if (approaches.may_hit(pairs.keys[entry.pair], greatest))
-                approaches.measure(pairs.keys[entry.pair], entry.contact, found);
+        measure_all(many->entries.size(), kEntries, [&](auto begin, auto end, auto& found) {
+            for (std::size_t i = begin; i < end; ++i)
+                measure_one(many->entries[i].pair, many->entries[i].contact, found);
         });
+    approaches.forget_motions(motions);
     if (touching.approaches.size() == of_convex) return;
     // A pair's contacts may lie in two blocks.
     const auto before = [](const auto& a, const auto& b) {

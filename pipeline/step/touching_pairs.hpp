@@ -26,6 +26,10 @@ struct TouchingPairs {
         Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
         double speed = 0;
     };
+    /// How a body moves, and how fast its turning moves any point of it, m/s.
+    struct Motion {
+        float x = 0, y = 0, z = 0, turning = 0;
+    };
     std::vector<PairKey> keys;
     std::unordered_set<PairKey> asleep;
     std::vector<PairKey> begun, ended;
@@ -35,7 +39,7 @@ struct TouchingPairs {
     struct Scratch {
         BlockLists<PairKey> keys_of_block;
         BlockLists<Approach> approaches_of_block;
-        std::vector<float> greatest_speed;  // [bodies] m/s, of any point
+        std::vector<Motion> motions;  // [bodies] all 0 between stages
         std::vector<PairKey> before;
         std::vector<std::uint8_t> convex, meshes, solids;  // [contacts] 1: was thrown apart
     } scratch;
