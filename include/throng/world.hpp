@@ -149,7 +149,7 @@ public:
     const Events& events() const;
     /// The bodies that overlap a sensor, as of the last step, by index. Throws where nobody listens
     /// to sensors.
-    std::vector<BodyId> sensed(BodyId sensor) const;
+    std::vector<BodyId> sensed(BodyId body) const;
 
     const StepReport& report() const;
     /// What was found wrong with shapes that were added and what was done about it, a sentence

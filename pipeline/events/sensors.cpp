@@ -255,45 +255,45 @@ void WorldState::call_sensors()
     effects_stale = causes_stale = true;
 }
 
-void World::set_sensor(BodyId id, bool sensor)
+void World::set_sensor(BodyId body, bool sensor)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "set_sensor");
-    const auto found = state.sensors.find(body);
+    const std::uint32_t at = state.place_of(body, "set_sensor");
+    const auto found = state.sensors.find(at);
     if (sensor == (found != state.sensors.end())) return;
     const auto& colliders = state.get<Colliders>();
-    for (std::uint32_t k = 0; sensor && k < colliders.count[body]; ++k) {
-        const ShapeKind kind = colliders.shape[colliders.begin[body] + k].kind;
+    for (std::uint32_t k = 0; sensor && k < colliders.count[at]; ++k) {
+        const ShapeKind kind = colliders.shape[colliders.begin[at] + k].kind;
         if (kind == ShapeKind::plane || kind == ShapeKind::mesh || kind == ShapeKind::solid)
-            throw std::invalid_argument("set_sensor: " + state.called(body)
+            throw std::invalid_argument("set_sensor: " + state.called(at)
                                         + ": wanted a body of convex shapes of finite size");
     }
-    if (sensor && colliders.count[body] == 0)
-        throw std::invalid_argument("set_sensor: " + state.called(body)
+    if (sensor && colliders.count[at] == 0)
+        throw std::invalid_argument("set_sensor: " + state.called(at)
                                     + ": wanted a body with a shape");
-    state.begin_change(body);
+    state.begin_change(at);
     if (sensor)
-        state.make_sensor(body);
+        state.make_sensor(at);
     else
-        state.set_filter(body, found->second);
-    if (!sensor) state.sensors.erase(body);
-    state.mark_changed(body);
+        state.set_filter(at, found->second);
+    if (!sensor) state.sensors.erase(at);
+    state.mark_changed(at);
     state.call_sensors();
 }
 
-bool World::sensor(BodyId id) const
+bool World::sensor(BodyId body) const
 {
-    return state_->sensors.contains(state_->place_of(id, "sensor"));
+    return state_->sensors.contains(state_->place_of(body, "sensor"));
 }
 
-std::vector<BodyId> World::sensed(BodyId id) const
+std::vector<BodyId> World::sensed(BodyId body) const
 {
-    const std::uint32_t body = state_->place_of(id, "sensed");
-    if (!state_->sensors.contains(body))
-        throw std::invalid_argument("sensed: " + state_->called(body) + ": wanted a sensor");
+    const std::uint32_t at = state_->place_of(body, "sensed");
+    if (!state_->sensors.contains(at))
+        throw std::invalid_argument("sensed: " + state_->called(at) + ": wanted a sensor");
     if (state_->sensing == nullptr)
         throw std::invalid_argument("sensed: nobody listens to sensors; listen() to them first");
-    return state_->sensing->inside(id);
+    return state_->sensing->inside(body);
 }
 
 }  // namespace throng

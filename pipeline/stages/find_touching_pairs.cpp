@@ -128,7 +128,7 @@ void find_touching_pairs(const Pairs& pairs,
     };
     add_many(meshes, scratch.meshes);
     add_many(solids, scratch.solids);
-    if (touching.keys.size() > 0 && !(meshes.entries.empty() && solids.entries.empty()))
+    if (!touching.keys.empty() && !(meshes.entries.empty() && solids.entries.empty()))
         keep_each_once(touching.keys);
 
     compare(scratch.before, touching);

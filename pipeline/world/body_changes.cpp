@@ -272,54 +272,54 @@ void WorldState::end_pushes()
     pushes.clear();
 }
 
-void World::set_motion(BodyId id, Motion motion)
+void World::set_motion(BodyId body, Motion motion)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "set_motion");
-    const Motion before = state.motion[body];
+    const std::uint32_t at = state.place_of(body, "set_motion");
+    const Motion before = state.motion[at];
     if (motion == before) return;
     if (motion != Motion::static_ && motion != Motion::kinematic && motion != Motion::dynamic)
-        refuse("set_motion", state, body, "wanted static_, kinematic or dynamic");
-    if (state.get<Forces>().on_pivot(body))
-        refuse("set_motion", state, body, "wanted a body that is on no pivot");
+        refuse("set_motion", state, at, "wanted static_, kinematic or dynamic");
+    if (state.get<Forces>().on_pivot(at))
+        refuse("set_motion", state, at, "wanted a body that is on no pivot");
     auto& states = state.get<BodyStates>();
     KeptMass next;
     if (motion == Motion::dynamic) {
-        const auto kept = state.kept_masses.find(body);
-        next = kept != state.kept_masses.end() ? kept->second : natural_mass(state, body);
+        const auto kept = state.kept_masses.find(at);
+        next = kept != state.kept_masses.end() ? kept->second : natural_mass(state, at);
     }
     // To the broad phase and to whoever touches it, it is somebody else from now on.
-    state.begin_change(body);
-    state.disturb(body, true);
+    state.begin_change(at);
+    state.disturb(at, true);
     auto& velocities = state.get<Velocities>();
     if (before == Motion::dynamic) {
-        state.kept_masses[body] = mass_now(state, body);
-        give_no_mass(body, state.get<Masses>());
-        recenter(state, body, Vec3::Zero());
+        state.kept_masses[at] = mass_now(state, at);
+        give_no_mass(at, state.get<Masses>());
+        recenter(state, at, Vec3::Zero());
     }
     if (motion == Motion::static_) {
-        velocities.linear[body].setZero();
-        velocities.angular[body].setZero();
+        velocities.linear[at].setZero();
+        velocities.angular[at].setZero();
     }
-    if (states.carries(body)) velocities.linear[body].setZero();
-    if (body < states.is_conveyor.size()) states.is_conveyor[body] = 0;
-    states.kind[body] = motion == Motion::static_ ? BodyKind::static_
-        : motion == Motion::kinematic             ? BodyKind::kinematic
-                                                  : BodyKind::dynamic;
-    states.awake[body] = motion != Motion::static_ && states.quarantined[body] == 0 ? 1 : 0;
-    states.sleep_time[body] = 0;
-    state.motion[body] = motion;
+    if (states.carries(at)) velocities.linear[at].setZero();
+    if (at < states.is_conveyor.size()) states.is_conveyor[at] = 0;
+    states.kind[at] = motion == Motion::static_ ? BodyKind::static_
+        : motion == Motion::kinematic           ? BodyKind::kinematic
+                                                : BodyKind::dynamic;
+    states.awake[at] = motion != Motion::static_ && states.quarantined[at] == 0 ? 1 : 0;
+    states.sleep_time[at] = 0;
+    state.motion[at] = motion;
     if (motion == Motion::dynamic) {
-        recenter(state, body, next.center);
-        give(state, body, next);
-        state.kept_masses.erase(body);
-        state.woken.push_back(body);
+        recenter(state, at, next.center);
+        give(state, at, next);
+        state.kept_masses.erase(at);
+        state.woken.push_back(at);
     }
     if (motion == Motion::kinematic || before == Motion::kinematic)
         state.active_bodies_stale = true;
     state.active_bodies_stopped = true;
-    state.mark_changed(body);
-    state.update_scaled_gravity(body);
+    state.mark_changed(at);
+    state.update_scaled_gravity(at);
     if (!state.get<Forces>().springs.empty()) {
         sort_springs(states, state.get<Forces>());
         state.census_stale = true;
@@ -327,20 +327,20 @@ void World::set_motion(BodyId id, Motion motion)
     }
 }
 
-void World::set_mass(BodyId id, double mass, const std::optional<Sym3>& inertia)
+void World::set_mass(BodyId body, double mass, const std::optional<Sym3>& inertia)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "set_mass");
+    const std::uint32_t at = state.place_of(body, "set_mass");
     if (!(mass >= kLeastMass && mass <= kGreatestMass))
-        refuse("set_mass", state, body, "wanted a mass above 0 kg");
-    const bool dynamic = state.get<BodyStates>().dynamic(body);
+        refuse("set_mass", state, at, "wanted a mass above 0 kg");
+    const bool dynamic = state.get<BodyStates>().dynamic(at);
     KeptMass kept;
     if (dynamic)
-        kept = mass_now(state, body);
-    else if (const auto found = state.kept_masses.find(body); found != state.kept_masses.end())
+        kept = mass_now(state, at);
+    else if (const auto found = state.kept_masses.find(at); found != state.kept_masses.end())
         kept = found->second;
     else if (!inertia)
-        kept = natural_mass(state, body);
+        kept = natural_mass(state, at);
     if (inertia) {
         Scene asked;
         BodyDescription stated;
@@ -348,283 +348,282 @@ void World::set_mass(BodyId id, double mass, const std::optional<Sym3>& inertia)
         stated.inertia = inertia;
         asked.bodies.push_back(stated);
         if (const std::string trouble = check_scene(asked); !trouble.empty())
-            refuse("set_mass", state, body, "wanted an inertia that a body can have; " + trouble);
+            refuse("set_mass", state, at, "wanted an inertia that a body can have; " + trouble);
         kept.inertia = *inertia;
     } else {
         kept.inertia = scaled(kept.inertia, mass / kept.mass);
     }
     kept.mass = mass;
     if (!dynamic) {
-        state.kept_masses[body] = kept;
+        state.kept_masses[at] = kept;
         return;
     }
-    const bool turns = !locks_rotation(state, body);
-    state.begin_change(body);
-    const Vec3 off = state.get<Forces>().pivot_to_center_of(body);
+    const bool turns = !locks_rotation(state, at);
+    state.begin_change(at);
+    const Vec3 off = state.get<Forces>().pivot_to_center_of(at);
     kept.inertia = shifted(kept.inertia, mass, off);
     kept.lock_rotation = !turns;
-    give(state, body, kept);
-    state.mark_changed(body);
-    state.update_scaled_gravity(body);
+    give(state, at, kept);
+    state.mark_changed(at);
+    state.update_scaled_gravity(at);
     state.warn_of_substeps();
 }
 
-Sym3 World::inertia(BodyId id) const
+Sym3 World::inertia(BodyId body) const
 {
-    const std::uint32_t body = state_->place_of(id, "inertia");
-    return state_->get<BodyStates>().dynamic(body) ? about_center(*state_, body) : Sym3{};
+    const std::uint32_t at = state_->place_of(body, "inertia");
+    return state_->get<BodyStates>().dynamic(at) ? about_center(*state_, at) : Sym3{};
 }
 
-void World::set_locks(BodyId id, bool position, bool rotation)
+void World::set_locks(BodyId body, bool position, bool rotation)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "set_locks");
-    if (!state.get<BodyStates>().dynamic(body)) {
-        if (const auto found = state.kept_masses.find(body); found != state.kept_masses.end()) {
+    const std::uint32_t at = state.place_of(body, "set_locks");
+    if (!state.get<BodyStates>().dynamic(at)) {
+        if (const auto found = state.kept_masses.find(at); found != state.kept_masses.end()) {
             found->second.lock_position = position;
             found->second.lock_rotation = rotation;
             return;
         }
-        refuse("set_locks", state, body, "wanted a dynamic body, or one that was");
+        refuse("set_locks", state, at, "wanted a dynamic body, or one that was");
     }
-    const bool pivot = state.get<Forces>().on_pivot(body);
-    if (pivot && position) refuse("set_locks", state, body, "wanted a body that is on no pivot");
+    const bool pivot = state.get<Forces>().on_pivot(at);
+    if (pivot && position) refuse("set_locks", state, at, "wanted a body that is on no pivot");
     const Masses& masses = state.get<Masses>();
-    if (!rotation && masses.inertia[body] == Sym3{})
-        refuse("set_locks", state, body,
+    if (!rotation && masses.inertia[at] == Sym3{})
+        refuse("set_locks", state, at,
                "wanted an inertia for a body that is to turn; give "
                "set_mass() one");
-    state.begin_change(body);
-    give(
-        state, body,
-        {masses.mass[body], masses.inertia[body], state.center[body], position || pivot, rotation});
-    state.mark_changed(body);
+    state.begin_change(at);
+    give(state, at,
+         {masses.mass[at], masses.inertia[at], state.center[at], position || pivot, rotation});
+    state.mark_changed(at);
 }
 
-void World::set_filter(BodyId id, std::uint32_t group, std::uint32_t mask)
+void World::set_filter(BodyId body, std::uint32_t group, std::uint32_t mask)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "set_filter");
-    if (const auto sensor = state.sensors.find(body); sensor != state.sensors.end()) {
+    const std::uint32_t at = state.place_of(body, "set_filter");
+    if (const auto sensor = state.sensors.find(at); sensor != state.sensors.end()) {
         sensor->second = {group, mask};
-        state.changed.push_back(body);
+        state.changed.push_back(at);
         return;
     }
-    state.begin_change(body);
-    state.set_filter(body, {group, mask});
-    state.mark_changed(body);
+    state.begin_change(at);
+    state.set_filter(at, {group, mask});
+    state.mark_changed(at);
 }
 
-std::uint32_t World::group(BodyId id) const
+std::uint32_t World::group(BodyId body) const
 {
-    const std::uint32_t body = state_->place_of(id, "group");
-    return filter_of(*state_, body).group;
+    const std::uint32_t at = state_->place_of(body, "group");
+    return filter_of(*state_, at).group;
 }
 
-std::uint32_t World::mask(BodyId id) const
+std::uint32_t World::mask(BodyId body) const
 {
-    const std::uint32_t body = state_->place_of(id, "mask");
-    return filter_of(*state_, body).mask;
+    const std::uint32_t at = state_->place_of(body, "mask");
+    return filter_of(*state_, at).mask;
 }
 
-void World::set_drive_velocity(BodyId id, const std::array<std::optional<double>, 3>& velocity)
+void World::set_drive_velocity(BodyId body, const std::array<std::optional<double>, 3>& velocity)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "set_drive_velocity");
+    const std::uint32_t at = state.place_of(body, "set_drive_velocity");
     for (const auto& component : velocity)
         if (component && !(std::abs(*component) <= kGreatestLength))
-            refuse("set_drive_velocity", state, body, "wanted a velocity in m/s");
-    state.begin_change(body);
+            refuse("set_drive_velocity", state, at, "wanted a velocity in m/s");
+    state.begin_change(at);
     auto& prescribed = state.get<PrescribedVelocities>();
-    prescribed.erase(body);
+    prescribed.erase(at);
     const double free = std::nan("");
     if (velocity[0] || velocity[1] || velocity[2])
         prescribed.put(
-            body,
+            at,
             {velocity[0].value_or(free), velocity[1].value_or(free), velocity[2].value_or(free)});
     auto& states = state.get<BodyStates>();
-    if (states.kind[body] == BodyKind::static_) {
+    if (states.kind[at] == BodyKind::static_) {
         const Vec3 surface(velocity[0].value_or(0), velocity[1].value_or(0),
                            velocity[2].value_or(0));
         const bool carries = !surface.isZero(0);
-        put(states.is_conveyor, body, std::uint8_t{carries}, std::uint8_t{0});
+        put(states.is_conveyor, at, std::uint8_t{carries}, std::uint8_t{0});
         states.conveyors = states.conveyors || carries;
-        state.get<Velocities>().linear[body] = surface;
+        state.get<Velocities>().linear[at] = surface;
     }
     // Whoever drives it anew wants those that lie on it to feel it.
-    state.mark_changed(body);
+    state.mark_changed(at);
 }
 
-void World::set_fast(BodyId id, bool fast)
+void World::set_fast(BodyId body, bool fast)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "set_fast");
+    const std::uint32_t at = state.place_of(body, "set_fast");
     auto& states = state.get<BodyStates>();
-    put(states.fast, body, std::uint8_t{fast && states.kind[body] != BodyKind::static_},
+    put(states.fast, at, std::uint8_t{fast && states.kind[at] != BodyKind::static_},
         std::uint8_t{0});
-    state.wake(body);
+    state.wake(at);
     if (fast) {
-        state.requests.ask(Effect::fast_motion, state.called(body));
+        state.requests.ask(Effect::fast_motion, state.called(at));
         state.effects_stale = true;
     }
 }
 
-void World::set_force(BodyId id, const Vec3& force, const Vec3& torque)
+void World::set_force(BodyId body, const Vec3& force, const Vec3& torque)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = dynamic_at(state, id, "set_force");
+    const std::uint32_t at = dynamic_at(state, body, "set_force");
     need_finite(force, "set_force", "N");
     need_finite(torque, "set_force", "N m");
     for (const Push& one : state.pushes)
-        if (one.body == body)
-            refuse("set_force", state, body, "wanted before add_force(), or after the next step");
-    state.wake_beside(body);
-    const auto scaled = state.scaled_gravity.find(body);
+        if (one.body == at)
+            refuse("set_force", state, at, "wanted before add_force(), or after the next step");
+    state.wake_beside(at);
+    const auto scaled = state.scaled_gravity.find(at);
     if (scaled != state.scaled_gravity.end()) scaled->second.force = force;
-    set_constant_force(state, body, force, torque);
-    state.update_scaled_gravity(body);
-    state.changed.push_back(body);
+    set_constant_force(state, at, force, torque);
+    state.update_scaled_gravity(at);
+    state.changed.push_back(at);
 }
 
-void World::set_gravity_scale(BodyId id, double scale)
+void World::set_gravity_scale(BodyId body, double scale)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "set_gravity_scale");
+    const std::uint32_t at = state.place_of(body, "set_gravity_scale");
     if (!(std::abs(scale) <= kGreatestNumber))
-        refuse("set_gravity_scale", state, body, "wanted a finite factor");
+        refuse("set_gravity_scale", state, at, "wanted a finite factor");
     for (const Push& one : state.pushes)
-        if (one.body == body)
-            refuse("set_gravity_scale", state, body,
+        if (one.body == at)
+            refuse("set_gravity_scale", state, at,
                    "wanted before add_force(), or after the next step");
-    state.wake_beside(body);
+    state.wake_beside(at);
     const auto& forces = state.get<Forces>();
-    const Vec3 stated = body < forces.force.size() ? forces.force[body] : Vec3(Vec3::Zero());
-    const auto [entry, first] = state.scaled_gravity.try_emplace(body, ScaledGravity{1, stated});
+    const Vec3 stated = at < forces.force.size() ? forces.force[at] : Vec3(Vec3::Zero());
+    const auto [entry, first] = state.scaled_gravity.try_emplace(at, ScaledGravity{1, stated});
     entry->second.scale = scale;
-    state.update_scaled_gravity(body);
-    if (scale == 1) state.scaled_gravity.erase(body);
-    state.changed.push_back(body);
+    state.update_scaled_gravity(at);
+    if (scale == 1) state.scaled_gravity.erase(at);
+    state.changed.push_back(at);
 }
 
-double World::gravity_scale(BodyId id) const
+double World::gravity_scale(BodyId body) const
 {
-    const std::uint32_t body = state_->place_of(id, "gravity_scale");
-    const auto scaled = state_->scaled_gravity.find(body);
+    const std::uint32_t at = state_->place_of(body, "gravity_scale");
+    const auto scaled = state_->scaled_gravity.find(at);
     return scaled == state_->scaled_gravity.end() ? 1 : scaled->second.scale;
 }
 
-void World::set_user_data(BodyId id, std::uint64_t data)
+void World::set_user_data(BodyId body, std::uint64_t data)
 {
-    put(state_->user_data, state_->place_of(id, "set_user_data"), data, std::uint64_t{0});
+    put(state_->user_data, state_->place_of(body, "set_user_data"), data, std::uint64_t{0});
 }
 
-std::uint64_t World::user_data(BodyId id) const
+std::uint64_t World::user_data(BodyId body) const
 {
-    const std::uint32_t body = state_->place_of(id, "user_data");
-    return body < state_->user_data.size() ? state_->user_data[body] : 0;
+    const std::uint32_t at = state_->place_of(body, "user_data");
+    return at < state_->user_data.size() ? state_->user_data[at] : 0;
 }
 
-void World::add_impulse(BodyId id, const Vec3& impulse)
+void World::add_impulse(BodyId body, const Vec3& impulse)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = dynamic_at(state, id, "add_impulse");
+    const std::uint32_t at = dynamic_at(state, body, "add_impulse");
     need_finite(impulse, "add_impulse", "N s");
     const auto& velocities = state.get<Velocities>();
-    Vec3 angular = velocities.angular[body];
+    Vec3 angular = velocities.angular[at];
     // What hangs on a pivot, about which its inertia is, turns by what reaches its center of mass.
-    if (const Vec3 arm = state.arm(body); !arm.isZero(0))
-        angular += inverse_inertia_times(state, body, arm.cross(impulse));
-    state.set_velocities(
-        body, velocities.linear[body] + impulse * state.get<Masses>().inverse_mass[body], angular);
+    if (const Vec3 arm = state.arm(at); !arm.isZero(0))
+        angular += inverse_inertia_times(state, at, arm.cross(impulse));
+    state.set_velocities(at, velocities.linear[at] + impulse * state.get<Masses>().inverse_mass[at],
+                         angular);
 }
 
-void World::add_impulse(BodyId id, const Vec3& impulse, const Vec3& point)
+void World::add_impulse(BodyId body, const Vec3& impulse, const Vec3& point)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = dynamic_at(state, id, "add_impulse");
+    const std::uint32_t at = dynamic_at(state, body, "add_impulse");
     need_finite(impulse, "add_impulse", "N s");
     need_finite(point, "add_impulse", "m");
     const auto& velocities = state.get<Velocities>();
-    const Vec3 arm = point - state.get<Poses>().position[body];
-    state.set_velocities(
-        body, velocities.linear[body] + impulse * state.get<Masses>().inverse_mass[body],
-        velocities.angular[body] + inverse_inertia_times(state, body, arm.cross(impulse)));
+    const Vec3 arm = point - state.get<Poses>().position[at];
+    state.set_velocities(at, velocities.linear[at] + impulse * state.get<Masses>().inverse_mass[at],
+                         velocities.angular[at]
+                             + inverse_inertia_times(state, at, arm.cross(impulse)));
 }
 
-void World::add_angular_impulse(BodyId id, const Vec3& impulse)
+void World::add_angular_impulse(BodyId body, const Vec3& impulse)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = dynamic_at(state, id, "add_angular_impulse");
+    const std::uint32_t at = dynamic_at(state, body, "add_angular_impulse");
     need_finite(impulse, "add_angular_impulse", "N m s");
     const auto& velocities = state.get<Velocities>();
-    state.set_velocities(body, velocities.linear[body],
-                         velocities.angular[body] + inverse_inertia_times(state, body, impulse));
+    state.set_velocities(at, velocities.linear[at],
+                         velocities.angular[at] + inverse_inertia_times(state, at, impulse));
 }
 
-void World::add_force(BodyId id, const Vec3& force)
+void World::add_force(BodyId body, const Vec3& force)
 {
-    const std::uint32_t body = dynamic_at(*state_, id, "add_force");
+    const std::uint32_t at = dynamic_at(*state_, body, "add_force");
     need_finite(force, "add_force", "N");
-    push(*state_, body, force, Vec3::Zero());
+    push(*state_, at, force, Vec3::Zero());
 }
 
-void World::add_force(BodyId id, const Vec3& force, const Vec3& point)
+void World::add_force(BodyId body, const Vec3& force, const Vec3& point)
 {
-    const std::uint32_t body = dynamic_at(*state_, id, "add_force");
+    const std::uint32_t at = dynamic_at(*state_, body, "add_force");
     need_finite(force, "add_force", "N");
     need_finite(point, "add_force", "m");
-    push(*state_, body, force, Vec3(point - state_->center_of_mass(body)).cross(force));
+    push(*state_, at, force, Vec3(point - state_->center_of_mass(at)).cross(force));
 }
 
-void World::add_torque(BodyId id, const Vec3& torque)
+void World::add_torque(BodyId body, const Vec3& torque)
 {
-    const std::uint32_t body = dynamic_at(*state_, id, "add_torque");
+    const std::uint32_t at = dynamic_at(*state_, body, "add_torque");
     need_finite(torque, "add_torque", "N m");
-    push(*state_, body, Vec3::Zero(), torque);
+    push(*state_, at, Vec3::Zero(), torque);
 }
 
-void World::move_to(BodyId id, const Pose& pose, double seconds)
+void World::move_to(BodyId body, const Pose& pose, double seconds)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = state.place_of(id, "move_to");
-    if (state.get<BodyStates>().kind[body] != BodyKind::kinematic)
-        refuse("move_to", state, body, "wanted a kinematic body; set_pose() puts any where it is");
+    const std::uint32_t at = state.place_of(body, "move_to");
+    if (state.get<BodyStates>().kind[at] != BodyKind::kinematic)
+        refuse("move_to", state, at, "wanted a kinematic body; set_pose() puts any where it is");
     const double length = std::sqrt(pose.orientation.squaredNorm());
     if (!holdable(pose.position) || !(std::abs(length - 1) < 1e-6))
-        refuse("move_to", state, body, "wanted a finite position and a unit quaternion");
+        refuse("move_to", state, at, "wanted a finite position and a unit quaternion");
     if (!(seconds > 0) || !std::isfinite(seconds))
-        refuse("move_to", state, body, "wanted a time above 0 s");
+        refuse("move_to", state, at, "wanted a time above 0 s");
     const Quat to(pose.orientation.coeffs() / length);
-    const Vec3 place = to * state.center[body] + pose.position;
+    const Vec3 place = to * state.center[at] + pose.position;
     const auto& poses = state.get<Poses>();
-    Quat turn = to * poses.orientation[body].conjugate();
+    Quat turn = to * poses.orientation[at].conjugate();
     if (turn.w() < 0) turn.coeffs() *= -1;  // the shorter way
     const double sine = turn.vec().norm();
     const double angle = 2 * std::atan2(sine, turn.w());
     const Vec3 spin = sine > 0 ? Vec3(turn.vec() * (angle / (sine * seconds))) : Vec3(Vec3::Zero());
-    state.set_velocities(body, (place - poses.position[body]) / seconds, spin);
+    state.set_velocities(at, (place - poses.position[at]) / seconds, spin);
 }
 
-void World::wake(BodyId id)
+void World::wake(BodyId body)
 {
-    const std::uint32_t body = state_->place_of(id, "wake");
-    if (state_->get<BodyStates>().dynamic(body)) state_->wake_beside(body);
+    const std::uint32_t at = state_->place_of(body, "wake");
+    if (state_->get<BodyStates>().dynamic(at)) state_->wake_beside(at);
 }
 
-void World::sleep(BodyId id)
+void World::sleep(BodyId body)
 {
     WorldState& state = *state_;
-    const std::uint32_t body = dynamic_at(state, id, "sleep");
+    const std::uint32_t at = dynamic_at(state, body, "sleep");
     auto& states = state.get<BodyStates>();
     if (!state.settings.sleep && !rests_by_force(state.settings))
-        refuse("sleep", state, body, "wanted the setting sleep=on: nobody may sleep");
-    if (!states.moves(body)) return;
+        refuse("sleep", state, at, "wanted the setting sleep=on: nobody may sleep");
+    if (!states.moves(at)) return;
     auto& velocities = state.get<Velocities>();
-    std::vector<std::uint32_t> together = {body};
+    std::vector<std::uint32_t> together = {at};
     const auto& islands = state.get<Islands>();
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const auto bodies = islands.bodies_of(island);
-        if (!std::binary_search(bodies.begin(), bodies.end(), body)) continue;
+        if (!std::binary_search(bodies.begin(), bodies.end(), at)) continue;
         together.assign(bodies.begin(), bodies.end());
         std::erase_if(together, [&](std::uint32_t one) { return !states.movable(one); });
     }

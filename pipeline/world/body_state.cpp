@@ -18,11 +18,24 @@ void store(const Vec3& v, double* to)
     for (int k = 0; k < 3; ++k) to[k] = v[k];
 }
 Vec3 vector_at(const double* from) { return {from[0], from[1], from[2]}; }
+Quat quaternion_at(const double* from) { return {from[0], from[1], from[2], from[3]}; }
 
 [[noreturn]] void refuse(std::size_t i, BodyId id, const char* wanted)
 {
     throw std::invalid_argument("write_state: body " + std::to_string(id.index) + ", number "
                                 + std::to_string(i) + " of those given: wanted " + wanted);
+}
+
+void check(std::size_t i, BodyId id, const StateColumns<const double>& from)
+{
+    if (from.position.first != nullptr && !holdable(vector_at(from.position.of(i))))
+        refuse(i, id, "a finite position, m");
+    if (from.orientation.first != nullptr
+        && !(std::abs(quaternion_at(from.orientation.of(i)).norm() - 1) < 1e-6))
+        refuse(i, id, "a unit quaternion, w first");
+    for (const auto& of : {from.velocity, from.angular_velocity})
+        if (of.first != nullptr && !vector_at(of.of(i)).allFinite())
+            refuse(i, id, "finite velocities, m/s and rad/s");
 }
 
 }  // namespace
@@ -74,16 +87,7 @@ void World::write_state(std::span<const BodyId> bodies, const StateColumns<const
 {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         state_->place_of(bodies[i], "write_state");
-        if (from.position.first != nullptr && !holdable(vector_at(from.position.of(i))))
-            refuse(i, bodies[i], "a finite position, m");
-        if (from.orientation.first != nullptr) {
-            const double* const q = from.orientation.of(i);
-            if (!(std::abs(Quat(q[0], q[1], q[2], q[3]).norm() - 1) < 1e-6))
-                refuse(i, bodies[i], "a unit quaternion, w first");
-        }
-        for (const auto& of : {from.velocity, from.angular_velocity})
-            if (of.first != nullptr && !vector_at(of.of(i)).allFinite())
-                refuse(i, bodies[i], "finite velocities, m/s and rad/s");
+        check(i, bodies[i], from);
     }
     const bool moves = from.position.first != nullptr || from.orientation.first != nullptr;
     const bool pushes = from.velocity.first != nullptr || from.angular_velocity.first != nullptr;
@@ -92,10 +96,8 @@ void World::write_state(std::span<const BodyId> bodies, const StateColumns<const
         if (moves) {
             Pose to = pose(id);
             if (from.position.first != nullptr) to.position = vector_at(from.position.of(i));
-            if (from.orientation.first != nullptr) {
-                const double* const q = from.orientation.of(i);
-                to.orientation = Quat(q[0], q[1], q[2], q[3]);
-            }
+            if (from.orientation.first != nullptr)
+                to.orientation = quaternion_at(from.orientation.of(i));
             set_pose(id, to);
         }
         if (pushes)

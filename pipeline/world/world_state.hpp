@@ -207,7 +207,7 @@ struct WorldState {
     void follow_touching_pairs();
     /// Takes a body out of all contact, to be a sensor.
     void make_sensor(std::uint32_t body);
-    void set_filter(std::uint32_t body, const SensorFilter& filter);
+    void set_filter(std::uint32_t body, const SensorFilter& to);
     /// Whether sensors are called for, as bodies or listeners come and go.
     void call_sensors();
     /// Something is about to change that the census knows of a body; who rests with it wakes.
