@@ -1,7 +1,6 @@
 // Body state: where bodies are and how they move, of many at once.
 #pragma once
 
-#include "throng/contact_events.hpp"
 #include "throng/math.hpp"
 
 #include <cstddef>

@@ -1,6 +1,7 @@
 // Contact events: who touches whom, with what force, and since when.
 #pragma once
 
+#include "throng/body_id.hpp"
 #include "throng/math.hpp"
 
 #include <array>
@@ -10,14 +11,6 @@
 #include <vector>
 
 namespace throng {
-
-/// Names a body: its place, and how many held that place before it. One that was given to nobody
-/// names none.
-struct BodyId {
-    std::uint32_t index = 0xffffffffu;
-    std::uint32_t generation = 0;
-    bool operator==(const BodyId&) const = default;
-};
 
 /// Two bodies of which parts touch. Parts count from 0 in the order of a compound's; of any other
 /// shape there is one, but for meshes that move, which may be taken by several hulls.

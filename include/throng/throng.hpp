@@ -1,6 +1,7 @@
 // throng: all that a program includes.
 #pragma once
 
+#include "throng/body_id.hpp"
 #include "throng/body_state.hpp"
 #include "throng/box3.hpp"
 #include "throng/catalog.hpp"

@@ -5,6 +5,7 @@
 // the world's own threads, and its result is the same bits for any number of them.
 #pragma once
 
+#include "throng/body_id.hpp"
 #include "throng/body_state.hpp"
 #include "throng/contact_events.hpp"
 #include "throng/effects.hpp"

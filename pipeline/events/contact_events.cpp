@@ -3,6 +3,7 @@
 
 #include "pipeline/contacts/collide.hpp"
 #include "pipeline/contacts/contact_lists.hpp"
+#include "pipeline/events/parts_order.hpp"
 #include "pipeline/world/contact_impulses.hpp"
 #include "pipeline/world/world_state.hpp"
 #include "throng/dials.hpp"
@@ -10,16 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <tuple>
 
 namespace throng {
 
 namespace {
-
-auto order_of(const TouchingParts& parts)
-{
-    return std::tuple(parts.a.index, parts.b.index, parts.part_a, parts.part_b);
-}
 
 void warn_once(std::vector<std::string>& warnings, std::string warning)
 {
@@ -57,9 +52,7 @@ public:
         if (state_.contacts_as_stepped && state_.effects.on.has(Effect::restitution)) add_impacts();
         std::erase_if(reports_, [](const ContactReport& report) { return report.count == 0; });
         // Contacts of one pair stay in the order of the list.
-        std::stable_sort(reports_.begin(), reports_.end(), [](const auto& one, const auto& other) {
-            return order_of(one) < order_of(other);
-        });
+        std::stable_sort(reports_.begin(), reports_.end(), comes_before);
         return std::move(reports_);
     }
 
@@ -126,15 +119,15 @@ private:
 
 ColliderOwner WorldState::owner_of(std::uint32_t collider) const
 {
+    if (const auto former = gone.find(collider); former != gone.end()) return former->second;
     const auto& colliders = get<Colliders>();
-    if (colliders.body[collider] == kNoBody) return gone.at(collider);
     const std::uint32_t body = colliders.body[collider];
     return {{body, generation[body]}, collider - colliders.begin[body]};
 }
 
-TouchingParts WorldState::parts_of(PairKey key) const
+TouchingParts WorldState::parts_of(std::uint32_t collider_a, std::uint32_t collider_b) const
 {
-    const ColliderOwner a = owner_of(first_of(key)), b = owner_of(second_of(key));
+    const ColliderOwner a = owner_of(collider_a), b = owner_of(collider_b);
     return {a.body, b.body, a.part, b.part};
 }
 
@@ -144,14 +137,9 @@ void WorldState::end_touches_of_gone()
 {
     auto& touching = get<TouchingPairs>();
     touching.follow(get<SleepingPairs>().changes);
-    const auto owner = [&](std::uint32_t collider) {
-        const auto found = gone.find(collider);
-        return found == gone.end() ? owner_of(collider) : found->second;
-    };
     std::erase_if(touching.keys, [&](PairKey key) {
         if (((edits[first_of(key)] | edits[second_of(key)]) & kGone) == 0) return false;
-        const ColliderOwner a = owner(first_of(key)), b = owner(second_of(key));
-        ended_with_gone.push_back({a.body, b.body, a.part, b.part});
+        ended_with_gone.push_back(parts_of(key));
         return true;
     });
     gone.clear();
@@ -162,6 +150,8 @@ void WorldState::follow_touching_pairs()
     if (!listens()) return;
     const std::uint64_t step_now = report.step + 1;
     const auto& touching = get<TouchingPairs>();
+    const std::size_t begun = events.begun.size(), ended = events.ended.size(),
+                      hits = events.hits.size();
     if (listening.touches) {
         for (const TouchingParts& parts : ended_with_gone)
             events.ended.push_back({parts, step_now});
@@ -171,6 +161,15 @@ void WorldState::follow_touching_pairs()
     ended_with_gone.clear();
     for (const auto& hit : touching.hits)
         events.hits.push_back({{parts_of(hit.key), step_now}, hit.point, hit.normal, hit.speed});
+    // Colliders that took the places of others are not in the order of their bodies.
+    const auto put_in_order = [](auto& list, std::size_t from) {
+        const auto first = list.begin() + static_cast<std::ptrdiff_t>(from);
+        if (!std::is_sorted(first, list.end(), comes_before))
+            std::sort(first, list.end(), comes_before);
+    };
+    put_in_order(events.begun, begun);
+    put_in_order(events.ended, ended);
+    put_in_order(events.hits, hits);
 }
 
 void World::listen(const Listening& to)
@@ -180,8 +179,10 @@ void World::listen(const Listening& to)
             "listen: hit_speed: give a speed above 0, m/s, or infinity for no hits");
     WorldState& state = *state_;
     state.settle();
-    state.listening = to;
     auto& touching = state.get<TouchingPairs>();
+    // Of those who touch already nobody was told.
+    if (to.touches && !state.listening.touches) touching = {};
+    state.listening = to;
     touching.hit_speed = to.hit_speed;
     std::string& cause = state.requests.first[static_cast<std::size_t>(Effect::events)];
     cause.clear();
@@ -200,7 +201,7 @@ void World::listen(const Listening& to)
                       + " keeps no list of contacts: nobody is told of touches and hits; take "
                         "overlap=allow, or ask overlapping_pairs()");
     state.get<SleepingPairs>().told = any;
-    state.get<SleepingPairs>().changes.clear();
+    if (!any) state.get<SleepingPairs>().changes.clear();
     state.effects_stale = true;
 }
 

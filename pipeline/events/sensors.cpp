@@ -6,29 +6,18 @@
 // sensed.
 #include "kernels/geometry/shape_bounds.hpp"
 #include "narrowphase/ccd/time_of_impact.hpp"
-#include "narrowphase/touching.hpp"
+#include "pipeline/events/parts_order.hpp"
 #include "pipeline/queries/query_scene.hpp"
 #include "pipeline/world/world_state.hpp"
 
 #include <algorithm>
 #include <stdexcept>
-#include <tuple>
 
 namespace throng {
 
 namespace {
 
 constexpr std::size_t kSensors = 16;  // a block
-
-auto order_of(const TouchingParts& parts)
-{
-    return std::tuple(parts.a.index, parts.b.index, parts.part_a, parts.part_b, parts.a.generation,
-                      parts.b.generation);
-}
-bool before(const TouchingParts& one, const TouchingParts& other)
-{
-    return order_of(one) < order_of(other);
-}
 
 // Where a body was as the step began.
 struct Start {
@@ -46,6 +35,7 @@ public:
     void before_step() override
     {
         starts_.clear();
+        if (state_.sensors.empty()) return;
         const ActiveBodies& active = state_.get<BodyStates>().active_bodies;
         const auto& poses = state_.get<Poses>();
         for (const auto* const bodies : {&active.dynamic, &active.kinematic})
@@ -58,17 +48,19 @@ public:
 
     void after_step() override
     {
+        if (state_.sensors.empty() && inside_.empty()) return;
         list_sensors();
         std::vector<TouchingParts> now = overlapping();
         std::vector<TouchingParts> begun, ended;
         std::set_difference(now.begin(), now.end(), inside_.begin(), inside_.end(),
-                            std::back_inserter(begun), before);
+                            std::back_inserter(begun), comes_before);
         std::set_difference(inside_.begin(), inside_.end(), now.begin(), now.end(),
-                            std::back_inserter(ended), before);
+                            std::back_inserter(ended), comes_before);
         const std::vector<TouchingParts> through = gone_through(now);
         begun.insert(begun.end(), through.begin(), through.end());
         ended.insert(ended.end(), through.begin(), through.end());
-        for (auto* const list : {&begun, &ended}) std::sort(list->begin(), list->end(), before);
+        for (auto* const list : {&begun, &ended})
+            std::sort(list->begin(), list->end(), comes_before);
         inside_ = std::move(now);
         const std::uint64_t step = state_.report.step + 1;
         for (const TouchingParts& parts : begun) state_.events.sensed.push_back({parts, step});
@@ -87,7 +79,7 @@ public:
 private:
     struct Sensor {
         std::uint32_t collider = 0, body = 0;
-        SensorFilter filter;
+        BodyFilter filter;
     };
 
     void list_sensors()
@@ -99,20 +91,10 @@ private:
                 sensors_.push_back({colliders.begin[body] + k, body, filter});
     }
 
-    Pose placed(std::uint32_t collider) const
-    {
-        const auto& colliders = state_.get<Colliders>();
-        return state_.get<Poses>().at(colliders.body[collider]) * colliders.local[collider];
-    }
     Box3 box_of(std::uint32_t collider) const
     {
         return shape_bounds(state_.get<Shapes>(), state_.get<Colliders>().shape[collider],
-                            placed(collider));
-    }
-    TouchingParts parts_of(std::uint32_t sensor, std::uint32_t collider) const
-    {
-        const ColliderOwner a = state_.owner_of(sensor), b = state_.owner_of(collider);
-        return {a.body, b.body, a.part, b.part};
+                            state_.queries->placed(collider));
     }
 
     // Whether a sensor looks for a collider at all: what stands still is not found by what does.
@@ -129,21 +111,11 @@ private:
                 || states.kind[sensor.body] != BodyKind::static_);
     }
 
-    bool overlaps(std::uint32_t sensor, std::uint32_t collider) const
-    {
-        const auto& colliders = state_.get<Colliders>();
-        const auto& shapes = state_.get<Shapes>();
-        const Pose at = placed(sensor), other = placed(collider);
-        const Pose in_sensor{at.to_local(other.position),
-                             at.orientation.conjugate() * other.orientation};
-        return touching(shapes, colliders.shape[sensor], shapes, colliders.shape[collider],
-                        in_sensor);
-    }
-
     // Ascending.
     std::vector<TouchingParts> overlapping()
     {
         QueryScene& scene = *state_.queries;
+        const auto& shapes = state_.get<Shapes>();
         scene.refresh();
         std::vector<Box3> regions(sensors_.size());
         for (std::size_t i = 0; i < sensors_.size(); ++i) regions[i] = box_of(sensors_[i].collider);
@@ -154,10 +126,13 @@ private:
             scene.find_near(regions, candidates_);
             for_each_block(sensors_.size(), kSensors, [&](auto begin, auto end, auto block) {
                 for (std::size_t i = begin; i < end; ++i) {
+                    const ShapeRef shape = state_.get<Colliders>().shape[sensors_[i].collider];
+                    const Pose at = scene.placed(sensors_[i].collider);
                     const auto try_one = [&](std::uint32_t collider) {
                         if (looks_for(sensors_[i], collider)
-                            && overlaps(sensors_[i].collider, collider))
-                            of_block[block].push_back(parts_of(sensors_[i].collider, collider));
+                            && scene.overlaps(shapes, shape, at, collider))
+                            of_block[block].push_back(
+                                state_.parts_of(sensors_[i].collider, collider));
                     };
                     for (const std::uint32_t plane : scene.planes()) try_one(plane);
                     for (const std::uint32_t collider : candidates_.of(i)) try_one(collider);
@@ -165,7 +140,7 @@ private:
             });
         });
         of_block.append_to(found);
-        std::sort(found.begin(), found.end(), before);
+        std::sort(found.begin(), found.end(), comes_before);
         return found;
     }
 
@@ -181,44 +156,58 @@ private:
                                   state_.get<Velocities>().angular[body] * state_.settings.dt);
     }
 
+    // Colliders of those who went so far that they may have gone through a sensor.
+    std::vector<std::uint32_t> far_travelled() const
+    {
+        const auto& colliders = state_.get<Colliders>();
+        std::vector<std::uint32_t> found;
+        for (const auto& [body, pose] : starts_) {
+            const double moved = (state_.get<Poses>().position[body] - pose.position).norm();
+            for (std::uint32_t k = 0; k < colliders.count[body]; ++k)
+                if (const std::uint32_t at = colliders.begin[body] + k;
+                    colliders.shape[at].kind != ShapeKind::plane
+                    && moved > colliders.inner_extent[at])
+                    found.push_back(at);
+        }
+        return found;
+    }
+
     // Who is inside neither as the step begins nor as it ends, but was in between.
     std::vector<TouchingParts> gone_through(const std::vector<TouchingParts>& now) const
     {
-        const auto& colliders = state_.get<Colliders>();
-        const auto& shapes = state_.get<Shapes>();
+        std::vector<TouchingParts> found;
+        const std::vector<std::uint32_t> far = far_travelled();
+        if (far.empty()) return found;
         std::vector<Box3> boxes(sensors_.size());
         for (std::size_t i = 0; i < sensors_.size(); ++i)
             boxes[i] = box_of_way(sensors_[i].collider, way_of(sensors_[i].body));
-        std::vector<TouchingParts> found;
-        for (const Start& start : starts_) {
-            const std::uint32_t body = start.body;
-            const Vec3 moved = state_.get<Poses>().position[body] - start.pose.position;
-            for (std::uint32_t k = 0; k < colliders.count[body]; ++k) {
-                const std::uint32_t at = colliders.begin[body] + k;
-                const ShapeRef shape = colliders.shape[at];
-                if (shape.kind == ShapeKind::plane || !(moved.norm() > colliders.inner_extent[at]))
-                    continue;
-                const RigidTrajectory way = way_of(body);
-                const Box3 box = box_of_way(at, way);
-                for (std::size_t i = 0; i < sensors_.size(); ++i) {
-                    const Sensor& sensor = sensors_[i];
-                    if (!boxes[i].overlaps(box) || !looks_for(sensor, at)) continue;
-                    const TouchingParts parts = parts_of(sensor.collider, at);
-                    if (std::binary_search(now.begin(), now.end(), parts, before)
-                        || std::binary_search(inside_.begin(), inside_.end(), parts, before))
-                        continue;
-                    const MovingShape a{colliders.shape[sensor.collider], way_of(sensor.body),
-                                        colliders.local[sensor.collider]};
-                    const MovingShape b{shape, way, colliders.local[at]};
-                    constexpr double kTolerance = 1e-6;  // of the smaller's size
-                    const ImpactRule rule = impact_rule(
-                        ToiMethod::newton, kTolerance * impact_size(shapes, a.shape, b.shape));
-                    if (time_of_impact(shapes, a, b, 0, 1, rule).state != ToiState::separated)
-                        found.push_back(parts);
-                }
+        const auto inside = [](const std::vector<TouchingParts>& list, const TouchingParts& parts) {
+            return std::binary_search(list.begin(), list.end(), parts, comes_before);
+        };
+        for (const std::uint32_t at : far) {
+            const RigidTrajectory way = way_of(state_.get<Colliders>().body[at]);
+            const Box3 box = box_of_way(at, way);
+            for (std::size_t i = 0; i < sensors_.size(); ++i) {
+                if (!boxes[i].overlaps(box) || !looks_for(sensors_[i], at)) continue;
+                const TouchingParts parts = state_.parts_of(sensors_[i].collider, at);
+                if (!inside(now, parts) && !inside(inside_, parts) && meets(sensors_[i], at, way))
+                    found.push_back(parts);
             }
         }
         return found;
+    }
+
+    bool meets(const Sensor& sensor, std::uint32_t collider, const RigidTrajectory& way) const
+    {
+        constexpr double kTolerance = 1e-6;  // of the smaller's size
+        const auto& colliders = state_.get<Colliders>();
+        const auto& shapes = state_.get<Shapes>();
+        const MovingShape a{colliders.shape[sensor.collider], way_of(sensor.body),
+                            colliders.local[sensor.collider]};
+        const MovingShape b{colliders.shape[collider], way, colliders.local[collider]};
+        const ImpactRule rule =
+            impact_rule(ToiMethod::newton, kTolerance * impact_size(shapes, a.shape, b.shape));
+        return time_of_impact(shapes, a, b, 0, 1, rule).state != ToiState::separated;
     }
 
     Box3 box_of_way(std::uint32_t collider, const RigidTrajectory& way) const

@@ -145,9 +145,10 @@ void QueryScene::search_met(std::span<const RayQuery> rays, std::span<Best> best
 RayHit QueryScene::hit_of(const RayQuery& ray, const Best& best) const
 {
     if (best.collider == kNoBody) return {};
+    const auto [body, part] = state_.owner_of(best.collider);
     return {true,
-            id(best.collider),
-            part(best.collider),
+            body,
+            part,
             best.distance,
             ray.origin + unit(ray.direction) * best.distance,
             placed(best.collider).orientation * best.local};

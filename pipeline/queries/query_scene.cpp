@@ -149,17 +149,6 @@ void QueryScene::put(std::uint32_t collider)
                kAround * colliders_.inner_extent[collider]);
 }
 
-BodyId QueryScene::id(std::uint32_t collider) const
-{
-    const std::uint32_t body = colliders_.body[collider];
-    return {body, state_.generation[body]};
-}
-
-std::uint32_t QueryScene::part(std::uint32_t collider) const
-{
-    return collider - colliders_.begin[colliders_.body[collider]];
-}
-
 Pose QueryScene::placed(std::uint32_t collider) const
 {
     return state_.get<Poses>().at(colliders_.body[collider]) * colliders_.local[collider];
@@ -182,8 +171,19 @@ NearestHit QueryScene::hit_of(const PointQuery& query, const Best& best) const
 {
     if (best.collider == kNoBody) return {};
     const bool inside = best.distance == 0;
-    return {true, id(best.collider), part(best.collider), best.distance,
+    const auto [body, part] = state_.owner_of(best.collider);
+    return {true, body, part, best.distance,
             inside ? query.point : Vec3(placed(best.collider) * best.local)};
+}
+
+bool QueryScene::overlaps(const Shapes& shapes,
+                          ShapeRef shape,
+                          const Pose& pose,
+                          std::uint32_t collider) const
+{
+    const Pose at = placed(collider);
+    const Pose in_shape{pose.to_local(at.position), pose.orientation.conjugate() * at.orientation};
+    return touching(shapes, shape, shapes_, colliders_.shape[collider], in_shape);
 }
 
 void QueryScene::overlap(const ShapeQuery& query,
@@ -192,14 +192,10 @@ void QueryScene::overlap(const ShapeQuery& query,
                          std::vector<BodyId>& found) const
 {
     const ShapeRef shape = set_shape(query.shape, asked);
-    const Quat turn(query.pose.orientation.normalized());
-    const Pose pose{query.pose.position, turn};
+    const Pose pose{query.pose.position, query.pose.orientation.normalized()};
     const auto try_one = [&](std::uint32_t collider) {
         if (!is_asked(collider, query.mask)) return;
-        const Pose at = placed(collider);
-        const Pose in_query{pose.to_local(at.position), turn.conjugate() * at.orientation};
-        if (touching(asked, shape, shapes_, colliders_.shape[collider], in_query))
-            found.push_back(id(collider));
+        if (overlaps(asked, shape, pose, collider)) found.push_back(state_.owner_of(collider).body);
     };
     for (const std::uint32_t plane : planes_) try_one(plane);
     for (const std::uint32_t collider : candidates) try_one(collider);

@@ -28,6 +28,10 @@ public:
         boxes_.meet_boxes(regions, candidates);
     }
     std::span<const std::uint32_t> planes() const { return planes_; }
+    Pose placed(std::uint32_t collider) const;
+    /// Whether a convex shape shares a point with a collider.
+    bool
+    overlaps(const Shapes& shapes, ShapeRef shape, const Pose& pose, std::uint32_t collider) const;
 
     void cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits);
     void find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_t> blocked);
@@ -57,9 +61,6 @@ private:
                 work(first, std::min(kBatch, questions - first));
         });
     }
-    BodyId id(std::uint32_t collider) const;
-    std::uint32_t part(std::uint32_t collider) const;
-    Pose placed(std::uint32_t collider) const;
     bool is_asked(std::uint32_t collider, std::uint32_t mask) const;
     void find_touched(bool stepped);
     bool stays(std::uint32_t collider) const;

@@ -3,9 +3,11 @@
 #include "kernels/geometry/mass.hpp"
 #include "kernels/geometry/shape_bounds.hpp"
 #include "kernels/math/rotation.hpp"
+#include "narrowphase/ccd/rigid_trajectory.hpp"
 #include "pipeline/contacts/fall_asleep.hpp"
 #include "pipeline/world/body_mass.hpp"
 #include "pipeline/world/force_builder.hpp"
+#include "pipeline/world/grown_list.hpp"
 #include "pipeline/world/world_state.hpp"
 #include "scene/limits.hpp"
 #include "scene/names.hpp"
@@ -23,16 +25,6 @@ namespace {
 refuse(const char* caller, const WorldState& state, std::uint32_t body, const std::string& why)
 {
     throw std::invalid_argument(std::string(caller) + ": " + state.called(body) + ": " + why);
-}
-
-template <class Value>
-void put(std::vector<Value>& list, std::size_t at, const Value& value, const Value& rest)
-{
-    if (list.size() <= at) {
-        if (value == rest) return;
-        list.resize(at + 1, rest);
-    }
-    list[at] = value;
 }
 
 // Whether a cylinder may be followed as it runs round its rim. Of a needle the digits of float do
@@ -56,7 +48,11 @@ void recenter(WorldState& state, std::uint32_t body, const Vec3& center)
     velocities.linear[body] += velocities.angular[body].cross(arm);
     for (std::uint32_t i = 0; i < colliders.count[body]; ++i)
         colliders.local[colliders.begin[body] + i].position -= moved;
-    for (SpringForce& spring : state.get<Forces>().springs) {
+    auto& forces = state.get<Forces>();
+    for (std::uint32_t k = 0;
+         forces.has_springs(body) && k < forces.first_spring[body + 1] - forces.first_spring[body];
+         ++k) {
+        SpringForce& spring = forces.springs[forces.spring_of[forces.first_spring[body] + k]];
         if (spring.a == body) spring.at_a -= moved;
         if (spring.b == body) spring.at_b -= moved;
     }
@@ -64,8 +60,25 @@ void recenter(WorldState& state, std::uint32_t body, const Vec3& center)
     state.measure_colliders(body);
 }
 
+// What a scene could state. No inertia is one of who never turns.
+void need_possible(const WorldState& state,
+                   std::uint32_t body,
+                   const char* caller,
+                   double mass,
+                   const Sym3& inertia)
+{
+    Scene asked;
+    BodyDescription& stated = asked.bodies.emplace_back();
+    stated.mass = mass;
+    stated.lock_rotation = inertia == Sym3{};
+    if (!stated.lock_rotation) stated.inertia = inertia;
+    if (const std::string trouble = check_scene(asked); !trouble.empty())
+        refuse(caller, state, body,
+               "wanted a mass and an inertia that a body can have; " + trouble);
+}
+
 // Of its shape and material, in its own frame. Throws where it has none.
-KeptMass natural_mass(const WorldState& state, std::uint32_t body)
+KeptMass natural_mass(const WorldState& state, std::uint32_t body, const char* caller)
 {
     const auto& colliders = state.get<Colliders>();
     std::vector<PlacedMass> parts;
@@ -73,7 +86,7 @@ KeptMass natural_mass(const WorldState& state, std::uint32_t body)
         const std::uint32_t at = colliders.begin[body] + i;
         const ShapeKind kind = colliders.shape[at].kind;
         if (kind == ShapeKind::plane || kind == ShapeKind::mesh)
-            refuse("set_motion", state, body,
+            refuse(caller, state, body,
                    kind == ShapeKind::plane
                        ? "wanted static or kinematic for a plane"
                        : "wanted static or kinematic for triangles; add a dynamic body with the "
@@ -83,7 +96,7 @@ KeptMass natural_mass(const WorldState& state, std::uint32_t body)
         parts.push_back({mass_of(state.get<Shapes>(), colliders.shape[at]), pose});
     }
     if (parts.empty())
-        refuse("set_motion", state, body,
+        refuse(caller, state, body,
                "wanted a mass for a body without a shape; give set_mass() one, and an inertia");
     const MassProperties whole = combine(parts);
     const double density = state.material_density[colliders.material[colliders.begin[body]]];
@@ -91,10 +104,7 @@ KeptMass natural_mass(const WorldState& state, std::uint32_t body)
     kept.mass = density * whole.volume;
     kept.inertia = scaled(whole.inertia, density);
     kept.center = whole.center;
-    if (!(kept.mass >= kLeastMass && kept.mass <= kGreatestMass))
-        refuse("set_motion", state, body,
-               "wanted a mass that a step can hold; density and shape give "
-                   + number_text(kept.mass) + " kg");
+    need_possible(state, body, caller, kept.mass, kept.inertia);
     return kept;
 }
 
@@ -130,15 +140,15 @@ KeptMass mass_now(const WorldState& state, std::uint32_t body)
             locks_position(state, body), locks_rotation(state, body)};
 }
 
-SensorFilter filter_of(const WorldState& state, std::uint32_t body)
+BodyFilter filter_of(const WorldState& state, std::uint32_t body)
 {
     if (const auto sensor = state.sensors.find(body); sensor != state.sensors.end())
         return sensor->second;
     const auto& colliders = state.get<Colliders>();
     const auto& filter = state.get<PairFilter>();
     const std::uint32_t first = colliders.begin[body];
-    return colliders.count[body] == 0 ? SensorFilter{0, 0}
-                                      : SensorFilter{filter.group[first], filter.mask[first]};
+    return colliders.count[body] == 0 ? BodyFilter{0, 0}
+                                      : BodyFilter{filter.group[first], filter.mask[first]};
 }
 
 std::uint32_t dynamic_at(const WorldState& state, BodyId id, const char* caller)
@@ -167,16 +177,25 @@ void set_constant_force(WorldState& state,
     forces.torque[body] = torque;
 }
 
-void push(WorldState& state, std::uint32_t body, const Vec3& force, const Vec3& torque)
+AppliedForces& applied_to(WorldState& state, std::uint32_t body)
 {
     const Forces& forces = state.get<Forces>();
-    const bool pushed = body < forces.force.size();
-    const Vec3 before_force = pushed ? forces.force[body] : Vec3(Vec3::Zero());
-    const Vec3 before_torque = pushed ? forces.torque[body] : Vec3(Vec3::Zero());
-    const auto same = [&](const Push& one) { return one.body == body; };
-    if (std::none_of(state.pushes.begin(), state.pushes.end(), same))
-        state.pushes.push_back({body, before_force, before_torque});
-    set_constant_force(state, body, before_force + force, before_torque + torque);
+    AppliedForces stated;
+    if (body < forces.force.size()) {
+        stated.force = forces.force[body];
+        stated.torque = forces.torque[body];
+    }
+    return state.applied_forces.try_emplace(body, stated).first->second;
+}
+
+void push(WorldState& state, std::uint32_t body, const Vec3& force, const Vec3& torque)
+{
+    AppliedForces& applied = applied_to(state, body);
+    if (!applied.pushed) state.pushed.push_back(body);
+    applied.pushed = true;
+    applied.pushed_by += force;
+    applied.turned_by += torque;
+    state.sum_forces(body);
     state.wake_beside(body);
     state.changed.push_back(body);
 }
@@ -201,7 +220,7 @@ void WorldState::begin_change(std::uint32_t body)
     wake(body);
 }
 
-void WorldState::set_filter(std::uint32_t body, const SensorFilter& to)
+void WorldState::set_filter(std::uint32_t body, const BodyFilter& to)
 {
     const auto& colliders = get<Colliders>();
     auto& filter = get<PairFilter>();
@@ -245,31 +264,57 @@ void WorldState::measure_colliders(std::uint32_t body)
     get<BodyStates>().radius[body] = radius;
 }
 
-void WorldState::update_scaled_gravity(std::uint32_t body)
+void WorldState::sum_forces(std::uint32_t body)
 {
-    const auto found = scaled_gravity.find(body);
-    if (found == scaled_gravity.end() || !get<BodyStates>().dynamic(body)) return;
-    const auto& torques = get<Forces>().torque;
-    const Vec3 torque = body < torques.size() ? torques[body] : Vec3(Vec3::Zero());
-    const auto& [scale, force] = found->second;
-    set_constant_force(
-        *this, body,
-        scale == 1
-            ? force
-            : Vec3(force + (scale - 1) * get<Masses>().mass[body] * get<StepContext>().gravity),
-        torque);
+    const auto found = applied_forces.find(body);
+    if (found == applied_forces.end()) return;
+    const AppliedForces& applied = found->second;
+    const double mass = get<Masses>().mass[body];  // 0 of who does not fall
+    const Vec3 weight = (applied.gravity_scale - 1) * mass * get<StepContext>().gravity;
+    set_constant_force(*this, body, applied.force + weight + applied.pushed_by,
+                       applied.torque + applied.turned_by);
 }
 
 void WorldState::end_pushes()
 {
-    if (pushes.empty()) return;
-    auto& forces = get<Forces>();
-    for (const Push& push : pushes) {
-        forces.force[push.body] = push.force;
-        forces.torque[push.body] = push.torque;
-        changed.push_back(push.body);
+    for (const std::uint32_t body : pushed) {
+        const auto found = applied_forces.find(body);
+        if (found == applied_forces.end() || !found->second.pushed) continue;
+        AppliedForces& applied = found->second;
+        applied.pushed_by = applied.turned_by = Vec3::Zero();
+        applied.pushed = false;
+        sum_forces(body);
+        if (applied.gravity_scale == 1) applied_forces.erase(found);
+        changed.push_back(body);
     }
-    pushes.clear();
+    pushed.clear();
+}
+
+void WorldState::drive(std::uint32_t body, const std::array<std::optional<double>, 3>& velocity)
+{
+    auto& prescribed = get<PrescribedVelocities>();
+    prescribed.erase(body);
+    const double free = std::nan("");
+    if (velocity[0] || velocity[1] || velocity[2])
+        prescribed.put(
+            body,
+            {velocity[0].value_or(free), velocity[1].value_or(free), velocity[2].value_or(free)});
+    drive_surface(body);
+}
+
+void WorldState::drive_surface(std::uint32_t body)
+{
+    auto& states = get<BodyStates>();
+    Vec3 surface = Vec3::Zero();
+    if (const auto* const driven = get<PrescribedVelocities>().of(body))
+        for (int k = 0; k < 3; ++k)
+            if (const double speed = (*driven)[static_cast<std::size_t>(k)]; !std::isnan(speed))
+                surface[k] = speed;
+    const bool still = states.kind[body] == BodyKind::static_;
+    const bool carries = still && !surface.isZero(0);
+    put(states.is_conveyor, body, std::uint8_t{carries});
+    states.conveyors = states.conveyors || carries;
+    if (still) get<Velocities>().linear[body] = surface;
 }
 
 void World::set_motion(BodyId body, Motion motion)
@@ -286,7 +331,8 @@ void World::set_motion(BodyId body, Motion motion)
     KeptMass next;
     if (motion == Motion::dynamic) {
         const auto kept = state.kept_masses.find(at);
-        next = kept != state.kept_masses.end() ? kept->second : natural_mass(state, at);
+        next =
+            kept != state.kept_masses.end() ? kept->second : natural_mass(state, at, "set_motion");
     }
     // To the broad phase and to whoever touches it, it is somebody else from now on.
     state.begin_change(at);
@@ -297,18 +343,15 @@ void World::set_motion(BodyId body, Motion motion)
         give_no_mass(at, state.get<Masses>());
         recenter(state, at, Vec3::Zero());
     }
-    if (motion == Motion::static_) {
-        velocities.linear[at].setZero();
-        velocities.angular[at].setZero();
-    }
+    if (motion == Motion::static_) velocities.angular[at].setZero();
     if (states.carries(at)) velocities.linear[at].setZero();
-    if (at < states.is_conveyor.size()) states.is_conveyor[at] = 0;
     states.kind[at] = motion == Motion::static_ ? BodyKind::static_
         : motion == Motion::kinematic           ? BodyKind::kinematic
                                                 : BodyKind::dynamic;
     states.awake[at] = motion != Motion::static_ && states.quarantined[at] == 0 ? 1 : 0;
     states.sleep_time[at] = 0;
     state.motion[at] = motion;
+    state.drive_surface(at);
     if (motion == Motion::dynamic) {
         recenter(state, at, next.center);
         give(state, at, next);
@@ -319,8 +362,8 @@ void World::set_motion(BodyId body, Motion motion)
         state.active_bodies_stale = true;
     state.active_bodies_stopped = true;
     state.mark_changed(at);
-    state.update_scaled_gravity(at);
-    if (!state.get<Forces>().springs.empty()) {
+    state.sum_forces(at);
+    if (state.get<Forces>().has_springs(at)) {
         sort_springs(states, state.get<Forces>());
         state.census_stale = true;
         state.warn_of_substeps();
@@ -331,8 +374,6 @@ void World::set_mass(BodyId body, double mass, const std::optional<Sym3>& inerti
 {
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_mass");
-    if (!(mass >= kLeastMass && mass <= kGreatestMass))
-        refuse("set_mass", state, at, "wanted a mass above 0 kg");
     const bool dynamic = state.get<BodyStates>().dynamic(at);
     KeptMass kept;
     if (dynamic)
@@ -340,19 +381,11 @@ void World::set_mass(BodyId body, double mass, const std::optional<Sym3>& inerti
     else if (const auto found = state.kept_masses.find(at); found != state.kept_masses.end())
         kept = found->second;
     else if (!inertia)
-        kept = natural_mass(state, at);
-    if (inertia) {
-        Scene asked;
-        BodyDescription stated;
-        stated.mass = mass;
-        stated.inertia = inertia;
-        asked.bodies.push_back(stated);
-        if (const std::string trouble = check_scene(asked); !trouble.empty())
-            refuse("set_mass", state, at, "wanted an inertia that a body can have; " + trouble);
-        kept.inertia = *inertia;
-    } else {
-        kept.inertia = scaled(kept.inertia, mass / kept.mass);
-    }
+        kept = natural_mass(state, at, "set_mass");
+    kept.inertia = inertia ? *inertia : scaled(kept.inertia, mass / kept.mass);
+    if (inertia && *inertia == Sym3{})
+        refuse("set_mass", state, at, "wanted moments above 0 kg m2");
+    need_possible(state, at, "set_mass", mass, kept.inertia);
     kept.mass = mass;
     if (!dynamic) {
         state.kept_masses[at] = kept;
@@ -365,7 +398,7 @@ void World::set_mass(BodyId body, double mass, const std::optional<Sym3>& inerti
     kept.lock_rotation = !turns;
     give(state, at, kept);
     state.mark_changed(at);
-    state.update_scaled_gravity(at);
+    state.sum_forces(at);
     state.warn_of_substeps();
 }
 
@@ -434,22 +467,7 @@ void World::set_drive_velocity(BodyId body, const std::array<std::optional<doubl
         if (component && !(std::abs(*component) <= kGreatestLength))
             refuse("set_drive_velocity", state, at, "wanted a velocity in m/s");
     state.begin_change(at);
-    auto& prescribed = state.get<PrescribedVelocities>();
-    prescribed.erase(at);
-    const double free = std::nan("");
-    if (velocity[0] || velocity[1] || velocity[2])
-        prescribed.put(
-            at,
-            {velocity[0].value_or(free), velocity[1].value_or(free), velocity[2].value_or(free)});
-    auto& states = state.get<BodyStates>();
-    if (states.kind[at] == BodyKind::static_) {
-        const Vec3 surface(velocity[0].value_or(0), velocity[1].value_or(0),
-                           velocity[2].value_or(0));
-        const bool carries = !surface.isZero(0);
-        put(states.is_conveyor, at, std::uint8_t{carries}, std::uint8_t{0});
-        states.conveyors = states.conveyors || carries;
-        state.get<Velocities>().linear[at] = surface;
-    }
+    state.drive(at, velocity);
     // Whoever drives it anew wants those that lie on it to feel it.
     state.mark_changed(at);
 }
@@ -459,8 +477,7 @@ void World::set_fast(BodyId body, bool fast)
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_fast");
     auto& states = state.get<BodyStates>();
-    put(states.fast, at, std::uint8_t{fast && states.kind[at] != BodyKind::static_},
-        std::uint8_t{0});
+    put(states.fast, at, std::uint8_t{fast && states.kind[at] != BodyKind::static_});
     state.wake(at);
     if (fast) {
         state.requests.ask(Effect::fast_motion, state.called(at));
@@ -474,14 +491,13 @@ void World::set_force(BodyId body, const Vec3& force, const Vec3& torque)
     const std::uint32_t at = dynamic_at(state, body, "set_force");
     need_finite(force, "set_force", "N");
     need_finite(torque, "set_force", "N m");
-    for (const Push& one : state.pushes)
-        if (one.body == at)
-            refuse("set_force", state, at, "wanted before add_force(), or after the next step");
     state.wake_beside(at);
-    const auto scaled = state.scaled_gravity.find(at);
-    if (scaled != state.scaled_gravity.end()) scaled->second.force = force;
     set_constant_force(state, at, force, torque);
-    state.update_scaled_gravity(at);
+    if (const auto found = state.applied_forces.find(at); found != state.applied_forces.end()) {
+        found->second.force = force;
+        found->second.torque = torque;
+        state.sum_forces(at);
+    }
     state.changed.push_back(at);
 }
 
@@ -491,30 +507,24 @@ void World::set_gravity_scale(BodyId body, double scale)
     const std::uint32_t at = state.place_of(body, "set_gravity_scale");
     if (!(std::abs(scale) <= kGreatestNumber))
         refuse("set_gravity_scale", state, at, "wanted a finite factor");
-    for (const Push& one : state.pushes)
-        if (one.body == at)
-            refuse("set_gravity_scale", state, at,
-                   "wanted before add_force(), or after the next step");
     state.wake_beside(at);
-    const auto& forces = state.get<Forces>();
-    const Vec3 stated = at < forces.force.size() ? forces.force[at] : Vec3(Vec3::Zero());
-    const auto [entry, first] = state.scaled_gravity.try_emplace(at, ScaledGravity{1, stated});
-    entry->second.scale = scale;
-    state.update_scaled_gravity(at);
-    if (scale == 1) state.scaled_gravity.erase(at);
+    AppliedForces& applied = applied_to(state, at);
+    applied.gravity_scale = scale;
+    state.sum_forces(at);
+    if (scale == 1 && !applied.pushed) state.applied_forces.erase(at);
     state.changed.push_back(at);
 }
 
 double World::gravity_scale(BodyId body) const
 {
     const std::uint32_t at = state_->place_of(body, "gravity_scale");
-    const auto scaled = state_->scaled_gravity.find(at);
-    return scaled == state_->scaled_gravity.end() ? 1 : scaled->second.scale;
+    const auto applied = state_->applied_forces.find(at);
+    return applied == state_->applied_forces.end() ? 1 : applied->second.gravity_scale;
 }
 
 void World::set_user_data(BodyId body, std::uint64_t data)
 {
-    put(state_->user_data, state_->place_of(body, "set_user_data"), data, std::uint64_t{0});
+    put(state_->user_data, state_->place_of(body, "set_user_data"), data);
 }
 
 std::uint64_t World::user_data(BodyId body) const
@@ -595,13 +605,9 @@ void World::move_to(BodyId body, const Pose& pose, double seconds)
         refuse("move_to", state, at, "wanted a time above 0 s");
     const Quat to(pose.orientation.coeffs() / length);
     const Vec3 place = to * state.center[at] + pose.position;
-    const auto& poses = state.get<Poses>();
-    Quat turn = to * poses.orientation[at].conjugate();
-    if (turn.w() < 0) turn.coeffs() *= -1;  // the shorter way
-    const double sine = turn.vec().norm();
-    const double angle = 2 * std::atan2(sine, turn.w());
-    const Vec3 spin = sine > 0 ? Vec3(turn.vec() * (angle / (sine * seconds))) : Vec3(Vec3::Zero());
-    state.set_velocities(at, (place - poses.position[at]) / seconds, spin);
+    const RigidTrajectory way =
+        trajectory_between(state.get<Poses>().at(at), {place, to}, Vec3::Zero());
+    state.set_velocities(at, way.shift / seconds, way.turn / seconds);
 }
 
 void World::wake(BodyId body)
@@ -626,6 +632,7 @@ void World::sleep(BodyId body)
         if (!std::binary_search(bodies.begin(), bodies.end(), at)) continue;
         together.assign(bodies.begin(), bodies.end());
         std::erase_if(together, [&](std::uint32_t one) { return !states.movable(one); });
+        break;
     }
     if (rests_by_force(state.settings)) {
         for (const std::uint32_t one : together) {

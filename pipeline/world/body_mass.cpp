@@ -1,5 +1,7 @@
 #include "pipeline/world/body_mass.hpp"
 
+#include "pipeline/world/grown_list.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -56,13 +58,6 @@ Sym3 turning_inverse_mass(const Sym3& inertia, double most)
     const Vec3 inverse_mass = moments.cwiseMax(moments[2] / most).cwiseInverse();
     return Sym3::from(solver.eigenvectors() * inverse_mass.asDiagonal()
                       * solver.eigenvectors().transpose());
-}
-
-template <class Array, class Value>
-void put(Array& array, std::size_t at, Value value)
-{
-    if (array.size() <= at) array.resize(at + 1);
-    array[at] = std::move(value);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Body state: of many bodies at once, as it is kept or where a program wants it.
 #include "throng/body_state.hpp"
 
+#include "kernels/math/numbers.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/world/world_state.hpp"
 
@@ -13,11 +14,6 @@ namespace {
 
 constexpr std::size_t kBodies = 1024;  // a block: some 30 microseconds
 
-void store(const Vec3& v, double* to)
-{
-    for (int k = 0; k < 3; ++k) to[k] = v[k];
-}
-Vec3 vector_at(const double* from) { return {from[0], from[1], from[2]}; }
 Quat quaternion_at(const double* from) { return {from[0], from[1], from[2], from[3]}; }
 
 [[noreturn]] void refuse(std::size_t i, BodyId id, const char* wanted)
@@ -66,15 +62,15 @@ void World::read_state(std::span<const BodyId> bodies, const StateColumns<double
             const std::uint32_t body = bodies[i].index;
             const Quat& turn = poses.orientation[body];
             if (to.position.first != nullptr)
-                store(poses.position[body] - turn * state.center[body], to.position.of(i));
+                put(Vec3(poses.position[body] - turn * state.center[body]), to.position.of(i));
             if (to.orientation.first != nullptr) {
                 double* const q = to.orientation.of(i);
                 q[0] = turn.w();
-                store(turn.vec(), q + 1);
+                put(turn.vec(), q + 1);
             }
-            if (to.velocity.first != nullptr) store(state.velocity(body), to.velocity.of(i));
+            if (to.velocity.first != nullptr) put(state.velocity(body), to.velocity.of(i));
             if (to.angular_velocity.first != nullptr)
-                store(velocities.angular[body], to.angular_velocity.of(i));
+                put(velocities.angular[body], to.angular_velocity.of(i));
         }
     };
     if (bodies.size() <= kBodies) return read_some(0, bodies.size(), 0);

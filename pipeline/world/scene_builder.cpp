@@ -4,6 +4,7 @@
 #include "kernels/geometry/shape_bounds.hpp"
 #include "pipeline/world/body_mass.hpp"
 #include "pipeline/world/force_builder.hpp"
+#include "pipeline/world/grown_list.hpp"
 #include "pipeline/world/world_state.hpp"
 #include "scene/rules/scene_check.hpp"
 #include "scene/rules/scene_rules.hpp"
@@ -36,13 +37,6 @@ int sides_of(MeshTree tree)
 {
     constexpr int kSides[] = {6, 14, 18, 26};
     return kSides[static_cast<std::size_t>(tree)];
-}
-
-template <class Array, class Value>
-void put(Array& array, std::size_t at, Value value)
-{
-    if (array.size() <= at) array.resize(at + 1);
-    array[at] = std::move(value);
 }
 
 }  // namespace
@@ -313,24 +307,14 @@ BodyId SceneBuilder::add_body(const BodyDescription& stated, const PlacedShape* 
     put(state_.motion, body, stated.motion);
     if (!stated.name.empty()) put(state_.names, body, stated.name);
     if (stated.gravity_scale != 1 && stated.motion == Motion::dynamic) {
-        state_.scaled_gravity[body] = {stated.gravity_scale, stated.force};
-        state_.update_scaled_gravity(body);
+        state_.applied_forces[body] = {stated.force, stated.torque, stated.gravity_scale};
+        state_.sum_forces(body);
     }
     if (stated.sensor) state_.make_sensor(body);
     if (stated.user_data != 0) put(state_.user_data, body, stated.user_data);
 
-    const auto& drive = stated.drive_velocity;
-    const Vec3 surface(drive[0].value_or(0), drive[1].value_or(0), drive[2].value_or(0));
-    const bool carries = !moves && !surface.isZero(0);
-    put(states.is_conveyor, body, std::uint8_t{carries});
-    states.conveyors = states.conveyors || carries;
     put(states.fast, body, std::uint8_t{moves && stated.fast});
-    if (!moves) velocities.linear[body] = surface;
-    if (drive[0] || drive[1] || drive[2]) {
-        const double free = std::nan("");
-        state_.get<PrescribedVelocities>().put(
-            body, {drive[0].value_or(free), drive[1].value_or(free), drive[2].value_or(free)});
-    }
+    state_.drive(body, stated.drive_velocity);
     note_requests(body, stated);
     state_.mark_changed(body);
     state_.changed.push_back(body);

@@ -31,7 +31,7 @@ void check_settings(const Settings& settings, const char* caller)
         throw std::invalid_argument(std::string(caller) + ": " + trouble);
 }
 
-int sane_threads(int threads)
+int checked_threads(int threads)
 {
     constexpr int kMost = 4096;
     if (threads < 0 || threads > kMost)
@@ -50,7 +50,7 @@ Step<Real>::~Step() = default;
 template struct Step<float>;
 template struct Step<double>;
 
-WorldState::WorldState(const Settings& all, int thread_count) : pool(sane_threads(thread_count))
+WorldState::WorldState(const Settings& all, int thread_count) : pool(checked_threads(thread_count))
 {
     check_settings(all, "world");
     // Throws here and not in a step where the environment asks for lanes that cannot be had.
@@ -485,7 +485,7 @@ void World::set_gravity(const Vec3& gravity)
     if (!(gravity.array().abs() <= kGreatestLength).all())
         throw std::invalid_argument("set_gravity: wanted an acceleration in m/s2, of 1e15 at most");
     state_->get<StepContext>().gravity = gravity;
-    for (const auto& [body, scaled] : state_->scaled_gravity) state_->update_scaled_gravity(body);
+    for (const auto& [body, applied] : state_->applied_forces) state_->sum_forces(body);
     state_->effects_stale = state_->census_stale = true;
     state_->wake_all();
 }

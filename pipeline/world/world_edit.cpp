@@ -217,11 +217,10 @@ void World::remove(std::span<const BodyId> bodies)
         if (count > 0) state.free_colliders[count].push_back(first);
         state.get<PrescribedVelocities>().erase(body);
         if (body < state.names.size()) state.names[body].clear();
-        state.scaled_gravity.erase(body);
+        state.applied_forces.erase(body);
         if (body < state.user_data.size()) state.user_data[body] = 0;
         state.kept_masses.erase(body);
         sensor_goes = state.sensors.erase(body) > 0 || sensor_goes;
-        std::erase_if(state.pushes, [&](const Push& push) { return push.body == body; });
         ++state.generation[body];
         state.free_bodies.push_back(body);
         std::push_heap(state.free_bodies.begin(), state.free_bodies.end(), std::greater<>());

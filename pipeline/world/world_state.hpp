@@ -52,20 +52,21 @@ struct KeptMass {
     bool lock_position = false, lock_rotation = false;
 };
 
-/// Gravity on a body, of that of the world; and its constant force without what that adds, N.
-struct ScaledGravity {
-    double scale = 1;
-    Vec3 force = Vec3::Zero();
-};
-
-/// The constant force and torque of a body that is pushed for a step, to be put back after it.
-struct Push {
-    std::uint32_t body = 0;
+/// What the constant force and torque of a body come to, where that is more than was stated.
+///
+///   force, torque  N, N m, as stated
+///   gravity_scale  gravity on it, of that of the world
+///   pushed_by, turned_by  N, N m, besides, through the next step
+///   pushed         they are not nothing; it is among WorldState::pushed
+struct AppliedForces {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+    double gravity_scale = 1;
+    Vec3 pushed_by = Vec3::Zero(), turned_by = Vec3::Zero();
+    bool pushed = false;
 };
 
-/// Group and mask of a sensor; to the pair filter it has none, and so touches nobody.
-struct SensorFilter {
+/// Who a body may touch. To the pair filter a sensor has neither, and so touches nobody.
+struct BodyFilter {
     std::uint32_t group = 1, mask = ~0u;
 };
 
@@ -118,11 +119,11 @@ struct WorldState {
     std::vector<std::string> names;  // may be shorter: the rest have none
     std::vector<Vec3> center;        // of mass, in the body's own frame
     std::vector<Motion> motion;
-    std::unordered_map<std::uint32_t, ScaledGravity> scaled_gravity;  // the rest have 1
     std::vector<std::uint64_t> user_data;                     // may be shorter: the rest have 0
     std::unordered_map<std::uint32_t, KeptMass> kept_masses;  // of who is not dynamic
-    std::vector<Push> pushes;                                 // of the next step
-    std::vector<std::uint32_t> free_bodies;                   // a heap, so the least goes first
+    std::unordered_map<std::uint32_t, AppliedForces> applied_forces;
+    std::vector<std::uint32_t> pushed;       // for the next step
+    std::vector<std::uint32_t> free_bodies;  // a heap, so the least goes first
     std::map<std::uint32_t, std::vector<std::uint32_t>> free_colliders;  // by how many in a row
     std::size_t alive = 0;
 
@@ -136,7 +137,7 @@ struct WorldState {
     Events events;
     std::unordered_map<std::uint32_t, ColliderOwner> gone;  // of colliders, until settled
     std::vector<TouchingParts> ended_with_gone;             // since the last step
-    std::map<std::uint32_t, SensorFilter> sensors;          // by body
+    std::map<std::uint32_t, BodyFilter> sensors;            // by body
     std::unique_ptr<SensorWatch> sensing;
     std::vector<ContactReport> contacts;  // as they were asked for last
     bool contacts_as_stepped = true;      // nothing has changed their lists since the last step
@@ -198,8 +199,10 @@ struct WorldState {
     void call_all_pairs();
     /// Drops the pairs of colliders that are gone with all they remember.
     void forget_pairs();
+    /// Whose a collider was when pairs were settled last.
     ColliderOwner owner_of(std::uint32_t collider) const;
-    TouchingParts parts_of(PairKey key) const;
+    TouchingParts parts_of(std::uint32_t collider_a, std::uint32_t collider_b) const;
+    TouchingParts parts_of(PairKey key) const { return parts_of(first_of(key), second_of(key)); }
     bool listens() const;
     /// Who is gone touches nobody any more.
     void end_touches_of_gone();
@@ -207,15 +210,19 @@ struct WorldState {
     void follow_touching_pairs();
     /// Takes a body out of all contact, to be a sensor.
     void make_sensor(std::uint32_t body);
-    void set_filter(std::uint32_t body, const SensorFilter& to);
+    void set_filter(std::uint32_t body, const BodyFilter& to);
     /// Whether sensors are called for, as bodies or listeners come and go.
     void call_sensors();
     /// Something is about to change that the census knows of a body; who rests with it wakes.
     void begin_change(std::uint32_t body);
     /// What follows from where the shapes of a body are about its center of mass.
     void measure_colliders(std::uint32_t body);
-    /// Has the constant force of a body, if its gravity is scaled, follow mass and gravity.
-    void update_scaled_gravity(std::uint32_t body);
+    /// Has the constant force of a body follow its mass, gravity and what it is pushed by.
+    void sum_forces(std::uint32_t body);
+    /// Has a body go at velocities before every step, or its surface, where it is static.
+    void drive(std::uint32_t body, const std::array<std::optional<double>, 3>& velocity);
+    /// What is static and driven is a conveyor.
+    void drive_surface(std::uint32_t body);
     /// Takes what a body had for one step away again.
     void end_pushes();
     /// Sets velocities as far as the body is free to have them, and wakes it. Beyond what a step

@@ -287,6 +287,57 @@ TEST(ContactEvents, NobodyWhoDoesNotListenHasThemInHisStep)
     EXPECT_TRUE(world.events().begun.empty());
 }
 
+TEST(ContactEvents, ListeningAgainLosesNothingAndTellsOfNothingTwice)
+{
+    World world(dropped_box(0));
+    const BodyId box = world.bodies()[1];
+    world.listen({.touches = true});
+    world.step(200);
+    ASSERT_FALSE(world.awake(box));
+    // Its pairs come back as this is done, before they are followed.
+    world.set_velocity(box, Vec3(0.1, 0, 0), Vec3::Zero());
+    EXPECT_EQ(world.contacts().size(), 1u);
+    world.listen({.touches = true, .hit_speed = 3});
+    world.step(3);
+    EXPECT_TRUE(world.events().begun.empty());
+    EXPECT_TRUE(world.events().ended.empty());
+    // Who hears of hits alone is told of all that touch once he wants to.
+    world.listen({.hit_speed = 3});
+    world.step(3);
+    EXPECT_TRUE(world.events().begun.empty());
+    world.listen({.touches = true});
+    world.step();
+    EXPECT_EQ(world.events().begun.size(), 1u);
+    world.remove({&box, 1});
+    world.step();
+    EXPECT_EQ(world.events().ended.size(), 1u);
+}
+
+TEST(ContactEvents, AreInTheOrderOfBodiesWhateverPlacesTheirShapesTake)
+{
+    SceneOf made;
+    made.scene.gravity = Vec3::Zero();
+    for (int i = 0; i < 3; ++i) made.ball(0.5, Vec3(0.9 * i, 0, 0));
+    World world(made.scene);
+    world.listen({.touches = true});
+    // The first gives its place to a body of two shapes, which find room behind all others.
+    const BodyId first = world.bodies()[0];
+    world.remove({&first, 1});
+    SceneOf next;
+    const std::uint32_t ball = next.shape(SphereShape{0.5});
+    next.body(
+        next.shape(CompoundShape{{{ball, Pose{}}, {ball, {Vec3(0, 2, 0), Quat::Identity()}}}}),
+        Vec3(0, 0, 0));
+    ASSERT_EQ(world.add(next.scene)[0].index, 0u);
+    world.step();
+    const std::vector<TouchEvent>& begun = world.events().begun;
+    ASSERT_EQ(begun.size(), 2u);
+    EXPECT_EQ(begun[0].a.index, 1u);
+    EXPECT_EQ(begun[0].b.index, 0u);
+    EXPECT_EQ(begun[1].a.index, 1u);
+    EXPECT_EQ(begun[1].b.index, 2u);
+}
+
 TEST(ContactEvents, WhereNoContactsAreKeptThatIsSaid)
 {
     Scene scene = dropped_box(0);

@@ -245,6 +245,51 @@ TEST(BodyChanges, ImpulsesAndForcesAtAPointDoWhatTheyShould)
     EXPECT_FALSE(world.effects().on.has(Effect::forces));
 }
 
+TEST(BodyChanges, APushLastsThroughOtherChangesAndLeavesNothing)
+{
+    Scene scene = box_in_air(Motion::dynamic);
+    World world(scene);
+    const BodyId box = second(world);
+    const double mass = world.mass(box);
+    world.add_force(box, Vec3(60 * mass, 0, 0));
+    world.set_gravity(Vec3(0, 0, -3));
+    world.set_gravity_scale(box, 0.5);
+    world.set_mass(box, 2 * mass);
+    world.set_force(box, Vec3(0, 2 * mass, 0), Vec3::Zero());
+    world.add_force(box, Vec3(60 * mass, 0, 0));
+    world.step();
+    EXPECT_NEAR(world.velocity(box).x(), 60 * kDt, 1e-6);
+    EXPECT_NEAR(world.velocity(box).y(), kDt, 1e-6);
+    EXPECT_NEAR(world.velocity(box).z(), -1.5 * kDt, 1e-6);
+    world.step(59);
+    EXPECT_NEAR(world.velocity(box).x(), 60 * kDt, 1e-6);
+    EXPECT_NEAR(world.velocity(box).y(), 1, 1e-5);
+    EXPECT_NEAR(world.velocity(box).z(), -1.5, 1e-5);
+    // Pushed as it ceases to be dynamic, too.
+    world.add_force(box, Vec3(1e6, 0, 0));
+    world.set_motion(box, Motion::static_);
+    world.step();
+    world.set_gravity_scale(box, 1);
+    world.set_motion(box, Motion::dynamic);
+    world.step();
+    EXPECT_EQ(world.velocity(box).x(), 0);
+    EXPECT_NEAR(world.velocity(box).z(), -3 * kDt, 1e-6);
+}
+
+TEST(BodyChanges, WhoIsDrivenAndBecomesStaticIsAConveyor)
+{
+    SceneOf made;
+    made.floor();
+    made.box(Vec3(3, 1, 0.2), Vec3(0, 0, 0.2)).drive_velocity = {0.5, std::nullopt, std::nullopt};
+    made.box(Vec3(0.3, 0.3, 0.3), Vec3(0, 0, 0.7));
+    World world(made.scene);
+    const BodyId belt = world.bodies()[1], crate = world.bodies()[2];
+    world.set_motion(belt, Motion::static_);
+    world.step(60);
+    EXPECT_EQ(world.pose(belt).position, Vec3(0, 0, 0.2));
+    EXPECT_NEAR(world.velocity(crate).x(), 0.5, 1e-3);
+}
+
 TEST(BodyChanges, AKinematicBodyGetsToWhereItIsSent)
 {
     World world(box_in_air(Motion::kinematic));
@@ -321,7 +366,7 @@ TEST(BodyChanges, WhatCannotBeIsRefusedAndChangesNothing)
     refused([&] { world.set_motion(gone, Motion::static_); }, "set_motion");
     refused([&] { world.set_mass(box, -1); }, "set_mass");
     refused([&] { world.set_mass(box, nan); }, "set_mass");
-    refused([&] { world.set_mass(floor, 1); }, "set_motion");
+    refused([&] { world.set_mass(floor, 1); }, "set_mass");
     refused([&] { world.set_locks(floor, true, true); }, "set_locks");
     refused([&] { world.set_locks(hung, true, false); }, "set_locks");
     refused(
@@ -368,7 +413,7 @@ void change_at_random(World& world, Random& random)
         const BodyId id = ids[random.below(static_cast<std::uint32_t>(ids.size()))];
         const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
         try {
-            switch (random.below(14)) {
+            switch (random.below(17)) {
             case 0:
                 return world.set_motion(id, static_cast<Motion>(random.below(3)));
             case 1:
@@ -397,6 +442,12 @@ void change_at_random(World& world, Random& random)
                 return world.wake(id);
             case 12:
                 return world.set_fast(id, x > 0);
+            case 13:
+                return world.set_gravity(Vec3(x, y, -9));
+            case 14:
+                return world.set_sensor(id, x > 0);
+            case 15:
+                return world.listen({.touches = true, .hit_speed = 1.1 + y, .sensors = x > 0});
             default:
                 return world.set_velocity(id, Vec3(x, y, 1), Vec3(y, x, 0));
             }
@@ -410,7 +461,8 @@ TEST(BodyChanges, AtRandomAreTheSameOnAnyThreadsAndWhatTheBodiesCallFor)
         Scene scene = mixed_scene();
         scene.settings.partial_rest = seed % 3 == 0;
         World one(scene, 1), three(scene, 3);
-        for (World* world : {&one, &three}) world->listen({.touches = true, .hit_speed = 1});
+        for (World* world : {&one, &three})
+            world->listen({.touches = true, .hit_speed = 1, .sensors = true});
         Random of_one(seed), of_three(seed);
         std::size_t open = 0;
         for (int i = 0; i < 80; ++i) {
@@ -423,6 +475,7 @@ TEST(BodyChanges, AtRandomAreTheSameOnAnyThreadsAndWhatTheBodiesCallFor)
             open -= one.events().ended.size();
             ASSERT_EQ(one.state_hash(), three.state_hash()) << "seed " << seed << " step " << i;
             ASSERT_EQ(one.events().begun.size(), three.events().begun.size());
+            ASSERT_EQ(one.events().sensed.size(), three.events().sensed.size());
             // Counted one by one, as if all were counted.
             WorldState& state = state_of(one);
             state.refresh();
