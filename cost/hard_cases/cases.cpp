@@ -190,6 +190,8 @@ constexpr HardCase kCases[] = {
      case_partial_rest, Fault::sink},
     {"H128", "on a large slope it is the same in its middle and kilometers away",
      case_far_on_ground, Fault::float_poses},
+    {"H129", "what bore a heavy load stays where it is once that is gone", case_gone_loads,
+     Fault::sink},
     {"pairs", "every two values of dials run together, on any number of threads", case_dial_pairs,
      Fault::float_poses},
 };

@@ -136,6 +136,7 @@ void case_linked_in_flight(CaseBench& bench);   // H125, linked_in_flight.cpp
 void case_orders(CaseBench& bench);             // H126, orders.cpp
 void case_partial_rest(CaseBench& bench);       // H127, partial_rest.cpp
 void case_far_on_ground(CaseBench& bench);      // H128, far_on_ground.cpp
+void case_gone_loads(CaseBench& bench);         // H129, gone_loads.cpp
 
 /// Runs a scene: energy that nobody gave, as a share of the greatest in motion; without end where a
 /// body was quarantined.

@@ -255,13 +255,18 @@ void ConstraintBuilder<Real>::store(std::size_t begin, std::size_t end) const
 }
 
 template <class Real>
+void ConstraintBuilder<Real>::scale_impulses(std::size_t place, Real scale) const
+{
+    const ActiveContacts::Entry& entry = active_.entries[layout_.contacts[place]];
+    throng::scale_impulses(scale, contact_of(entry));
+    give_back(entry);
+}
+
+template <class Real>
 void ConstraintBuilder<Real>::scale_impulses(const Slice& slice, Real scale) const
 {
-    for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i) {
-        const ActiveContacts::Entry& entry = active_.entries[layout_.contacts[i]];
-        throng::scale_impulses(scale, contact_of(entry));
-        give_back(entry);
-    }
+    for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i)
+        scale_impulses(i, scale);
 }
 
 template <class Real>

@@ -46,7 +46,9 @@ public:
     /// in.
     void store(std::size_t begin, std::size_t end) const;
 
-    /// Makes what the contacts of a slice hold this times as much, for substeps of another length.
+    /// Makes what the contact of a place in Layout::contacts holds this times as much.
+    void scale_impulses(std::size_t place, Real scale) const;
+    /// The same of all contacts of a slice, for substeps of another length.
     void scale_impulses(const Slice& slice, Real scale) const;
     /// 1 for each body of a slice that can be moved, by place, at whose contacts there is an
     /// impulse.
@@ -63,6 +65,11 @@ public:
     Contact<Real>& contact_of(const ActiveContacts::Entry& entry) const
     {
         return throng::contact_of(convex_, meshes_, solids_, joined_, entry);
+    }
+    /// That of a place in Layout::contacts.
+    const Contact<Real>& contact_at(std::size_t place) const
+    {
+        return contact_of(active_.entries[layout_.contacts[place]]);
     }
     /// Gives what a joined contact holds back to those that it is made of.
     void give_back(const ActiveContacts::Entry& entry) const;

@@ -94,6 +94,7 @@ public:
           const Layout& layout,
           const ActiveContacts& active,
           const Masses& masses,
+          const Poses& poses,
           const Velocities& velocities,
           const ConvexContacts<Real>& convex,
           const MeshContacts<Real>& meshes,
@@ -101,7 +102,7 @@ public:
           const JoinedContacts<Real>& joined,
           const ContactConstraints<Real>& constraints,
           OverloadedIslands& overloaded)
-        : islands_(islands), layout_(layout), active_(active), masses_(masses),
+        : islands_(islands), layout_(layout), active_(active), masses_(masses), poses_(poses),
           velocities_(velocities), convex_(convex), meshes_(meshes), solids_(solids),
           joined_(joined), constraints_(constraints), overloaded_(overloaded),
           resting_(kResting * context.gravity.norm()), step_(context.dt), gravity_(context.gravity),
@@ -345,13 +346,31 @@ private:
         return double{greatest};
     }
 
-    // m2/s2, by mass, as a light body between heavy ones may tremble.
+    // Of those that no contact moves and that it touches the first, or none: what it stands on.
+    std::uint32_t ground_of(std::size_t island) const
+    {
+        std::uint32_t ground = kNoBody;
+        touches_unmoved(island, [&](std::uint32_t body) {
+            ground = body;
+            return true;
+        });
+        return ground;
+    }
+
+    // m2/s2, seen from what it stands on, by mass, as a light body between heavy ones may tremble.
     double mean_square_speed(std::size_t island) const
     {
+        const std::uint32_t ground = ground_of(island);
+        const auto with_ground = [&](std::uint32_t body) -> Vec3 {
+            if (ground == kNoBody) return Vec3::Zero();
+            const Vec3 arm = poses_.position[body] - poses_.position[ground];
+            return velocities_.linear[ground] + velocities_.angular[ground].cross(arm);
+        };
         double mass = 0, twice_energy = 0;
         for (const std::uint32_t body : islands_.bodies_of(island)) {
             mass += masses_.mass[body];
-            twice_energy += masses_.mass[body] * velocities_.linear[body].squaredNorm();
+            twice_energy +=
+                masses_.mass[body] * (velocities_.linear[body] - with_ground(body)).squaredNorm();
         }
         return twice_energy / mass;
     }
@@ -471,6 +490,7 @@ private:
     const Layout& layout_;
     const ActiveContacts& active_;
     const Masses& masses_;
+    const Poses& poses_;
     const Velocities& velocities_;
     const ConvexContacts<Real>& convex_;
     const MeshContacts<Real>& meshes_;
@@ -494,6 +514,7 @@ void measure_strain(const StepContext& context,
                     const Layout& layout,
                     const ActiveContacts& active,
                     const Masses& masses,
+                    const Poses& poses,
                     const Velocities& velocities,
                     const ConvexContacts<Real>& convex,
                     const MeshContacts<Real>& meshes,
@@ -508,7 +529,7 @@ void measure_strain(const StepContext& context,
     overloaded.scratch.height.resize(layout.body_of_solver_index.size());
     overloaded.scratch.gives.resize(layout.body_of_solver_index.size());
     overloaded.scratch.contact_gives.resize(islands.contacts.size());
-    const Gauge<Real> gauge(context, parameters, islands, layout, active, masses, velocities,
+    const Gauge<Real> gauge(context, parameters, islands, layout, active, masses, poses, velocities,
                             convex, meshes, solids, joined, constraints, overloaded);
     for_each_block(count, kIslands, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -537,9 +558,9 @@ void measure_strain(const StepContext& context,
 #define THRONG_INSTANTIATE(Real)                                                                   \
     template void measure_strain<Real>(                                                            \
         const StepContext&, const SolverParameters&, const Islands&, const Layout&,                \
-        const ActiveContacts&, const Masses&, const Velocities&, const ConvexContacts<Real>&,      \
-        const MeshContacts<Real>&, const SolidContacts<Real>&, const JoinedContacts<Real>&,        \
-        const ContactConstraints<Real>&, OverloadedIslands&);
+        const ActiveContacts&, const Masses&, const Poses&, const Velocities&,                     \
+        const ConvexContacts<Real>&, const MeshContacts<Real>&, const SolidContacts<Real>&,        \
+        const JoinedContacts<Real>&, const ContactConstraints<Real>&, OverloadedIslands&);
 THRONG_INSTANTIATE(float)
 THRONG_INSTANTIATE(double)
 #undef THRONG_INSTANTIATE

@@ -57,6 +57,7 @@ public:
     /// Makes room for velocities and impulses that are put aside.
     void start_saving() { saved_motion_ = SavedMotion<Real>(layout_, batch_, constraints_); }
     const SavedMotion<Real>& saved_motion() const { return saved_motion_; }
+    const ConstraintBuilder<Real>& builder() const { return builder_; }
 
     /// Of a solver body, or null.
     const GyroscopicInertia<Real>* inertia_of(const SolverBody<Real>& body) const

@@ -8,6 +8,7 @@
 #include "pipeline/solvers/borne_bodies.hpp"
 #include "pipeline/solvers/kept_islands.hpp"
 #include "pipeline/solvers/relax_iterations.hpp"
+#include "pipeline/solvers/released_loads.hpp"
 #include "pipeline/solvers/slice_passes.hpp"
 #include "pipeline/step/passes.hpp"
 
@@ -71,7 +72,8 @@ public:
         return kPasses;
     }
 
-    // The same, but that every warm start is limited, and nothing relaxes but what comes late.
+    // The same, but that every warm start is limited and so no load released, and nothing relaxes
+    // but what comes late.
     static std::span<const Pass<Task>> pgs()
     {
         static constexpr auto kPasses =
@@ -98,11 +100,13 @@ public:
     }
 
 private:
-    static constexpr std::array<Pass<Task>, 20> passes_with(Set<Effect> limited,
+    static constexpr std::array<Pass<Task>, 21> passes_with(Set<Effect> limited,
                                                             const Pass<Task>& after_moving)
     {
         using enum Effect;
         using enum When;
+        // Where every warm start is limited, nobody is thrown by what it remembers.
+        const Set<Effect> released = limited.has(contact) ? Set<Effect>{} : Set<Effect>{contact};
         return {{
             pass<&Task::make_constraints>({contact}, before_substeps),
             pass<&Task::find_borne>(kFollowBodies, before_substeps),
@@ -116,6 +120,7 @@ private:
             pass<&Task::limit_warm_start>({contact}, each_substep),
             pass<&Task::update_surface_velocity>({contact}, each_substep),
             pass<&Task::solve_velocities>({contact}, each_iteration),
+            pass<&Task::release_loads>(released, first_substep),
             pass<&Task::solve_split_impulse>({contact}, each_iteration),
             pass<&Task::advance_bodies>({contact}, each_substep),
             pass<&Task::place_rims>({rotation}, each_substep),
@@ -208,6 +213,42 @@ private:
             // it out by more than anybody gave.
             turn_to_springs();
         }
+    }
+
+    // Where loads are gone that contacts remember, all that was done in this substep is done anew
+    // without them.
+    void release_loads()
+    {
+        if (parts_) return;
+        slices_.run();
+        const std::vector<std::uint32_t> thrown = find_thrown(
+            layout_, batch_, context_.gravity.norm() * context_.substep(), constraints_);
+        if (thrown.empty()
+            || !throng::release_loads(layout_, batch_, slices_.builder(), facts_.velocities, thrown,
+                                      constraints_))
+            return;
+        // Constraints are made with bodies as the step began, and impacts were before.
+        const auto bodies = layout_.bodies_of(batch_);
+        const auto restitutions = constraints_.restitutions;
+        for (const std::uint32_t body : bodies) {
+            Real* const motion = constraints_.bodies[layout_.solver_index[body]].motion;
+            for (int k = 0; k < 3; ++k) {
+                motion[k] = static_cast<Real>(facts_.velocities.linear[body][k]);
+                motion[4 + k] = static_cast<Real>(facts_.velocities.angular[body][k]);
+            }
+        }
+        make_constraints();
+        slices_.run();
+        constraints_.restitutions = restitutions;
+        for (const std::uint32_t body : bodies) {
+            SolverBody<Real>& solver_body = constraints_.bodies[layout_.solver_index[body]];
+            std::copy(solver_body.free, solver_body.free + 8, solver_body.motion);
+        }
+        warm_start();
+        if (context_.has(Effect::rotation)) turn_arms();
+        limit_warm_start();
+        update_surface_velocity();
+        solve_velocities();
     }
 
     void solve_split_impulse()

@@ -78,12 +78,14 @@ constexpr typename detail::PassOf<decltype(run)>::Type pass(Set<Effect> called_f
     return {function_name<run>(), called_for_by, when, run};
 }
 
+/// As they are printed, without those of a shared table that nothing calls for.
 template <class Solver, class... Arguments>
 std::vector<PassRow> rows_of(std::span<const Pass<Solver, Arguments...>> passes)
 {
     std::vector<PassRow> rows;
     for (const auto& pass : passes)
-        rows.push_back({pass.name, pass.called_for_by, text_of(pass.when)});
+        if (!pass.called_for_by.empty())
+            rows.push_back({pass.name, pass.called_for_by, text_of(pass.when)});
     return rows;
 }
 

@@ -1,5 +1,6 @@
 // Measures: what a state is worth, against what it was made to be.
 #include "tests/support/small_scenes.hpp"
+#include "throng/catalog.hpp"
 #include "throng/world.hpp"
 
 #include <gtest/gtest.h>
