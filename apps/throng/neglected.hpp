@@ -17,7 +17,8 @@ namespace throng {
 ///   ms_called, ms             a step of both, as they run on side by side
 ///   beside                    auto beside called
 ///   shaken                    called beside itself, its bodies off by a ten-millionth of their
-///                             radius: what becomes of the last digits, whatever is left out
+///                             radius: what becomes of the last digits, whatever is left out; of
+///                             few bodies the worst of several ways of being off
 struct NeglectReport {
     double promised_rad = 0, promised_m = 0;
     double ms_called = 0, ms = 0;

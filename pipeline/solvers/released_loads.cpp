@@ -12,9 +12,9 @@ namespace {
 
 // A contact is left where its bodies part faster than by so many times what acts in a substep.
 constexpr double kLeft = 2;
-// Share of what a contact gives below which it is the digits that part its bodies.
+// Share of what contacts give below which it is the digits that part their bodies.
 constexpr double kDigits = 1e-3;
-// Times that contacts are looked at, each, before it is left to the solver. A column takes two.
+// Times that bodies are looked at, each, before it is left to the solver. A column takes two.
 constexpr std::size_t kMostLooks = 16;
 
 // Who is made faster by more than so many times what gravity gives in a substep, and what most
@@ -41,12 +41,14 @@ Four<Real> four_at(const Real* numbers)
     return Eigen::Map<const Four<Real>>(numbers);
 }
 
-// Whether it is faster by more than a speed, seen from what goes by a common velocity.
+// Whether it is faster by more than a speed, and more than twice as fast, seen from what goes by a
+// common velocity.
 template <class Real>
 bool gains(const SolverBody<Real>& body, const Four<Real>& common, Real speed)
 {
-    const Four<Real> motion = four_at(body.motion), free = four_at(body.free);
-    return ((motion - free) * (motion + free - 2 * common)).sum() > speed * speed;
+    const Four<Real> motion = four_at(body.motion) - common, free = four_at(body.free) - common;
+    const Real before = free.square().sum();
+    return motion.square().sum() > before + std::max(speed * speed, 3 * before);
 }
 
 // What most bodies of an island go by without contacts, and how fast most do seen from there.
@@ -131,47 +133,74 @@ public:
         for (std::size_t i = 0; i < bodies_.size(); ++i)
             bodies_[i] = body_of(static_cast<std::int32_t>(first_ + i));
         list_contacts();
+        waits_.assign(bodies_.size(), 0);
         contacts_of_.resize(bodies_.size());
         for (std::uint32_t i = 0; i < contacts_.size(); ++i)
             for (const std::int32_t solver_index : {contacts_[i].a, contacts_[i].b})
                 if (layout_.movable(solver_index)) contacts_of_[place(solver_index)].push_back(i);
     }
 
+    // Round by round, all that are looked at in one as the round before has left it: so what lies
+    // evenly goes on to do so.
     bool run(std::span<const std::uint32_t> thrown)
     {
-        std::vector<std::uint32_t> waiting;
-        std::vector<std::uint8_t> waits(contacts_.size(), 0);
-        const auto look_at_contacts_of = [&](std::int32_t solver_index) {
-            if (!layout_.movable(solver_index)) return;
-            for (const std::uint32_t contact : contacts_of_[place(solver_index)]) {
-                if (waits[contact] != 0) continue;
-                waits[contact] = 1;
-                waiting.push_back(contact);
-            }
-        };
         for (const std::uint32_t solver_index : thrown)
-            look_at_contacts_of(static_cast<std::int32_t>(solver_index));
-        const std::size_t most = kMostLooks * contacts_.size();
-        for (std::size_t next = 0; next < waiting.size() && next < most; ++next) {
-            PressedContact& contact = contacts_[waiting[next]];
-            waits[waiting[next]] = 0;
-            if (!release(contact)) continue;
-            look_at_contacts_of(contact.a);
-            look_at_contacts_of(contact.b);
+            queue_around(static_cast<std::int32_t>(solver_index));
+        const std::size_t most = kMostLooks * bodies_.size();
+        for (std::size_t looks = 0; !next_.empty() && looks < most;) {
+            std::vector<std::size_t> now;
+            now.swap(next_);
+            looks += now.size();
+            std::vector<std::pair<std::uint32_t, double>> taken;
+            for (const std::size_t body : now) {
+                waits_[body] = 0;
+                find_taken(body, taken);
+            }
+            for (const auto& [contact, share] : taken) {
+                push(contacts_[contact], -share * contacts_[contact].share);
+                contacts_[contact].share *= 1 - share;
+                queue_around(contacts_[contact].a);
+                queue_around(contacts_[contact].b);
+            }
         }
-        bool any = false;
-        for (const PressedContact& contact : contacts_) {
-            if (contact.share == 1) continue;
-            builder_.scale_impulses(contact.place, static_cast<Real>(contact.share));
-            any = true;
-        }
-        return any;
+        // Of whom nothing was taken is thrown by something else, as a blow.
+        const auto gave = [&](std::uint32_t solver_index) {
+            const auto& contacts = contacts_of_[solver_index - first_];
+            return std::any_of(contacts.begin(), contacts.end(),
+                               [&](std::uint32_t contact) { return contacts_[contact].share < 1; });
+        };
+        if (std::none_of(thrown.begin(), thrown.end(), gave)) return false;
+        for (const PressedContact& contact : contacts_)
+            if (contact.share < 1)
+                builder_.scale_impulses(contact.place, static_cast<Real>(contact.share));
+        return true;
     }
 
 private:
+    void queue(std::int32_t solver_index)
+    {
+        if (!layout_.movable(solver_index) || waits_[place(solver_index)] != 0) return;
+        waits_[place(solver_index)] = 1;
+        next_.push_back(place(solver_index));
+    }
+    // And whomever it touches: who was thrown may be the one whom somebody else leaves.
+    void queue_around(std::int32_t solver_index)
+    {
+        if (!layout_.movable(solver_index)) return;
+        queue(solver_index);
+        for (const std::uint32_t contact : contacts_of_[place(solver_index)]) {
+            queue(contacts_[contact].a);
+            queue(contacts_[contact].b);
+        }
+    }
+
     std::size_t place(std::int32_t solver_index) const
     {
         return static_cast<std::size_t>(solver_index) - first_;
+    }
+    std::int32_t solver_index_of(std::size_t place) const
+    {
+        return static_cast<std::int32_t>(first_ + place);
     }
 
     BodyMotion body_of(std::int32_t solver_index) const
@@ -239,48 +268,72 @@ private:
 
     // Of one of the two bodies of a contact.
     struct Side {
-        double now = 0, free = 0;  // m/s, away from the other
-        double gives_way = 0;      // 1/kg
+        Vec3 velocity = Vec3::Zero();  // m/s, of its point
+        double driven = 0;             // m/s, away from the other by what contacts give
         double acts = std::numeric_limits<double>::infinity();
-
-        double driven() const { return now - free; }
     };
 
     Side side_of(std::int32_t solver_index, const Vec3& away, const Vec3& arm) const
     {
         const bool moves = layout_.movable(solver_index);
         const BodyMotion& body = moves ? bodies_[place(solver_index)] : body_of(solver_index);
-        const Vec3 turning = arm.cross(away);
         Side side;
-        side.now = away.dot(body.now.velocity) + turning.dot(body.now.spin);
-        side.free = away.dot(body.free.velocity) + turning.dot(body.free.spin);
-        if (!moves) return side;
-        side.gives_way = body.inverse_mass + turning.dot(body.inverse_inertia * turning);
-        side.acts = body.acts;
+        side.velocity = body.now.velocity + body.now.spin.cross(arm);
+        side.driven = away.dot(side.velocity - body.free.velocity - body.free.spin.cross(arm));
+        if (moves) side.acts = body.acts;
         return side;
     }
 
-    // Takes back what parts the two bodies of a contact, as far as it gives it. False where they do
-    // not part.
-    bool release(PressedContact& contact)
+    // m/s, of b's point seen from a's.
+    Vec3 part_of(const PressedContact& contact) const
     {
-        if (!(contact.share > 0)) return false;
+        return side_of(contact.b, contact.normal, contact.arm_b).velocity
+            - side_of(contact.a, -contact.normal, contact.arm_a).velocity;
+    }
+
+    // Whether and why the two bodies of a contact part.
+    enum class Leaving : std::uint8_t { no, anyway, driven };
+
+    // anyway: contacts drive neither of them away from the other. driven: this one more than that.
+    Leaving leaving_of(const PressedContact& contact, std::size_t body) const
+    {
         const Side a = side_of(contact.a, -contact.normal, contact.arm_a);
         const Side b = side_of(contact.b, contact.normal, contact.arm_b);
-        const double part = a.now + b.now;
-        if (!(part > kLeft * std::min(a.acts, b.acts))) return false;
-        // Who is driven back at the other is not who leaves him.
-        const double most = std::max(a.driven(), b.driven());
-        const auto leaves = [&](const Side& side) {
-            return most > 0 ? std::max(side.driven(), 0.0) / most : 1.0;
-        };
-        const double way = leaves(a) * a.gives_way + leaves(b) * b.gives_way;
-        if (!(way > 0)) return false;
-        const double taken = std::min(part / way / contact.gives, contact.share);
-        if (!(taken > kDigits)) return false;
-        push(contact, -taken);
-        contact.share -= taken;
-        return true;
+        const double part = contact.normal.dot(Vec3(b.velocity - a.velocity));
+        if (!(contact.share > 0 && part > kLeft * std::min(a.acts, b.acts))) return Leaving::no;
+        if (!(a.driven > 0 || b.driven > 0)) return Leaving::anyway;
+        const bool is_a = contact.a == solver_index_of(body);
+        const double driven = is_a ? a.driven : b.driven, other = is_a ? b.driven : a.driven;
+        return driven > 0 && driven >= other ? Leaving::driven : Leaving::no;
+    }
+
+    // What is to be taken from the contacts that a body is driven away, as a share of what they
+    // still give: that which leaves it the least energy, seen from those that it is driven away
+    // from. Of contacts whose bodies part anyway all.
+    void find_taken(std::size_t at, std::vector<std::pair<std::uint32_t, double>>& taken) const
+    {
+        std::vector<std::uint32_t> driving;
+        double power = 0;
+        Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // N s, N m s
+        for (const std::uint32_t i : contacts_of_[at]) {
+            const PressedContact& contact = contacts_[i];
+            const Leaving leaving = leaving_of(contact, at);
+            if (leaving == Leaving::anyway) taken.push_back({i, 1});
+            if (leaving != Leaving::driven) continue;
+            driving.push_back(i);
+            const bool is_a = contact.a == solver_index_of(at);
+            const double sign = is_a ? -contact.share : contact.share;
+            const Vec3& arm = is_a ? contact.arm_a : contact.arm_b;
+            power += contact.share * contact.impulse.dot(part_of(contact));
+            force += sign * contact.impulse;
+            torque += sign * (arm.cross(contact.impulse) + contact.turning);
+        }
+        const BodyMotion& body = bodies_[at];
+        const double twice_energy =
+            body.inverse_mass * force.squaredNorm() + torque.dot(body.inverse_inertia * torque);
+        const double share = twice_energy > 0 ? std::min(power / twice_energy, 1.0) : 0;
+        if (!(share > kDigits)) return;
+        for (const std::uint32_t contact : driving) taken.push_back({contact, share});
     }
 
     const Layout& layout_;
@@ -292,6 +345,8 @@ private:
     std::vector<BodyMotion> bodies_;
     std::vector<PressedContact> contacts_;
     std::vector<std::vector<std::uint32_t>> contacts_of_;  // [bodies of the batch]
+    std::vector<std::size_t> next_;                        // bodies to be looked at
+    std::vector<std::uint8_t> waits_;                      // [bodies of the batch] are among them
 };
 
 }  // namespace

@@ -4,9 +4,9 @@
 // A step begins with what contacts gave in the last one. Where somebody heavy has been lifted off a
 // tower since, let go of, removed or made light, each contact below still holds him up, and the few
 // sweeps of a step pass the difference on by a body or two each: the tower is thrown. Who bears
-// whom tells the order that takes it back at once. A contact that its two bodies leave, as they
-// would move by all impulses together, gives up what takes the one that its own impulses drive away
-// from the other; that one is now driven by those below him, whose contacts are looked at next.
+// whom tells the order that takes it back at once. Contacts that a body leaves, as it would move by
+// all impulses together, give up by one share what drives it away; those on their other sides are
+// now driven by who bears them, and are looked at next.
 //
 // Source: relaxation that goes on where most is left over (Southwell, Relaxation Methods in
 // Engineering Science, 1940), of contacts and downwards alone: nothing is given, only given back.

@@ -215,6 +215,32 @@ private:
         }
     }
 
+    // In the first substep, with bodies as the step began. What impacts did before is kept.
+    void make_constraints_anew()
+    {
+        const auto bodies = layout_.bodies_of(batch_);
+        const auto slices = std::span(layout_.slices).subspan(batch_.first_slice, batch_.slices);
+        const std::size_t first = layout_.blocks_of(slices.front()).begin;
+        std::span<RestitutionWide<Real>> of_batch(constraints_.restitutions);
+        if (!of_batch.empty())
+            of_batch = of_batch.subspan(first, layout_.blocks_of(slices.back()).end - first);
+        const std::vector<RestitutionWide<Real>> restitutions(of_batch.begin(), of_batch.end());
+        for (const std::uint32_t body : bodies) {
+            Real* const motion = constraints_.bodies[layout_.solver_index[body]].motion;
+            for (int k = 0; k < 3; ++k) {
+                motion[k] = static_cast<Real>(facts_.velocities.linear[body][k]);
+                motion[4 + k] = static_cast<Real>(facts_.velocities.angular[body][k]);
+            }
+        }
+        make_constraints();
+        slices_.run();
+        std::copy(restitutions.begin(), restitutions.end(), of_batch.begin());
+        for (const std::uint32_t body : bodies) {
+            SolverBody<Real>& solver_body = constraints_.bodies[layout_.solver_index[body]];
+            std::copy(solver_body.free, solver_body.free + 8, solver_body.motion);
+        }
+    }
+
     // Where loads are gone that contacts remember, all that was done in this substep is done anew
     // without them.
     void release_loads()
@@ -227,23 +253,7 @@ private:
             || !throng::release_loads(layout_, batch_, slices_.builder(), facts_.velocities, thrown,
                                       constraints_))
             return;
-        // Constraints are made with bodies as the step began, and impacts were before.
-        const auto bodies = layout_.bodies_of(batch_);
-        const auto restitutions = constraints_.restitutions;
-        for (const std::uint32_t body : bodies) {
-            Real* const motion = constraints_.bodies[layout_.solver_index[body]].motion;
-            for (int k = 0; k < 3; ++k) {
-                motion[k] = static_cast<Real>(facts_.velocities.linear[body][k]);
-                motion[4 + k] = static_cast<Real>(facts_.velocities.angular[body][k]);
-            }
-        }
-        make_constraints();
-        slices_.run();
-        constraints_.restitutions = restitutions;
-        for (const std::uint32_t body : bodies) {
-            SolverBody<Real>& solver_body = constraints_.bodies[layout_.solver_index[body]];
-            std::copy(solver_body.free, solver_body.free + 8, solver_body.motion);
-        }
+        make_constraints_anew();
         warm_start();
         if (context_.has(Effect::rotation)) turn_arms();
         limit_warm_start();
