@@ -24,7 +24,7 @@ struct FieldPlace {
 };
 
 /// Called for every dynamic body that is awake, as often as the integrator evaluates forces, from
-/// any thread: the answer may depend on the place alone.
+/// any thread: the answer may depend on the place alone, and calls of its world are refused.
 using ForceField = std::function<Wrench(const FieldPlace&)>;
 
 }  // namespace throng

@@ -66,10 +66,10 @@ struct NearestHit {
 /// those that moved alone. Ask in batches, which run on the world's threads. Answers are the same
 /// bits for any number of them.
 ///
-/// The world must outlive its queries, and neither step nor change while they are asked. One thread
-/// at a time, whatever number of Queries a world has. Questions that are not numbers, or a
-/// direction of length 0, throw std::invalid_argument, naming the question, and so do spans of
-/// different lengths.
+/// The world must outlive its queries. One thread at a time, whatever number of Queries a world
+/// has, and none while it is stepped or changed, which throws std::logic_error. Questions that are
+/// not numbers, or a direction of length 0, throw std::invalid_argument, naming the question, and
+/// so do spans of different lengths.
 class Queries {
 public:
     explicit Queries(const World& world);

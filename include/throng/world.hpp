@@ -1,8 +1,11 @@
 // World: bodies, what holds between them, and the step.
 //
 // Bodies are added and removed in batches, between steps. A BodyId stays good until its body is
-// removed; using one after that throws. One thread calls a world at a time; the step itself runs on
-// the world's own threads, and its result is the same bits for any number of them.
+// removed; using one after that throws. One thread calls a world at a time: a call that comes while
+// another is at work, from a second thread or from the program's own force field within a step,
+// throws std::logic_error, naming both, and changes nothing. Between steps any number of threads
+// may read states of bodies. The step itself runs on the world's own threads, and its result is the
+// same bits for any number of them.
 #pragma once
 
 #include "throng/body_id.hpp"
@@ -50,7 +53,8 @@ public:
     void set_gravity(const Vec3& gravity);
     /// A force and torque of the program's own on every dynamic body that is awake, at every
     /// evaluation of the integrator; none to take it away. Called from any of the world's threads.
-    /// Bodies in a field do not sleep.
+    /// Bodies in a field do not sleep. What it throws ends the step, halfway: such a world may be
+    /// read, and refuses to be changed or stepped.
     void set_force_field(ForceField field);
 
     std::size_t body_count() const;      // alive

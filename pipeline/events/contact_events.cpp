@@ -174,6 +174,7 @@ void WorldState::follow_touching_pairs()
 
 void World::listen(const Listening& to)
 {
+    const Door::Entry entry(state_->door, "listen");
     if (!(to.hit_speed > 0))
         throw std::invalid_argument(
             "listen: hit_speed: give a speed above 0, m/s, or infinity for no hits");
@@ -205,10 +206,15 @@ void World::listen(const Listening& to)
     state.effects_stale = true;
 }
 
-const Events& World::events() const { return state_->events; }
+const Events& World::events() const
+{
+    state_->door.need_no_step("events");
+    return state_->events;
+}
 
 std::span<const ContactReport> World::contacts() const
 {
+    const Door::Entry entry(state_->door, "contacts", Door::Use::looks);
     state_->settle();
     state_->contacts = std::visit(
         [&](const auto& chosen) {

@@ -246,6 +246,7 @@ void WorldState::call_sensors()
 
 void World::set_sensor(BodyId body, bool sensor)
 {
+    const Door::Entry entry(state_->door, "set_sensor");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_sensor");
     const auto found = state.sensors.find(at);

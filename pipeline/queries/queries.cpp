@@ -105,6 +105,7 @@ void Queries::cast_rays(std::span<const RayQuery> rays, std::span<RayHit> hits)
 {
     check_lengths("cast_rays", rays.size(), hits.size());
     check("cast_rays", rays);
+    const Door::Entry entry(inside_->state.door, "cast_rays", Door::Use::looks);
     inside_->now().cast_rays(rays, hits);
 }
 
@@ -119,6 +120,7 @@ void Queries::find_blocked(std::span<const RayQuery> rays, std::span<std::uint8_
 {
     check_lengths("find_blocked", rays.size(), blocked.size());
     check("find_blocked", rays);
+    const Door::Entry entry(inside_->state.door, "find_blocked", Door::Use::looks);
     inside_->now().find_blocked(rays, blocked);
 }
 
@@ -133,6 +135,7 @@ std::vector<std::vector<BodyId>> Queries::find_overlaps(std::span<const ShapeQue
 {
     check("find_overlaps", shapes);
     std::vector<std::vector<BodyId>> found(shapes.size());
+    const Door::Entry entry(inside_->state.door, "find_overlaps", Door::Use::looks);
     inside_->now().find_overlaps(shapes, found);
     return found;
 }
@@ -146,6 +149,7 @@ void Queries::find_nearest(std::span<const PointQuery> points, std::span<Nearest
 {
     check_lengths("find_nearest", points.size(), nearest.size());
     check("find_nearest", points);
+    const Door::Entry entry(inside_->state.door, "find_nearest", Door::Use::looks);
     inside_->now().find_nearest(points, nearest);
 }
 

@@ -319,6 +319,7 @@ void WorldState::drive_surface(std::uint32_t body)
 
 void World::set_motion(BodyId body, Motion motion)
 {
+    const Door::Entry entry(state_->door, "set_motion");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_motion");
     const Motion before = state.motion[at];
@@ -372,6 +373,7 @@ void World::set_motion(BodyId body, Motion motion)
 
 void World::set_mass(BodyId body, double mass, const std::optional<Sym3>& inertia)
 {
+    const Door::Entry entry(state_->door, "set_mass");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_mass");
     const bool dynamic = state.get<BodyStates>().dynamic(at);
@@ -410,6 +412,7 @@ Sym3 World::inertia(BodyId body) const
 
 void World::set_locks(BodyId body, bool position, bool rotation)
 {
+    const Door::Entry entry(state_->door, "set_locks");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_locks");
     if (!state.get<BodyStates>().dynamic(at)) {
@@ -435,6 +438,7 @@ void World::set_locks(BodyId body, bool position, bool rotation)
 
 void World::set_filter(BodyId body, std::uint32_t group, std::uint32_t mask)
 {
+    const Door::Entry entry(state_->door, "set_filter");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_filter");
     if (const auto sensor = state.sensors.find(at); sensor != state.sensors.end()) {
@@ -461,6 +465,7 @@ std::uint32_t World::mask(BodyId body) const
 
 void World::set_drive_velocity(BodyId body, const std::array<std::optional<double>, 3>& velocity)
 {
+    const Door::Entry entry(state_->door, "set_drive_velocity");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_drive_velocity");
     for (const auto& component : velocity)
@@ -474,6 +479,7 @@ void World::set_drive_velocity(BodyId body, const std::array<std::optional<doubl
 
 void World::set_fast(BodyId body, bool fast)
 {
+    const Door::Entry entry(state_->door, "set_fast");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_fast");
     auto& states = state.get<BodyStates>();
@@ -487,6 +493,7 @@ void World::set_fast(BodyId body, bool fast)
 
 void World::set_force(BodyId body, const Vec3& force, const Vec3& torque)
 {
+    const Door::Entry entry(state_->door, "set_force");
     WorldState& state = *state_;
     const std::uint32_t at = dynamic_at(state, body, "set_force");
     need_finite(force, "set_force", "N");
@@ -503,6 +510,7 @@ void World::set_force(BodyId body, const Vec3& force, const Vec3& torque)
 
 void World::set_gravity_scale(BodyId body, double scale)
 {
+    const Door::Entry entry(state_->door, "set_gravity_scale");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "set_gravity_scale");
     if (!(std::abs(scale) <= kGreatestNumber))
@@ -524,6 +532,7 @@ double World::gravity_scale(BodyId body) const
 
 void World::set_user_data(BodyId body, std::uint64_t data)
 {
+    const Door::Entry entry(state_->door, "set_user_data");
     put(state_->user_data, state_->place_of(body, "set_user_data"), data);
 }
 
@@ -535,6 +544,7 @@ std::uint64_t World::user_data(BodyId body) const
 
 void World::add_impulse(BodyId body, const Vec3& impulse)
 {
+    const Door::Entry entry(state_->door, "add_impulse");
     WorldState& state = *state_;
     const std::uint32_t at = dynamic_at(state, body, "add_impulse");
     need_finite(impulse, "add_impulse", "N s");
@@ -549,6 +559,7 @@ void World::add_impulse(BodyId body, const Vec3& impulse)
 
 void World::add_impulse(BodyId body, const Vec3& impulse, const Vec3& point)
 {
+    const Door::Entry entry(state_->door, "add_impulse");
     WorldState& state = *state_;
     const std::uint32_t at = dynamic_at(state, body, "add_impulse");
     need_finite(impulse, "add_impulse", "N s");
@@ -562,6 +573,7 @@ void World::add_impulse(BodyId body, const Vec3& impulse, const Vec3& point)
 
 void World::add_angular_impulse(BodyId body, const Vec3& impulse)
 {
+    const Door::Entry entry(state_->door, "add_angular_impulse");
     WorldState& state = *state_;
     const std::uint32_t at = dynamic_at(state, body, "add_angular_impulse");
     need_finite(impulse, "add_angular_impulse", "N m s");
@@ -572,6 +584,7 @@ void World::add_angular_impulse(BodyId body, const Vec3& impulse)
 
 void World::add_force(BodyId body, const Vec3& force)
 {
+    const Door::Entry entry(state_->door, "add_force");
     const std::uint32_t at = dynamic_at(*state_, body, "add_force");
     need_finite(force, "add_force", "N");
     push(*state_, at, force, Vec3::Zero());
@@ -579,6 +592,7 @@ void World::add_force(BodyId body, const Vec3& force)
 
 void World::add_force(BodyId body, const Vec3& force, const Vec3& point)
 {
+    const Door::Entry entry(state_->door, "add_force");
     const std::uint32_t at = dynamic_at(*state_, body, "add_force");
     need_finite(force, "add_force", "N");
     need_finite(point, "add_force", "m");
@@ -587,6 +601,7 @@ void World::add_force(BodyId body, const Vec3& force, const Vec3& point)
 
 void World::add_torque(BodyId body, const Vec3& torque)
 {
+    const Door::Entry entry(state_->door, "add_torque");
     const std::uint32_t at = dynamic_at(*state_, body, "add_torque");
     need_finite(torque, "add_torque", "N m");
     push(*state_, at, Vec3::Zero(), torque);
@@ -594,6 +609,7 @@ void World::add_torque(BodyId body, const Vec3& torque)
 
 void World::move_to(BodyId body, const Pose& pose, double seconds)
 {
+    const Door::Entry entry(state_->door, "move_to");
     WorldState& state = *state_;
     const std::uint32_t at = state.place_of(body, "move_to");
     if (state.get<BodyStates>().kind[at] != BodyKind::kinematic)
@@ -612,12 +628,14 @@ void World::move_to(BodyId body, const Pose& pose, double seconds)
 
 void World::wake(BodyId body)
 {
+    const Door::Entry entry(state_->door, "wake");
     const std::uint32_t at = state_->place_of(body, "wake");
     if (state_->get<BodyStates>().dynamic(at)) state_->wake_beside(at);
 }
 
 void World::sleep(BodyId body)
 {
+    const Door::Entry entry(state_->door, "sleep");
     WorldState& state = *state_;
     const std::uint32_t at = dynamic_at(state, body, "sleep");
     auto& states = state.get<BodyStates>();

@@ -38,6 +38,7 @@ void check(std::size_t i, BodyId id, const StateColumns<const double>& from)
 
 StateSpans World::stored_state() const
 {
+    state_->door.need_no_step("stored_state");
     const auto& poses = state_->get<Poses>();
     const auto& velocities = state_->get<Velocities>();
     const auto& states = state_->get<BodyStates>();
@@ -81,6 +82,7 @@ void World::read_state(std::span<const BodyId> bodies, const StateColumns<double
 
 void World::write_state(std::span<const BodyId> bodies, const StateColumns<const double>& from)
 {
+    const Door::Entry entry(state_->door, "write_state");
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         state_->place_of(bodies[i], "write_state");
         check(i, bodies[i], from);
@@ -94,11 +96,11 @@ void World::write_state(std::span<const BodyId> bodies, const StateColumns<const
             if (from.position.first != nullptr) to.position = vector_at(from.position.of(i));
             if (from.orientation.first != nullptr)
                 to.orientation = quaternion_at(from.orientation.of(i));
-            set_pose(id, to);
+            state_->place(id.index, to);
         }
         if (pushes)
-            set_velocity(
-                id,
+            state_->set_velocities(
+                id.index,
                 from.velocity.first != nullptr ? vector_at(from.velocity.of(i))
                                                : state_->get<Velocities>().linear[id.index],
                 from.angular_velocity.first != nullptr ? vector_at(from.angular_velocity.of(i))

@@ -31,6 +31,7 @@ void measure_overlaps(const WorldState& state, Measures& measures)
 
 Measures World::measure() const
 {
+    const Door::Entry entry(state_->door, "measure", Door::Use::looks);
     Measures measures;
     measure_overlaps(*state_, measures);
     const auto& masses = state_->get<Masses>();
@@ -190,6 +191,7 @@ private:
 
 std::string World::state_hash() const
 {
+    const Door::Entry entry(state_->door, "state_hash", Door::Use::looks);
     // All pairs in one order, whoever sleeps.
     state_->settle();
     state_->call_all_pairs();

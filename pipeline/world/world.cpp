@@ -74,6 +74,7 @@ void WorldState::set(const Settings& all)
 
 std::uint32_t WorldState::place_of(BodyId body, const char* caller) const
 {
+    door.need_no_step(caller);
     if (body.index < generation.size() && generation[body.index] == body.generation
         && get<BodyStates>().kind[body.index] != BodyKind::removed)
         return body.index;
@@ -399,6 +400,7 @@ World& World::operator=(World&&) noexcept = default;
 
 std::vector<BodyId> World::add(const Scene& scene)
 {
+    const Door::Entry entry(state_->door, "add");
     if (std::optional<SceneTrouble> trouble = find_trouble(scene))
         throw SceneRefused(std::move(*trouble));
     return SceneBuilder(*state_).add(scene);
@@ -408,6 +410,7 @@ void World::step(int steps)
 {
     if (steps < 0) throw std::invalid_argument("step: give a number of steps from 0");
     WorldState& state = *state_;
+    Door::Step at_work(state.door);
     using Clock = std::chrono::steady_clock;
     state.events = {};
     for (int i = 0; i < steps; ++i) {
@@ -459,12 +462,14 @@ void World::step(int steps)
             std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     }
     state.report_state();
+    at_work.end();
 }
 
 const Settings& World::settings() const { return state_->settings; }
 
 void World::set_settings(const Settings& settings)
 {
+    const Door::Entry entry(state_->door, "set_settings");
     if (settings.precision != this->settings().precision)
         throw std::invalid_argument(
             "set_settings: precision cannot change in a world; make another");
@@ -482,6 +487,7 @@ Vec3 World::gravity() const { return state_->get<StepContext>().gravity; }
 
 void World::set_gravity(const Vec3& gravity)
 {
+    const Door::Entry entry(state_->door, "set_gravity");
     if (!(gravity.array().abs() <= kGreatestLength).all())
         throw std::invalid_argument("set_gravity: wanted an acceleration in m/s2, of 1e15 at most");
     state_->get<StepContext>().gravity = gravity;
@@ -494,6 +500,7 @@ std::size_t World::body_count() const { return state_->alive; }
 
 std::vector<BodyId> World::bodies() const
 {
+    state_->door.need_no_step("bodies");
     std::vector<BodyId> ids;
     ids.reserve(state_->alive);
     const auto& states = state_->get<BodyStates>();
@@ -614,12 +621,14 @@ std::vector<StageReport> World::stages() const
 
 const Effects& World::effects()
 {
+    const Door::Entry entry(state_->door, "effects");
     state_->name_causes();
     return state_->effects;
 }
 
 void World::leave_out(Set<Effect> effects)
 {
+    const Door::Entry entry(state_->door, "leave_out");
     for (int i = 0; i < kEffects; ++i)
         if (const auto effect = static_cast<Effect>(i);
             effects.has(effect) && !kLeftOutByWorld.has(effect))
@@ -633,6 +642,7 @@ void World::leave_out(Set<Effect> effects)
 
 std::vector<World::StageInfo> World::step_stages()
 {
+    const Door::Entry entry(state_->door, "step_stages");
     state_->refresh();
     std::vector<StageInfo> infos;
     std::visit(
@@ -655,6 +665,10 @@ std::vector<World::StageInfo> World::step_stages()
 int World::threads() const { return state_->pool.threads(); }
 int World::threads_met() const { return state_->pool.threads_met(); }
 int World::threads_used() const { return state_->work.threads(); }
-void World::run_in_order(bool in_order) { state_->in_order = in_order; }
+void World::run_in_order(bool in_order)
+{
+    const Door::Entry entry(state_->door, "run_in_order");
+    state_->in_order = in_order;
+}
 
 }  // namespace throng

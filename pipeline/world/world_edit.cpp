@@ -188,6 +188,7 @@ void WorldState::empty_unused()
 
 void World::remove(std::span<const BodyId> bodies)
 {
+    const Door::Entry entry(state_->door, "remove");
     WorldState& state = *state_;
     for (const BodyId id : bodies) state.place_of(id, "remove");
     state.follow_changes();
@@ -237,28 +238,37 @@ void World::remove(std::span<const BodyId> bodies)
 
 void World::set_force_field(ForceField field)
 {
+    const Door::Entry entry(state_->door, "set_force_field");
     WorldState& state = *state_;
     state.get<Forces>().field = std::move(field);
     state.wake_all();
     state.effects_stale = state.census_stale = true;
 }
 
+void WorldState::place(std::uint32_t body, const Pose& pose)
+{
+    auto& poses = get<Poses>();
+    poses.orientation[body] =
+        Quat(pose.orientation.coeffs() / std::sqrt(pose.orientation.squaredNorm()));
+    poses.position[body] = poses.orientation[body] * center[body] + pose.position;
+    disturb(body, false);
+    wake(body);
+    mark_changed(body);
+}
+
 void World::set_pose(BodyId body, const Pose& pose)
 {
+    const Door::Entry entry(state_->door, "set_pose");
     const std::uint32_t at = state_->place_of(body, "set_pose");
     const double length = std::sqrt(pose.orientation.squaredNorm());
     if (!holdable(pose.position) || !(std::abs(length - 1) < 1e-6))
         throw std::invalid_argument("set_pose: give a finite position and a unit quaternion");
-    auto& poses = state_->get<Poses>();
-    poses.orientation[at] = Quat(pose.orientation.coeffs() / length);
-    poses.position[at] = poses.orientation[at] * state_->center[at] + pose.position;
-    state_->disturb(at, false);
-    state_->wake(at);
-    state_->mark_changed(at);
+    state_->place(at, pose);
 }
 
 void World::set_velocity(BodyId body, const Vec3& linear, const Vec3& angular)
 {
+    const Door::Entry entry(state_->door, "set_velocity");
     const std::uint32_t at = state_->place_of(body, "set_velocity");
     if (!linear.allFinite() || !angular.allFinite())
         throw std::invalid_argument("set_velocity: give finite numbers, m/s and rad/s");

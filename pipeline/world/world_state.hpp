@@ -4,6 +4,7 @@
 #include "kernels/geometry/mass.hpp"
 #include "kernels/parallel/blocks.hpp"
 #include "pipeline/step/step_graph.hpp"
+#include "pipeline/world/door.hpp"
 #include "pipeline/world/scene_fields.hpp"
 #include "throng/world.hpp"
 
@@ -93,6 +94,7 @@ struct WorldState {
     /// Those of the world, and what of them the stages have to do with.
     void set(const Settings& all);
 
+    mutable Door door;
     Settings settings;
     ThreadPool pool;
     WorkCount work;  // of all steps
@@ -179,6 +181,8 @@ struct WorldState {
     /// A body by its number and name, for what is told of it.
     std::string called(std::uint32_t body) const;
 
+    /// Puts a body where it is to be, which wakes it.
+    void place(std::uint32_t body, const Pose& pose);
     /// Wakes a body with all that sleeps with it.
     void wake(std::uint32_t body);
     /// The same of one beside which something was changed; who rests near him wakes in the next
