@@ -70,12 +70,13 @@ struct Bearing {
     double before = 0, fastest = 0, gone = 0;  // m/s, as it bears and after; m
 };
 
-Bearing let_go(CaseBench& bench,
-               const Way& way,
-               const Piles& piles,
-               double times,
-               const Going& going,
-               const Vec3& velocity)
+// The ground, what bears, and the load, in this order.
+Scene loaded(const CaseBench& bench,
+             const Way& way,
+             const Piles& piles,
+             double times,
+             bool by_force,
+             const Vec3& velocity)
 {
     SceneParts parts(bench.scene());
     const std::uint32_t material = parts.material(0.6);
@@ -97,12 +98,18 @@ Bearing let_go(CaseBench& bench,
     const std::uint32_t load =
         put(kPitch * (piles.columns - 1) / 2 + 0.005, kHalf * (2 * piles.rows + 1));
     BodyDescription& loading = scene.bodies[load];
-    if (going.pushed)
+    if (by_force)
         loading.force = -kGravity * kMass * (times - 1) * Vec3::UnitZ();
     else
         loading.mass = times * kMass;
     for (BodyDescription& body : scene.bodies) body.velocity = velocity;
+    return scene;
+}
 
+Bearing let_go(CaseBench& bench, const Scene& scene, const Going& going)
+{
+    const Vec3 velocity = scene.bodies.front().velocity;
+    const std::size_t load = scene.bodies.size() - 1;
     Bearing bearing;
     std::vector<Vec3> from;
     double left = 0;  // s, when it went
@@ -110,7 +117,7 @@ Bearing let_go(CaseBench& bench,
         const std::vector<BodyId> bodies = world.bodies();
         const bool gone = !from.empty();
         if (now > kSettle / 2)
-            for (std::uint32_t i = 1; i < load; ++i) {
+            for (std::size_t i = 1; i < load; ++i) {
                 const double speed = (world.velocity(bodies[i]) - velocity).norm();
                 double& of = gone ? bearing.fastest : bearing.before;
                 of = std::max(of, speed);
@@ -139,7 +146,8 @@ void report(CaseBench& bench,
             const Vec3& velocity,
             const std::string& beside = {})
 {
-    const Bearing bearing = let_go(bench, way, piles, times, going, velocity);
+    const Bearing bearing =
+        let_go(bench, loaded(bench, way, piles, times, going.pushed, velocity), going);
     bench.forgive_residual();
     const std::string setting = std::string(way.name) + ", " + piles.name + beside + ", a load of "
         + as_text(times) + " of its boxes " + going.name;

@@ -138,6 +138,13 @@ void ConstraintBuilder<Real>::fill(std::size_t at, PackedContacts<Real>& packed)
         if (view_.prescribed != nullptr) kernels_.walk_surface_velocity(view_, at, up_);
         if (calls_.axes_turn) find_turning_axes(at);
     }
+    finish(at, on_rim);
+}
+
+template <class Real>
+void ConstraintBuilder<Real>::finish(std::size_t at, std::span<const RollsFlat> on_rim) const
+{
+    ContactConstraintWide<Real>& block = constraints_.blocks[at];
     const bool turn = view_.turning_arms != nullptr;
     if (turn) view_.turning_arms[at].lanes = 0;
     if (!uncut_ && !settles_ && !turn) return;

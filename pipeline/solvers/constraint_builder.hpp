@@ -9,6 +9,8 @@
 #include "pipeline/contacts/contact_lists.hpp"
 #include "pipeline/step/step_data.hpp"
 
+#include <span>
+
 namespace throng {
 
 /// Hz, of the spring that a contact of so many points is.
@@ -76,6 +78,8 @@ public:
 
 private:
     void fill(std::size_t at, PackedContacts<Real>& packed) const;
+    // Of a block that is filled what its contacts are asked about one by one.
+    void finish(std::size_t at, std::span<const RollsFlat> on_rim) const;
     Surfaces::MaterialPair materials_of(std::uint32_t entry) const;
     void settle_separation(const Contact<Real>& contact,
                            std::size_t lane,

@@ -318,7 +318,7 @@ private:
         for (const std::uint32_t i : contacts_of_[at]) {
             const PressedContact& contact = contacts_[i];
             const Leaving leaving = leaving_of(contact, at);
-            if (leaving == Leaving::anyway) taken.push_back({i, 1});
+            if (leaving == Leaving::anyway) taken.emplace_back(i, 1);
             if (leaving != Leaving::driven) continue;
             driving.push_back(i);
             const bool is_a = contact.a == solver_index_of(at);
@@ -333,7 +333,7 @@ private:
             body.inverse_mass * force.squaredNorm() + torque.dot(body.inverse_inertia * torque);
         const double share = twice_energy > 0 ? std::min(power / twice_energy, 1.0) : 0;
         if (!(share > kDigits)) return;
-        for (const std::uint32_t contact : driving) taken.push_back({contact, share});
+        for (const std::uint32_t contact : driving) taken.emplace_back(contact, share);
     }
 
     const Layout& layout_;
