@@ -25,7 +25,7 @@ struct Call {
     std::function<void(World&, BodyId)> make;
 };
 
-const Vec3 kOne(1, 1, 1), kNone(0, 0, 0);
+const Vec3 kAnything(1, 1, 1);
 
 // What changes a world, or makes something of it and keeps that.
 const Call kChanges[] = {
@@ -33,14 +33,15 @@ const Call kChanges[] = {
     {"remove", [](World& world, BodyId body) { world.remove(std::span(&body, 1)); }},
     {"step", [](World& world, BodyId) { world.step(); }},
     {"set_settings", [](World& world, BodyId) { world.set_settings(world.settings()); }},
-    {"set_gravity", [](World& world, BodyId) { world.set_gravity(kOne); }},
+    {"set_gravity", [](World& world, BodyId) { world.set_gravity(kAnything); }},
     {"set_force_field", [](World& world, BodyId) { world.set_force_field({}); }},
     {"set_pose", [](World& world, BodyId body) { world.set_pose(body, {}); }},
-    {"set_velocity", [](World& world, BodyId body) { world.set_velocity(body, kOne, kOne); }},
+    {"set_velocity",
+     [](World& world, BodyId body) { world.set_velocity(body, kAnything, kAnything); }},
     {"write_state", [](World& world, BodyId body) { world.write_state(std::span(&body, 1), {}); }},
-    {"add_impulse", [](World& world, BodyId body) { world.add_impulse(body, kOne); }},
-    {"add_force", [](World& world, BodyId body) { world.add_force(body, kOne, kOne); }},
-    {"add_torque", [](World& world, BodyId body) { world.add_torque(body, kOne); }},
+    {"add_impulse", [](World& world, BodyId body) { world.add_impulse(body, kAnything); }},
+    {"add_force", [](World& world, BodyId body) { world.add_force(body, kAnything, kAnything); }},
+    {"add_torque", [](World& world, BodyId body) { world.add_torque(body, kAnything); }},
     {"move_to", [](World& world, BodyId body) { world.move_to(body, {}, 1); }},
     {"wake", [](World& world, BodyId body) { world.wake(body); }},
     {"sleep", [](World& world, BodyId body) { world.sleep(body); }},
