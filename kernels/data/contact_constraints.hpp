@@ -276,6 +276,10 @@ struct Layout {
         const Color& last = colors[slice.first_color + slice.colors - 1];
         return {colors[slice.first_color].first, std::size_t{last.first} + last.count};
     }
+    std::span<const Slice> slices_of(const Batch& batch) const
+    {
+        return std::span(slices).subspan(batch.first_slice, batch.slices);
+    }
     /// Those of a slice that can be moved.
     std::span<const std::uint32_t> bodies_of(const Slice& slice) const
     {

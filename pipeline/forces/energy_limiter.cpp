@@ -76,7 +76,7 @@ public:
     Sets(const Layout& layout, const Batch& batch, const StateDependentForces* springs)
         : layout_(layout), springs_(springs)
     {
-        const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
+        const auto slices = layout.slices_of(batch);
         first_ = slices.front().first_body;
         bodies_ = slices.back().first_body + slices.back().dynamic - first_;
         from_ = layout.blocks_of(slices.front()).begin * kBlock;

@@ -78,7 +78,7 @@ std::vector<std::size_t> grounds_of(const Layout& layout, const Batch& batch)
     if (!batch.calls.driven) return grounds;
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
     grounds.assign(batch.islands, kNone);
-    for (const Slice& slice : std::span(layout.slices).subspan(batch.first_slice, batch.slices))
+    for (const Slice& slice : layout.slices_of(batch))
         for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i) {
             std::int32_t moved = layout.solver_index_a[layout.lane[i]],
                          ground = layout.solver_index_b[layout.lane[i]];
@@ -91,20 +91,24 @@ std::vector<std::size_t> grounds_of(const Layout& layout, const Batch& batch)
     return grounds;
 }
 
-struct Motion {
-    Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // m/s, rad/s
-};
-
-struct BodyMotion {
-    Motion free, now;  // without contacts, and with all that they give
+struct PushedBody {
+    Vec3 free_velocity = Vec3::Zero(), free_spin = Vec3::Zero();  // m/s, rad/s, without contacts
+    Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();            // with all that they give
     double inverse_mass = 0;
     Mat3 inverse_inertia = Mat3::Zero();
-    double acts = 0;  // m/s, that all but contacts give in a substep
+    // m/s, that all but contacts give in a substep; infinite of who moves by himself.
+    double acts = std::numeric_limits<double>::infinity();
 
     void push(const Vec3& impulse, const Vec3& arm, const Vec3& turning)
     {
-        now.velocity += inverse_mass * impulse;
-        now.spin += inverse_inertia * (arm.cross(impulse) + turning);
+        velocity += inverse_mass * impulse;
+        spin += inverse_inertia * (arm.cross(impulse) + turning);
+    }
+    // m/s, of a point; and what contacts give of that.
+    Vec3 velocity_at(const Vec3& arm) const { return velocity + spin.cross(arm); }
+    Vec3 given_at(const Vec3& arm) const
+    {
+        return velocity_at(arm) - free_velocity - free_spin.cross(arm);
     }
 };
 
@@ -203,30 +207,30 @@ private:
         return static_cast<std::int32_t>(first_ + place);
     }
 
-    BodyMotion body_of(std::int32_t solver_index) const
+    PushedBody body_of(std::int32_t solver_index) const
     {
         const auto at = static_cast<std::size_t>(solver_index);
-        const SolverBody<Real>& body = constraints_.bodies[at];
-        BodyMotion motion;
-        const Real* const now = layout_.movable(solver_index) ? body.free : body.motion;
-        motion.free = {vector_at(now), vector_at(now + 4)};
-        motion.now = motion.free;
-        const Real* const m = body.inertia;
-        motion.inverse_mass = double{m[0]};
-        motion.inverse_inertia =
-            Sym3{double{m[1]}, double{m[2]}, double{m[3]}, double{m[4]}, double{m[5]}, double{m[6]}}
-                .matrix();
-        if (layout_.movable(solver_index)) {
-            const std::uint32_t of = layout_.body_of_solver_index[at];
-            motion.acts = (motion.free.velocity - before_.linear[of]).norm();
-        }
-        return motion;
+        const SolverBody<Real>& from = constraints_.bodies[at];
+        const bool moves = layout_.movable(solver_index);
+        const Real* const free = moves ? from.free : from.motion;
+        PushedBody body;
+        body.velocity = body.free_velocity = vector_at(free);
+        body.spin = body.free_spin = vector_at(free + 4);
+        if (!moves) return body;
+        body.inverse_mass = double{from.inertia[0]};
+        body.inverse_inertia = tensor_at(from.inertia + 1).matrix();
+        const Vec3& before = before_.linear[layout_.body_of_solver_index[at]];
+        body.acts = (body.free_velocity - before).norm();
+        return body;
+    }
+    PushedBody now(std::int32_t solver_index) const
+    {
+        return layout_.movable(solver_index) ? bodies_[place(solver_index)] : body_of(solver_index);
     }
 
     void list_contacts()
     {
-        for (const Slice& slice :
-             std::span(layout_.slices).subspan(batch_.first_slice, batch_.slices))
+        for (const Slice& slice : layout_.slices_of(batch_))
             for (std::size_t i = slice.first_contact; i < slice.first_contact + slice.contacts; ++i)
                 list(i);
     }
@@ -266,29 +270,11 @@ private:
                                            share * contact.turning);
     }
 
-    // Of one of the two bodies of a contact.
-    struct Side {
-        Vec3 velocity = Vec3::Zero();  // m/s, of its point
-        double driven = 0;             // m/s, away from the other by what contacts give
-        double acts = std::numeric_limits<double>::infinity();
-    };
-
-    Side side_of(std::int32_t solver_index, const Vec3& away, const Vec3& arm) const
-    {
-        const bool moves = layout_.movable(solver_index);
-        const BodyMotion& body = moves ? bodies_[place(solver_index)] : body_of(solver_index);
-        Side side;
-        side.velocity = body.now.velocity + body.now.spin.cross(arm);
-        side.driven = away.dot(side.velocity - body.free.velocity - body.free.spin.cross(arm));
-        if (moves) side.acts = body.acts;
-        return side;
-    }
-
     // m/s, of b's point seen from a's.
     Vec3 part_of(const PressedContact& contact) const
     {
-        return side_of(contact.b, contact.normal, contact.arm_b).velocity
-            - side_of(contact.a, -contact.normal, contact.arm_a).velocity;
+        return now(contact.b).velocity_at(contact.arm_b)
+            - now(contact.a).velocity_at(contact.arm_a);
     }
 
     // Whether and why the two bodies of a contact part.
@@ -297,14 +283,16 @@ private:
     // anyway: contacts drive neither of them away from the other. driven: this one more than that.
     Leaving leaving_of(const PressedContact& contact, std::size_t body) const
     {
-        const Side a = side_of(contact.a, -contact.normal, contact.arm_a);
-        const Side b = side_of(contact.b, contact.normal, contact.arm_b);
-        const double part = contact.normal.dot(Vec3(b.velocity - a.velocity));
-        if (!(contact.share > 0 && part > kLeft * std::min(a.acts, b.acts))) return Leaving::no;
-        if (!(a.driven > 0 || b.driven > 0)) return Leaving::anyway;
+        if (!(contact.share > 0)) return Leaving::no;
+        const PushedBody a = now(contact.a), b = now(contact.b);
+        const double part = contact.normal.dot(part_of(contact));
+        if (!(part > kLeft * std::min(a.acts, b.acts))) return Leaving::no;
+        const double a_driven = -contact.normal.dot(a.given_at(contact.arm_a)),
+                     b_driven = contact.normal.dot(b.given_at(contact.arm_b));
+        if (!(a_driven > 0 || b_driven > 0)) return Leaving::anyway;
         const bool is_a = contact.a == solver_index_of(body);
-        const double driven = is_a ? a.driven : b.driven, other = is_a ? b.driven : a.driven;
-        return driven > 0 && driven >= other ? Leaving::driven : Leaving::no;
+        const bool more = is_a ? a_driven >= b_driven : b_driven >= a_driven;
+        return more ? Leaving::driven : Leaving::no;
     }
 
     // What is to be taken from the contacts that a body is driven away, as a share of what they
@@ -328,7 +316,7 @@ private:
             force += sign * contact.impulse;
             torque += sign * (arm.cross(contact.impulse) + contact.turning);
         }
-        const BodyMotion& body = bodies_[at];
+        const PushedBody& body = bodies_[at];
         const double twice_energy =
             body.inverse_mass * force.squaredNorm() + torque.dot(body.inverse_inertia * torque);
         const double share = twice_energy > 0 ? std::min(power / twice_energy, 1.0) : 0;
@@ -342,7 +330,7 @@ private:
     const Velocities& before_;
     const ContactConstraints<Real>& constraints_;
     std::size_t first_;  // of the batch, among the solver bodies
-    std::vector<BodyMotion> bodies_;
+    std::vector<PushedBody> bodies_;
     std::vector<PressedContact> contacts_;
     std::vector<std::vector<std::uint32_t>> contacts_of_;  // [bodies of the batch]
     std::vector<std::size_t> next_;                        // bodies to be looked at

@@ -219,7 +219,7 @@ private:
     void make_constraints_anew()
     {
         const auto bodies = layout_.bodies_of(batch_);
-        const auto slices = std::span(layout_.slices).subspan(batch_.first_slice, batch_.slices);
+        const auto slices = layout_.slices_of(batch_);
         const std::size_t first = layout_.blocks_of(slices.front()).begin;
         std::span<RestitutionWide<Real>> of_batch(constraints_.restitutions);
         if (!of_batch.empty())

@@ -98,7 +98,7 @@ public:
                 return iterate_finer(batch);
             else
                 iterate(batch);
-            for (const Slice& slice : slices_of(batch)) lag_by_usual(slice, 1);
+            for (const Slice& slice : layout_.slices_of(batch)) lag_by_usual(slice, 1);
         });
     }
 
@@ -175,7 +175,7 @@ private:
             ? relax_iterations(parameters, finer.substeps, batch)
             : finer_relax_iterations(parameters, finer.substeps, batch);
         const ConstraintBuilder<Real> with = builder_of(batch, finer, parameters);
-        for (const Slice& slice : slices_of(batch)) {
+        for (const Slice& slice : layout_.slices_of(batch)) {
             // Impulses are kept as of the substep that the settings say.
             with.scale_impulses(slice, Real(1) / Real(batch.times));
             lag_by_finer(context_, facts_.forces,
@@ -183,15 +183,10 @@ private:
                          solver_bodies_of(slice));
         }
         solve_batch(finer, parameters, facts_, layout_, batch, with, constraints_, split_impulse_);
-        for (const Slice& slice : slices_of(batch)) {
+        for (const Slice& slice : layout_.slices_of(batch)) {
             with.scale_impulses(slice, Real(batch.times));
             lag_by_usual(slice, batch.times);
         }
-    }
-
-    std::span<const Slice> slices_of(const Batch& batch) const
-    {
-        return std::span(layout_.slices).subspan(batch.first_slice, batch.slices);
     }
 
     // Of a slice that was solved by so many times the substeps, or comes from such a solve.

@@ -33,7 +33,7 @@ constexpr std::uint16_t kSteps = 1000, kGoesOn = 0x8000;
 template <class AnyRows>
 auto blocks_of(const Layout& layout, const Batch& batch, AnyRows& constraints)
 {
-    const auto slices = std::span(layout.slices).subspan(batch.first_slice, batch.slices);
+    const auto slices = layout.slices_of(batch);
     const std::size_t begin = layout.blocks_of(slices.front()).begin;
     return std::span(constraints.blocks)
         .subspan(begin, layout.blocks_of(slices.back()).end - begin);

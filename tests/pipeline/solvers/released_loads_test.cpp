@@ -11,7 +11,7 @@ namespace throng {
 namespace {
 
 constexpr int kRows = 10;
-constexpr double kMass = 1000, kGravity = 9.81;  // kg; m/s2
+constexpr double kBoxMass = 1000, kPull = 9.81;  // kg; m/s2
 
 // A tower of boxes, the last of so many times the mass of the others; on a plane or, where that
 // moves, on a plate.
@@ -27,7 +27,7 @@ Scene loaded_tower(double times, const Vec3& velocity = Vec3::Zero())
     }
     for (int row = 0; row <= kRows; ++row) {
         BodyDescription& box = made.box(Vec3::Constant(0.5), Vec3(0.01 * (row % 2), 0, 0.5 + row));
-        box.mass = row < kRows ? kMass : times * kMass;
+        box.mass = row < kRows ? kBoxMass : times * kBoxMass;
         box.velocity = velocity;
     }
     made.scene.settings.sleep = false;
@@ -57,9 +57,9 @@ TEST(ReleasedLoads, ThrowNobodyWhateverWayTheyGo)
             world.step(300);
             const BodyId load = load_of(world);
             if (way == 0) world.remove(std::span(&load, 1));
-            if (way == 1) world.set_mass(load, kMass);
+            if (way == 1) world.set_mass(load, kBoxMass);
             if (way == 2)
-                world.set_force(load, Vec3(0, 0, 2 * kGravity * times * kMass), {0, 0, 0});
+                world.set_force(load, Vec3(0, 0, 2 * kPull * times * kBoxMass), {0, 0, 0});
             if (way == 3) world.set_pose(load, {Vec3(20, 0, 30), Quat::Identity()});
             if (way == 4) {
                 world.set_motion(load, Motion::kinematic);
@@ -95,7 +95,7 @@ TEST(ReleasedLoads, LeaveEachContactTheWeightAboveIt)
         for (const ContactReport& contact : world.contacts()) {
             const auto upper = std::max(std::find(bodies.begin(), bodies.end(), contact.a),
                                         std::find(bodies.begin(), bodies.end(), contact.b));
-            const double weight = kGravity * kMass * static_cast<double>(bodies.end() - upper);
+            const double weight = kPull * kBoxMass * static_cast<double>(bodies.end() - upper);
             EXPECT_NEAR(std::abs(contact.force.z()), weight, 0.35 * weight) << times << " times";
         }
     }
